@@ -15,6 +15,7 @@ from ..core.geodesy import add_offset
 from . import events, payload
 from .arming_checks import BY_SWITCH
 from .aux_switch import HIGH, LOW, MIDDLE
+from .estimation.sources import choose_set
 from .fence.checks import ALL, switch_by_user
 from .mission.item import NAV_WAYPOINT, RELATIVE, MissionItem, home_item
 from .mission.mission import Mission
@@ -218,6 +219,11 @@ def _avoid_obstacles(holder: Holder, position: int) -> list[Note]:
     return []
 
 
+def _choose_sources(holder: Holder, position: int) -> list[Note]:
+    choose_set(holder.v.autopilot, position - LOW)
+    return [Text(INFO, f"Using EKF Source Set {position - LOW + 1}")]
+
+
 def _nothing(holder: Holder, position: int) -> list[Note]:
     return []
 
@@ -239,7 +245,7 @@ def fitted(number: int, doc: str, name: str = "") -> AuxFunction:
 
 WITHOUT_EFFECT = {
     30: "", 38: "", 62: "CompassLearn", 65: "GPSDisable", 78: "RunCamControl", 79: "RunCamOSDControl",
-    80: "VisOdomAlign", 85: "Generator", 90: "", 100: "", 101: "", 102: "CamModeToggle", 103: "", 104: "",
+    80: "VisOdomAlign", 85: "Generator", 100: "", 101: "", 102: "CamModeToggle", 103: "", 104: "",
     105: "GPSDisableYaw", 106: "DisableAirspeedUse", 110: "", 111: "", 113: "RetractMount2",
     156: "Torqeedo Clear Err", 158: "", 162: "FFT Notch Tuning", 164: "Pause Stream Logging", 171: "",
     177: "Mount LRF Enable",
@@ -265,6 +271,7 @@ COMMON = (
         fitted(n, f"high: relay {k + 1} is on; low: it is off", f"Relay{k + 1}")
         for n, k in payload.SWITCH_RELAYS.items()
     ),
+    AuxFunction(90, _choose_sources, "EK3_SRC1_* (low), EK3_SRC2_* (middle) or EK3_SRC3_* (high) from now on"),
     *without_effect(WITHOUT_EFFECT),
     *(AuxFunction(n, _nothing, f"{axis} of the gimbal, by the channel's stick") for n, axis in STICKS.items()),
 )

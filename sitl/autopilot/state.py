@@ -22,9 +22,11 @@ from .inertial_filter import InertialFilter
 from .inertial_ring import InertialRing
 from .landing_target.state import LandingTarget
 from .navigation.state import Nav
+from .optical_flow import OpticalFlow
 from .params.parameters import Parameters
 from .sensor_calibration import Calibrated
 from .vibration import Vibration
+from .visual_odometry import VisualOdometry
 
 
 class Estimate(Record):
@@ -49,7 +51,7 @@ class Estimate(Record):
     innovation_vel_d: float  # estimate minus measurement, of the last GPS fix [m/s]
     innovation_pos_d: float  # of the last barometer mean [m]
     attitude_ok: bool  # aligned in tilt and yaw
-    position_ok: bool  # GPS in use: modes that need a position may be armed
+    position_ok: bool  # it is known, absolute or relative: modes that need a position may be armed
     reset_ne_count: int  # counts jumps of horizontal position/velocity, so that controllers can follow
     reset_d_count: int
     reset_yaw_count: int
@@ -248,6 +250,8 @@ class Autopilot(Record):
     rally: RallyState
     proximity: Proximity
     avoid: Avoidance
+    flow: OpticalFlow
+    odometry: VisualOdometry
     landing_target: LandingTarget
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..autopilot import battery, events, home
 from ..autopilot.arming_checks import BY_MAVLINK, refusal
-from ..autopilot.estimation import aiding
+from ..autopilot.estimation import aiding, sources
 from ..autopilot.fence import texts as fence_texts
 from ..autopilot.landing_target.texts import TEXTS as LANDING_TARGET_TEXTS
 from ..autopilot.mission.item import MissionItem, home_item
@@ -121,6 +121,9 @@ class BaseAutopilot:
         if ap.second_lane.runs:
             aiding.set_origin(ap.second_lane.ekf, ap.second_lane.estimate, ap.events, origin)
         return aiding.set_origin(ap.ekf, ap.estimate, ap.events, origin)
+
+    def choose_sources(self, number: int) -> None:
+        sources.choose_set(self._v.autopilot, number)
 
     def set_battery_left(self, percent: float) -> bool:
         ap = self._v.autopilot

@@ -83,6 +83,8 @@ class Session:
         self._rates = RATES_HZ if rates is None else dict(rates)
         self._asked_us, self._unanswered, self._awaited = 0, 0, set[str]()
         self._repeated: dict[str, Repeated] = {}
+        self.companions: list[Callable[[], None]] = []
+        """Called before each step: other programs on board that send messages (``sitl.client.odometry``)."""
         self._next_us = {_HEARTBEAT: 0} if heartbeat else {}
         self._texts_read = 0
         self._is_silent = False
@@ -216,6 +218,8 @@ class Session:
             if now >= due:
                 self._repeat(name)
                 self._next_us[name] = now + (HEARTBEAT_US if name == _HEARTBEAT else REPEAT_US)
+        for companion in self.companions:
+            companion()
         until = now // STEP_US * STEP_US + STEP_US
         connection.run((until if stop_us is None else min(until, stop_us)) - now)
         if connection.boots != self._boots:

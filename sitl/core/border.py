@@ -27,6 +27,7 @@ nothing, and, twice the bit, of the second."""
 
 NarrowVec3 = Annotated[Vec3, Stored("f4")]
 """A vector at float32 precision, as HIL_SENSOR carries it."""
+NarrowVec2 = Annotated[Vec2, Stored("f4")]
 
 
 class Sensors(Record):
@@ -82,6 +83,11 @@ class Sensors(Record):
     # counter-clockwise from right to left [m]; inf: nothing in range
     lidar_ranges: Floats = array(LIDAR_SAMPLES, stored="f4")
     rangefinder_range: Floats = array(1, stored="f4")  # looking down [m]; inf: nothing in range
+    # HIL_OPTICAL_FLOW, of a vehicle with such a sensor, which looks down
+    flow_count: int  # samples so far
+    flow_rate: NarrowVec2  # of the ground about the sensor's x and y axes, body rates included [rad/s]
+    flow_body: NarrowVec2  # body rates of the same time [rad/s]
+    flow_quality: Int32  # 0 the ground was not seen .. 255
     # HIL_RC_INPUTS_RAW: frames of a receiver that the physics side has; without any there is a simulated transmitter
     rc_count: int  # frames so far
     rc_time_us: int  # of the last one; in the future: it is repeated until then

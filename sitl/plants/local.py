@@ -97,6 +97,8 @@ class LocalPlant(Plant):
         if around is not None:
             cast = self.engine.cast if self.engine is not None else None
             self.rangers = Rangers(vehicle, Scene(around.world.geometry, around.floor, cast), self._unit)
+            v.physics.downward.in_world = self.rangers.has_rangefinder
+            vehicle.kind.apply_sim_parameters(v)
             self.ranging = self.rangers.address
             if self.engine is None:
                 self._list_near = self._unit(list_near)

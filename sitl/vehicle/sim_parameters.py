@@ -9,12 +9,15 @@ import numpy as np
 
 from ..autopilot.params.simulation import DELIVERED, axes
 from ..core.algebra import ZERO, conjugate, quat_from_euler
+from ..core.constants import TICK_US
 from ..core.vectors import Euler, Vec3
 from ..physics.native.records import Iron
 from . import imu_faults
 from .record import Vehicle
 
 PREFIX = "SIM_"
+OTHERS = ("RNGFND1_", "GPS1_TYPE")
+"""Beginnings of other names of parameters that make sensors."""
 DEFAULT_VOLTAGE = float(np.float32(12.6))
 """SIM_BATT_VOLTAGE that leaves the airframe's battery as it is [V]."""
 SINGULAR = 1e-6
@@ -39,7 +42,7 @@ def register_fault(prefix: str, apply: Fault) -> None:
 
 def acts_on_the_world(parameter: str) -> bool:
     """Whether a parameter belongs to the simulated world, not to the firmware."""
-    return parameter.startswith((PREFIX, *_registered))
+    return parameter.startswith((PREFIX, *OTHERS, *_registered))
 
 
 def _bend(iron: Iron, diagonal: Vec3, others: Vec3) -> None:
@@ -53,12 +56,24 @@ def _bend(iron: Iron, diagonal: Vec3, others: Vec3) -> None:
         iron.x, iron.y, iron.z = Vec3(*x), Vec3(*y), Vec3(*z)
 
 
+def _look_down(v: Vehicle) -> None:
+    """Optical flow and range-finder; a range-finder of the airframe, in a world, is there anyhow (``ranging``)."""
+    p, down = v.autopilot.params, v.physics.downward
+    has_flow = p.SIM.FLOW_ENABLE != 0
+    down.flow_period = max(round(1e6 / (p.SIM.FLOW_RATE * TICK_US)), 1) if has_flow else 0
+    down.flow_delay = round(p.SIM.FLOW_DELAY * 1e3 / TICK_US)
+    down.flow_noise = p.SIM.FLOW_RND
+    down.ranges = p.RNGFND1.TYPE != 0 and not down.in_world
+    down.range_min, down.range_max = p.RNGFND1.MIN, p.RNGFND1.MAX
+    down.present = has_flow or down.ranges
+
+
 def apply(v: Vehicle) -> None:
     """Bring what every kind of vehicle has in line with its SIM_ parameters, and with those of other packages."""
     sim, physics, sensors, wind = v.autopilot.params.SIM, v.physics, v.physics.sensors, v.physics.wind
     wind.speed, wind.direction = sim.WIND_SPD, sim.WIND_DIR
     wind.turbulence, wind.time_constant = sim.WIND_TURB, sim.WIND_TC
-    sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0
+    sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0 or v.autopilot.params.GPS1_TYPE == 0
     sensors.gps_jammed = sim.GPS1_JAM != 0
     imu_faults.apply(sim, sensors, v.sensors)
     trim = sim.ACC_TRIM
@@ -79,5 +94,6 @@ def apply(v: Vehicle) -> None:
         sensors.baro_missing = True
         v.sensors.baro_count = 0
     v.autopilot.rc.has_receiver = sim.RC_FAIL == 0
+    _look_down(v)
     for fault in _registered.values():
         fault(v)

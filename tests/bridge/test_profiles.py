@@ -65,6 +65,14 @@ def test_messages_that_laws_take(profile: Profile) -> None:
         "OBSTACLE_DISTANCE",
         "DISTANCE_SENSOR",
         "OBSTACLE_DISTANCE_3D",
+        "OPTICAL_FLOW",
+        "VISION_POSITION_ESTIMATE",
+        "GLOBAL_VISION_POSITION_ESTIMATE",
+        "VICON_POSITION_ESTIMATE",
+        "ATT_POS_MOCAP",
+        "VISION_SPEED_ESTIMATE",
+        "VISION_POSITION_DELTA",
+        "ODOMETRY",
     }
 
 

@@ -63,14 +63,17 @@ def lean_check(cos_lean: float, lean_max: float) -> int:
 
 
 @law
-def estimate_checks(mode: int, estimate: Estimate, home_set: bool, gps_fix: int, p: Arming) -> int:
-    """Failed checks of position, height and home, as far as the mode needs them."""
+def estimate_checks(mode: int, estimate: Estimate, home_set: bool, needs_fix: bool, p: Arming) -> int:
+    """Failed checks of position, height and home, as far as the mode needs them.
+
+    ``needs_fix``: there is a GPS receiver without a fix.
+    """
     gps = wants(p, CHECK_GPS)
     failed = 0
     if requires_position(mode):
-        if not home_set and gps:
+        if not home_set and gps and not (needs_fix and estimate.position_ok):
             failed |= WAITING_FOR_HOME
-        elif gps_fix < 3 and gps:
+        elif needs_fix and gps:
             failed |= GPS_FIX
         if not estimate.position_ok:
             failed |= NEED_POSITION
@@ -87,7 +90,8 @@ def check(v: Vehicle) -> int:
     failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
     failed |= calibration_checks(ap.calibrated.state, p.ARMING)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
-    failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, v.sensors.gps_fix, p.ARMING)
+    needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3
+    failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, needs_fix, p.ARMING)
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
     failed |= proximity_checks(ap.proximity, v.time_us)
     if ap.avoid.obstacles and wants(p.ARMING, CHECK_PARAMETERS):

@@ -78,6 +78,7 @@ def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Senso
     """From holding the position to GPS, whose fix is ``age`` [s] old."""
     reset_to_fix(ekf, estimate, sensors, age)
     ekf.gps_in_use = True
+    ekf.relative = False
     ekf.gps_used_before = True
     ekf.gps_pos_fused_us = ekf.now_us
     ekf.gps_vel_fused_us = ekf.now_us

@@ -106,6 +106,7 @@ def initialise(ekf: Ekf) -> None:
     ekf.tilt_aligned = False
     ekf.yaw_aligned = False
     ekf.gps_in_use = False
+    ekf.relative = False
     ekf.baro_fused_us = ekf.now_us
     ekf.mag_fused_us = ekf.now_us
 

@@ -52,6 +52,13 @@ def _empty(ekf: Ekf) -> None:
 
 
 @law
+def leave_out(ekf: Ekf) -> None:
+    """The height comes from elsewhere."""
+    _empty(ekf)
+    ekf.baro_fused_us = ekf.now_us
+
+
+@law
 def set_ground(ekf: Ekf) -> None:
     """Let the mean since boot be the height zero."""
     ekf.baro_ground = ekf.baro_sum / ekf.baro_n

@@ -167,13 +167,13 @@ def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
 
 
 @law
-def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_us: int) -> bool:
-    """Fuse velocity and position of a fix taken at ``when_us``; whether one of them passed its gate."""
+def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_us: int, takes_velocity: bool) -> bool:
+    """Fuse velocity, if it is taken, and position of a fix taken at ``when_us``; whether one passed its gate."""
     age = 1e-6 * (ekf.now_us - when_us)
     past = past_at(ekf, when_us)
     residual = 0.01 * sensors.gps_vel - past.vel
     estimate.innovation_vel_d = -residual.z
-    velocity = fuse_velocity(ekf, residual, params)
+    velocity = fuse_velocity(ekf, residual, params) if takes_velocity else 0.0
     estimate.variance_vel = math.sqrt(velocity)
     position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
     estimate.variance_pos = math.sqrt(position)
@@ -182,7 +182,7 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_
         reset_to_fix(ekf, estimate, sensors, age)
         ekf.gps_pos_fused_us = ekf.now_us
         ekf.gps_glitch = False
-    return not (velocity >= 1.0 and position >= 1.0)
+    return not ((velocity >= 1.0 or not takes_velocity) and position >= 1.0)
 
 
 @law
@@ -192,8 +192,22 @@ def delay_us(delay_ms: float) -> int:
 
 
 @law
-def fuse(ekf: Ekf, estimate: Estimate, log: Events, params: Parameters, sensors: Sensors) -> bool:
-    """Look at the GPS message; whether something was fused."""
+def fuse(
+    ekf: Ekf,
+    estimate: Estimate,
+    log: Events,
+    params: Parameters,
+    sensors: Sensors,
+    is_source: bool,
+    takes_velocity: bool,
+) -> bool:
+    """Look at the GPS message; whether something was fused.
+
+    Args:
+        ekf, estimate, log, params, sensors: of the vehicle.
+        is_source: it is a source of the position; else it gives no more than the origin.
+        takes_velocity: of the velocity, too.
+    """
     if ekf.gps_in_use and ekf.now_us - max(ekf.gps_pos_fused_us, ekf.gps_vel_fused_us) > STOP_TIMEOUT_US:
         stop_using(ekf, estimate, log)
     if not ekf.gps_new:
@@ -207,8 +221,10 @@ def fuse(ekf: Ekf, estimate: Estimate, log: Events, params: Parameters, sensors:
         place_origin(ekf, estimate, log, Origin(sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter))
     learn_bias(ekf)
     when_us = ekf.gps_arrival_us - delay_us(params.GPS1_DELAY_MS)
+    if not is_source:
+        return False
     if ekf.gps_in_use:
-        return fuse_fix(ekf, estimate, sensors, params.EK3, when_us)
+        return fuse_fix(ekf, estimate, sensors, params.EK3, when_us, takes_velocity)
     if may_start(ekf, estimate.origin_set):
         start_using(ekf, estimate, log, sensors, 1e-6 * (ekf.now_us - when_us))
     return False

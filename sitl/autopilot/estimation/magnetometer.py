@@ -81,7 +81,7 @@ def learn_field(ekf: Ekf, estimate: Estimate, lat_e7: int, lon_e7: int) -> None:
     before = ekf.declination
     ekf.declination = math.atan2(ekf.earth_field.y, ekf.earth_field.x)
     ekf.field_known = True
-    if ekf.yaw_aligned:
+    if ekf.yaw_aligned and not ekf.yaw_by_others:
         turn(ekf, estimate, ekf.declination - before)
 
 

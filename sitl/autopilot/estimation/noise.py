@@ -19,6 +19,8 @@ ACC_BIAS = 0.3
 """EK3_ABIAS_P_NSE to random walk [m/s^2/sqrt(s)]: 0.006 by default."""
 MAG_BIAS = 0.1
 """EK3_MAGB_P_NSE to random walk [gauss/sqrt(s)]: 1e-5 by default."""
+FLOW = 0.12
+"""EK3_FLOW_M_NSE to standard deviation of one sample of optical flow [rad/s]: 0.03 by default."""
 GPS_POSITION = 0.23
 """EK3_POSNE_M_NSE to standard deviation of one fix [m]: 0.115 by default."""
 GPS_VELOCITY_NE = 0.17

@@ -98,13 +98,26 @@ class Ekf(Record):
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
     gps_alt_filter: float  # mean altitude while on the ground [m]
-    gps_in_use: bool
+    gps_in_use: bool  # positions on the globe are fused: of GPS, or of another system in its place (external.py)
     gps_used_before: bool
     gps_glitch: bool  # last fix was beyond the gates
     gps_pos_fused_us: int
     gps_vel_fused_us: int
     hold_us: int  # last zero-velocity or held-position fusion
     hold_pos: Vec2  # NE position held [m]
+    # aiding without GPS (sources.py, flow.py)
+    source_set: int  # of EK3_SRC1, 2, 3: 0 .. 2
+    relative: bool  # velocity comes from optical flow or another system: the position is relative to where that began
+    relative_us: int  # when something of theirs was last fused
+    yaw_by_others: bool  # the heading comes from another system, not from the compass
+    pose_seen: int  # last pose and velocity of another system (external.py)
+    velocity_seen: int
+    pose_resets: int  # its reset counter, as far as the filter has followed
+    flow_seen: int  # last sample of optical flow
+    range_seen: int  # last reading of the range-finder
+    terrain_d: float  # position down of the ground below [m]
+    terrain_us: int  # when the range-finder last saw it
+    innovation_flow: Vec2  # [rad/s]
     # last innovations (measured minus expected), fused or not, for logs
     innovation_vel: Vec3  # GPS [m/s]
     innovation_pos: Vec3  # GPS north and east, barometer down [m]

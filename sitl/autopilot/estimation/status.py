@@ -6,6 +6,7 @@ from __future__ import annotations
 from ...core.kernels import law
 from ..state import Estimate
 from .alignment import CALIBRATE
+from .flow import FRESH_US, knows_height
 from .gps import POSITION_TIMEOUT_US
 from .state import Ekf
 
@@ -15,6 +16,7 @@ VELOCITY_VERT = 4
 POS_HORIZ_REL = 8
 POS_HORIZ_ABS = 16
 POS_VERT_ABS = 32
+POS_VERT_AGL = 64
 CONST_POS_MODE = 128
 PRED_POS_HORIZ_REL = 256
 PRED_POS_HORIZ_ABS = 512
@@ -36,8 +38,14 @@ def flags(ekf: Ekf) -> int:
             value |= POS_HORIZ_ABS | PRED_POS_HORIZ_ABS
         if ekf.gps_glitch:
             value |= GPS_GLITCHING
+    elif ekf.relative:
+        value |= VELOCITY_HORIZ
+        if ekf.now_us - ekf.relative_us < FRESH_US:
+            value |= POS_HORIZ_REL | PRED_POS_HORIZ_REL
     else:
         value |= CONST_POS_MODE
+    if ekf.terrain_us > 0 and knows_height(ekf):
+        value |= POS_VERT_AGL
     return value
 
 
@@ -46,7 +54,8 @@ def publish_status(ekf: Ekf, estimate: Estimate) -> None:
     """What changes slowly: flags and biases."""
     estimate.status_flags = flags(ekf)
     estimate.attitude_ok = ekf.tilt_aligned and ekf.yaw_aligned
-    estimate.position_ok = estimate.status_flags & POS_HORIZ_ABS != 0
+    wanted = POS_HORIZ_REL if ekf.relative else POS_HORIZ_ABS
+    estimate.position_ok = estimate.status_flags & wanted != 0
     estimate.gyro_bias = ekf.gyro_bias
     estimate.acc_bias = ekf.acc_bias
 

@@ -7,7 +7,7 @@ from ...core.algebra import IDENTITY
 from ...core.border import IMUS_DIFFER
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
-from .. import events
+from .. import events, optical_flow
 from ..inertial_filter import smoothed_acc, smoothed_rates
 from ..sensor_calibration import field_of, read_sensors
 from ..state import Autopilot, Estimate, Vehicle
@@ -17,12 +17,15 @@ from . import (
     barometer,
     compass,
     covariance,
+    external,
+    flow,
     fusion,
     gps,
     history,
     lanes,
     magnetometer,
     noise,
+    sources,
     status,
     strapdown,
 )
@@ -73,6 +76,26 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         alignment.restart(ekf)
 
 
+@law
+def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate, by_gps: bool) -> bool:
+    """Sources other than GPS and compass; ``by_gps``: the position comes from GPS. Whether something was fused."""
+    ap = v.autopilot
+    source = ap.params.EK3.SRC[ekf.source_set]
+    flow.read_range(ekf, v.sensors)
+    fused = False
+    if source.VELXY == sources.FLOW:
+        fused = flow.fuse(ekf, estimate, ap.events, ap.flow, ap.params.EK3)
+    if ap.odometry.kind != 0:
+        fused |= external.fuse(ekf, estimate, ap.events, ap.odometry, source, ap.params.EK3, ap.params.VISO)
+    if ekf.gps_in_use and not by_gps and source.POSXY != sources.EXTERNAL:
+        ekf.gps_in_use = False
+        ekf.relative, ekf.relative_us = True, ekf.now_us
+        if source.VELXY == sources.FLOW:
+            events.emit(ap.events, ekf.now_us, events.EKF_USES, float(ekf.imu), flow.BY_FLOW)
+    flow.watch(ekf, estimate, ap.events, sources.aid(source))
+    return fused
+
+
 @inline_unit
 def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     """Prediction of the covariance over the last ticks, then fusion of what the sensors brought; ``lane``: 0, or 1 for
@@ -82,14 +105,28 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     ap = v.autopilot
     ekf, estimate = (ap.second_lane.ekf, ap.second_lane.estimate) if lane else (ap.ekf, ap.estimate)
     params, armed = ap.params.EK3, ap.arming.armed
+    source = params.SRC[ekf.source_set]
+    usual = sources.are_usual(source)
     covariance.predict(ekf, params)
     alignment.begin_step(ekf)
     history.keep(ekf)
-    fused = barometer.fuse(ekf, estimate, params)
-    compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
-    fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
-    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors)
-    if not ekf.gps_in_use:
+    fused = False
+    if usual or not (source.POSZ == sources.EXTERNAL and ekf.gps_in_use):
+        fused |= barometer.fuse(ekf, estimate, params)
+    else:
+        barometer.leave_out(ekf)
+    ekf.yaw_by_others = not usual and source.YAW == sources.EXTERNAL
+    if not ekf.yaw_by_others:
+        compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
+        fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
+    else:
+        magnetometer.clear_samples(ekf)
+    by_gps = usual or source.POSXY == sources.GPS
+    takes_velocity = usual or source.VELXY == sources.GPS
+    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, by_gps, takes_velocity)
+    if not usual or ekf.relative:
+        fused |= fuse_others(v, ekf, estimate, by_gps)
+    if not (ekf.gps_in_use or (ekf.relative and armed)):
         fused |= hold(ekf, armed, params.NOAID_M_NSE)
     if fused:
         fusion.inject(ekf, params.ACC_BIAS_LIM)
@@ -163,6 +200,8 @@ def update(fleet: Records[Vehicle], i: int) -> None:
         lanes.begin_or_end(ap, sensors, v.time_us)
         if sensors.imu_state & IMUS_DIFFER != 0:
             compare_clips(ap.vibration, ap.calibrated.acc, ap.calibrated.acc2)
+    if ap.flow.kind != 0:
+        optical_flow.read(ap.flow, sensors, v.time_us, ap.params.FLOW)
     for lane in range(1 + second.runs):
         run_lane(fleet, i, lane)
     if second.runs != 0 and ap.ekf.step_ticks == 0:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from .parameter import INT8, INT16, INT32, ParameterGroup, param
+from ...core.records import Records
+from .parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
+from .without_gps import Sources
 
 _GATE = "innovation gate, hundredths of a standard deviation"
 
@@ -34,3 +36,8 @@ class Ekf3(ParameterGroup):
     ERR_THRESH: float = param(0.2, 0.05, 1, "", "difference of two filters' scores from which on it counts")
     AFFINITY: float = param(0, 0, 15, "", "bit 2: a filter is also judged by its compass", INT32)
     TAU_OUTPUT: float = param(25, 1, 127, "cs", "time in which corrections reach the controllers", INT8)
+    MAX_FLOW: float = param(2.5, 1.0, 4.0, "rad/s", "Greatest flow that is used; it limits speeds, too")
+    FLOW_M_NSE: float = param(0.25, 0.05, 1.0, "rad/s", "optical flow noise")
+    FLOW_I_GATE: float = param(300, 100, 32767, "", f"optical flow {_GATE}", INT16)
+    FLOW_DELAY: float = param(10, 0, 127, "ms", "age of an optical flow when it arrives", INT8)
+    SRC: Records[Sources] = numbered(Sources, 3, POSXY=(3, 0, 0), VELXY=(3, 0, 0), VELZ=(3, 0, 0), YAW=(1, 0, 0))

@@ -16,6 +16,7 @@ from .precision_landing import PrecisionLanding
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
 from .system import Ahrs, Arming, Battery, Compass, Failsafes, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
+from .without_gps import Flow, RangeFinder, VisualOdometry
 
 
 class Parameters(ParameterGroup):
@@ -32,8 +33,10 @@ class Parameters(ParameterGroup):
     COMPASS: Compass
     EK3: Ekf3
     FENCE: Fence
+    FLOW: Flow
     FOLL: Follow
     FS: Failsafes
+    GPS1_TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver, and arming needs none", INT8)
     GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
     INITIAL_MODE: float = param(0, 0, 127, "", "Mode after boot, until the mode channel says another", INT8)
     INS: Inertial
@@ -51,11 +54,13 @@ class Parameters(ParameterGroup):
         3.0, -1.0, 120.0, "s", "Overrides from the ground station are good for so long; -1 for ever, 0 never"
     )
     RCMAP: RcMap
+    RNGFND1: RangeFinder
     SCHED_LOOP_RATE: float = param(
         400.0, 0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SIM: Simulated
     STAT: Statistics
+    VISO: VisualOdometry
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

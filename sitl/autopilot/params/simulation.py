@@ -7,7 +7,7 @@ from typing import Any
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from .parameter import INT8, INT32, ParameterGroup, group, param
+from .parameter import INT8, INT16, INT32, ParameterGroup, group, param
 
 
 class Axes(ParameterGroup):
@@ -109,5 +109,9 @@ class Simulated(ParameterGroup):
     SPEEDUP: float = param(
         1, -1, 100000, "", "Simulated seconds a second; 0 or less: as fast as it goes (drop-in executables only)"
     )
+    FLOW_ENABLE: float = param(0, 0, 1, "", "1: there is an optical flow sensor that looks down", INT8)
+    FLOW_RATE: float = param(10, 1, 400, "Hz", "Samples of optical flow a second", INT16)
+    FLOW_DELAY: float = param(0, 0, 127, "ms", "Age of a sample of optical flow when it arrives", INT8)
+    FLOW_RND: float = param(0.05, 0, 10, "rad/s", "Noise of the optical flow, greatest")
     PLD: LandingBeacon
     RC_FAIL: float = param(0, 0, 1, "", "1 switches the pilot's transmitter off", INT8)

@@ -8,11 +8,13 @@ from collections.abc import Sequence
 from ...core.kernels import unit
 from ...vehicle.copter import Copter, advance
 from ..core_link import CoreUnits
+from ..services import odometry
 from ..services.follow import follow_target
 from ..services.landing_target import landing_target
 from ..services.proximity import distance, obstacle_3d, obstacles
 from ..services.rc import rc_channels_override
 from ..telemetry.builder import compiled
+from ..telemetry.flow import take_flow
 from ..wire.choose import choose_builder, choose_taker, choose_targets
 from ..wire.fleet import run_slots
 from ..wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
@@ -23,7 +25,8 @@ from .telemetry import MESSAGES
 BUILDERS = compiled(MESSAGES)
 TAKERS = (
     position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control,
-    other_position, follow_target, landing_target, obstacles, distance, obstacle_3d,
+    other_position, follow_target, landing_target, obstacles, distance, obstacle_3d, take_flow,
+    *odometry.TAKERS,
 )  # fmt: skip
 build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
 

@@ -39,7 +39,8 @@ PROFILE = Profile(
         11: ("EXTRA2", ("VFR_HUD",)),
         12: (
             "EXTRA3",
-            ("AHRS", "WIND", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION",
+            ("AHRS", "WIND", "DISTANCE_SENSOR", "RANGEFINDER", "OPTICAL_FLOW", "SYSTEM_TIME", "BATTERY_STATUS",
+             "EKF_STATUS_REPORT", "VIBRATION",
              "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },

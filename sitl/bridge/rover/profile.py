@@ -37,7 +37,8 @@ PROFILE = Profile(
         11: ("EXTRA2", ("VFR_HUD",)),
         12: (
             "EXTRA3",
-            ("AHRS", "DISTANCE_SENSOR", "SYSTEM_TIME", "BATTERY_STATUS", "EKF_STATUS_REPORT", "VIBRATION",
+            ("AHRS", "DISTANCE_SENSOR", "RANGEFINDER", "OPTICAL_FLOW", "SYSTEM_TIME", "BATTERY_STATUS",
+             "EKF_STATUS_REPORT", "VIBRATION",
              "WHEEL_DISTANCE", "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },

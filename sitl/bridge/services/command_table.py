@@ -415,11 +415,20 @@ def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> i
     return ACCEPTED if ok else DENIED
 
 
+def choose_sources(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42007: p1 the set of sources of the estimator, 1 .. 3 (EK3_SRC1_* ..)."""
+    if command.p1 not in (1.0, 2.0, 3.0):
+        return DENIED
+    bridge.autopilot.choose_sources(int(command.p1) - 1)
+    return ACCEPTED
+
+
 COMMANDS: dict[int, Entry] = {
     241: Entry(calibrate),
     245: Entry(storage),
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
+    42007: Entry(choose_sources, required=(1,)),
     420: Entry(inject_failure, required=(1, 2)),
     42006: Entry(calibrate_compass_by_heading, required=(1,)),
     42424: Entry(calibrate_compass),

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import events as core
+from ...autopilot.estimation.external import BY_OTHERS, YAW_BY_OTHERS
+from ...autopilot.estimation.flow import BY_FLOW
 from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, ParametersFound, Switched, Text
 from ..channel import Channel
 from ..dialect import message
@@ -68,6 +70,8 @@ TEXTS = {
     core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU{a:.0f} origin set"),
     core.EKF_USES_GPS: (INFO, "EKF3 IMU{a:.0f} is using GPS"),
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
+    core.EKF_STOPPED_AIDING: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
+    core.EKF_RELATIVE: (INFO, "EKF3 IMU{a:.0f} started relative aiding"),
     core.EKF_COMPASS_CHANGED: (INFO, "EKF3 IMU{a:.0f} switching to compass {b:.0f}"),
     core.EKF_LANE_SWITCHED: (CRITICAL, "EKF3 lane switch {a:.0f}"),
     core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),
@@ -80,6 +84,8 @@ MISSION_CURRENT = message("MISSION_CURRENT").id
 FENCE_STATUS = message("FENCE_STATUS").id
 REACHED = message("MISSION_ITEM_REACHED")
 E = "autopilot.events."
+SOURCES = {BY_FLOW: "fusing optical flow", BY_OTHERS: "is using external nav data", YAW_BY_OTHERS: "yaw aligned"}
+"""What a filter uses now (EKF_USES)."""
 
 
 class EventService(Service):
@@ -132,6 +138,8 @@ class EventService(Service):
         if code in self._texts:
             severity, text = self._texts[code]
             say(severity, text.format(a=a, b=b))
+        if code == core.EKF_USES:
+            self._say_source(int(a), b)
         if code == core.FENCE_BREACHED:
             self.bridge.send_to_all(FENCE_STATUS)
         if code in (core.ARMED, core.DISARMED):
@@ -141,14 +149,19 @@ class EventService(Service):
         elif code == core.EKF_ORIGIN_SET:
             altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
             say(INFO, f"Field Elevation Set: {altitude:.0f}m")
-        elif code == core.EKF_COMPASS_CHANGED and self.bridge.vehicle.parameters["EK2_ENABLE"]:
-            say(INFO, f"EKF2 IMU{a:.0f} switching to compass {b:.0f}")  # a filter like the other, on the same sensors
         elif code == core.EKF_LANE_SWITCHED:
             say(WARNING, f"EKF primary changed:{a:.0f}")
         elif code == core.MODE_CHANGED:
             self.bridge.send_to_all(HEARTBEAT)
         else:
             self.notes(self.bridge.autopilot.texts_of(code, a, b))
+
+    def _say_source(self, imu: int, source: float) -> None:
+        say, ekf = self.bridge.get(StatusTextService).say, self.bridge.vehicle.v.autopilot.ekf
+        say(INFO, f"EKF3 IMU{imu} {SOURCES[source]}")
+        if source == BY_OTHERS:
+            for name, unit, (north, east, down) in (("pos", "m", ekf.pos), ("vel", "m/s", ekf.vel)):
+                say(INFO, f"EKF3 IMU{imu} initial {name} NED = {north:.1f},{east:.1f},{down:.1f} ({unit})")
 
     def notes(self, notes: Sequence[Any]) -> None:
         """Texts and progress that the mission's sequencer or a law gave back."""

@@ -13,13 +13,13 @@ from ..dialect import message
 from ..wire.choose import Builder, message_of
 from ..wire.message import Message
 from ..wire.port import Port
-from . import channels, fence, motion, ranging, sensors, status
+from . import channels, fence, flow, motion, ranging, sensors, status
 from .shell import shell_builders
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
 
-_MODULES = (motion, sensors, ranging, status, channels, fence)
+_MODULES = (motion, sensors, ranging, status, channels, fence, flow)
 _registered: dict[int, Builder] = {}
 
 

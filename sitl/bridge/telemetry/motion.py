@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ...autopilot.estimation.status import POS_HORIZ_REL
+from ...autopilot.state import Estimate
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
@@ -39,6 +41,12 @@ def global_position(v: Vehicle) -> GlobalPosition:
     return GlobalPosition(0, 0, 0.0)
 
 
+@law
+def is_relative(estimate: Estimate) -> bool:
+    """Whether positions count from where the estimate began, somewhere on the globe."""
+    return not estimate.origin_set and estimate.status_flags & POS_HORIZ_REL != 0
+
+
 class GlobalPositionInt(Message, name="GLOBAL_POSITION_INT"):
     time_boot_ms: int
     lat: int
@@ -53,14 +61,19 @@ class GlobalPositionInt(Message, name="GLOBAL_POSITION_INT"):
 
 @law
 def global_position_int(m: GlobalPositionInt, v: Vehicle) -> bool:
-    """GLOBAL_POSITION_INT: degE7, mm above sea level and above home, cm/s, heading in centidegrees."""
+    """GLOBAL_POSITION_INT: degE7, mm above sea level and above home, cm/s, heading in centidegrees; without an origin
+    the relative height is that above the beginning.
+    """
     estimate, home = v.autopilot.estimate, v.autopilot.home
     here = global_position(v)
     m.time_boot_ms = boot_ms(v.time_us)
     m.lat = here.lat
     m.lon = here.lon
     m.alt = int32(here.alt * 1e3)
-    m.relative_alt = int32((here.alt - home.alt) * 1e3) if home.is_set else 0
+    if home.is_set:
+        m.relative_alt = int32((here.alt - home.alt) * 1e3)
+    elif is_relative(estimate):
+        m.relative_alt = int32(-estimate.pos.z * 1e3)
     m.vx = int16(estimate.vel.x * 100.0)
     m.vy = int16(estimate.vel.y * 100.0)
     m.vz = int16(estimate.vel.z * 100.0)
@@ -80,7 +93,7 @@ class LocalPositionNed(Message, name="LOCAL_POSITION_NED"):
 
 @law
 def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
-    """LOCAL_POSITION_NED: metres from the EKF origin, m/s; nothing until the origin is set."""
+    """LOCAL_POSITION_NED: metres from the EKF origin, m/s; nothing until that is set, or positions are relative."""
     estimate = v.autopilot.estimate
     pos, vel = estimate.pos, estimate.vel
     m.time_boot_ms = boot_ms(v.time_us)
@@ -90,7 +103,7 @@ def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
     m.vx = vel.x
     m.vy = vel.y
     m.vz = vel.z
-    return estimate.origin_set
+    return estimate.origin_set or is_relative(estimate)
 
 
 class VfrHud(Message, name="VFR_HUD"):

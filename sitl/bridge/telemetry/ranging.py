@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from ...autopilot.avoidance import proximity
 from ...autopilot.avoidance.proximity import Proximity
@@ -83,6 +84,13 @@ def obstacle_distance(m: ObstacleDistance, v: Vehicle) -> bool:
     return True
 
 
+class Limits(NamedTuple):
+    """What a range-finder can see [m]."""
+
+    least: float
+    longest: float
+
+
 class DistanceSensor(Message, name="DISTANCE_SENSOR"):
     time_boot_ms: int
     min_distance: int
@@ -121,7 +129,7 @@ def distance_sensor(m: DistanceSensor, v: Vehicle, port: Port) -> bool:
     """DISTANCE_SENSOR: the range-finder that looks down [cm]; the range + 1 where it meets nothing; nothing without a
     range-finder or a world. Then each sector in which the proximity sensor sees something, orientation 0 to 7.
     """
-    s, figures = v.sensors, v.physics.airframe
+    s = v.sensors
     m.time_boot_ms = boot_ms(v.time_us)
     m.type = LASER
     part = port.part
@@ -133,12 +141,34 @@ def distance_sensor(m: DistanceSensor, v: Vehicle, port: Port) -> bool:
     if part > 0:
         fill_sector(m, v.autopilot.proximity, part - 1)
         return True
-    m.min_distance = uint16(figures.rangefinder_min * 100.0 + 0.5)
-    m.max_distance = uint16(figures.rangefinder_max * 100.0 + 0.5)
-    m.current_distance = centimetres(float(s.rangefinder_range[0]), figures.rangefinder_max)
+    least, longest = limits(v)
+    m.min_distance = uint16(least * 100.0 + 0.5)
+    m.max_distance = uint16(longest * 100.0 + 0.5)
+    m.current_distance = centimetres(float(s.rangefinder_range[0]), longest)
     m.orientation = FACING_DOWN
     m.covariance = COVARIANCE_UNKNOWN
     return True
+
+
+@law
+def limits(v: Vehicle) -> Limits:
+    """The range-finder's: of the airframe in a world, else RNGFND1_MIN and RNGFND1_MAX."""
+    figures, down = v.physics.airframe, v.physics.downward
+    if down.ranges:
+        return Limits(down.range_min, down.range_max)
+    return Limits(figures.rangefinder_min, figures.rangefinder_max)
+
+
+class RangeFinder(Message, name="RANGEFINDER"):
+    distance: float
+    voltage: float
+
+
+@law
+def rangefinder(m: RangeFinder, v: Vehicle) -> bool:
+    """RANGEFINDER: the one that looks down [m]; a metre more than the range where it meets nothing."""
+    m.distance = min(float(v.sensors.rangefinder_range[0]), limits(v).longest + 1.0)
+    return v.sensors.rangefinder_count > 0
 
 
 class DebugFloatArray(Message, name="DEBUG_FLOAT_ARRAY"):
@@ -172,4 +202,4 @@ def scan(m: DebugFloatArray, v: Vehicle, port: Port) -> bool:
     return True
 
 
-MESSAGES = (obstacle_distance, distance_sensor, scan)
+MESSAGES = (obstacle_distance, distance_sensor, rangefinder, scan)

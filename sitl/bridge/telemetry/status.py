@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from ...autopilot import visual_odometry
 from ...autopilot.fence.checks import kinds
+from ...autopilot.optical_flow import is_healthy
 from ...autopilot.sensor_calibration import is_heard
 from ...core.border import ACC_SILENT, GYRO_SILENT
 from ...core.kernels import law
@@ -18,7 +20,7 @@ GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 VISION = 0x80
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
 RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
-PROXIMITY = 0x4000000
+PROXIMITY, FLOW, VISION = 0x4000000, 0x40, 0x80
 PRESENT = GYRO | ACCEL | MAG | BARO | AHRS | PREARM
 """In every firmware, besides its controllers; a GPS receiver once it has said something, until it is silent."""
 SAMPLE_US = 500_000
@@ -79,6 +81,12 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
             health |= BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
         health |= PREARM
+    if ap.flow.kind != 0:
+        common |= FLOW
+        health |= FLOW if is_healthy(ap.flow, v.time_us) else 0
+    if ap.odometry.kind != 0:
+        common |= VISION
+        health |= VISION if visual_odometry.is_healthy(ap.odometry, v.time_us) else 0
     fence = GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
     m.onboard_control_sensors_present = common | controllers | fence
     m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0)

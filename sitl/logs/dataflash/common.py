@@ -192,6 +192,21 @@ SENSORS = (
 )  # fmt: skip
 
 
+FLOW = Message(
+    "OF",
+    (
+        Field("Qual", "B", source=A + "flow.quality"),
+        *(Field(f"flow{axis}", "f", "E", "0", f"{A}flow.rate[{k}]") for k, axis in enumerate("XY")),
+        *(Field(f"body{axis}", "f", "E", "0", f"{A}flow.body[{k}]") for k, axis in enumerate("XY")),
+    ),
+    bits.MEDIUM,
+    bits.FLOW,
+    change=A + "flow.count",
+    time=A + "flow.time_us",
+)
+"""OF: optical flow, body rates included, and body rates of the same time [rad/s]."""
+
+
 def battery(resting: Source, resistance: Source = 0.0) -> Message:
     """BAT: as measured; ``resting`` [V] and ``resistance`` [ohm] as far as the firmware knows them."""
     return Message(
@@ -347,7 +362,8 @@ def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
             (
                 Field("C", "B", "#", source=k + "imu"),
                 Field("NI", "B"),
-                *(Field(label, "h") for label in ("FIX", "FIY", "AFI")),
+                *(Field(f"FI{x}", "h", source=f"{k}innovation_flow[{n}]", scale=1000.0) for n, x in enumerate("XY")),
+                Field("AFI", "h"),
                 Field("HAGL", "c", "m", "B", derived.difference(k + "ground_d", e + "pos[2]")),
                 Field("offset", "c", "?", "B", k + "ground_d"),
                 Field("RI", "c", "?", "B"),

@@ -109,6 +109,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
     every = (
         *_attitude(bits.FAST if fast else bits.MEDIUM, bits.ATTITUDE | bits.ATTITUDE_FAST),
         *common.SENSORS,
+        common.FLOW,
         common.battery(derived.resting_voltage, _MOTORS + "resistance"),
         CONTROL,
         *(_position(axis, k) for k, axis in enumerate("NED")),

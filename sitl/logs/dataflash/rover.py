@@ -170,6 +170,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
     every = (
         _attitude(bool(bitmask & bits.ATTITUDE_FAST)),
         *common.SENSORS,
+        common.FLOW,
         common.battery(A + "battery.voltage"),
         THROTTLE,
         STEERING,

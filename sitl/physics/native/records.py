@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Annotated, Protocol, TypeVar
 
 from ...core.border import Actuators, Sensors
-from ...core.records import Float32, FloatRows, Record, Records, Stored, array, repeat
+from ...core.records import Float32, FloatRows, Floats, Ints, Record, Records, Stored, array, repeat
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...vehicles.figures.body import Figures
@@ -182,6 +182,27 @@ class SensorState(Record):
     irons: Records[Iron] = repeat(Iron, COMPASSES)
 
 
+FLOW_RING = 4
+"""Samples of optical flow that can be on their way."""
+
+
+class Downward(Record):
+    """Sensors that look down, of vehicles whose parameters ask for them (SIM_FLOW_*, RNGFND1_*)."""
+
+    present: bool  # there is one of them at least
+    flow_period: int  # [ticks]; 0: there is no sensor of optical flow
+    flow_delay: int  # [ticks]
+    flow_noise: float  # greatest [rad/s]
+    flow_head: int  # samples taken so far
+    flow_tail: int  # samples delivered so far
+    flow_due: Ints = array(FLOW_RING, stored="i8")  # when sample n, at n % FLOW_RING, is delivered [ticks]
+    flow: Floats = array(FLOW_RING, 4, stored="f4")  # its rates about x and y, and the body's [rad/s]
+    in_world: bool  # the airframe has a range-finder that the world's rays are cast for (``ranging``)
+    ranges: bool  # there is one that is not
+    range_min: float  # [m]
+    range_max: float
+
+
 class Place(Record):
     """The home ground point, known to the simulator alone."""
 
@@ -228,6 +249,7 @@ class Physics(Record):
     wind: Wind
     sensors: SensorState
     obstacles: Obstacles
+    downward: Downward
 
 
 P_co = TypeVar("P_co", bound=Physics, covariant=True)

@@ -50,14 +50,13 @@ _ENTRY_SPEED = 0.5
 
 
 @law
-def brake_lean(speed: float, p: PosHold) -> float:
-    """Lean [rad] that brakes a ``speed`` [m/s]: more for its size near rest, at most PHLD_BRAKE_ANGLE.
+def brake_lean(speed: float, rate: float, most: float) -> float:
+    """Lean [rad] that brakes a ``speed`` [m/s]: more for its size near rest; ``rate``: PHLD_BRAKE_RATE, ``most`` [deg].
 
     Source: ArduPilot's; with PHLD_BRAKE_RATE 8 12.6 degrees at 2 m/s, 25 degrees at 7 m/s.
     """
-    gain = 0.95 + 0.15 * p.BRAKE_RATE  # [deg per m/s]
+    gain = 0.95 + 0.15 * rate  # [deg per m/s]
     lean = gain * speed * (1.0 + 5.0 / (abs(speed) + 0.6))
-    most = p.BRAKE_ANGLE * 0.01
     return math.radians(constrain(lean, -most, most))
 
 
@@ -83,7 +82,7 @@ def advance_axis(axis: PosHoldAxis, stick: float, speed: float, time_us: int, p:
             axis.since_us = time_us
     else:
         step = math.radians(p.BRAKE_RATE) * DT
-        axis.lean += constrain(brake_lean(speed, p) - axis.lean, -step, step)
+        axis.lean += constrain(brake_lean(speed, p.BRAKE_RATE, p.BRAKE_ANGLE * 0.01) - axis.lean, -step, step)
         longest = 1.0 + 2.0 * p.BRAKE_ANGLE * 0.01 / p.BRAKE_RATE  # [s]: to the greatest lean and back
         if abs(speed) < _SLOW or since > longest:
             axis.phase = STOPPED

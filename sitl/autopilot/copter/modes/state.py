@@ -103,6 +103,15 @@ class PosHoldState(Record):
     wind: Vec2  # acceleration of the lean that holding needs, NE [m/s^2]
 
 
+class FlowHoldState(Record):
+    """FLOWHOLD."""
+
+    shown: Vec2  # flow without body rates, low-passed [rad/s]
+    against_wind: Vec2  # lean that the wind needs, towards south and west [rad]
+    braking: bool  # the sticks were let go, and it still moves
+    brake_us: int  # when they were
+
+
 class FlipState(Record):
     """FLIP."""
 
@@ -292,6 +301,7 @@ class Modes(shared.Modes):
     loiter: LoiterState
     circle: CircleState
     poshold: PosHoldState
+    flowhold: FlowHoldState
     flip: FlipState
     drift: DriftState
     throw: ThrowState

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.kernels import inlined, law, unit
 from ....core.records import Records
-from ... import battery, home
+from ... import battery, home, optical_flow, visual_odometry
 from ...avoidance import proximity
 from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
@@ -54,6 +54,8 @@ def init(v: Vehicle) -> None:
     battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.rc, ap.modes.pilot)
     proximity.power_on(ap.proximity, ap.params.PRX1)
+    optical_flow.power_on(ap.flow, ap.params.FLOW)
+    visual_odometry.power_on(ap.odometry, ap.params.VISO)
 
 
 @unit

@@ -24,6 +24,7 @@ from .flight import (
     Acro,
     Autotune,
     Circle,
+    FlowHold,
     Follow,
     Guided,
     Land,
@@ -83,6 +84,7 @@ class Parameters(shared.Parameters):
     )
     EK3: Ekf3
     FENCE: Fence
+    FHLD: FlowHold
     FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)

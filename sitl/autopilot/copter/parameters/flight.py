@@ -96,6 +96,18 @@ class PosHold(ParameterGroup):
     BRAKE_ANGLE: float = param(3000, 100, 8000, "cdeg", "Greatest lean that stops it", INT16)
 
 
+class FlowHold(ParameterGroup):
+    """FHLD_: FLOWHOLD."""
+
+    XY_P: float = param(0.2, 0.0, 10.0, "", "Lean against a speed of 1 m/s, as share of ANGLE_MAX")
+    XY_I: float = param(0.3, 0.0, 10.0, "", "How much this grows in a second")
+    XY_IMAX: float = param(3000, 0, 8000, "cdeg", "Greatest lean that has grown")
+    FLOW_MAX: float = param(0.6, 0.1, 2.5, "rad/s", "Greatest flow that counts")
+    FILT_HZ: float = param(5.0, 0.5, 100.0, "Hz", "Low-pass of the flow")
+    QUAL_MIN: float = param(10, 0, 127, "", "Least quality of a flow that is believed", INT8)
+    BRAKE_RATE: float = param(8, 1, 30, "deg/s", "How hard it leans back to stop", INT8)
+
+
 class Rtl(ParameterGroup):
     """RTL_: RTL."""
 

@@ -7,7 +7,7 @@ from ....core.algebra import dot2, horizontal, with_down
 from ....core.kernels import law, unit
 from ....core.records import Records
 from ....core.vectors import Vec3
-from ... import aux_switch, battery, home, smart_rtl_path
+from ... import aux_switch, battery, home, optical_flow, smart_rtl_path, visual_odometry
 from ...arming_checks import BY_RUDDER
 from ...avoidance import limit, proximity
 from ...events import LEG_ENDING, Events, emit_and_return
@@ -46,6 +46,8 @@ def init(v: Vehicle) -> None:
     battery.power_on(ap.battery, ap.params.BATT)
     pilot.init(ap.modes.pilot, ap.rc)
     proximity.power_on(ap.proximity, ap.params.PRX1)
+    optical_flow.power_on(ap.flow, ap.params.FLOW)
+    visual_odometry.power_on(ap.odometry, ap.params.VISO)
 
 
 @unit

@@ -9,7 +9,7 @@ from ....core.rng import Rng
 from ..atmosphere import set_air
 from ..records import Physics
 from ..tick import Clock
-from . import barometer, gps, imu, magnetometer, power
+from . import barometer, downward, gps, imu, magnetometer, power
 
 
 @law
@@ -27,4 +27,6 @@ def sense(p: Physics, sensors: Sensors, rng: Rng, now: Clock) -> None:
         set_air(p.air, p.place.alt - p.body.pos.z)
         barometer.sample(p, sensors, rng)
     gps.sample(p, sensors, now, rng)
+    if p.downward.present:
+        downward.sample(p, sensors, rng, now)
     sensors.time_us = now.time_us

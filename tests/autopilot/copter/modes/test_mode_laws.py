@@ -325,9 +325,9 @@ def brakes() -> PosHold:
 
 @given(st.floats(-20.0, 20.0))
 def test_the_lean_that_brakes_grows_with_the_speed(speed: float) -> None:
-    lean = math.degrees(poshold.brake_lean(speed, brakes()))
+    lean = math.degrees(poshold.brake_lean(speed, 8.0, 30.0))
     assert lean * speed >= 0.0 and abs(lean) <= 30.0
-    assert abs(math.degrees(poshold.brake_lean(1.1 * speed, brakes()))) >= abs(lean)
+    assert abs(math.degrees(poshold.brake_lean(1.1 * speed, 8.0, 30.0))) >= abs(lean)
 
 
 def test_a_stick_that_is_let_go_of_brakes_at_its_rate_until_the_axis_is_slow() -> None:

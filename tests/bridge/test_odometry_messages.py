@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What other systems tell of the vehicle's place."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from sitl.bridge.services import odometry as o
+from sitl.bridge.telemetry.flow import OpticalFlow, take_flow
+from tests.bridge.fakes import Bench
+
+SENDER = 42
+
+
+def told(kind: type, **fields: Any) -> Any:
+    """A message with these fields."""
+    m = kind()
+    for name, value in fields.items():
+        if isinstance(value, list):
+            getattr(m, name)[:] = value
+        else:
+            setattr(m, name, value)
+    return m
+
+
+@pytest.mark.parametrize(
+    ("law", "kind", "more"),
+    [
+        (o.vision_position, o.VisionPosition, {"yaw": 0.5}),
+        (o.global_vision_position, o.GlobalVisionPosition, {"yaw": 0.5}),
+        (o.vicon_position, o.ViconPosition, {"yaw": 0.5}),
+        (o.motion_capture, o.MotionCapture, {"q": [math.cos(0.25), 0.0, 0.0, math.sin(0.25)]}),
+    ],
+)
+def test_a_place_and_heading(bench: Bench, law: Any, kind: type, more: dict[str, Any]) -> None:
+    v = bench.vehicle.v
+    seen: Any = v.autopilot.odometry
+    m = told(kind, x=1.0, y=2.0, z=-3.0, **more)
+    law(m, v, SENDER)
+    assert seen.pose.count == 0, "VISO_TYPE 0"
+    seen.kind = 1
+    v.autopilot.params.VISO.SCALE = 2.0
+    law(m, v, SENDER)
+    assert seen.pose.count == 1 and tuple(seen.pose.pos) == (2.0, 4.0, -6.0)
+    assert seen.pose.q.z == pytest.approx(math.sin(0.25), abs=1e-6) and seen.pose.sigma == pytest.approx(0.2)
+    m.x = math.nan
+    law(m, v, SENDER)
+    assert seen.pose.count == 1, "no number"
+
+
+def test_variances_and_resets(bench: Bench) -> None:
+    v = bench.vehicle.v
+    seen: Any = v.autopilot.odometry
+    seen.kind = 1
+    m = told(o.VisionPosition, x=1.0)
+    m.covariance[0], m.covariance[6], m.covariance[11] = 1.0, 2.0, 6.0
+    o.vision_position(m, v, SENDER)
+    assert seen.pose.sigma == pytest.approx(3.0)
+    m.reset_counter = 1
+    o.vision_position(m, v, SENDER)
+    assert seen.resets == 1
+
+
+def test_velocities(bench: Bench) -> None:
+    v = bench.vehicle.v
+    seen: Any = v.autopilot.odometry
+    seen.kind = 1
+    o.vision_speed(told(o.VisionSpeed, x=1.0, y=2.0, z=-3.0), v, SENDER)
+    assert tuple(seen.velocity.vel) == (1.0, 2.0, -3.0) and not seen.velocity.on_body
+    m = told(o.VisionDelta, time_delta_usec=500_000, position_delta=[0.5, 0.0, -1.0], confidence=90.0)
+    o.vision_delta(m, v, SENDER)
+    assert tuple(seen.velocity.vel) == (1.0, 0.0, -2.0) and seen.velocity.on_body and seen.quality == 90
+    m.time_delta_usec = 0
+    o.vision_delta(m, v, SENDER)
+    assert seen.velocity.count == 2, "no time has passed"
+
+
+@pytest.mark.parametrize(
+    ("frame", "child", "quality", "taken"),
+    [(20, 12, 80, True), (1, 12, 50, True), (20, 12, 49, False), (20, 8, 80, False), (0, 12, 80, False)],
+)
+def test_odometry(bench: Bench, frame: int, child: int, quality: int, taken: bool) -> None:
+    v = bench.vehicle.v
+    seen: Any = v.autopilot.odometry
+    seen.kind = 1
+    v.autopilot.params.VISO.QUAL_MIN = 50
+    m = told(o.Odometry, frame_id=frame, child_frame_id=child, x=1.0, vx=2.0, q=[1.0, 0.0, 0.0, 0.0], quality=quality)
+    o.odometry(m, v, SENDER)
+    assert (seen.pose.count, seen.velocity.count) == ((1, 1) if taken else (0, 0))
+
+
+def test_flow_is_heard_from_a_companion_only(bench: Bench) -> None:
+    v = bench.vehicle.v
+    flow: Any = v.autopilot.flow
+    m = told(OpticalFlow, flow_rate_x=0.1, flow_rate_y=-0.2, quality=200)
+    for kind, count in ((0, 0), (10, 0), (5, 1)):
+        flow.kind = kind
+        take_flow(m, v, SENDER)
+        assert flow.count == count
+    assert tuple(flow.rate) == pytest.approx((0.1, -0.2)) and flow.quality == 200
+    m.flow_rate_x = math.inf
+    take_flow(m, v, SENDER)
+    assert flow.count == 1
