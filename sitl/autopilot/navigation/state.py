@@ -141,5 +141,5 @@ class Nav(Record):
     mission_resume: bool  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
     mission_part: int  # OUTWARD, RETURN_PATH or LANDING: what the command under way belongs to
     mission_events: int  # events that the sequencer has seen
-    jump_item: Ints = array(JUMPS, stored="i8")  # DO_JUMP items run so far ...
-    jump_runs: Ints = array(JUMPS, stored="i8")  # ... and how often
+    jump_item: Ints = array(JUMPS, stored="i4")  # DO_JUMP items run so far ...
+    jump_runs: Ints = array(JUMPS, stored="i4")  # ... and how often
