@@ -55,8 +55,8 @@ def test_what_has_failed_is_put_back_as_it_was() -> None:
         assert simulation.parameters[name] == value
     with pytest.raises(OptionError, match="there is no fault 'gsp'"):
         simulation.repair("gsp")
-    with pytest.raises(OptionError, match="there is no fault 'motor'"):
-        Simulation("erle_rover", faults=["motor"])
+    with pytest.raises(OptionError, match="there is no fault 'shove'"):
+        Simulation("erle_rover", faults=["shove"])
 
 
 def test_a_reboot_changes_no_times() -> None:

@@ -52,10 +52,10 @@ def test_outputs_that_are_stuck(core: Core, frame: str) -> None:
     p = at_speed(core, frame, 4.0)
     p.simulation.fail("servo/stuck")
     p.sticks(4.0, 1900, 1500)
-    assert p.speed > 1.0 and abs(p.simulation.v.physics.body.rates.z) < 0.02
+    assert p.speed > 0.5 and abs(p.simulation.v.physics.body.rates.z) < 0.02
     p.simulation.repair("servo")
     p.sticks(8.0)
-    assert p.stands()
+    assert abs(p.speed) < 0.2
 
 
 def test_a_stuck_and_a_noisy_channel(core: Core) -> None:
@@ -65,7 +65,7 @@ def test_a_stuck_and_a_noisy_channel(core: Core) -> None:
     assert p.speed > 1.0 and p.ap.rc.channels[2] == 1700
     p.simulation.repair("rc")
     p.sticks(8.0)
-    assert p.stands()
+    assert abs(p.speed) < 0.2
     p.simulation.fail("rc/garbage=50")
     seen = set()
     for _ in range(50):

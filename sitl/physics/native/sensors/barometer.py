@@ -42,6 +42,7 @@ def spoiled(p: Physics, fault: BaroFault, altitude: float, error: float, rng: Rn
     if fault.taken == 0:
         for k in range(BARO_RING):
             fault.ring[k] = now
+        fault.taken = 1
     if not fault.frozen:
         fault.taken += 1
         fault.ring[fault.taken % BARO_RING] = now
