@@ -8,21 +8,23 @@ ARMING_CHECK selects which optional checks count.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from ..core.algebra import dot, dot2, horizontal, norm, norm2
 from ..core.kernels import law
 from ..core.vectors import Vec3
-from . import radio, sensor_calibration
+from . import radio_checks, sensor_calibration
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
+from .events import ARMING_REFUSED, Events, emit
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
 from .params.parameters import Parameters
-from .params.radio import RcMap
 from .params.simulation import axes
 from .params.system import Arming, Compass
+from .radio_checks import RC_MISSING, THROTTLE_FAILSAFE
 from .sensor_calibration import corrected_field, first_field
-from .state import BatteryState, Radio, Sensors
+from .state import BatteryState, Sensors
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
 BY_RUDDER = 0
@@ -39,7 +41,7 @@ BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
 
-# Checks
+# Checks (those of the radio: radio_checks.py)
 NOT_INITIALISED = 1
 BAROMETER = 2
 COMPASS = 4
@@ -51,8 +53,6 @@ GPS_FIX = 128
 WAITING_FOR_HOME = 256
 NEED_POSITION = 512
 NEED_ALTITUDE = 1024
-RC_MISSING = 2048
-THROTTLE_FAILSAFE = 4096
 THROTTLE_HIGH = 8192
 BATTERY_VOLTAGE = 16384
 BATTERY_CAPACITY = 32768
@@ -64,8 +64,6 @@ AHRS_TYPE = 1048576
 EKF_FAILSAFE = 2097152
 NO_OUTPUTS = 4194304
 WAYPOINT_SPEED = 8388608
-THROTTLE_OFF_CENTRE = 16777216
-STEERING_OFF_CENTRE = 33554432
 MODE_BY_RUDDER = 67108864
 NO_MISSION = 536870912
 EMERGENCY_STOP = 134217728
@@ -121,8 +119,6 @@ TEXTS = {
     EKF_FAILSAFE: "EKF failsafe",
     NO_OUTPUTS: "no motor, sail or scripting outputs defined",
     WAYPOINT_SPEED: "WP_SPEED too low",
-    THROTTLE_OFF_CENTRE: "Throttle (RC3) is not neutral",
-    STEERING_OFF_CENTRE: "Roll (RC1) is not neutral",
     MODE_BY_RUDDER: "Mode not rudder-armable",
     NO_MISSION: "Mode requires mission",
     EMERGENCY_STOP: "Motors Emergency Stopped",
@@ -133,6 +129,9 @@ TEXTS = {
 # ARMING_CHECK
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
 CHECK_PARAMETERS = 32
+
+_LOW_BITS, _METHOD_BITS = 48, 5
+"""Of failed checks in the first number of ARMING_REFUSED, and of the method in the second, below the others."""
 
 OBSTACLE_ROOM = 0.6
 """Room that a copter with a proximity sensor needs around it [m]."""
@@ -145,6 +144,18 @@ _READY_US = 2_450_000
 _ACCELS_US = 13_400_000
 _GYROS_US = 23_400_000
 """Inertial sensors count as consistent from here on: ten seconds of agreement each, as a real one boots."""
+
+
+@law
+def refuse(events: Events, time_us: int, failed: int, method: int) -> None:
+    """Tell that arming by ``method`` was refused, and why: more bits than one number of an event can hold."""
+    low = failed & ((1 << _LOW_BITS) - 1)
+    emit(events, time_us, ARMING_REFUSED, float(low), float(failed >> _LOW_BITS << _METHOD_BITS | method))
+
+
+def refusal(a: float, b: float) -> tuple[int, int]:
+    """The bits of failed checks and the method of an event ARMING_REFUSED with these two numbers."""
+    return int(b) >> _METHOD_BITS << _LOW_BITS | int(a), int(b) & ((1 << _METHOD_BITS) - 1)
 
 
 @law
@@ -244,14 +255,6 @@ def battery_checks(battery: BatteryState, level: int, params: Parameters) -> int
 
 
 @law
-def radio_checks(rc: Radio, rcmap: RcMap, throttle_min: float) -> int:
-    """Failed checks of the radio, which is lost when the throttle is below ``throttle_min`` [us]."""
-    if not rc.receiver_ok:
-        return RC_MISSING
-    return THROTTLE_FAILSAFE if radio.stick_pulse(rc, rcmap, radio.THROTTLE) < throttle_min else 0
-
-
-@law
 def proximity_checks(seen: Proximity, time_us: int) -> int:
     """Failed checks of a proximity sensor."""
     return NOTHING_SEEN if seen.kind != 0 and not has_data(seen, time_us) else 0
@@ -272,12 +275,20 @@ def obstacle_text(found: int) -> str:
     return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
 
 
-def texts(failed: int, prefix: str = "") -> list[str]:
-    """Status texts (MAV_SEVERITY_CRITICAL) of failed checks; ``prefix`` is "PreArm: " or "Arm: "."""
+def texts(failed: int, params: Parameters, sticks: Mapping[int, str], prefix: str = "") -> list[str]:
+    """Status texts (MAV_SEVERITY_CRITICAL) of failed checks.
+
+    Args:
+        failed: their bits.
+        params: the vehicle's parameters.
+        sticks: how the firmware calls the sticks that must be calibrated.
+        prefix: "PreArm: " or "Arm: ".
+    """
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
     said = [text for bit, text in TEXTS.items() if shown & bit]
+    said += radio_checks.texts(failed, params, sticks)
     fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
     said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])
     return [prefix + text for text in said]

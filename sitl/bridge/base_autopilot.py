@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..autopilot import battery, events, home
+from ..autopilot.arming_checks import BY_MAVLINK, refusal
 from ..autopilot.estimation import aiding
 from ..autopilot.fence import texts as fence_texts
 from ..autopilot.mission.item import MissionItem, home_item
@@ -18,8 +19,6 @@ from .autopilot_api import Note, Vector, Vehicle
 
 CRITICAL, WARNING, INFO = 2, 4, 6
 """MAV_SEVERITY"""
-BY_MAVLINK = 1
-"""Method of arming and disarming (ArduPilot's number)."""
 BY_GROUND_STATION = 2
 """Reason of a mode change (ArduPilot's number)."""
 
@@ -52,8 +51,10 @@ class BaseAutopilot:
         """What only the firmware can tell of an event of the core; nothing for most."""
         if code == events.MODE_REFUSED:
             return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
-        if code == events.ARMING_REFUSED and b != BY_MAVLINK:  # arm() has given those already
-            return [Text(CRITICAL, text) for text in self._arming.texts(int(a), "Arm: ")]
+        if code == events.ARMING_REFUSED:
+            failed, method = refusal(a, b)
+            said = [] if method == BY_MAVLINK else self._arming.texts(self._v, failed, "Arm: ")  # arm() gives its own
+            return [Text(CRITICAL, text) for text in said]
         fence = fence_texts.note(code, a, b)
         if fence is not None:
             return [fence]
@@ -86,7 +87,7 @@ class BaseAutopilot:
         return bool(self._arming.disarm(self._v, BY_MAVLINK, force))
 
     def run_prearm_checks(self) -> None:
-        self._say(CRITICAL, self._arming.texts(self._arming.check(self._v), "PreArm: "))
+        self._say(CRITICAL, self._arming.texts(self._v, self._arming.check(self._v), "PreArm: "))
 
     def set_mode(self, number: int) -> bool:
         return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events

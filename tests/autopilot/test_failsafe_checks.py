@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot import arming_checks, battery
+from sitl.autopilot import arming_checks, battery, radio_checks
 from sitl.autopilot.arming_checks import BATTERY_UNHEALTHY, COMPASSES, battery_checks, compass_checks
 from sitl.autopilot.events import Events
 from sitl.autopilot.failsafe_checks import (
@@ -190,8 +190,8 @@ def test_without_a_position_the_estimate_is_bad() -> None:
     assert is_estimate_bad(fs, est, 0.8, 0.0)
 
 
-NUMBERS = ("_SHIFT", "SECTORS")
-"""Of constants that are no bits."""
+NUMBERS = ("_SHIFT", "SECTORS", "REFUSED")
+"""Ends of names of constants that are no bits."""
 
 
 def test_every_check_is_a_bit_of_its_own_and_has_a_text() -> None:
@@ -202,9 +202,10 @@ def test_every_check_is_a_bit_of_its_own_and_has_a_text() -> None:
         if not (name.startswith(("BY_", "CHECK_", "COMPASS_", "_")) or name.endswith(NUMBERS))
     ]
     assert sorted(bits) == sorted(arming_checks.TEXTS)
+    bits += [*radio_checks.OFF_CENTRE.values(), radio_checks.CALIBRATION, radio_checks.SAME_FUNCTION]
     assert len(set(bits)) == len(bits) and all(bit & (bit - 1) == 0 for bit in bits)
 
 
 def test_a_missing_home_explains_the_missing_position() -> None:
     missing = arming_checks.WAITING_FOR_HOME | arming_checks.NEED_POSITION
-    assert arming_checks.texts(missing, "Arm: ") == ["Arm: AHRS: waiting for home"]
+    assert arming_checks.texts(missing, Parameters(), {}, "Arm: ") == ["Arm: AHRS: waiting for home"]

@@ -4,19 +4,19 @@
 from __future__ import annotations
 
 from ...core.kernels import inlined, law
-from .. import home, smart_rtl_path
-from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, TEXTS, texts
-from ..events import ARMED, ARMING_REFUSED, emit
+from .. import arming_checks, home, smart_rtl_path
+from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, refuse
+from ..events import ARMED, emit
 from ..fence.checks import switch_on_arming
 from ..state import Arming
-from .arming_checks import MANDATORY, arm_checks, check
+from .arming_checks import CALIBRATED, MANDATORY, arm_checks, check, stick_checks
 from .control.motors import ARMING_DELAY_US
 from .modes import ground, simple
 from .modes.state import Modes
 from .modes.table import has_manual_throttle, idles_armed
 from .state import Vehicle
 
-__all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
+__all__ = ["arm", "check", "disarm", "texts", "try_arm"]
 
 
 @law
@@ -28,8 +28,10 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
         return 0
     turns = arming.interlock_used and arming.interlock_on
     failed = check(v) | arm_checks(ap.modes, ap.rc, ap.params, method, turns)
+    if failed == 0:
+        failed = stick_checks(ap.rc, ap.params, method)
     if (not force and failed != 0) or (failed & MANDATORY) != 0:
-        emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
+        refuse(ap.events, v.time_us, failed, method)
         return failed
     if not ap.home.locked:
         home.set_here(ap.home, ap.estimate)
@@ -109,4 +111,9 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
     if v.autopilot.arming.armed:
         return True, []
     first = failed & MANDATORY if force else 0
-    return False, texts(first, "Arm: ") + texts(failed & ~first, "Arm: ")
+    return False, texts(v, first, "Arm: ") + texts(v, failed & ~first, "Arm: ")
+
+
+def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
+    """Status texts of failed checks, each after ``prefix``."""
+    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix)

@@ -7,6 +7,7 @@ import math
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
+from .. import radio, radio_checks
 from ..arming_checks import (
     BY_MAVLINK,
     BY_RUDDER,
@@ -31,12 +32,12 @@ from ..arming_checks import (
     calibration_checks,
     obstacle_check,
     proximity_checks,
-    radio_checks,
     sensor_checks,
     wants,
 )
 from ..fence import arming as fence_arming
 from ..params.system import Arming
+from ..radio import PITCH, ROLL, THROTTLE, YAW
 from ..state import Estimate, Radio
 from . import pilot
 from .modes.auto import AUTO
@@ -47,6 +48,11 @@ from .state import Vehicle
 
 MANDATORY = NEED_POSITION | NEED_ALTITUDE
 """What forcing does not skip."""
+CALIBRATED = radio_checks.STICK_NAMES
+"""Sticks that must be calibrated: their names in status texts."""
+_ROLL_OFF, _PITCH_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[PITCH]
+_THROTTLE_OFF, _YAW_OFF = radio_checks.OFF_CENTRE[THROTTLE], radio_checks.OFF_CENTRE[YAW]
+_ALL_STICKS = 1 << ROLL | 1 << PITCH | 1 << THROTTLE | 1 << YAW
 
 
 @law
@@ -87,8 +93,10 @@ def check(v: Vehicle) -> int:
         failed |= obstacle_check(ap.proximity, v.time_us)
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
         failed |= NO_MISSION
-    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
-        failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    if wants(p.ARMING, CHECK_RC):
+        failed |= radio_checks.channels(p, _ALL_STICKS)
+        if p.FS.THR_ENABLE > 0.0:
+            failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
     fence = p.FENCE
@@ -119,3 +127,15 @@ def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, turns: bool)
         elif pilot.climb_rate(modes, rc, p) > 0.0:
             failed |= THROTTLE_HIGH
     return failed
+
+
+@law
+def stick_checks(rc: Radio, p: Parameters, method: int) -> int:
+    """Sticks that are not at rest when all else allows to arm by ``method``; by stick the yaw cannot be."""
+    if not rc.receiver_ok or not wants(p.ARMING, CHECK_RC):
+        return 0
+    failed = radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF) | radio_checks.off_centre(rc, p, PITCH, _PITCH_OFF)
+    if method != BY_RUDDER:
+        failed |= radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
+    channel = radio.stick_channel(p.RCMAP, THROTTLE)
+    return failed | (_THROTTLE_OFF if radio.ranged(rc.channels[channel], p.RC[channel]) > 0.0 else 0)

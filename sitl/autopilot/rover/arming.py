@@ -5,19 +5,19 @@ from __future__ import annotations
 
 from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
-from .. import smart_rtl_path
-from ..arming_checks import BY_RUDDER, TEXTS, texts
-from ..events import ARMED, ARMING_REFUSED, DISARMED, Events, emit, emit_and_return
+from .. import arming_checks, smart_rtl_path
+from ..arming_checks import BY_RUDDER, refuse
+from ..events import ARMED, DISARMED, Events, emit, emit_and_return
 from ..mode_switch import rudder_command
 from ..state import Arming
-from .arming_checks import check, method_checks
+from .arming_checks import CALIBRATED, check, method_checks
 from .control.motors import is_moving
 from .modes.simple import note_heading
 from .modes.state import PilotState
 from .modes.table import allows_arming_by_stick
 from .state import Vehicle
 
-__all__ = ["TEXTS", "arm", "check", "disarm", "texts", "try_arm"]
+__all__ = ["arm", "check", "disarm", "texts", "try_arm"]
 
 
 @law
@@ -28,9 +28,9 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
         return 0
     failed = 0
     if not force:
-        failed = check(v) | method_checks(ap.modes, ap.rc.receiver_ok, method, ap.params.ARMING)
+        failed = check(v) | method_checks(ap.modes, ap.rc, method, ap.params)
     if failed != 0:
-        emit(ap.events, v.time_us, ARMING_REFUSED, float(failed), float(method))
+        refuse(ap.events, v.time_us, failed, method)
         return failed
     ap.arming.armed = True
     ap.arming.armed_us = v.time_us
@@ -79,4 +79,9 @@ def stick_command(pilot: PilotState, mode: int, armed: bool, moving: bool, permi
 def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
     """Arm from the shell: whether it worked, and the texts for the user when it did not."""
     failed = try_arm(v, method, force)
-    return v.autopilot.arming.armed, texts(failed, "Arm: ")
+    return v.autopilot.arming.armed, texts(v, failed, "Arm: ")
+
+
+def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
+    """Status texts of failed checks, each after ``prefix``."""
+    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ...core.kernels import law
+from .. import radio_checks
 from ..arming_checks import (
     AHRS_TYPE,
     BY_RUDDER,
@@ -20,27 +21,29 @@ from ..arming_checks import (
     NO_OUTPUTS,
     NOT_INITIALISED,
     RUDDER_DISABLED,
-    STEERING_OFF_CENTRE,
-    THROTTLE_OFF_CENTRE,
     WAYPOINT_SPEED,
     battery_checks,
     calibration_checks,
     proximity_checks,
-    radio_checks,
     sensor_checks,
     wants,
 )
 from ..fence import arming as fence_arming
-from ..params.system import Arming
-from ..state import Estimate
+from ..radio import ROLL, THROTTLE, YAW
+from ..state import Estimate, Radio
 from .control import servos
 from .control.motors import is_skid
 from .heights import HEIGHTS
 from .modes.auto import AUTO
-from .modes.state import Modes, PilotState
+from .modes.state import Modes
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .parameters import Parameters
 from .state import Vehicle
+
+CALIBRATED = {ROLL: "Steer", THROTTLE: "Throttle"}
+"""Sticks that must be calibrated: their names in status texts."""
+_ROLL_OFF, _THROTTLE_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[THROTTLE]
+_YAW_OFF = radio_checks.OFF_CENTRE[YAW]
 
 
 @law
@@ -82,31 +85,29 @@ def check(v: Vehicle) -> int:
         failed |= NO_MISSION
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
-    if p.FS.THR_ENABLE > 0.0 and wants(p.ARMING, CHECK_RC):
-        failed |= radio_checks(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    if wants(p.ARMING, CHECK_RC):
+        failed |= radio_checks.channels(p, 1 << ROLL | 1 << THROTTLE)
+        if p.FS.THR_ENABLE > 0.0:
+            failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, p.FENCE, HEIGHTS) << FENCE_SHIFT
     return failed if allows_arming(modes.number) else failed | MODE
 
 
 @law
-def stick_checks(pilot: PilotState, method: int) -> int:
-    """Sticks that are not centred; by stick the steering cannot be."""
-    failed = 0
-    if pilot.throttle != 0.0:
-        failed |= THROTTLE_OFF_CENTRE
-    if method != BY_RUDDER and pilot.steering != 0.0:
-        failed |= STEERING_OFF_CENTRE
-    return failed
+def stick_checks(rc: Radio, p: Parameters, method: int) -> int:
+    """Sticks that are not at rest; by stick the steering cannot be."""
+    failed = radio_checks.off_centre(rc, p, THROTTLE, _THROTTLE_OFF) | radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
+    return failed if method == BY_RUDDER else failed | radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF)
 
 
 @law
-def method_checks(modes: Modes, receiver_ok: bool, method: int, params: Arming) -> int:
+def method_checks(modes: Modes, rc: Radio, method: int, p: Parameters) -> int:
     """Failed checks of arming at this moment by ``method``, besides those of ``check``."""
     failed = 0
-    if receiver_ok and wants(params, CHECK_RC):
-        failed |= stick_checks(modes.pilot, method)
+    if rc.receiver_ok and wants(p.ARMING, CHECK_RC):
+        failed |= stick_checks(rc, p, method)
     if method == BY_RUDDER:
-        if params.RUDDER < 1.0:
+        if p.ARMING.RUDDER < 1.0:
             failed |= RUDDER_DISABLED
         if not allows_arming_by_stick(modes.number):
             failed |= MODE_BY_RUDDER

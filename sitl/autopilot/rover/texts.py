@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 from .. import events, smart_rtl_path
-from ..arming_checks import BY_MAVLINK
-from ..arming_checks import texts as arming_texts
 from ..failsafe_checks import EKF
 from ..modes import NO_MISSION
 from . import failsafe
@@ -31,16 +29,11 @@ _PLAIN = {
 
 
 def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
-    """(MAV_SEVERITY, text) of what is said of an event; empty for most.
-
-    ARMING_REFUSED by MAVLink says nothing here: ``arming.arm`` has given those texts already.
-    """
+    """(MAV_SEVERITY, text) of what is said of an event; empty for most."""
     if code in _PLAIN:
         return [_PLAIN[code]]
     if code == events.MODE_REFUSED:
         return _refusal(int(a), int(b))
-    if code == events.ARMING_REFUSED and int(b) != BY_MAVLINK:
-        return [(CRITICAL, text) for text in arming_texts(int(a), "Arm: ")]
     if code == events.FAILSAFE:
         return _failsafe(int(a), bool(b))
     if code == events.PATH_LOST:

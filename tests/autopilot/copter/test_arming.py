@@ -41,7 +41,7 @@ def booting(v, mode, seconds):
 )
 def test_a_start_as_recorded(vehicle, mode, seconds, texts):
     booting(vehicle, mode, seconds)
-    assert arming.texts(arming.check(vehicle)) == texts
+    assert arming.texts(vehicle, arming.check(vehicle), "") == texts
     assert arming.arm(vehicle, BY_MAVLINK, False) == (not texts, [f"Arm: {t}" for t in texts])
 
 

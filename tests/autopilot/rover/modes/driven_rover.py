@@ -11,7 +11,8 @@ import math
 from typing import Any
 
 from sitl.autopilot import events
-from sitl.autopilot.rover import arming, texts
+from sitl.autopilot.mission.notes import Text
+from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.control import update as control
 from sitl.autopilot.rover.control.state import DT, PERIOD_US
 from sitl.autopilot.rover.firmware import power_on
@@ -20,6 +21,7 @@ from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.parameters import TABLE
 from sitl.autopilot.rover.state import Autopilot
+from sitl.bridge.rover.autopilot import RoverAutopilot
 from sitl.core.border import Actuators, Sensors
 from sitl.core.records import Record
 from sitl.core.vectors import Vec2
@@ -158,7 +160,11 @@ class Rover:
 
     def texts(self) -> list[str]:
         """What was said since the last call."""
-        return [text for event in self.events() for _, text in texts.texts(*event)]
+        pilot = RoverAutopilot.__new__(
+            RoverAutopilot
+        )  # it has no shell: what it says of an event takes the record only
+        pilot._v = self.v
+        return [note.text for event in self.events() for note in pilot.texts_of(*event) if isinstance(note, Text)]
 
 
 def set_velocity(v: Any, north: float, east: float) -> int:
