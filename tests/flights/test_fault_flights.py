@@ -99,7 +99,7 @@ def test_satellites_are_told_and_no_more(fly: Fly) -> None:
 
 
 def test_barometer_glitch(fly: Fly) -> None:
-    """3 m too high. ArduPilot, with 10 m, sinks by 4.2 m in 4 s and by 9.3 m in 12 s, and climbs back when it ends; here
+    """3 m too high. ArduPilot, with 10 m, sinks by 4.2 m in 4 s and by 9.3 m in 12 s, and climbs back after it; here
     the barometer is believed sooner.
     """
     copter = fly()
