@@ -84,6 +84,13 @@ def test_the_example_of_fleets_runs(core: Core) -> None:
     assert places == pytest.approx([0.0, 20.0, 40.0, 60.0], abs=0.5)
 
 
+def test_the_example_of_precision_landing_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = blocks(ROOT / "docs/precision-landing.md", "python")
+    exec(compile(example, "docs/precision-landing.md", "exec"), {})
+    landed = re.fullmatch(r"landed (.+) m north, (.+) m east\n", capsys.readouterr().out)
+    assert landed is not None and [float(x) for x in landed.groups()] == pytest.approx([3.0, 1.0], abs=0.4)
+
+
 def test_the_commands_of_the_readme_are_understood() -> None:
     text = "\n".join(blocks(ROOT / "README.md", ""))
     lines = [line for line in text.splitlines() if line.startswith("sitl ")]

@@ -59,6 +59,8 @@ SYSTEM_ID_DID = 52  # copter; a: what (systemid.py), b: a number of it
 SYSTEM_ID_SAMPLE = 53  # copter: a sample of SYSTEMID, for the log
 CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
 NO_WAY = 60  # there is no way around the areas of the fence
+LANDING_TARGET_DID = 61  # a: what (landing_target/state.py)
+DOCK_DID = 62  # rover; a: what (dock.py)
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

@@ -11,6 +11,7 @@ from ..core.geodesy import add_offset
 from ..core.kernels import law
 from .control.pid import Pid
 from .estimation.move import move_ekf, move_estimate
+from .landing_target.estimator import forget
 from .navigation.path import set_place
 from .navigation.state import Leg, Nav
 from .smart_rtl_path import point, set_point
@@ -70,7 +71,10 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     if not ap.ekf.use_external:
         move_ekf(ap.ekf, d)
     move_estimate(ap.estimate, d)
+    acc = ap.inertial_filter.acc
+    acc.first, acc.second = turned(d, acc.first), turned(d, acc.second)
     move_home(ap.home, ap.estimate, d)
     move_nav(ap.modes.nav, d)
     ap.avoid.limited_us = 0
+    forget(ap.landing_target)
     ap.modes.follow.is_known, ap.modes.follow.update_us = False, 0  # reports count from where the origin was

@@ -18,7 +18,9 @@ from .avoidance.state import Avoidance
 from .estimation.state import Ekf
 from .events import Events
 from .fence.state import FenceState, RallyState
+from .inertial_filter import InertialFilter
 from .inertial_ring import InertialRing
+from .landing_target.state import LandingTarget
 from .navigation.state import Nav
 from .params.parameters import Parameters
 from .sensor_calibration import Calibrated
@@ -29,8 +31,8 @@ class Estimate(Record):
     """What the estimator says of the vehicle."""
 
     q: Quat  # body to NED
-    rates: Vec3  # body rates without bias [rad/s], every tick
-    acc_ned: Vec3  # acceleration NED, gravity removed [m/s^2], every tick
+    rates: Vec3  # body rates without bias, low-passed [rad/s], every tick
+    acc_ned: Vec3  # acceleration NED, gravity removed, low-passed [m/s^2], every tick
     vel: Vec3  # NED [m/s]
     pos: Vec3  # NED from the origin [m]
     gyro_bias: Vec3  # body [rad/s]
@@ -82,8 +84,8 @@ class Radio(Record):
     receiver_us: int  # last good frame
     receiver_ok: bool
     override_blocked: bool  # a switch forbids overrides
-    switch_position: Ints = array(RC_INPUTS, stored="i8")  # of channels with RCn_OPTION (aux_switch.py); 0 none yet
-    switch_candidate: Ints = array(RC_INPUTS, stored="i8")
+    switch_position: Ints = array(RC_INPUTS, stored="u1")  # of channels with RCn_OPTION (aux_switch.py); 0 none yet
+    switch_candidate: Ints = array(RC_INPUTS, stored="u1")
     switch_us: Ints = array(RC_INPUTS, stored="i8")  # since when the candidate is there
     switch_events: int  # events that the switches' functions have seen (written by the shell)
     is_faulty: bool  # SIM_RC_*:
@@ -233,11 +235,13 @@ class Autopilot(Record):
     control: Control
     events: Events
     inertial: InertialRing
+    inertial_filter: InertialFilter
     vibration: Vibration
     fence: FenceState
     rally: RallyState
     proximity: Proximity
     avoid: Avoidance
+    landing_target: LandingTarget
 
 
 class Vehicle(Protocol):

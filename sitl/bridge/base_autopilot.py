@@ -10,6 +10,7 @@ from ..autopilot import battery, events, home
 from ..autopilot.arming_checks import BY_MAVLINK, refusal
 from ..autopilot.estimation import aiding
 from ..autopilot.fence import texts as fence_texts
+from ..autopilot.landing_target.texts import TEXTS as LANDING_TARGET_TEXTS
 from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
@@ -58,6 +59,8 @@ class BaseAutopilot:
         fence = fence_texts.note(code, a, b)
         if fence is not None:
             return [fence]
+        if code == events.LANDING_TARGET_DID:
+            return [Text(*LANDING_TARGET_TEXTS[int(a)])]
         if code == events.FOLLOW_OFF:
             return [Text(WARNING, "Set FOLL_ENABLE = 1")]
         if code == events.FOLLOW_OFFSET:

@@ -19,6 +19,7 @@ from ..autopilot.inertial_ring import remember
 from ..autopilot.vibration import update_vibration
 from ..core.kernels import inlined, law
 from ..core.memory import fetch_ahead
+from .landing_beacon import look
 from .record import Vehicle
 
 # EKF_STATUS_FLAGS: attitude, horizontal and vertical velocity, relative and absolute position, vertical position,
@@ -75,6 +76,8 @@ def fly_tick(fleet: Sequence[V], index: int, control: Tick[V]) -> None:
     watch_obstacles(vehicle)
     if vehicle.autopilot.ekf.use_external != 0:
         observe(vehicle)
+    if vehicle.autopilot.params.PLND.ENABLED != 0.0:
+        look(vehicle)
     control(fleet, index)
     ap = vehicle.autopilot
     update_vibration(ap.vibration, ap.calibrated.acc)

@@ -61,6 +61,7 @@ def test_messages_that_laws_take(profile: Profile) -> None:
         "MANUAL_CONTROL",
         "GLOBAL_POSITION_INT",
         "FOLLOW_TARGET",
+        "LANDING_TARGET",
         "OBSTACLE_DISTANCE",
         "DISTANCE_SENSOR",
         "OBSTACLE_DISTANCE_3D",

@@ -7,6 +7,8 @@ from ...core.kernels import law
 from ...core.records import Records
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
+from ..landing_target import estimator as landing_target
+from ..landing_target.orientation import DOWN
 from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
 from .control.frames import load_frame
 from .control.update import init as init_control
@@ -25,6 +27,8 @@ def update(fleet: Records[Vehicle], index: int) -> None:
     estimate(fleet, index)
     decide(fleet, index)
     control(fleet, index)
+    if fleet[index].autopilot.params.PLND.ENABLED != 0.0:
+        landing_target.estimate(fleet[index], DOWN)
 
 
 def power_on(v: Vehicle) -> None:

@@ -7,8 +7,9 @@ from ...core.algebra import IDENTITY
 from ...core.kernels import inline_unit, law
 from ...core.records import Records
 from .. import events
+from ..inertial_filter import smoothed_acc, smoothed_rates
 from ..sensor_calibration import read_sensors
-from ..state import Estimate, Vehicle
+from ..state import Autopilot, Estimate, Vehicle
 from . import alignment, barometer, covariance, fusion, gps, history, magnetometer, noise, status, strapdown
 from .alignment import CALIBRATE, RUN, TILT, YAW
 from .state import POS, VEL, Ekf
@@ -92,6 +93,14 @@ def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     estimate.rates = ekf.good_gyro
 
 
+@law
+def smooth(ap: Autopilot) -> None:
+    """Low-pass what controllers see of rates and acceleration."""
+    e, params = ap.estimate, ap.params.INS
+    e.rates = smoothed_rates(ap.inertial_filter, e.rates, params)
+    e.acc_ned = smoothed_acc(ap.inertial_filter, e.acc_ned, params)
+
+
 @inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick: ``sensors`` to ``autopilot.estimate``."""
@@ -100,6 +109,7 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     ekf, shown = ap.ekf, ap.calibrated
     read_sensors(shown, sensors, ap.params)
     if ekf.use_external:
+        smooth(ap)
         return
     ekf.now_us = v.time_us
     strapdown.read_imu(ekf, shown.gyro, shown.acc)
@@ -114,3 +124,4 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     if ekf.step_ticks >= STEP_TICKS:
         step(fleet, i)
     status.publish(ekf, ap.estimate, DT, ap.params.EK3.TAU_OUTPUT)
+    smooth(ap)

@@ -12,6 +12,7 @@ from .estimator import Ekf3
 from .fence import Fence, Rally
 from .follow import Follow
 from .parameter import INT8, INT16, ParameterGroup, numbered, param, rows
+from .precision_landing import PrecisionLanding
 from .radio import RcChannel, RcMap
 from .simulation import Simulated
 from .system import Ahrs, Arming, Battery, Compass, Failsafes, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
@@ -41,6 +42,7 @@ class Parameters(ParameterGroup):
     MAV1: StreamRates
     MIS: Mission
     OA: PathPlanning
+    PLND: PrecisionLanding
     PRX: Proximity
     PRX1: ProximitySensor
     RALLY: Rally

@@ -91,6 +91,25 @@ class Barometer(ParameterGroup):
     WCF: Wcf
 
 
+class LandingBeacon(ParameterGroup):
+    """SIM_PLD_: a beacon that sensors of precision landing see."""
+
+    ENABLE: float = param(0, 0, 1, "", "1: the beacon is on", INT8)
+    LAT: float = param(0, -90, 90, "deg", "Latitude of the beacon")
+    LON: float = param(0, -180, 180, "deg", "Longitude of the beacon")
+    HEIGHT: float = param(0, -100000, 100000, "m", "Height of the beacon over the place of power-on")
+    RATE: float = param(100, 1, 400, "Hz", "Measurements a second", INT32)
+    TYPE: float = param(
+        0, 0, 2, "", "Where it is seen: 0 in a cylinder, 1 in a cone, 2 in half a sphere of radius DIST_LMT", INT8
+    )
+    ALT_LMT: float = param(15.0, 0.0, 100000, "m", "Length of cylinder and cone")
+    DIST_LMT: float = param(10.0, 0.0, 100000, "m", "Radius of the cylinder, of the cone at its end, of the sphere")
+    ORIENT: float = param(
+        24, 0, 43, "", "Where it shines: 0 north, 1 north-east, ... 7 north-west, 24 up, 25 down", INT8
+    )
+    OPTIONS: float = param(0, 0, 1, "", "1: distances are measured, too, not directions alone", INT8)
+
+
 class Simulated(ParameterGroup):
     """SIM_: wind, and what fails."""
 
@@ -131,6 +150,7 @@ class Simulated(ParameterGroup):
     SPEEDUP: float = param(
         1, -1, 100000, "", "Simulated seconds a second; 0 or less: as fast as it goes (drop-in executables only)"
     )
+    PLD: LandingBeacon
     RC_FAIL: float = param(0, 0, 2, "", "1 switches the transmitter off; 2: sticks centred, throttle 950 us", INT8)
     RC_STUCK: float = param(0, 0, 65535, "", "Channels that stay as they are: 1 the first, 2 the second, ...", INT32)
     RC_NOISE: float = param(0, 0, 1000, "us", "Noise of all channels, at most")

@@ -47,11 +47,13 @@ class Ahrs(ParameterGroup):
 
 
 class Inertial(ParameterGroup):
-    """INS_: calibration of accelerometers and gyros."""
+    """INS_: calibration and filters of accelerometers and gyros."""
 
     GYROFFS: Axes = group("Taken off what the gyro shows [rad/s]")
     ACCOFFS: Axes = group("Taken off what the accelerometer shows [m/s/s]")
     ACCSCAL: Axes = group("Factor of what the accelerometer then shows", X=1.0, Y=1.0, Z=1.0)
+    GYRO_FILTER: float = param(20, 0, 256, "Hz", "Cut-off of the low-pass of rates before controllers; 0: none", INT16)
+    ACCEL_FILTER: float = param(20, 0, 256, "Hz", "The same of the acceleration", INT16)
 
 
 class Compass(ParameterGroup):

@@ -7,6 +7,7 @@ from ...core.kernels import law
 from ...core.records import Records
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
+from ..landing_target import estimator as landing_target
 from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
 from .control.update import init as init_control
 from .control.update import update as control
@@ -28,6 +29,8 @@ def update(fleet: Records[Vehicle], index: int) -> None:
     if fleet[index].tick % PERIOD_TICKS == 0:
         decide(fleet, index)
         control(fleet, index)
+    if fleet[index].autopilot.params.PLND.ENABLED != 0.0:
+        landing_target.estimate(fleet[index], int(fleet[index].autopilot.params.PLND.ORIENT))
 
 
 def power_on(v: Vehicle) -> None:

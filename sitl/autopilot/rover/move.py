@@ -71,6 +71,7 @@ def move_modes(m: Modes, d: Displacement) -> None:
     move_guided(m.guided, d)
     move_loiter(m.loiter, d)
     move_circle(m.circle, d)
+    m.dock.place = moved_ne(d, m.dock.place)
     move_path(m.path, d)
     move_nav(m.nav, d)
     m.simple.first_heading = turned_heading(d, m.simple.first_heading)

@@ -7,7 +7,7 @@ from .. import events, smart_rtl_path
 from ..failsafe_checks import EKF
 from ..modes import NO_MISSION
 from . import failsafe
-from .modes import circle
+from .modes import circle, dock
 from .modes.set_mode import refusal_texts
 
 EMERGENCY, CRITICAL, WARNING, NOTICE, INFO = 0, 2, 4, 5, 6
@@ -17,6 +17,11 @@ _CIRCLE = {
     circle.SPEED_LIMITED: "Circle: max speed is {:4.1f}",
     circle.RADIUS_ENLARGED: "Circle: radius increased to TURN_RADIUS ({:4.1f})",
     circle.FELL_BEHIND: "Circle: cannot keep up, slowing to {:.1f}m/s",
+}
+_DOCK = {
+    dock.NO_TARGET: (NOTICE, "Dock: target not acquired"),
+    dock.NO_DIRECTION: (NOTICE, "Dock: Set DOCK_DIR or disable heading correction"),
+    dock.ARRIVED: (INFO, "Dock: Docking complete"),
 }
 _PLAIN = {
     events.ARMED: (INFO, "Throttle armed"),
@@ -38,6 +43,8 @@ def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
         return _failsafe(int(a), bool(b))
     if code == events.PATH_LOST:
         return [(WARNING, smart_rtl_path.lost_text(int(a)))]
+    if code == events.DOCK_DID:
+        return [_DOCK[int(a)]]
     if code == events.CIRCLE_ADAPTED:
         return [(WARNING, _CIRCLE[int(a)].format(b))]
     return []

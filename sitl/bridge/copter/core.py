@@ -9,6 +9,7 @@ from ...core.kernels import unit
 from ...vehicle.copter import Copter, advance
 from ..core_link import CoreUnits
 from ..services.follow import follow_target
+from ..services.landing_target import landing_target
 from ..services.proximity import distance, obstacle_3d, obstacles
 from ..services.rc import rc_channels_override
 from ..telemetry.builder import compiled
@@ -22,7 +23,7 @@ from .telemetry import MESSAGES
 BUILDERS = compiled(MESSAGES)
 TAKERS = (
     position_target_local, position_target_global, attitude_target, rc_channels_override, manual_control,
-    other_position, follow_target, obstacles, distance, obstacle_3d,
+    other_position, follow_target, landing_target, obstacles, distance, obstacle_3d,
 )  # fmt: skip
 build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_targets(TAKERS)
 

@@ -28,7 +28,18 @@ from ..telemetry.heartbeat import (
     fill_heartbeat,
 )
 from ..telemetry.motion import VfrHud
-from ..telemetry.status import ALTITUDE, ATTITUDE, MOTORS, POSITION, PROXIMITY, RATE, YAW, MissionCurrent, SysStatus
+from ..telemetry.status import (
+    ALTITUDE,
+    ATTITUDE,
+    MOTORS,
+    POSITION,
+    PROXIMITY,
+    RATE,
+    VISION,
+    YAW,
+    MissionCurrent,
+    SysStatus,
+)
 from ..telemetry.tuning import PITCH, ROLL, VERTICAL, YAW_LOOP, PidTuning, fill_tuning, next_loop
 from ..telemetry.units import uint8, uint16
 from ..wire.message import Message
@@ -84,6 +95,9 @@ def sys_status(m: SysStatus, v: Copter) -> bool:
     at_work = controllers_at_work(v.autopilot.modes.number, v.autopilot.arming.armed)
     looks = PROXIMITY if v.autopilot.proximity.kind != 0 else 0
     sees = looks if has_data(v.autopilot.proximity, v.time_us) else 0
+    if v.autopilot.params.PLND.ENABLED != 0.0:
+        looks |= VISION
+        sees |= VISION if v.autopilot.landing_target.sees else 0
     return status.sys_status(m, v, CONTROLLERS | looks, at_work | looks, CONTROLLERS | sees)
 
 

@@ -30,7 +30,8 @@ class RoverAutopilot(BaseAutopilot):
             return [ItemReached(0)]
         if code == events.SETPOINT_IGNORED:
             return [Text(INFO, f"Ignoring {message_by_id(int(a)).name}; set ACC_IGNORE in mask")]
-        if code in (events.ARMING_REFUSED, events.FOLLOW_OFF, events.FOLLOW_OFFSET, *events.FENCE_TEXTS):
+        shared = (events.ARMING_REFUSED, events.FOLLOW_OFF, events.FOLLOW_OFFSET, events.LANDING_TARGET_DID)
+        if code in (*shared, *events.FENCE_TEXTS):
             return super().texts_of(code, a, b)
         return [Text(severity, text) for severity, text in texts.texts(code, a, b)]
 

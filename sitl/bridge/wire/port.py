@@ -35,7 +35,7 @@ class Port(Record):
     stream_number: Ints = array(STREAMS, stored="i8")
     stream_us: Ints = array(STREAMS, stored="i8")  # interval
     stream_due_us: Ints = array(STREAMS, stored="i8")  # [since boot]
-    stream_by_shell: Ints = array(STREAMS, stored="i8")  # the core cannot build it
+    stream_by_shell: Ints = array(STREAMS, stored="u1")  # the core cannot build it
     # who we are, and how the client listens
     system: int  # our system id in outgoing frames
     epoch_us: int  # Unix time at boot

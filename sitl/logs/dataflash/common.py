@@ -389,6 +389,29 @@ def gps(boot_unix_us: int) -> tuple[Message, ...]:
     return (fix, GPS_ACCURACY)
 
 
+_TARGET = A + "landing_target."
+
+
+def _acquired(path: str) -> Any:
+    return lambda s: 100.0 * s(_TARGET + path) * s(_TARGET + "acquired")
+
+
+LANDING_TARGET = Message(
+    "PL",
+    (
+        Field("Heal", "B", source=_TARGET + "sees"),
+        Field("TAcq", "B", source=_TARGET + "acquired"),
+        *(Field(f"p{axis}", "f", "m", "B", _acquired(f"away[{k}]")) for k, axis in enumerate("XY")),
+        *(Field(f"v{axis}", "f", "n", "B", _acquired(f"closing[{k}]")) for k, axis in enumerate("XY")),
+        *(Field(f"m{axis}", "f", "m", "B", f"{_TARGET}place[{k}]", 100.0) for k, axis in enumerate("XYZ")),
+        Field("LastMeasMS", "I", "s", "C", _TARGET + "used_us", 1e-3),
+        Field("EKFOutl", "I", source=_TARGET + "outliers"),
+        Field("Est", "B", source=A + "params.PLND.EST_TYPE"),
+    ),
+    bits.MEDIUM,
+    bits.CONTROL | bits.NAVIGATION,
+    when=A + "params.PLND.ENABLED",
+)
 TRUTH = Message(
     "SIM",
     (

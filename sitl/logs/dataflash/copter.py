@@ -130,6 +130,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
             bits.COPTER_MOTORS,
         ),
         *pids,
+        common.LANDING_TARGET,
         *common.FILTER,
         *((common.TRUTH,) if simulated else ()),
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...autopilot.rover.modes import auto, guided
 from ...autopilot.rover.modes.circle import CIRCLE
+from ...autopilot.rover.modes.dock import DOCK
 from ...autopilot.rover.modes.loiter import LOITER
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.smart_rtl import SMART_RTL
@@ -76,7 +77,10 @@ def _on_circle(s: Any) -> Array:
 
 def _to_target(s: Any) -> tuple[Array, Array]:
     """Vector from the vehicle to its target: north, east [m]; 0 without a target."""
-    places = ((_on_path(s), "nav.target"), (_at_place(s), "loiter.place"), (_on_circle(s), "circle.target"))
+    places = (
+        (_on_path(s), "nav.target"), (_at_place(s), "loiter.place"), (_on_circle(s), "circle.target"),
+        (_any_of(s, (DOCK,), ()), "dock.place"),
+    )  # fmt: skip
 
     def way(k: int) -> Array:
         here = s(f"{E}pos[{k}]")
@@ -190,6 +194,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         ),
         common.pid("PIDS", _STEERING + "rate", "ATC.STR_RAT.", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
         common.pid("PIDA", _SPEED + "loop", "ATC.SPEED.", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
+        common.LANDING_TARGET,
         *common.FILTER,
         *((common.TRUTH,) if simulated else ()),
     )

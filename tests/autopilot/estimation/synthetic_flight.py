@@ -29,9 +29,11 @@ GRAVITY = 9.80665
 
 
 def new() -> np.ndarray:
-    """A fleet of one vehicle at power-on, with default parameters."""
+    """A fleet of one vehicle at power-on, with default parameters but without the filters behind the estimator."""
     fleet = Copter.fleet(1)
-    TABLE.set_defaults(Copter.of(fleet, 0).autopilot.params)
+    params = Copter.of(fleet, 0).autopilot.params
+    TABLE.set_defaults(params)
+    params.INS.GYRO_FILTER = params.INS.ACCEL_FILTER = 0.0
     return fleet
 
 

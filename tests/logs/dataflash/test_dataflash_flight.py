@@ -184,3 +184,20 @@ def test_a_log_of_a_run_that_is_killed_misses_less_than_two_minutes(tmp_path: Pa
     stamps = times(read_log(run.path)["BAT"])  # it is not closed
     assert stamps[-1] > 40_000_000
     run.simulation.close()
+
+
+def test_a_landing_target_is_logged(tmp_path: Path) -> None:
+    beacon = {"SIM_PLD_ENABLE": 1, "SIM_PLD_LAT": -35.363262, "SIM_PLD_LON": 149.165237, "SIM_PLD_OPTIONS": 1}
+    run = Run(tmp_path, "copter", PLND_ENABLED=1, PLND_TYPE=4, **beacon)
+    run.drive()
+    target = run.simulation.v.autopilot.landing_target
+    away, place = tuple(target.away), tuple(target.place)
+    run.simulation.close()
+    rows = read_log(run.path)["PL"]
+    assert (rows[0].Heal, rows[0].TAcq, rows[0].mZ) == (0, 0, 0.0)
+    last = rows[-1]
+    assert (last.Heal, last.TAcq, last.Est, last.EKFOutl) == (1, 1, 1, 0)
+    assert (last.pX, last.pY) == pytest.approx([100.0 * x for x in away], abs=2.0)
+    assert (last.mX, last.mY, last.mZ) == pytest.approx([100.0 * x for x in place], abs=2.0)
+    assert np.unique(np.diff(times(rows))).tolist() == [100_000]
+    assert last.TimeUS - 1000 * last.LastMeasMS <= 20_000

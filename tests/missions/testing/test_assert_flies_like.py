@@ -67,7 +67,7 @@ def test_a_gain_that_is_one_percent_more_is_found(make: VehicleFactory, store: G
     store.update = False
     other = make("copter", params={"PSC_VELXY_P": 1.01 * copter.parameter("PSC_VELXY_P")})
     other.fly_mission("copter/square")
-    with pytest.raises(AssertionError, match=r"(?s)s after item 1: .* golden.*PSC_VELXY_P .* -> 2\.02"):
+    with pytest.raises(AssertionError, match=r"(?s)s after item \d: .* golden.*PSC_VELXY_P .* -> 2\.02"):
         other.assert_flies_like("square.rec")
 
 

@@ -22,7 +22,7 @@ from ..navigation.state import CopterNav
 from ..parameters import Parameters
 from ..parameters.flight import Waypoints
 from ..state import Vehicle
-from . import auto_yaw, ground, guided, land, loiter_to_alt, rtl, takeoff
+from . import auto_yaw, descent, ground, guided, land, loiter_to_alt, precision_land, rtl, takeoff
 from .mode import CopterMode
 from .state import AutoState, AutoYaw, Modes
 
@@ -134,7 +134,7 @@ def choose_heading(yaw: AutoYaw, kind: int, p: Waypoints, target: AttitudeState,
 def begin_descent(modes: Modes, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
     """Land where it is."""
     modes.auto.land_state = DESCENDING
-    land.begin(modes, time_us, control, est, p)
+    descent.begin(modes, time_us, control, est, p)
 
 
 @law
@@ -231,7 +231,7 @@ def run_land(v: Vehicle) -> bool:
         return done
     control.motors.desired_spool = ground.UNLIMITED
     if modes.auto.land_state == DESCENDING:
-        land.descend(modes, ap.home.pos.z - est.pos.z, ap.arming.landed_maybe, control, est, p)
+        precision_land.descend(v)
         return done
     reached = waypoint.advance(modes.nav, control, est, p, v.time_us)
     ground.fly(modes.auto_yaw, control, est, p)

@@ -12,7 +12,7 @@ from ..control import altitude, position
 from ..control.state import DT
 from ..navigation import waypoint
 from ..state import Vehicle
-from . import ground, land
+from . import descent, ground
 
 _NEAR = 0.05
 """So near to its height it is there [m]."""
@@ -41,6 +41,6 @@ def run(v: Vehicle) -> bool:
     limits = control.pos_d
     wanted = sqrt_controller(error, p.PSC.POSZ_P, limits.accel_max, DT)
     altitude.input_vel_accel_d(limits, constrain(wanted, -limits.speed_up, limits.speed_down), 0.0)
-    position.input_vel_accel_ne(control.pos_ne, land.stick_velocity(modes.pilot, est.yaw, p), ZERO2)
+    position.input_vel_accel_ne(control.pos_ne, descent.stick_velocity(modes.pilot, est.yaw, p), ZERO2)
     ground.fly(modes.auto_yaw, control, est, p)
     return done

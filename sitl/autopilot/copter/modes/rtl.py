@@ -23,7 +23,7 @@ from ..navigation import waypoint
 from ..parameters import Parameters
 from ..parameters.flight import Rtl
 from ..state import Vehicle
-from . import auto_yaw, ground, land
+from . import auto_yaw, descent, ground, land, precision_land
 from .mode import CopterMode, never_arms
 from .state import AutoYaw, Modes, RtlState
 
@@ -127,7 +127,7 @@ def run_end(v: Vehicle) -> bool:
         return True
     control.motors.desired_spool = ground.UNLIMITED
     if is_landing(modes):
-        land.descend(modes, ap.home.pos.z - est.pos.z, ap.arming.landed_maybe, control, est, p)
+        precision_land.descend(v)
         return True
     if modes.rtl.state == FINAL_DESCENT:
         run_descent(modes, control, est, p)
@@ -175,13 +175,13 @@ def begin_descent(modes: Modes, time_us: int, control: Control, est: Estimate, p
         ground.set_waypoint_limits(control, p)
     else:
         modes.rtl.state = LANDING
-        land.begin(modes, time_us, control, est, p)
+        descent.begin(modes, time_us, control, est, p)
 
 
 @law
 def run_descent(modes: Modes, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick on the way to RTL_ALT_FINAL, and of the stay there; the sticks move the vehicle."""
-    position.input_vel_accel_ne(control.pos_ne, land.stick_velocity(modes.pilot, est.yaw, p), ZERO2)
+    position.input_vel_accel_ne(control.pos_ne, descent.stick_velocity(modes.pilot, est.yaw, p), ZERO2)
     altitude.input_pos_vel_accel_d(control.pos_d, Motion(modes.rtl.descent_d, 0.0, 0.0))
     ground.fly(modes.auto_yaw, control, est, p)
 

@@ -173,6 +173,11 @@ class LandState(Record):
     start_us: int
     with_position: bool
     pause: bool  # wait 4 s before descending, after a failsafe
+    # on a target (precision_land.py)
+    repositioned: bool  # the sticks have moved the vehicle: they choose the place
+    stage: int  # DESCENDING, CLIMBING, RETURNING, GIVEN_UP
+    since_us: int  # when it gave up
+    tries: int  # again, so far
 
 
 class AutoState(Record):

@@ -13,6 +13,7 @@ from ...params.avoidance import PathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
+from ...params.precision_landing import PrecisionLanding
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
@@ -101,6 +102,7 @@ class Parameters(shared.Parameters):
     OA: PathPlanning
     PHLD: PosHold
     PILOT: Pilot
+    PLND: PrecisionLanding
     PRX: Proximity
     PRX1: ProximitySensor
     PSC: Position

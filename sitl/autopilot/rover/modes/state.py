@@ -56,6 +56,14 @@ class CircleState(Record):
     waiting: bool  # the vehicle fell behind: the target waits for it
 
 
+class DockState(Record):
+    """DOCK."""
+
+    place: Vec2  # the dock, as last seen [m]
+    distance: float  # from it [m]
+    done: bool  # it is there
+
+
 class SimpleState(Record):
     """SIMPLE."""
 
@@ -115,6 +123,7 @@ class Modes(shared.Modes):
     guided: GuidedState
     loiter: LoiterState
     circle: CircleState
+    dock: DockState
     simple: SimpleState
     rtl: RtlState
     path: shared.PathState

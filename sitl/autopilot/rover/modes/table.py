@@ -9,7 +9,22 @@ from __future__ import annotations
 from ....core.dispatch import by_number
 from ....core.kernels import law
 from ...modes import numbers, with_registered
-from . import acro, auto, circle, follow, guided, hold, initialising, loiter, manual, rtl, simple, smart_rtl, steering
+from . import (
+    acro,
+    auto,
+    circle,
+    dock,
+    follow,
+    guided,
+    hold,
+    initialising,
+    loiter,
+    manual,
+    rtl,
+    simple,
+    smart_rtl,
+    steering,
+)
 from .mode import RoverMode
 
 MODES: tuple[RoverMode, ...] = with_registered(
@@ -26,6 +41,7 @@ MODES: tuple[RoverMode, ...] = with_registered(
         rtl.MODE,
         smart_rtl.MODE,
         follow.MODE,
+        dock.MODE,
         guided.MODE,
         initialising.MODE,
     ),

@@ -21,7 +21,8 @@ from ...params.simulation import Simulated
 from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
-from .driving import Circle, Cruise, Legs, Loiter, Manual, Mission
+from .driving import Circle, Cruise, Dock, Legs, Loiter, Manual, Mission
+from .precision_landing import PrecisionLanding
 from .safety import Battery, Failsafes, Fence
 
 
@@ -36,6 +37,7 @@ class Parameters(shared.Parameters):
     BATT: Battery
     CIRC: Circle
     COMPASS: Compass
+    DOCK: Dock
     CRASH_ANGLE: float = param(0, 0, 60, "deg", "Lean that counts as a crash at once; 0: none does", INT8)
     CRUISE: Cruise
     SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
@@ -50,7 +52,7 @@ class Parameters(shared.Parameters):
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
     )
     INITIAL_MODE: float
-    INS: Inertial
+    INS: Inertial = group(GYRO_FILTER=4, ACCEL_FILTER=10)
     LOG: Log = group(BITMASK=65535)
     LOIT: Loiter
     MANUAL: Manual
@@ -64,6 +66,7 @@ class Parameters(shared.Parameters):
     PILOT_STEER_TYPE: float = param(
         0, 0, 3, "", "0, 2: steering turns round in reverse; 1: two paddles; 3: it does not turn round", INT8
     )
+    PLND: PrecisionLanding
     PRX: Proximity
     PRX1: ProximitySensor
     PSC: Position

@@ -22,6 +22,16 @@ class Cruise(ParameterGroup):
     THROTTLE: float = param(50, 0, 100, "%", "Throttle that gives CRUISE_SPEED", INT8)
 
 
+class Dock(ParameterGroup):
+    """DOCK_: DOCK."""
+
+    SPEED: float = param(0.0, 0.0, 100.0, "m/s", "Greatest speed; 0: WP_SPEED")
+    DIR: float = param(-1.0, -1.0, 360.0, "deg", "Heading in which the dock is entered; -1: none is wanted")
+    HDG_CORR_EN: float = param(0, 0, 1, "", "1: the way bends onto the line through the dock at DOCK_DIR", INT8)
+    HDG_CORR_WT: float = param(0.75, 0.0, 1.0, "", "How soon: aims so far before the dock, as a share of the distance")
+    STOP_DIST: float = param(0.3, 0.0, 2.0, "m", "Stops so far from the dock")
+
+
 class Loiter(ParameterGroup):
     """LOIT_: LOITER."""
 

@@ -17,6 +17,7 @@ from sitl.autopilot.copter.modes import (
     alt_hold,
     auto,
     auto_yaw,
+    descent,
     drift,
     flip,
     ground,
@@ -135,7 +136,7 @@ def test_a_landing_sinks_within_its_speeds_and_slowly_near_the_ground(height: fl
     p, limits = Land(), AltitudeState()
     p.SPEED, p.SPEED_HIGH, p.ALT_LOW = slow, fast, 1000.0
     limits.speed_down, limits.accel_max = 1.5, 1.0
-    rate = land.sink_rate(height, limits, p, 1.0)
+    rate = descent.sink_rate(height, limits, p, 1.0)
     top = 1.5 if fast * 0.01 <= 0.0 else fast * 0.01
     assert slow * 0.01 <= rate <= max(top, slow * 0.01)
     if height <= 10.0:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.modes import land, rtl, set_mode
+from sitl.autopilot.copter.modes import descent, land, rtl, set_mode
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.rtl import RTL
@@ -74,12 +74,12 @@ def test_over_home_it_waits_then_lands_or_stays(flying, final, state):
     assert ap.modes.rtl.state == state
 
 
-def descent(v, seconds=6.0):
+def settled_descent(v, seconds=6.0):
     """Desired descent [m/s] once the shaping has settled."""
     ap = v.autopilot
     height = ap.home.pos.z - ap.estimate.pos.z
     for _ in range(round(seconds * 400)):
-        land.sink(ap.control.pos_d, ap.modes.land, height, False, ap.params)
+        descent.sink(ap.control.pos_d, ap.modes.land, height, False, ap.params)
     return float(ap.control.pos_d.vel_desired)
 
 
@@ -91,7 +91,7 @@ def test_descent(flying, height, fast, speed):
     set_mode.request(flying, LAND, REASON_GCS)
     flying.autopilot.params.LAND_SPEED_HIGH = fast
     flying.autopilot.estimate.pos = flying.autopilot.estimate.pos.replace(z=-height)
-    assert descent(flying) == pytest.approx(speed, abs=0.01)
+    assert settled_descent(flying) == pytest.approx(speed, abs=0.01)
 
 
 def test_a_landing_after_a_failsafe_waits_four_seconds(flying):
@@ -120,9 +120,9 @@ def test_it_disarms_when_landed_and_idling(flying):
 def test_sticks_move_the_landing_place_in_the_direction_of_the_nose(flying):
     sticks, params = PilotState(), flying.autopilot.params
     sticks.pitch = -1.0
-    assert land.stick_velocity(sticks, math.pi / 2, params) == pytest.approx((0.0, 1.25))
+    assert descent.stick_velocity(sticks, math.pi / 2, params) == pytest.approx((0.0, 1.25))
     params.LAND_REPOSITION = 0.0
-    assert land.stick_velocity(sticks, math.pi / 2, params) == (0.0, 0.0)
+    assert descent.stick_velocity(sticks, math.pi / 2, params) == (0.0, 0.0)
 
 
 def test_a_high_throttle_cancels_the_landing_only_with_the_option(flying):

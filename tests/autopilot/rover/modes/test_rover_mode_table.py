@@ -17,7 +17,7 @@ from tests.autopilot.rover.modes.driven_rover import Rover
 
 def test_numbers_are_ardurovers() -> None:
     assert table.NAMES == {
-        0: "MANUAL", 1: "ACRO", 3: "STEERING", 4: "HOLD", 5: "LOITER", 6: "FOLLOW", 7: "SIMPLE", 9: "CIRCLE",
+        0: "MANUAL", 1: "ACRO", 3: "STEERING", 4: "HOLD", 5: "LOITER", 6: "FOLLOW", 7: "SIMPLE", 8: "DOCK", 9: "CIRCLE",
         10: "AUTO", 11: "RTL", 12: "SMART_RTL", 15: "GUIDED", 16: "INITIALISING",
     }  # fmt: skip
     assert [n for n in range(30) if table.is_known(n)] == sorted(table.NAMES)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""LANDING_TARGET: what a companion computer sees of a target (PLND_TYPE 1)."""
+
+from __future__ import annotations
+
+import math
+
+from ...autopilot.events import LANDING_TARGET_DID, emit
+from ...autopilot.landing_target.measurement import take
+from ...autopilot.landing_target.state import LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
+from ...core.kernels import law
+from ...core.scalars import finite
+from ...core.vectors import Vec3
+from ...vehicle.landing_beacon import BY_MESSAGE
+from ...vehicle.record import Vehicle
+from ..wire.message import Message
+
+BODY_FRD, LOCAL_FRD = 12, 20
+"""MAV_FRAME"""
+
+
+class LandingTargetMessage(Message, name="LANDING_TARGET"):
+    """Angles [rad], or (``position_valid``) a place [m]; distance [m]."""
+
+    frame: int
+    angle_x: float
+    angle_y: float
+    distance: float
+    x: float
+    y: float
+    z: float
+    position_valid: int
+
+
+@law
+def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
+    """Note the direction of the target, and its distance where there is one."""
+    ap = v.autopilot
+    t, p = ap.landing_target, ap.params.PLND
+    if p.ENABLED == 0.0 or int(p.TYPE) != BY_MESSAGE:
+        return
+    if m.frame != BODY_FRD and m.frame != LOCAL_FRD:
+        if (t.told & TOLD_FRAME) == 0:
+            emit(ap.events, v.time_us, LANDING_TARGET_DID, float(SAID_NO_FRAME), 0.0)
+        t.told |= TOLD_FRAME
+        return
+    line = Vec3(m.x, m.y, m.z)
+    if m.position_valid == 0:
+        line = Vec3(-math.tan(m.angle_y), math.tan(m.angle_x), 1.0)
+    if finite(line.x + line.y + line.z + m.distance):
+        take(t, line, SENSOR if m.frame == BODY_FRD else LEVEL_SENSOR, m.distance, v.time_us)
