@@ -54,8 +54,8 @@ class Receiver(ParameterGroup):
     BYTELOS: float = param(0, 0, 100, "%", "Bytes of the receiver that are lost; a fix takes 100")
     NUMSATS: float = param(10, 0, 127, "", "Satellites that are told; 10: the airframe's", INT8)
     GLTCH: Axes = group(
-        X={"unit": "deg", "doc": "Added to the latitude", "low": -90, "high": 90},
-        Y={"unit": "deg", "doc": "Added to the longitude", "low": -180, "high": 180},
+        X={"unit": "deg", "doc": "Added to the latitude", "low": -30, "high": 30},
+        Y={"unit": "deg", "doc": "Added to the longitude", "low": -30, "high": 30},
         Z={"unit": "m", "doc": "Added to the altitude"},
     )
     DRFTALT: float = param(0, -10000, 10000, "m", "Altitude comes and goes by this in 314 s")

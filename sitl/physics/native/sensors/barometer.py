@@ -12,6 +12,11 @@ from ..atmosphere import pressure, temperature
 from ..records import BARO_RING, BaroFault, Derived, Physics, SensorState
 from ..tick import TICK_S
 
+LOWEST, HIGHEST = -2000.0, 30000.0
+"""Altitudes that a faulty barometer shows at most [m]."""
+LEAST = 100.0
+"""Pressure that it shows at least [Pa]."""
+
 
 @law
 def pressure_error(s: SensorState, a: SensorFigures, d: Derived, rng: Rng) -> float:
@@ -38,7 +43,7 @@ def spoiled(p: Physics, fault: BaroFault, altitude: float, error: float, rng: Rn
     """Pressure that a faulty barometer shows [Pa]; ``error``: of a healthy one [Pa]."""
     fault.drifted += fault.drift * p.derived.baro_period * TICK_S
     high = altitude + fault.height + fault.drifted + fault.noise * normal(rng)
-    now = pressure(high) + error + wind_pressure(p, fault)
+    now = max(pressure(min(max(high, LOWEST), HIGHEST)) + error + wind_pressure(p, fault), LEAST)
     if fault.taken == 0:
         for k in range(BARO_RING):
             fault.ring[k] = now
