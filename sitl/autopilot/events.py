@@ -61,6 +61,7 @@ CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: it
 NO_WAY = 60  # there is no way around the areas of the fence
 LANDING_TARGET_DID = 61  # a: what (landing_target/state.py)
 DOCK_DID = 62  # rover; a: what (dock.py)
+YAW_IMBALANCE = 65  # copter; a: the integrator of the yaw rate loop
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 
