@@ -29,6 +29,7 @@ from sitl.core import compile as compiler
 from sitl.envs.observations import OBSERVATIONS
 from sitl.envs.tasks import TASKS
 from sitl.simulation import Core
+from sitl.vehicle.faults import EFFECTS, Failure
 from sitl.vehicle.kinds import KINDS
 from tests.agents.small_runs import new
 
@@ -53,16 +54,23 @@ def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture
     assert vehicle.position == pytest.approx((30.0, 10.0, 10.0), abs=1.1)  # type: ignore[attr-defined]
 
 
-def test_the_example_of_bad_links_runs_and_every_option_is_explained(core: Core) -> None:
+def test_the_examples_of_faults_run_and_every_fault_and_option_is_explained(core: Core) -> None:
     page = ROOT / "docs/faults.md"
+    on_demand, links = blocks(page, "python")
     scope: dict[str, Any] = {}
-    exec(compile(blocks(page, "python")[0], str(page), "exec"), scope)
+    exec(compile(on_demand, str(page), "exec"), scope)
+    assert scope["vehicle"].mode == "LAND"
+    exec(compile(links, str(page), "exec"), scope)
     assert not scope["vehicle"].armed
     for name in OPTIONS:
         assert f"`--link-{name} " in page.read_text()
-    for line in blocks(page, "")[0].splitlines():
-        words = shlex.split(line)
-        parser().parse_args(words[1:] if words[0] == "sitl" else words)
+    for effect in EFFECTS:
+        assert effect.does in page.read_text() and f"`{effect.unit}" in page.read_text()
+    for line in "\n".join(blocks(page, "")[:2]).splitlines():
+        words = shlex.split(line.split(" -- ")[0])
+        options = parser().parse_args(words[1:] if words[0] == "sitl" else words)
+        for fault in getattr(options, "fail", ()):
+            Failure.of_text(fault).checked(KINDS["copter"].firmware.table)
 
 
 def test_the_example_of_fleets_runs(core: Core) -> None:

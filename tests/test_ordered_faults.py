@@ -16,8 +16,8 @@ from sitl.recording.replay import Replay
 from sitl.scenario import Scenario
 from sitl.vehicle.faults import Failure
 
-OFF, OK, SLOW = 1, 0, 5
-BATTERY, GPS, MOTOR, VIO = 100, 4, 101, 6
+OFF, OK, STUCK, SLOW = 1, 0, 2, 5
+BATTERY, GPS, MOTOR, RC, VIO = 100, 4, 101, 104, 6
 ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3
 
 
@@ -55,8 +55,8 @@ def test_what_has_failed_is_put_back_as_it_was() -> None:
         assert simulation.parameters[name] == value
     with pytest.raises(OptionError, match="there is no fault 'gsp'"):
         simulation.repair("gsp")
-    with pytest.raises(OptionError, match="there is no fault 'motor'"):
-        Simulation("erle_rover", faults=["motor"])
+    with pytest.raises(OptionError, match="there is no fault 'shove'"):
+        Simulation("erle_rover", faults=["shove"])
 
 
 def test_a_reboot_changes_no_times() -> None:
@@ -117,5 +117,6 @@ def test_inject_failure() -> None:
     assert order(MOTOR, OFF, 3) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 6
     assert order(MOTOR, OK, 2) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 4
     assert order(MOTOR, OFF, 9) == DENIED and order(MOTOR, OFF, 1.5) == DENIED
-    for unit, kind in ((VIO, OFF), (77, OFF), (GPS, SLOW), (GPS, 8), (GPS, 1.5), (BATTERY, OFF)):
+    assert order(RC, STUCK, 5) == ACCEPTED and order(RC, OFF, 5) == DENIED and order(RC, OK, 5) == ACCEPTED
+    for unit, kind in ((VIO, OFF), (77, OFF), (GPS, SLOW), (GPS, 8), (GPS, 1.5), (BATTERY, OFF), (-1, OFF)):
         assert order(unit, kind, 0) == UNSUPPORTED

@@ -20,7 +20,15 @@ FAULTS = {
     "SIM_WIND_SPD": (0.0, 12.0), "SIM_WIND_TURB": (0.0, 3.0), "SIM_GPS1_ENABLE": (0.0, 1.0),
     "SIM_GPS1_JAM": (0.0, 1.0), "SIM_RC_FAIL": (0.0, 1.0), "SIM_ENGINE_FAIL": (0.0, 15.0),
     "SIM_ENGINE_MUL": (0.0, 1.0), "SIM_ACC1_BIAS_Z": (-2.0, 2.0), "SIM_SHOVE_X": (-20.0, 20.0),
-    "SIM_SHOVE_TIME": (0.0, 500.0), "SIM_BATT_VOLTAGE": (8.0, 12.6),
+    "SIM_SHOVE_TIME": (0.0, 500.0), "SIM_BATT_VOLTAGE": (8.0, 12.6), "SIM_BATT_CAP_AH": (0.0, 1.0),
+    "SIM_BATT_RES": (0.0, 1.0), "SIM_TWIST_Z": (-20.0, 20.0), "SIM_TWIST_TIME": (0.0, 500.0),
+    "SIM_ENGINE_STUCK": (0.0, 15.0), "SIM_GPS1_GLTCH_X": (-30.0, 30.0), "SIM_GPS1_GLTCH_Y": (-30.0, 30.0),
+    "SIM_GPS1_VERR_X": (-10000.0, 10000.0), "SIM_GPS1_LAG_MS": (0.0, 1000.0), "SIM_GPS1_BYTELOS": (0.0, 100.0),
+    "SIM_BARO_GLITCH": (-10000.0, 10000.0), "SIM_BARO_DRIFT": (-1000.0, 1000.0), "SIM_BARO_RND": (0.0, 1000.0),
+    "SIM_BARO_FREEZE": (0.0, 1.0), "SIM_BARO_DISABLE": (0.0, 1.0), "SIM_BARO_DELAY": (0.0, 1000.0),
+    "SIM_BARO_WCF_UP": (-10.0, 10.0), "SIM_WIND_T": (0.0, 2.0), "SIM_WIND_DIR_Z": (-90.0, 90.0),
+    "SIM_RC_STUCK": (0.0, 65535.0), "SIM_RC_NOISE": (0.0, 1000.0), "SIM_SONAR_GLITCH": (-1000.0, 1000.0),
+    "SIM_LIDAR_LOSS": (0.0, 1.0),
 }  # fmt: skip
 """Parameter -> least and greatest value."""
 SPECIAL = (246, 209, 42428)

@@ -78,7 +78,7 @@ class Events(Record):
     count: int  # events so far; event k is at k % EVENT_RING
     attention: bool  # the core returns to the shell at the end of this tick
     time_us: Ints = array(EVENT_RING, stored="i8")
-    code: Ints = array(EVENT_RING, stored="i8")
+    code: Ints = array(EVENT_RING, stored="i4")
     a: Floats = array(EVENT_RING)
     b: Floats = array(EVENT_RING)
 

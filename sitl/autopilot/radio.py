@@ -20,6 +20,8 @@ FRAME_S = RC_TICKS * 0.0025
 
 RECEIVER_PULSES = (1500, 1500, 1000, 1500, 1800, 1000, 1000, 1800)
 """What the simulated transmitter sends: sticks centred, throttle low, mode switch at position 6."""
+FAILED_THROTTLE = 950
+"""Pulse of a receiver that has lost its transmitter and does not fall silent [us]."""
 ROLL, PITCH, THROTTLE, YAW = 0, 1, 2, 3
 """Sticks."""
 
@@ -94,6 +96,20 @@ def is_overridden(rc: Radio, k: int, time_us: int, duration: float) -> bool:
 
 
 @law
+def spoil(rc: Radio, params: Parameters, overridden: bool) -> None:
+    """Sticks of a transmitter that fails without falling silent; noise on all channels."""
+    if rc.is_neutral and not overridden:
+        for k in range(RC_INPUTS):
+            rc.channels[k] = 1500
+        rc.channels[stick_channel(params.RCMAP, THROTTLE)] = FAILED_THROTTLE
+    if rc.noise > 0.0:
+        for k in range(RC_INPUTS):
+            rc.noise_state = (rc.noise_state * 1103515245 + 12345) & 0x7FFFFFFF  # ISO C's example of rand()
+            if rc.channels[k] != 0 and not rc.stuck >> k & 1:
+                rc.channels[k] += int(rc.noise * ((rc.noise_state >> 12) / 262144.0 - 1.0))
+
+
+@law
 def receive(rc: Radio, sensors: Sensors, params: Parameters, time_us: int, throttle: int, timeout: float) -> None:
     """One frame of the receiver, fifty times a second: effective channels, and whether the radio is there.
 
@@ -109,6 +125,8 @@ def receive(rc: Radio, sensors: Sensors, params: Parameters, time_us: int, throt
     """
     overridden, is_real = False, sensors.rc_count > 0
     for k in range(18):
+        if rc.is_faulty and rc.stuck >> k & 1:
+            continue
         if is_overridden(rc, k, time_us, params.RC_OVERRIDE_TIME):
             rc.channels[k] = rc.override[k]
             overridden = True
@@ -116,6 +134,8 @@ def receive(rc: Radio, sensors: Sensors, params: Parameters, time_us: int, throt
             rc.channels[k] = sensors.rc_channels[k] if k < RC_INPUTS else 0
         elif rc.has_receiver:
             rc.channels[k] = throttle if k == THROTTLE else RECEIVER_PULSES[k] if k < 8 else 0
+    if rc.is_faulty:
+        spoil(rc, params, overridden)
     if overridden or (rc.has_receiver and not is_real):
         rc.receiver_us = time_us
     elif rc.has_receiver:

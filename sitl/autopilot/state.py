@@ -11,7 +11,7 @@ from typing import Protocol
 from ..core.algebra import euler_of, quat_from_euler, yaw_of
 from ..core.border import RC_INPUTS, Actuators, Sensors
 from ..core.kernels import law
-from ..core.records import Floats, Ints, Record, array
+from ..core.records import Float32, Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .avoidance.proximity import Proximity
 from .avoidance.state import Avoidance
@@ -100,6 +100,11 @@ class Radio(Record):
     switch_candidate: Ints = array(RC_INPUTS, stored="u1")
     switch_us: Ints = array(RC_INPUTS, stored="i8")  # since when the candidate is there
     switch_events: int  # events that the switches' functions have seen (written by the shell)
+    is_faulty: bool  # SIM_RC_*:
+    is_neutral: bool  # the receiver gives centred sticks and the least throttle (SIM_RC_FAIL 2)
+    stuck: int  # bits of the channels that stay as they are
+    noise: Float32  # of all channels, at most [us]
+    noise_state: int  # of its random numbers
 
 
 class HomeState(Record):

@@ -108,7 +108,7 @@ class Session:
 
     def _parameters(self, table: Table) -> dict[str, float]:
         """Of default files, storage and command line; what the firmware does not take is told and left out."""
-        values: dict[str, float] = {}
+        values: dict[str, float] = {"SIM_WIND_T": 0.0}  # ArduPilot's, with less wind near the ground
         for path in self._line.defaults:
             values.update(files.load(path))
         values.update(self.storage.parameters)

@@ -22,7 +22,7 @@ class Navigate(gym.Env[Any, Any]):
     Args:
         render_mode: "rgb_array", "human" or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
-            randomise, latency, and options of the robot's class.
+            randomise, latency, faults, and options of the robot's class.
 
     ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" and what ``Task.info`` adds.
 
@@ -46,8 +46,8 @@ class Navigate(gym.Env[Any, Any]):
         """Look up once what every step needs."""
         session = self._session
         self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
-        self._observe, self._info = session.observation.observe, session.task.info
-        self._plain_info = type(session.task).info is Task.info
+        self._observe, self._info = session.observation.observe, session.info
+        self._plain_info = type(session.task).info is Task.info and session.faults is None
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 
     @property
@@ -98,7 +98,7 @@ class Navigate(gym.Env[Any, Any]):
         if self._plain_info:
             info: dict[str, Any] = {"crashed": terminated}
         else:
-            rows = self._info(session.step).items()
+            rows = self._info().items()
             info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in rows}
         if self._renderer is not None:
             self._renderer.note()

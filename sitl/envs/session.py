@@ -19,6 +19,7 @@ from sitl.worlds import World, WorldError
 
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
+from .faults import EpisodeFaults, Faults
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
@@ -50,6 +51,8 @@ class Snapshot:
     """Whether the next step of a vector environment starts another episode."""
     late: Late | None = None
     """Pending commands; None: there is no latency."""
+    fault: tuple[int, float] | None = None
+    """Number and time of the episode's fault; None: there are no faults."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,8 @@ class NavigateOptions:
         randomise: figure of the robot, or "latency", -> (low, high), drawn for each episode; "draws" -> N: of N sets.
         latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
             The previous command holds until then; at the start of an episode the robot stands or hovers.
+        faults: fault, as "gps" or "motor:2=0.5" ("": none) -> when it begins in an episode [s], or (earliest, latest);
+            each episode draws one of them.
         robot_options: further options of the robot's class, by name.
 
     Raises:
@@ -86,6 +91,7 @@ class NavigateOptions:
     start: StartOption | None = None
     randomise: Randomise | None = None
     latency: float = 0.0
+    faults: Faults | None = None
     robot_options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -117,6 +123,8 @@ class Session:
         self.latency = self._make_latency(options.latency, ranges)
         """None: commands take effect at once."""
         self.randomisation = Randomisation(ranges, self.robot, self.latency)
+        self.faults = None if options.faults is None else EpisodeFaults(options.faults, self.robot)
+        """None: nothing fails."""
         self.starts = Starts(options.start, self.robot)
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)
@@ -196,6 +204,8 @@ class Session:
         if self.latency is not None:
             self.latency.begin(index)
         self.robot.reset(index, pose, seed)
+        if self.faults is not None:
+            self.faults.begin(index, rng)
         self.task.start(index, self.robot, rng)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
@@ -217,10 +227,18 @@ class Session:
         self.robot.apply(self.action.setpoint, latency.due)
         cast(LateRobot, self.robot).advance_late(self.seconds, latency.waits, rows)
 
+    def info(self) -> dict[str, npt.NDArray[Any]]:
+        """What the task tells of this step, and the number of the fault that has begun; a row a robot."""
+        found = self.task.info(self.step)
+        return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
+
     def snapshot(self, index: int, rng: np.random.Generator) -> Snapshot:
         """A snapshot of one robot, with the state of its random generator."""
         late = None if self.latency is None else self.latency.memory(index)
-        return Snapshot(self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late)
+        fault = None if self.faults is None else self.faults.memory(index)
+        return Snapshot(
+            self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault
+        )
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
         """Restore one robot and its random generator.
@@ -232,10 +250,14 @@ class Session:
             raise EnvOptionError(f"{snapshot!r} is no snapshot of an environment")
         if (snapshot.late is None) != (self.latency is None):
             raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has a latency")
+        if (snapshot.fault is None) != (self.faults is None):
+            raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has faults")
         self.task.recall(index, snapshot.task)
         self.robot.restore(index, snapshot.robot)
         if self.latency is not None and snapshot.late is not None:
             self.latency.recall(index, snapshot.late)
+        if self.faults is not None and snapshot.fault is not None:
+            self.faults.recall(index, snapshot.fault)
         rng.bit_generator.state = dict(snapshot.rng)
 
 

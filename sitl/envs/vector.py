@@ -229,7 +229,7 @@ class NavigateVector(OfSubEnvironments):
         infos: dict[str, Any] = {}
         if rows is not self._all and not rows.any():
             return infos
-        for name, value in self._session.task.info(self._session.step).items():
+        for name, value in self._session.info().items():
             if value.ndim == 1:  # Gymnasium makes arrays of Python's numbers
                 masked = value.astype(type(value[0].item()))
             else:

@@ -128,11 +128,16 @@ def apply_sim_parameters(v: Copter) -> None:
     for k in range(len(rotors.efficiency)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
         rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0
+    rotors.stuck = int(params.SIM.ENGINE_STUCK)
     sim, shove = params.SIM, v.physics.shove
     if sim.SHOVE_TIME > 0.0:
         shove.accel = Vec3(sim.SHOVE_X, sim.SHOVE_Y, sim.SHOVE_Z)
         shove.until_us = v.time_us + round(sim.SHOVE_TIME * 1000.0)
         sim.SHOVE_TIME = 0.0
+    if sim.TWIST_TIME > 0.0:
+        shove.twist = Vec3(sim.TWIST_X, sim.TWIST_Y, sim.TWIST_Z)
+        shove.twist_until_us = v.time_us + round(sim.TWIST_TIME * 1000.0)
+        sim.TWIST_TIME = 0.0
 
 
 def motor_output(v: Copter) -> float:

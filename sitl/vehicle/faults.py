@@ -59,8 +59,11 @@ class Effect(NamedTuple):
 
 
 EFFECTS: tuple[Effect, ...] = (
-    Effect("gps", "off", {"SIM_GPS1_ENABLE": 0}, "the receiver is off"),
-    Effect("gps", "garbage", {"SIM_GPS1_JAM": 1}, "the receiver is jammed: place, speed and satellites jump"),
+    Effect("gps", "off", {"SIM_GPS1_ENABLE": 0}, "no receiver any more"),
+    Effect("gps", "wrong", {"SIM_GPS1_GLTCH_X": (AMOUNT, _METRE)}, "fixes lie to the north", 50.0, "[m]"),
+    Effect("gps", "garbage", {"SIM_GPS1_JAM": 1}, "jammed: place, speed and satellites jump"),
+    Effect("gps", "delayed", {"SIM_GPS1_LAG_MS": (AMOUNT, 1000.0)}, "fixes come late", 0.5, "[s]"),
+    Effect("gps", "intermittent", {"SIM_GPS1_BYTELOS": (AMOUNT, 100.0)}, "bytes are lost", 0.01, "share"),
     Effect("gyro", "wrong", {"SIM_GYR{n}_BIAS_X": AMOUNT}, "the roll rate that it shows is off", 0.5, "[rad/s]", 2),
     Effect("gyro", "off", {"SIM_GYR_FAIL_MSK": MASK}, "the gyro sends nothing", instances=2),
     Effect("accel", "wrong", {"SIM_ACC{n}_BIAS_X": AMOUNT}, "it shows so much too much forward", 5.0, "[m/s/s]", 2),
@@ -68,14 +71,32 @@ EFFECTS: tuple[Effect, ...] = (
     Effect("accel", "stuck", {"SIM_ACCEL{n}_FAIL": AMOUNT}, "all axes show one number", 20.0, "[m/s/s]", 2),
     Effect("mag", "off", {"SIM_MAG{n}_FAIL": 1}, "the compass sends nothing", instances=3),
     Effect("mag", "wrong", {"SIM_MAG{n}_OFS_X": AMOUNT}, "hard iron ahead of it", 400.0, "[mGauss]", 3),
+    Effect("baro", "off", {"SIM_BARO_DISABLE": 1}, "no samples any more"),
+    Effect("baro", "stuck", {"SIM_BARO_FREEZE": 1}, "the same height for ever"),
+    Effect("baro", "garbage", {"SIM_BARO_RND": AMOUNT}, "noise", 3.0, "[m]"),
+    Effect("baro", "wrong", {"SIM_BARO_GLITCH": AMOUNT}, "another height", 10.0, "[m]"),
+    Effect("baro", "slow", {"SIM_BARO_DRIFT": AMOUNT}, "the height drifts away", 0.5, "[m/s]"),
+    Effect("baro", "delayed", {"SIM_BARO_DELAY": (AMOUNT, 1000.0)}, "samples come late", 0.5, "[s]"),
     Effect("battery", "wrong", {"SIM_BATT_VOLTAGE": AMOUNT}, "another voltage of the full battery", 10.0, "[V]"),
-    Effect(
-        "motor", "off", {"SIM_ENGINE_FAIL": MASK, "SIM_ENGINE_MUL": AMOUNT}, "the motor keeps a share of its thrust",
-        0.0, "share", 8,
-    ),
-    Effect("rc", "off", {"SIM_RC_FAIL": 1}, "the transmitter is off"),
-    Effect("wind", "wrong", {"SIM_WIND_SPD": AMOUNT}, "wind", 10.0, "speed [m/s]"),
-)  # fmt: skip
+    Effect("battery", "slow", {"SIM_BATT_RES": AMOUNT}, "the voltage sags under load", 0.1, "[Ohm]"),
+    Effect("motor", "off", {"SIM_ENGINE_MUL": AMOUNT, "SIM_ENGINE_FAIL": MASK}, "weaker motors", 0.0, "share left", 8),
+    Effect("motor", "stuck", {"SIM_ENGINE_STUCK": MASK}, "motors stay at their command", instances=8),
+    Effect("servo", "off", {"SIM_ENGINE_MUL": AMOUNT, "SIM_ENGINE_FAIL": MASK}, "weaker outputs", 0.0, "share left", 8),
+    Effect("servo", "stuck", {"SIM_ENGINE_STUCK": MASK}, "outputs stay as they are", instances=8),
+    Effect("rc", "off", {"SIM_RC_FAIL": 1}, "the transmitter is silent"),
+    Effect("rc", "wrong", {"SIM_RC_FAIL": 2}, "sticks centred, throttle at 950 us"),
+    Effect("rc", "stuck", {"SIM_RC_STUCK": MASK}, "channels stay as they are", instances=16),
+    Effect("rc", "garbage", {"SIM_RC_NOISE": AMOUNT}, "noise on all channels", 100.0, "[us]"),
+    Effect("distance_sensor", "off", {"SIM_SONAR_LOSS": 1}, "nothing in range"),
+    Effect("distance_sensor", "wrong", {"SIM_SONAR_GLITCH": AMOUNT}, "other readings", 5.0, "[m]"),
+    Effect("distance_sensor", "garbage", {"SIM_SONAR_RND": AMOUNT}, "noise", 1.0, "[m]"),
+    Effect("distance_sensor", "intermittent", {"SIM_SONAR_LOSS": AMOUNT}, "drop-outs", 0.3, "share"),
+    Effect("avoidance", "off", {"SIM_LIDAR_LOSS": 1}, "the lidar sees nothing"),
+    Effect("avoidance", "intermittent", {"SIM_LIDAR_LOSS": AMOUNT}, "drop-outs of the lidar", 0.3, "share"),
+    Effect("wind", "wrong", {"SIM_WIND_SPD": AMOUNT}, "wind", 10.0, "[m/s]"),
+    Effect("shove", "wrong", {"SIM_SHOVE_X": AMOUNT, "SIM_SHOVE_TIME": 500}, "a shove forward", 5.0, "[m/s/s]"),
+    Effect("twist", "wrong", {"SIM_TWIST_Z": AMOUNT, "SIM_TWIST_TIME": 500}, "a twist to the right", 5.0, "[rad/s/s]"),
+)
 """The first type of a unit is the one that counts when none is said."""
 
 

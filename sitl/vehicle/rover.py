@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from ..autopilot.params.simulation import Simulated
 from ..autopilot.rover.firmware import FIRMWARE, update
 from ..autopilot.rover.move import move as move_firmware
 from ..autopilot.rover.state import Autopilot
@@ -13,13 +14,15 @@ from ..core.algebra import euler_of
 from ..core.displacement import Displacement, speed_along
 from ..core.kernels import law, unit
 from ..core.memory import record_at
+from ..core.records import Floats
 from ..core.vectors import Vec2
 from ..physics.native.move import show_field
 from ..physics.native.rover import pieces
+from ..physics.native.rover.drive import commanded
 from ..physics.native.rover.init import init
 from ..physics.native.rover.prepare import prepare
 from ..physics.native.rover.state import Physics
-from ..physics.native.rover.step import THROTTLE_OUTPUT, step
+from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
 from ..vehicles import RoverAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
@@ -89,9 +92,22 @@ def move(fleet: Sequence[Rover], index: int, count: int, orders: int, ranging: i
         order.result = obey(fleet[order.vehicle], order, ranging)
 
 
+def hold_outputs(p: Physics, sim: Simulated, controls: Floats) -> None:
+    """Outputs of steering and motors that fail or are stuck, from now on."""
+    wheels, fails, stuck = p.wheels, int(sim.ENGINE_FAIL), int(sim.ENGINE_STUCK)
+    first, second = STEERING_OUTPUT, THROTTLE_OUTPUT
+    left, right = (sim.ENGINE_MUL if fails >> k & 1 else 1.0 for k in (first, second))
+    now = [commanded(float(controls[k]), p.derived.control_scale) for k in (first, second)]
+    held = zip((first, second), wheels.held, now, strict=True)
+    wheels.held = Vec2(*(old if wheels.stuck >> k & 1 else new for k, old, new in held))
+    wheels.share, wheels.stuck = Vec2(left, right), stuck
+    wheels.is_faulty = bool((fails | stuck) & (1 << first | 1 << second))
+
+
 def apply_sim_parameters(v: Rover) -> None:
-    """SIM_ parameters of all kinds, and the simulated wheel encoders that WENC_TYPE asks for."""
+    """SIM_ parameters of all kinds, those of the outputs, and the simulated wheel encoders that WENC_TYPE asks for."""
     sim_parameters.apply(v)
+    hold_outputs(v.physics, v.autopilot.params.SIM, v.actuators.controls)
     wheels, p = v.physics.wheels, v.autopilot.params.WENC
     wheels.encoder_period = ENCODER_TICKS if p.TYPE == SIMULATED_ENCODER else 0
     wheels.encoder_step = 2.0 * math.pi * p.RADIUS / p.CPR

@@ -7,11 +7,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..autopilot.params.simulation import DELIVERED, axes
+from ..autopilot.params.simulation import DELIVERED, Barometer, Receiver, axes
 from ..core.algebra import ZERO, conjugate, quat_from_euler
 from ..core.constants import TICK_US
+from ..core.rng import next_u32
 from ..core.vectors import Euler, Vec3
-from ..physics.native.records import Iron
+from ..physics.native.records import BARO_RING, BaroFault, Iron, SensorState
+from ..physics.native.tick import TICK_S
+from ..physics.native.wind import EVEN
 from . import imu_faults
 from .record import Vehicle
 
@@ -20,6 +23,10 @@ OTHERS = ("RNGFND1_", "GPS1_TYPE")
 """Beginnings of other names of parameters that make sensors."""
 DEFAULT_VOLTAGE = float(np.float32(12.6))
 """SIM_BATT_VOLTAGE that leaves the airframe's battery as it is [V]."""
+DEFAULT_LAG_MS, DEFAULT_SATELLITES, DEFAULT_BARO_NOISE = 100.0, 10.0, float(np.float32(0.2))
+"""Values that leave to the airframe what its receiver and barometer are like."""
+FIX_BYTES = 100
+"""Of a receiver's message with a fix."""
 SINGULAR = 1e-6
 """Determinant below which a matrix of soft iron is none."""
 NOISE_SHARE = 0.3
@@ -68,13 +75,49 @@ def _look_down(v: Vehicle) -> None:
     down.present = has_flow or down.ranges
 
 
+def _spoil_gps(sensors: SensorState, gps: Receiver, is_looked_for: bool) -> None:
+    sensors.gps_off = gps.ENABLE == 0 or gps.TYPE == 0 or not is_looked_for
+    sensors.gps_jammed = gps.JAM != 0
+    fault = sensors.gps_fault
+    fault.delay = -1 if gps.LAG_MS == DEFAULT_LAG_MS else round(1e-3 * gps.LAG_MS / TICK_S)
+    fault.satellites = -1 if gps.NUMSATS == DEFAULT_SATELLITES else int(gps.NUMSATS)
+    fault.lat, fault.lon = round(1e7 * gps.GLTCH.X), round(1e7 * gps.GLTCH.Y)
+    fault.alt, fault.noise, fault.drift = gps.GLTCH.Z + gps.ALT_OFS, gps.NOISE, gps.DRFTALT
+    fault.vel = axes(gps.VERR)
+    fault.loss = 1.0 - (1.0 - 0.01 * gps.BYTELOS) ** FIX_BYTES
+    fault.is_on = fault.delay >= 0 or fault.satellites >= 0 or any(
+        (fault.lat, fault.lon, fault.alt, fault.noise, fault.drift, *fault.vel, fault.loss)
+    )  # fmt: skip
+
+
+def _spoil_barometer(fault: BaroFault, baro: Barometer, period: int) -> None:
+    fault.off, fault.frozen = baro.DISABLE != 0, baro.FREEZE != 0
+    fault.height, fault.drift = baro.GLITCH, baro.DRIFT
+    fault.noise = 0.0 if baro.RND == DEFAULT_BARO_NOISE else baro.RND
+    fault.delay = min(round(1e-3 * baro.DELAY / (period * TICK_S)), BARO_RING - 1) if period else 0
+    wcf = baro.WCF
+    fault.front, fault.back = Vec3(wcf.FWD, wcf.RGT, wcf.DN), Vec3(wcf.BAK, wcf.LFT, wcf.UP)
+    fault.is_on = fault.frozen or any(
+        (fault.height, fault.drift, fault.drifted, fault.noise, fault.delay, *fault.front, *fault.back)
+    )
+    if not fault.is_on:
+        fault.taken = 0
+
+
 def apply(v: Vehicle) -> None:
     """Bring what every kind of vehicle has in line with its SIM_ parameters, and with those of other packages."""
     sim, physics, sensors, wind = v.autopilot.params.SIM, v.physics, v.physics.sensors, v.physics.wind
     wind.speed, wind.direction = sim.WIND_SPD, sim.WIND_DIR
     wind.turbulence, wind.time_constant = sim.WIND_TURB, sim.WIND_TC
-    sensors.gps_off = sim.GPS1_ENABLE == 0 or sim.GPS1_TYPE == 0 or v.autopilot.params.GPS1_TYPE == 0
-    sensors.gps_jammed = sim.GPS1_JAM != 0
+    wind.profile, wind.full_height, wind.gain = int(sim.WIND_T), sim.WIND_T_ALT, sim.WIND_T_COEF
+    wind.elevation = sim.WIND_DIR_Z
+    wind.is_shaped = wind.profile != EVEN or wind.elevation != 0.0
+    _spoil_gps(sensors, sim.GPS1, v.autopilot.params.GPS1_TYPE != 0)
+    _spoil_barometer(sensors.baro_fault, sim.BARO, physics.derived.baro_period)
+    ranges = sensors.range_fault
+    ranges.glitch, ranges.noise, ranges.loss = sim.SONAR_GLITCH, sim.SONAR_RND, sim.SONAR_LOSS
+    ranges.lidar_loss = sim.LIDAR_LOSS
+    ranges.is_on = any((ranges.glitch, ranges.noise, ranges.loss, ranges.lidar_loss))
     imu_faults.apply(sim, sensors, v.sensors)
     trim = sim.ACC_TRIM
     sensors.acc_is_turned = any(axes(trim))
@@ -90,10 +133,16 @@ def apply(v: Vehicle) -> None:
         iron.hard = 1e-3 * (axes(compass.OFS) - corrected)
         _bend(iron, axes(compass.DIA), axes(compass.ODI))
     physics.battery.full_voltage = 0.0 if sim.BATT_VOLTAGE == DEFAULT_VOLTAGE else sim.BATT_VOLTAGE
-    if v.tick == 0 and sim.BARO_COUNT < 1:
+    physics.battery.capacity, physics.battery.resistance = sim.BATT_CAP_AH, sim.BATT_RES
+    if v.tick == 0 and sim.BARO.COUNT < 1:
         sensors.baro_missing = True
         v.sensors.baro_count = 0
-    v.autopilot.rc.has_receiver = sim.RC_FAIL == 0
+    rc = v.autopilot.rc
+    rc.has_receiver, rc.is_neutral = sim.RC_FAIL != 1, sim.RC_FAIL == 2
+    rc.stuck, rc.noise = int(sim.RC_STUCK), sim.RC_NOISE
+    rc.is_faulty = rc.is_neutral or rc.stuck != 0 or rc.noise > 0.0
+    if rc.noise > 0.0 and rc.noise_state == 0:
+        rc.noise_state = next_u32(v.rng) >> 1
     _look_down(v)
     for fault in _registered.values():
         fault(v)

@@ -50,6 +50,52 @@ class SimulatedCompass(ParameterGroup):
     SCALING: float = param(1, 0, 10, "", "Share of the field that it shows")
 
 
+class Receiver(ParameterGroup):
+    """SIM_GPS1_: what is wrong with the GPS receiver."""
+
+    ENABLE: float = param(1, 0, 1, "", "0 switches the GPS receiver off", INT8)
+    LAG_MS: float = param(100, 0, 1000, "ms", "Age of a fix when it arrives; 100: the airframe's", INT16)
+    TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver", INT8)
+    BYTELOS: float = param(0, 0, 100, "%", "Bytes of the receiver that are lost; a fix takes 100")
+    NUMSATS: float = param(10, 0, 127, "", "Satellites that are told; 10: the airframe's", INT8)
+    GLTCH: Axes = group(
+        X={"unit": "deg", "doc": "Added to the latitude", "low": -30, "high": 30},
+        Y={"unit": "deg", "doc": "Added to the longitude", "low": -30, "high": 30},
+        Z={"unit": "m", "doc": "Added to the altitude"},
+    )
+    DRFTALT: float = param(0, -10000, 10000, "m", "Altitude comes and goes by this in 314 s")
+    NOISE: float = param(0, -10000, 10000, "m", "Altitude comes and goes by this in 12.6 s")
+    ALT_OFS: float = param(0, -10000, 10000, "m", "Added to the altitude", INT16)
+    VERR: Axes = group("Added to the velocity, north, east, down [m/s]")
+    JAM: float = param(0, 0, 1, "", "1 jams the GPS receiver", INT8)
+
+
+class Wcf(ParameterGroup):
+    """SIM_BARO_WCF_: what air that comes from a side adds to the pressure."""
+
+    FWD: float = param(
+        0, -10, 10, "", "Share of the dynamic pressure that the barometer shows too much, in air from the front"
+    )
+    BAK: float = param(0, -10, 10, "", "The same, in air from behind")
+    RGT: float = param(0, -10, 10, "", "The same, in air from the right")
+    LFT: float = param(0, -10, 10, "", "The same, in air from the left")
+    UP: float = param(0, -10, 10, "", "The same, in air from above")
+    DN: float = param(0, -10, 10, "", "The same, in air from below")
+
+
+class Barometer(ParameterGroup):
+    """SIM_BARO_: what is wrong with the barometer."""
+
+    COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
+    RND: float = param(0.2, 0, 1000, "m", "Noise, standard deviation; 0.2: the airframe's, else it comes on top")
+    DRIFT: float = param(0, -1000, 1000, "m/s", "Speed at which the height drifts away")
+    DISABLE: float = param(0, 0, 1, "", "1: no more samples", INT8)
+    GLITCH: float = param(0, -10000, 10000, "m", "Added to the height")
+    FREEZE: float = param(0, 0, 1, "", "1: the same height for ever", INT8)
+    DELAY: float = param(0, 0, 1000, "ms", "Age of a sample", INT16)
+    WCF: Wcf
+
+
 class LandingBeacon(ParameterGroup):
     """SIM_PLD_: a beacon that sensors of precision landing see."""
 
@@ -76,6 +122,17 @@ class Simulated(ParameterGroup):
     WIND_DIR: float = param(180, 0, 360, "deg", "Where the wind comes from")
     WIND_TURB: float = param(0, 0, 20, "m/s", "Turbulence, standard deviation of each axis")
     WIND_TC: float = param(5, 0.1, 300, "s", "Correlation time of the turbulence and lag of wind changes")
+    WIND_DIR_Z: float = param(0, -90, 90, "deg", "How far the wind blows upwards")
+    WIND_T: float = param(
+        1,
+        0,
+        2,
+        "",
+        "Speed by height: 0 root of height / SIM_WIND_T_ALT below that, 1 the same, 2 linear",
+        INT8,
+    )
+    WIND_T_ALT: float = param(60, 1, 10000, "m", "Height above home at which the wind has its full speed")
+    WIND_T_COEF: float = param(0.01, -10, 10, "1/s", "SIM_WIND_T 2: gain of speed by height")
     ACC1_BIAS: Axes = group("What the accelerometer shows too much [m/s/s]")
     ACC1_SCAL: Axes = group("The accelerometer shows its share 1 / this of an acceleration; 0: all of it")
     ACC2_BIAS: Axes = group("What the second accelerometer shows too much [m/s/s]")
@@ -96,16 +153,23 @@ class Simulated(ParameterGroup):
     GYR2_RND: float = param(0, 0, 1000, "deg/s", _NOISE.format("second gyro"))
     GYR_FAIL_MSK: float = param(0, 0, 127, "", "Gyros that send nothing: bit 0 the first, bit 1 the second", INT8)
     VIB_FREQ: Axes = group("Frequency at which the frame vibrates while motors turn; 0, 0, 0: not at all [Hz]")
-    BARO_COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
+    BARO: Barometer
     BATT_VOLTAGE: float = param(12.6, 0, 1000, "V", "Voltage of the full battery; 12.6: that of the airframe")
-    GPS1_TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver", INT8)
-    GPS1_JAM: float = param(0, 0, 1, "", "1 jams the GPS receiver", INT8)
+    BATT_CAP_AH: float = param(0, 0, 10000, "Ah", "Charge of the full battery; 0: the airframe's")
+    BATT_RES: float = param(0, 0, 10, "Ohm", "Inner resistance of the battery besides the airframe's")
+    GPS1: Receiver
     MAG1: SimulatedCompass
     MAG2: SimulatedCompass
     MAG3: SimulatedCompass
     MAG_MOT: Axes = group("Field of the motors' current at the compasses [mGauss/A]")
     MAG_RND: float = param(0, 0, 1000, "mGauss", "Noise of the compasses; its standard deviation is 0.3 of this")
-    GPS1_ENABLE: float = param(1, 0, 1, "", "0 switches the GPS receiver off", INT8)
+    ENGINE_FAIL: float = param(0, 0, 255, "", "Outputs that fail: 1 the first, 2 the second, 4 the third, ...", INT32)
+    ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust or angle that failing outputs keep")
+    ENGINE_STUCK: float = param(0, 0, 255, "", "Outputs that stay as they are: 1 the first, 2 the second, ...", INT32)
+    SONAR_GLITCH: float = param(0, -1000, 1000, "m", "Added to the reading of the range-finder")
+    SONAR_RND: float = param(0, 0, 1000, "m", "Noise of the range-finder besides the airframe's")
+    SONAR_LOSS: float = param(0, 0, 1, "", "Share of the range-finder's readings that see nothing")
+    LIDAR_LOSS: float = param(0, 0, 1, "", "Share of the lidar's readings that see nothing")
     SPEEDUP: float = param(
         1, -1, 100000, "", "Simulated seconds a second; 0 or less: as fast as it goes (drop-in executables only)"
     )
@@ -114,4 +178,6 @@ class Simulated(ParameterGroup):
     FLOW_DELAY: float = param(0, 0, 127, "ms", "Age of a sample of optical flow when it arrives", INT8)
     FLOW_RND: float = param(0.05, 0, 10, "rad/s", "Noise of the optical flow, greatest")
     PLD: LandingBeacon
-    RC_FAIL: float = param(0, 0, 1, "", "1 switches the pilot's transmitter off", INT8)
+    RC_FAIL: float = param(0, 0, 2, "", "1 switches the transmitter off; 2: sticks centred, throttle 950 us", INT8)
+    RC_STUCK: float = param(0, 0, 65535, "", "Channels that stay as they are: 1 the first, 2 the second, ...", INT32)
+    RC_NOISE: float = param(0, 0, 1000, "us", "Noise of all channels, at most")

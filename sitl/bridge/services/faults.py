@@ -101,7 +101,8 @@ class FaultService(Service):
         types = units[name]
         if kind != 0.0 and TYPES[int(kind)] not in types:
             return UNSUPPORTED
-        if instance not in range(max(effect.instances for effect in types.values()) + 1):
+        meant = types.values() if kind == 0.0 else (types[TYPES[int(kind)]],)
+        if instance not in range(max(effect.instances for effect in meant) + 1):
             return DENIED
         if kind == 0.0:
             self.repair(name, int(instance))

@@ -23,6 +23,8 @@ from sitl.foreign.choice import PX4, Choice, choose
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
 from sitl.simulation import OptionError, Simulation
+from sitl.vehicle.faults import Failure
+from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
@@ -139,6 +141,16 @@ class AutopilotRobot:
             raise
         self.collided[index] = 0
         self._read(index)
+
+    def check_failure(self, failure: Failure) -> None:
+        """See ``sitl.envs.faults.FailingRobot``."""
+        if not self._vehicles.has_snapshots:
+            raise EnvOptionError(f"{self._vehicles.where}: only vehicles in process fail on demand")
+        failure.checked(KINDS[self.airframe.kind].firmware.table)
+
+    def fail(self, index: int, failure: Failure) -> None:
+        """See ``sitl.envs.faults.FailingRobot``."""
+        self._vehicles.fail(index, failure)
 
     # ------------------------------------------------------------------ steps
 

@@ -21,6 +21,7 @@ from sitl.move import Move
 from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation, Snapshot
 from sitl.turtlebots.native import full_pose
+from sitl.vehicle.faults import Failure
 
 from ..mavlink.compiled import (
     ATTITUDE,
@@ -76,6 +77,8 @@ class FleetVehicles(InProcessVehicles):
         self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
         """Start state, seed and move of each vehicle's episode, until its first step."""
         self._prepared: Prepared | None = None
+        self._failing: dict[int, Failure] = {}
+        """What is ordered to fail from the next step on."""
         self._used = "", 0
         """Kind of set-point and interval that a vehicle was last made ready for."""
         lat, lon = setup.options.home[:2]
@@ -157,6 +160,7 @@ class FleetVehicles(InProcessVehicles):
             if move is not None:
                 raise EnvOptionError(f"start: {error}") from None
             raise EnvOptionError(f"snapshot cannot be restored: {error}") from None
+        self._failing.pop(index, None)
         fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
         place, angles, (_, scan, scan_us), end.mode, end.armed, _ = telemetry
@@ -225,6 +229,8 @@ class FleetVehicles(InProcessVehicles):
             waits_us: how long each set-point is under way [us], shape (count,); None: no time.
         """
         fleet, rows, sort = self.fleet, self.rows(which), SORTS[self.setup.kind.encode[setpoint]]
+        for index in [k for k in rows.tolist() if k in self._failing] if self._failing else ():
+            self._order(index)
         if waits_us is None:
             self._send(rows, sort, commands)
             fleet.advance_us(us, None if which is None else rows)
@@ -236,6 +242,14 @@ class FleetVehicles(InProcessVehicles):
             self._send(sends, sort, commands)
             fleet.advance_us(us - np.minimum(waits_us[sends], us), sends)
         self.show(rows)
+
+    def fail(self, index: int, failure: Failure) -> None:
+        self._failing[index] = failure
+
+    def _order(self, index: int) -> None:
+        """Order what is to fail; the vehicle is ready for its set-points."""
+        self._begun[index] = None
+        self.fleet.fail(index, self._failing.pop(index))
 
     def rows(self, which: npt.NDArray[np.bool_] | None) -> Rows:
         """Numbers of the vehicles that are meant."""
@@ -268,6 +282,8 @@ class FleetVehicles(InProcessVehicles):
         return None
 
     def snapshot(self, index: int, now: EpisodeState) -> EpisodeState:
+        if index in self._failing:
+            self._order(index)
         end = self._views[index]
         telemetry = (
             (end.position_ms, *end.position, *end.velocity),

@@ -15,6 +15,7 @@ from sitl.foreign.choice import NATIVE as OURS
 from sitl.physics.engines import NATIVE, backends
 from sitl.scenario import DEFAULT_HOME, Home, Scenario
 from sitl.simulation import Simulation
+from sitl.vehicle.faults import Failure
 from sitl.vehicles import Airframe
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
@@ -204,6 +205,10 @@ class Vehicles(ABC):
             EnvOptionError: the vehicle is in another process.
         """
         return self.simulation(index).v
+
+    def fail(self, index: int, failure: Failure) -> None:
+        """Let something fail in one vehicle; times count from the beginning of its next step."""
+        self.simulation(index).fail(failure)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         """An image by the physics engine's renderer, shape (height, width, 3), uint8; None when it has no renderer."""

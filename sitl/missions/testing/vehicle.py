@@ -78,7 +78,8 @@ class Faulty(Forking):
             figures = {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence}
             failures = [Failure(name, amount=value, begin=at, end=until) for name, value in figures.items()]
         elif what == "motor":
-            failures = [Failure(what, type, instance or motor, thrust if amount is None else amount, at, until)]
+            share = thrust if amount is None and type in ("", "off") else amount
+            failures = [Failure(what, type, instance or motor, share, at, until)]
         else:
             failures = [Failure(what, type, instance, amount, at, until)]
         assert self.connection.kind is not None

@@ -6,6 +6,7 @@ from __future__ import annotations
 from ...core.kernels import law
 from ...vehicles.figures.body import Battery
 from .records import BatteryState
+from .tick import TICK_S
 
 OPEN_CIRCUIT = (0.714, 0.845, 0.869, 0.895, 0.905, 0.919, 0.938, 0.957, 0.976, 0.990, 1.0)
 """Share of the full voltage at charge 0, 0.1 ... 1: a lithium-polymer cell (4.20, 3.86, 3.00 V)."""
@@ -25,8 +26,11 @@ def discharge(battery: BatteryState, power: float, figures: Battery, charge_per_
     full = battery.full_voltage if battery.full_voltage > 0.0 else figures.battery_voltage_full
     current = figures.avionics_current + power / max(battery.voltage, 0.1 * full)
     battery.current = current
-    if figures.battery_capacity > 0.0:
+    if battery.capacity > 0.0:
+        charge_per_amp = TICK_S / (3600.0 * battery.capacity)
+    if charge_per_amp > 0.0:
+        resistance = figures.battery_resistance + battery.resistance
         battery.charge = max(battery.charge - current * charge_per_amp, 0.0)
-        battery.voltage = max(full * open_circuit(battery.charge) - current * figures.battery_resistance, 0.1 * full)
-    else:
-        battery.voltage = full  # as ArduPilot's simulator without SIM_BATT_CAP_AH
+        battery.voltage = max(full * open_circuit(battery.charge) - current * resistance, 0.1 * full)
+    else:  # as ArduPilot's simulator without SIM_BATT_CAP_AH
+        battery.voltage = max(full - current * battery.resistance, 0.1 * full)

@@ -127,7 +127,7 @@ def show_field(p: Physics, sensors: Sensors, before: Quat) -> None:
 def set_wind(p: Physics, turbulence_was: float, rng: Rng) -> None:
     """The wind blows as it is set, since long: gusts of another strength are drawn."""
     w = p.wind
-    w.steady = wind.target(w.speed, w.direction)
+    w.steady = wind.aim(w, -p.body.pos.z)
     if w.turbulence <= 0.0:
         w.gust = Vec3(0.0, 0.0, 0.0)
     elif w.turbulence != turbulence_was:

@@ -23,16 +23,20 @@ Home = tuple[float, float, float, float]
 
 DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 """Canberra model aircraft club, ArduPilot's default SITL location."""
+WIND_SETTINGS = (
+    "speed", "direction", "turbulence", "time_constant", "is_shaped", "profile", "full_height", "gain", "elevation"
+)  # fmt: skip
 
 
 def clear(v: Vehicle[Physics], airframe: Airframe, seed: int) -> None:
     """Empty physics, sensors, actuators and clock, but for the wind's settings; figures and random numbers start."""
     w = v.physics.wind
-    setting = w.speed, w.direction, w.turbulence, w.time_constant
+    setting = {name: getattr(w, name) for name in WIND_SETTINGS}
     v.zero("physics", "sensors", "actuators", "time_us", "tick")
     random.seed(v.rng, seed)
     apply(airframe, v)
-    w.speed, w.direction, w.turbulence, w.time_constant = setting
+    for name, value in setting.items():
+        setattr(w, name, value)
 
 
 def place(p: Physics, home: Home) -> None:
@@ -53,7 +57,7 @@ def wake(v: Vehicle[Physics]) -> None:
     p.battery.charge = 1.0
     p.battery.voltage = p.airframe.battery_voltage_full
     p.battery.current = p.airframe.avionics_current
-    w.steady = w.vel = wind.target(w.speed, w.direction)
+    w.steady = w.vel = wind.aim(w, -p.body.pos.z)
     atmosphere.set_air(p.air, p.place.alt - p.body.pos.z)
     draw_errors(p.sensors, p.airframe, v.rng)
     first_samples(p, v.sensors, v.rng)

@@ -19,14 +19,14 @@ from ...core.border import Sensors
 from ...core.kernels import law, unit
 from ...core.memory import floats_at, ints_at, record_at, table_at
 from ...core.records import Floats, Record, Records, repeat
-from ...core.rng import Rng, normal
+from ...core.rng import Rng, normal, uniform
 from ...core.vectors import Vec3
 from ...vehicles.figures.body import Figures
 from ...worlds.geometry import GRID_FIGURES, SOLID_FIGURES, Solids
 from ...worlds.planar import publish_readings
 from ...worlds.raycast import scan_rays, turn_rays
 from .obstacles import list_solids
-from .records import Body, Physics, Vehicle
+from .records import Body, Physics, RangeFault, Vehicle
 
 LIDAR, RANGEFINDER = 0, 1
 """Numbers of the sensors."""
@@ -148,11 +148,24 @@ def read_ranges(rng: Rng, figures: RangerFigures, ranges: Floats, readings: Floa
 
 
 @law
+def spoil(rng: Rng, fault: RangeFault, number: int, readings: Floats) -> None:
+    """Add what is wrong to a sensor's readings [m]."""
+    loss = fault.lidar_loss if number == LIDAR else fault.loss
+    for k in range(readings.shape[0]):
+        if number == RANGEFINDER:
+            readings[k] += fault.glitch + fault.noise * normal(rng)
+        if loss > 0.0 and uniform(rng) < loss:
+            readings[k] = math.inf
+
+
+@law
 def read(v: Vehicle[Physics], beams: Beams, number: int) -> None:
     """Write a sensor's readings of the ranges that its rays met."""
     s, a = v.sensors, v.physics.airframe
     readings = s.lidar_ranges[: beams.readings] if number == LIDAR else s.rangefinder_range[: beams.readings]
     read_ranges(v.rng, figures_of(a, number), floats_at(beams.ranges, beams.count), readings)
+    if v.physics.sensors.range_fault.is_on:
+        spoil(v.rng, v.physics.sensors.range_fault, number, readings)
 
 
 @law

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import Annotated, Protocol, TypeVar
 
-from ...core.border import Actuators, Sensors
-from ...core.records import Float32, FloatRows, Floats, Ints, Record, Records, Stored, array, repeat
+from ...core.border import Actuators, NarrowVec3, Sensors
+from ...core.records import Float32, FloatRows, Floats, Int32, Ints, Record, Records, Stored, array, repeat
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...vehicles.figures.body import Figures
@@ -74,6 +74,8 @@ class BatteryState(Record):
     voltage: float  # at the terminals [V]
     full_voltage: float  # open circuit, full, in place of the airframe's [V]; 0: the airframe's (SIM_BATT_VOLTAGE)
     current: float  # [A]
+    capacity: Float32  # full, in place of the airframe's [Ah]; 0: the airframe's (SIM_BATT_CAP_AH)
+    resistance: Float32  # inner, besides the airframe's [Ohm] (SIM_BATT_RES)
 
 
 class Air(Record):
@@ -90,6 +92,11 @@ class Wind(Record):
     direction: float  # where it comes from [deg] (SIM_WIND_DIR)
     turbulence: float  # standard deviation of each axis [m/s] (SIM_WIND_TURB)
     time_constant: float  # correlation time of turbulence and lag of changes [s] (SIM_WIND_TC)
+    is_shaped: bool  # it depends on the height, or blows upwards
+    profile: Int32  # how it depends (SIM_WIND_T)
+    full_height: Float32  # above home [m] (SIM_WIND_T_ALT)
+    gain: Float32  # of a linear profile [1/s] (SIM_WIND_T_COEF)
+    elevation: Float32  # how far it blows upwards [deg] (SIM_WIND_DIR_Z)
     steady: Vec3  # NED, after the lag [m/s]
     gust: Vec3  # NED [m/s]
     vel: Vec3  # NED, steady and gust: what the vehicle meets
@@ -119,6 +126,52 @@ class Jam(Record):
     eph: int  # HDOP * 100
     epv: int  # VDOP * 100
     satellites: int
+
+
+class GpsFault(Record):
+    """What is wrong with what a receiver sends (SIM_GPS1_*)."""
+
+    is_on: bool
+    delay: Int32  # [ticks]; -1: the airframe's
+    satellites: Int32  # that are told; -1: the airframe's
+    lat: Int32  # added [degE7]
+    lon: Int32  # added [degE7]
+    alt: Float32  # added [m]
+    noise: Float32  # amplitude of a fast wave of the altitude [m]
+    drift: Float32  # amplitude of a slow one [m]
+    vel: NarrowVec3  # added, NED [m/s]
+    loss: Float32  # share of the fixes that are lost
+
+
+BARO_RING = 50
+"""Samples of a barometer that are kept: 1 s at 50 Hz."""
+
+
+class BaroFault(Record):
+    """What is wrong with a barometer (SIM_BARO_*)."""
+
+    is_on: bool
+    off: bool
+    frozen: bool
+    height: Float32  # added [m]
+    noise: Float32  # standard deviation [m]
+    drift: Float32  # [m/s]
+    drifted: float  # so far [m]; stays when the drift ends
+    delay: Int32  # [samples]
+    front: NarrowVec3  # share of the dynamic pressure that is added, of air from the front, right, below
+    back: NarrowVec3  # the same, from behind, left, above
+    taken: Int32  # samples in the ring so far
+    ring: Floats = array(BARO_RING, stored="f4")  # pressures [Pa]; sample n at n % BARO_RING
+
+
+class RangeFault(Record):
+    """What is wrong with range-finder and lidar (SIM_SONAR_*, SIM_LIDAR_LOSS)."""
+
+    is_on: bool
+    glitch: Float32  # added to the range-finder's reading [m]
+    noise: Float32  # of it, standard deviation [m]
+    loss: Float32  # share of its readings that see nothing
+    lidar_loss: Float32  # the same, of the lidar's
 
 
 COMPASSES = 3
@@ -179,6 +232,9 @@ class SensorState(Record):
     compass_by_current: Vec3  # field, body [gauss/A] (SIM_MAG_MOT)
     baro_drift: float  # in standard deviations
     baro_missing: bool  # none was found at power-on (SIM_BARO_COUNT)
+    gps_fault: GpsFault
+    baro_fault: BaroFault
+    range_fault: RangeFault
     irons: Records[Iron] = repeat(Iron, COMPASSES)
 
 

@@ -24,14 +24,39 @@ def target(speed: float, direction: float) -> Vec3:
     return Vec3(-speed * math.cos(angle), -speed * math.sin(angle), 0.0)
 
 
+SQUARE_ROOT, EVEN, LINEAR = 0, 1, 2
+"""SIM_WIND_T"""
+
+
 @law
-def blow(w: Wind, rng: Rng) -> None:
-    """Step the wind by ``PERIOD_S``; draws random numbers only with turbulence."""
+def shaped(w: Wind, height: float) -> Vec3:
+    """Steady wind NED [m/s] at a height above home [m], by profile and elevation."""
+    speed = w.speed
+    if w.profile == SQUARE_ROOT and height < w.full_height:
+        speed *= math.sqrt(max(height, 0.0) / w.full_height)
+    elif w.profile == LINEAR:
+        speed = max(speed + (height - w.full_height) * w.gain, 0.0)
+    angle = w.elevation * (math.pi / 180.0)
+    along = target(speed * math.cos(angle), w.direction)
+    return Vec3(along.x, along.y, -speed * math.sin(angle))
+
+
+@law
+def aim(w: Wind, height: float) -> Vec3:
+    """Steady wind NED [m/s] that is set, at a height above home [m]."""
+    return shaped(w, height) if w.is_shaped else target(w.speed, w.direction)
+
+
+@law
+def blow(w: Wind, rng: Rng, height: float) -> None:
+    """Step the wind at a height above home [m] by ``PERIOD_S``; draws random numbers only with turbulence."""
     k = 1.0
     if w.time_constant > PERIOD_S:
         k = PERIOD_S / w.time_constant
-    steady, aim = w.steady, target(w.speed, w.direction)
-    w.steady = Vec3(steady.x + k * (aim.x - steady.x), steady.y + k * (aim.y - steady.y), steady.z)
+    steady, goal = w.steady, aim(w, height)
+    w.steady = Vec3(
+        steady.x + k * (goal.x - steady.x), steady.y + k * (goal.y - steady.y), steady.z + k * (goal.z - steady.z)
+    )
     if w.turbulence > 0.0:
         left = 1.0 - k
         w.gust = left * w.gust + w.turbulence * math.sqrt(1.0 - left * left) * normal_vector(rng)

@@ -94,8 +94,31 @@ def test_faults_come_and_go(make: VehicleFactory) -> None:
     gps.repair()
     with pytest.raises(ValueError, match="there is no fault 'engine'; there are gps"):
         copter.fail("engine")
-    with pytest.raises(ValueError, match="there is no fault 'motor'"):
-        make("rover").fail("motor")
+    with pytest.raises(ValueError, match="there is no fault 'twist'"):
+        make("rover").fail("twist")
+
+
+def test_faults_come_at_their_times(make: VehicleFactory, tmp_path: Path) -> None:
+    copter = make("copter")
+    copter.takeoff(10)
+    copter.fail("gps", at=2.0, until=30.0)
+    copter.fail("baro", "garbage", amount=1.5, at=1.0)
+    gps = copter.simulation.v.physics.sensors
+    copter.delay(1.95)
+    assert not gps.gps_off and copter.simulation.parameters["SIM_BARO_RND"] == 1.5
+    with copter.fork():
+        copter.restore("")
+        copter.delay(0.1)
+        assert not gps.gps_off and copter.parameter("SIM_BARO_RND") == pytest.approx(0.2)
+    copter.delay(0.1)
+    assert gps.gps_off
+    copter.wait_mode("LAND", timeout=20)
+    copter.restore("gps")
+    assert copter.parameter("SIM_GPS1_ENABLE") == 1
+    assert fly_again(copter, tmp_path, "again", log=False).same
+    for what in ("station", "link"):
+        with pytest.raises(OptionError, match="this client's, and begins now"):
+            copter.fail(what, at=1.0)
 
 
 def test_a_silent_station_is_missed(make: VehicleFactory) -> None:

@@ -72,7 +72,7 @@ def test_wind_follows_its_setting():
     before = rng.s.tolist()
     w.speed, w.direction, w.time_constant = 5.0, 90.0, 0.5
     for _ in range(25):
-        wind.blow(w, rng)
+        wind.blow(w, rng, 10.0)
     assert w.vel.y == approx(-5.0 * (1.0 - math.exp(-1.0)), rel=0.02)
     assert w.vel.x == approx(0.0, abs=1e-12)
     assert rng.s.tolist() == before  # without turbulence the random numbers stay as they are
@@ -84,7 +84,7 @@ def test_turbulence_has_its_deviation_and_correlation_time():
     w.turbulence, w.time_constant = 2.0, 0.2
     gusts = np.empty(4000)
     for k in range(len(gusts)):
-        wind.blow(w, rng)
+        wind.blow(w, rng, 10.0)
         gusts[k] = w.gust.x
     assert gusts.std() == approx(2.0, rel=0.1)
     after_tau = np.corrcoef(gusts[:-10], gusts[10:])[0, 1]  # 10 steps of 20 ms

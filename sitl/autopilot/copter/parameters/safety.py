@@ -75,14 +75,16 @@ class Fence(fence.Fence):
 
 
 class Simulated(simulation.Simulated):
-    """SIM_: with failing motors, their speed controllers, and a shove."""
+    """SIM_: with speed controllers, shoves and twists."""
 
-    ENGINE_FAIL: float = param(0, 0, 255, "", "Motors that fail: 1 motor 1, 2 motor 2, 4 motor 3, ...", INT32)
     ESC_TELEM: float = param(1, 0, 1, "", "1: speed controllers tell how fast their motors turn", INT8)
     ESC_ARM_RPM: float = param(0, 0, 100000, "RPM", "Speed that the controllers of armed motors tell at least")
     VIB_MOT_MAX: float = param(0, 0, 10000, "Hz", "Turns a second at full command, of rotors whose model has no speed")
-    ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust that failing motors keep")
     SHOVE_X: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, forward")
     SHOVE_Y: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, right")
     SHOVE_Z: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, down")
     SHOVE_TIME: float = param(0, 0, 60000, "ms", "Set: shoves for so long, and is 0 again", INT32)
+    TWIST_X: float = param(0, -1000, 1000, "rad/s/s", "Angular acceleration of a twist, about the forward axis")
+    TWIST_Y: float = param(0, -1000, 1000, "rad/s/s", "Angular acceleration of a twist, about the axis to the right")
+    TWIST_Z: float = param(0, -1000, 1000, "rad/s/s", "Angular acceleration of a twist, about the axis down")
+    TWIST_TIME: float = param(0, 0, 60000, "ms", "Set: twists for so long, and is 0 again", INT32)

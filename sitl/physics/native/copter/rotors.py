@@ -35,8 +35,10 @@ class Flow(NamedTuple):
 @law
 def command(rotors: Rotors, controls: Floats, figures: Figures, derived: Derived) -> None:
     """Take over the actuator controls [0 .. 1] as rotor commands; called once a tick."""
-    step = derived.command_step
+    step, stuck = derived.command_step, rotors.stuck
     for k in range(figures.rotor_count):
+        if stuck != 0 and stuck >> k & 1:
+            continue
         c = (float(controls[k]) - figures.control_min) * derived.control_scale
         if not c > 0.0:  # also for NaN
             c = 0.0

@@ -31,6 +31,7 @@ class Rotors(Record):
     speed: Floats = array(ROTORS_MAX)  # [rad/s]; THRUST_MOMENTUM: the lagged command 0 .. 1
     thrust: Floats = array(ROTORS_MAX)  # [N]
     efficiency: Floats = array(ROTORS_MAX)  # share of the thrust left, 1 healthy: a motor fault
+    stuck: int  # bits of those whose command stays (SIM_ENGINE_STUCK)
     telemetry: bool  # speed controllers tell speeds
     rpm_armed: float  # they tell so much at least while armed
     rpm_max: float  # of a rotor at full command, where the model has no speeds
@@ -48,10 +49,12 @@ class Ground(Record):
 
 
 class Shove(Record):
-    """Something pushes the vehicle (SIM_SHOVE_*)."""
+    """Something pushes or twists the vehicle (SIM_SHOVE_*, SIM_TWIST_*)."""
 
     accel: Vec3  # FRD [m/s^2]
     until_us: int  # 0: nothing does
+    twist: Vec3  # FRD [rad/s^2]
+    twist_until_us: int
 
 
 class Physics(shared.Physics):

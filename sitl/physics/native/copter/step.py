@@ -25,9 +25,11 @@ def begin(v: Vehicle[Physics]) -> None:
     v.tick += 1
     p = v.physics
     if v.tick % wind.PERIOD_TICKS == 0:
-        wind.blow(p.wind, v.rng)
+        wind.blow(p.wind, v.rng, -p.body.pos.z)
     if v.time_us > p.shove.until_us:
         p.shove.until_us = 0
+    if v.time_us > p.shove.twist_until_us:
+        p.shove.twist_until_us = 0
     rotors.command(p.rotors, v.actuators.controls, p.airframe, p.derived)
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.algebra import rotate_inverse
+from ....core.algebra import by_component, rotate_inverse
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
@@ -45,6 +45,17 @@ def act(p: Physics) -> Wrench:
     else:
         wrench = speed_squared_wrench(rotors, figures, flow)
     wrench = add_air(wrench, spin_up, flow, figures, p.air.density)
-    if p.shove.until_us == 0:
+    if p.shove.until_us == 0 and p.shove.twist_until_us == 0:
         return wrench
-    return Wrench(wrench.force + p.shove.accel / p.derived.inverse_mass, wrench.torque)
+    return pushed(wrench, p)
+
+
+@law
+def pushed(wrench: Wrench, p: Physics) -> Wrench:
+    """What acts on the body besides, while something pushes or twists it."""
+    force, torque = wrench.force, wrench.torque
+    if p.shove.until_us != 0:
+        force += p.shove.accel / p.derived.inverse_mass
+    if p.shove.twist_until_us != 0:
+        torque += by_component(p.airframe.inertia, p.shove.twist)
+    return Wrench(force, torque)

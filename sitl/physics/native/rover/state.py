@@ -36,6 +36,10 @@ class Wheels(Record):
     encoder_period: int  # [ticks] of encoders that the airframe lacks; 0: there are none
     encoder_step: float  # travel of the rim a count [m]
     power: float  # taken from the battery by the motors [W]
+    is_faulty: bool  # the outputs of steering and motors, or of the left and right motors, fail:
+    share: Vec2  # of their commands that is left (SIM_ENGINE_FAIL)
+    stuck: int  # bits of those whose command stays (SIM_ENGINE_STUCK)
+    held: Vec2  # their last commands
     forward: float  # speed of the driven axle over the ground [m/s]; less than the wheels' when they slip
 
 

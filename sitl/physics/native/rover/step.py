@@ -28,6 +28,9 @@ def drive(wheels: Wheels, figures: Figures, derived: Derived, controls: Floats) 
     """Let motors and steering follow the actuator controls [-1 .. 1] for a tick."""
     first = commanded(float(controls[STEERING_OUTPUT]), derived.control_scale)
     second = commanded(float(controls[THROTTLE_OUTPUT]), derived.control_scale)
+    if wheels.is_faulty:
+        first = wheels.held.x if wheels.stuck & 1 << STEERING_OUTPUT else first * wheels.share.x
+        second = wheels.held.y if wheels.stuck & 1 << THROTTLE_OUTPUT else second * wheels.share.y
     if figures.steering_model == STEERING_SKID:
         left = run(wheels.speed.x, first, figures, derived)
         right = run(wheels.speed.y, second, figures, derived)

@@ -3,12 +3,19 @@
 
 from __future__ import annotations
 
+from ....core.algebra import rotate_inverse
 from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal
 from ....vehicles.figures.body import Sensors as SensorFigures
 from ..atmosphere import pressure, temperature
-from ..records import Derived, Physics, SensorState
+from ..records import BARO_RING, BaroFault, Derived, Physics, SensorState
+from ..tick import TICK_S
+
+LOWEST, HIGHEST = -2000.0, 30000.0
+"""Altitudes that a faulty barometer shows at most [m]."""
+LEAST = 100.0
+"""Pressure that it shows at least [Pa]."""
 
 
 @law
@@ -19,12 +26,45 @@ def pressure_error(s: SensorState, a: SensorFigures, d: Derived, rng: Rng) -> fl
 
 
 @law
+def wind_pressure(p: Physics, fault: BaroFault) -> float:
+    """What the air that the body moves through adds [Pa]."""
+    air = rotate_inverse(p.body.q, p.body.vel - p.wind.vel)
+    front, back = fault.front, fault.back
+    share = (
+        (front.x if air.x > 0.0 else back.x) * air.x * air.x
+        + (front.y if air.y > 0.0 else back.y) * air.y * air.y
+        + (front.z if air.z > 0.0 else back.z) * air.z * air.z
+    )
+    return 0.5 * p.air.density * share
+
+
+@law
+def spoiled(p: Physics, fault: BaroFault, altitude: float, error: float, rng: Rng) -> float:
+    """Pressure that a faulty barometer shows [Pa]; ``error``: of a healthy one [Pa]."""
+    fault.drifted += fault.drift * p.derived.baro_period * TICK_S
+    high = altitude + fault.height + fault.drifted + fault.noise * normal(rng)
+    now = max(pressure(min(max(high, LOWEST), HIGHEST)) + error + wind_pressure(p, fault), LEAST)
+    if fault.taken == 0:
+        for k in range(BARO_RING):
+            fault.ring[k] = now
+        fault.taken = 1
+    if not fault.frozen:
+        fault.taken += 1
+        fault.ring[fault.taken % BARO_RING] = now
+    return float(fault.ring[(fault.taken - fault.delay) % BARO_RING])
+
+
+@law
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write abs_pressure [hPa] and temperature [degC]."""
-    if p.sensors.baro_missing:
+    fault = p.sensors.baro_fault
+    if p.sensors.baro_missing or fault.off:
         return
     altitude = p.place.alt - p.body.pos.z
     error = pressure_error(p.sensors, p.airframe, p.derived, rng)
-    sensors.abs_pressure = 0.01 * (pressure(altitude) + error)
+    if fault.is_on:
+        sensors.abs_pressure = 0.01 * spoiled(p, fault, altitude, error, rng)
+    else:
+        sensors.abs_pressure = 0.01 * (pressure(altitude) + error)
     sensors.temperature = temperature(altitude) - 273.15
     sensors.baro_count += 1

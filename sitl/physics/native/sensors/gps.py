@@ -17,8 +17,8 @@ from ....core.kernels import law
 from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Sensors as SensorFigures
-from ..records import GPS_RING, Body, Derived, Physics, Place, SensorState
-from ..tick import Clock
+from ..records import GPS_RING, Body, Derived, Fix, GpsFault, Physics, Place, SensorState
+from ..tick import TICK_S, Clock
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""
@@ -100,10 +100,27 @@ def drift_jammed(s: SensorState, tick: int, rng: Rng) -> int:
     return FIX_3D if jam.satellites >= LEAST_SATELLITES else NO_FIX
 
 
+FAST_WAVE, SLOW_WAVE = 0.5, 0.02
+"""Of the altitude (SIM_GPS1_NOISE, SIM_GPS1_DRFTALT) [rad/s], in time since power-on."""
+
+
+@law
+def spoil(fix: Fix, fault: GpsFault, time: float) -> None:
+    """Add what is wrong to a fix taken ``time`` [s] after power-on."""
+    fix.lat += fault.lat
+    fix.lon += fault.lon
+    wave = fault.noise * math.sin(FAST_WAVE * time) + fault.drift * math.sin(SLOW_WAVE * time)
+    fix.alt += _nearest(1000.0 * (fault.alt + wave))
+    vel = fault.vel
+    fix.vel += Vec3(_nearest(100.0 * vel.x), _nearest(100.0 * vel.y), _nearest(100.0 * vel.z))
+
+
 @law
 def take(p: Physics, tick: int, rng: Rng) -> None:
     """Take a fix of the true position and send it on its way."""
-    s, d = p.sensors, p.derived
+    s, d, fault = p.sensors, p.derived, p.sensors.gps_fault
+    if fault.is_on and fault.loss > 0.0 and uniform(rng) < fault.loss:
+        return
     found = measure(s, p.body, p.airframe, d, rng)
     fix_type = FIX_3D if tick >= d.gps_fix else NO_FIX
     if s.gps_jammed:
@@ -111,7 +128,10 @@ def take(p: Physics, tick: int, rng: Rng) -> None:
         found = Measured(found.pos + s.gps_jam.pos, s.gps_jam.vel)
     else:
         s.gps_jam_end = 0
-    send(s, p.place, found, tick + d.gps_delay, fix_type)
+    delay = fault.delay if fault.is_on and fault.delay >= 0 else d.gps_delay
+    send(s, p.place, found, tick + delay, fix_type)
+    if fault.is_on:
+        spoil(s.gps_fixes[(s.gps_head - 1) % GPS_RING], fault, tick * TICK_S)
 
 
 @law
@@ -132,6 +152,8 @@ def deliver(s: SensorState, sensors: Sensors, now: Clock, figures: SensorFigures
         sensors.gps_eph = _nearest(100.0 * figures.gps_hdop)
         sensors.gps_epv = _nearest(100.0 * figures.gps_vdop)
         sensors.gps_satellites = int(figures.gps_satellites)
+        if s.gps_fault.is_on and s.gps_fault.satellites >= 0:
+            sensors.gps_satellites = s.gps_fault.satellites
         if fix.jammed:
             sensors.gps_eph, sensors.gps_epv = s.gps_jam.eph, s.gps_jam.epv
     else:

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A rover's faults, beside those of a real ArduPilot 4.7-dev with the same airframe, in MANUAL at 1700 us."""
+
+from __future__ import annotations
+
+import pytest
+
+from sitl.simulation import Core
+from tests.drives.rover_driver import MANUAL, Driver
+
+STEERING, THROTTLE = 1, 3
+"""Outputs."""
+
+
+def at_speed(core: Core, frame: str = "ardupilot_rover", seconds: float = 8.0) -> Driver:
+    p = Driver(core, frame).armed_in(MANUAL)
+    p.sticks(seconds, throttle=1700)
+    return p
+
+
+def test_a_weak_motor(core: Core) -> None:
+    """ArduPilot: from 6.5 m/s to 2.3 m/s in 7 s with a share of 0.3, to a stand with 0, and on as before."""
+    p = at_speed(core)
+    full = p.speed
+    p.simulation.fail(f"motor:{THROTTLE}=0.3")
+    p.sticks(7.0, throttle=1700)
+    assert p.speed / full == pytest.approx(2.28 / 6.8, abs=0.05)
+    p.simulation.fail(f"motor:{THROTTLE}")
+    p.sticks(8.0, throttle=1700)
+    assert p.speed < 0.15
+    p.simulation.repair("motor")
+    p.sticks(8.0, throttle=1700)
+    assert p.speed == pytest.approx(full, rel=0.1)
+
+
+def test_steering_without_force(core: Core) -> None:
+    """ArduPilot goes straight on, whatever the stick says; afterwards it turns again."""
+    p = at_speed(core)
+    p.simulation.fail(f"servo:{STEERING}")
+    p.sticks(1.0, 1800, 1700)
+    heading = p.heading
+    p.sticks(3.0, 1800, 1700)
+    assert p.heading == pytest.approx(heading, abs=2.0)
+    p.simulation.repair("servo")
+    p.sticks(1.0, 1800, 1700)
+    assert abs(p.heading - heading) > 20.0
+
+
+@pytest.mark.parametrize("frame", ["ardupilot_rover", "skid_rover"])
+def test_outputs_that_are_stuck(core: Core, frame: str) -> None:
+    """They stay as they were, and are as the autopilot says when that is over. ArduPilot has no parameter for it."""
+    p = at_speed(core, frame, 4.0)
+    p.simulation.fail("servo/stuck")
+    p.sticks(4.0, 1900, 1500)
+    assert p.speed > 0.5 and abs(p.simulation.v.physics.body.rates.z) < 0.02
+    p.simulation.repair("servo")
+    p.sticks(8.0)
+    assert abs(p.speed) < 0.2
+
+
+def test_a_stuck_and_a_noisy_channel(core: Core) -> None:
+    p = at_speed(core)
+    p.simulation.fail("rc:3/stuck")
+    p.sticks(3.0)
+    assert p.speed > 1.0 and p.ap.rc.channels[2] == 1700
+    p.simulation.repair("rc")
+    p.sticks(8.0)
+    assert abs(p.speed) < 0.2
+    p.simulation.fail("rc/garbage=50")
+    seen = set()
+    for _ in range(50):
+        p.sticks(0.1)
+        seen.add(int(p.ap.rc.channels[0]))
+    assert 1450 <= min(seen) < 1475 and 1525 < max(seen) <= 1550

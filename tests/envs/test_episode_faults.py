@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Faults that are drawn for episodes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import sitl.envs  # noqa: F401
+from sitl.envs import EnvOptionError
+
+ROVER: dict[str, Any] = {"robot": "erle_rover", "world": "maze_erlerover", "step_time": 0.2}
+
+
+def shares(env: gym.Env[Any, Any]) -> tuple[float, float]:
+    """Of steering and motor, that are left."""
+    share = env.unwrapped.robot.view(0).physics.wheels.share  # type: ignore[attr-defined]
+    return share.x, share.y
+
+
+def test_one_is_drawn_and_begins_at_its_time() -> None:
+    env = gym.make("sitl/Navigate-v0", **ROVER, faults={"servo:1": (0.4, 1.4), "motor:3=0.5": 1.0, "": 0.0})
+    found: dict[int, set[int]] = {0: set(), 1: set(), 2: set()}
+    for seed in range(12):
+        env.reset(seed=seed)
+        told = []
+        for _ in range(10):
+            *_, info = env.step(0)
+            told.append(info["fault"])
+            wanted = {0: (1.0, 1.0), 1: (0.0, 1.0), 2: (1.0, 0.5)}[info["fault"]]
+            if info["fault"]:
+                assert shares(env) == wanted
+        number = told[-1]
+        found[number].add(told.index(number) if number else 0)
+        assert told == sorted(told)
+    assert found[0] and len(found[1]) > 1 and found[2] in ({4}, {5})
+    env.close()
+
+
+def test_a_vector_environment_and_snapshots_have_the_same() -> None:
+    options = {**ROVER, "faults": {"servo:1": (0.2, 1.4), "gps": (0.2, 0.6)}}
+    env, many = gym.make("sitl/Navigate-v0", **options), gym.make_vec("sitl/Navigate-v0", num_envs=3, **options)
+    many.reset(seed=5)
+    rows = [many.step(np.zeros(3, np.int64)) for _ in range(8)]
+    for index in range(3):
+        env.reset(seed=5 + index)
+        kept = env.unwrapped.snapshot()  # type: ignore[attr-defined]
+        for again in (False, True):
+            if again:
+                env.unwrapped.restore(kept)  # type: ignore[attr-defined]
+            for observations, *_, infos in rows:
+                observation, *_, info = env.step(0)
+                assert np.array_equal(observation, observations[index])
+                assert info["fault"] == infos["fault"][index]
+    assert {row[-1]["fault"][0] for row in rows} >= {0}
+    env.close()
+    many.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ({"faults": {"gsp": 1.0}}, "there is no fault 'gsp'; there are gps"),
+        ({"faults": {"gps": (3.0, 1.0)}}, r"'gps': \(3.0, 1.0\) is neither a time"),
+        ({"faults": {"gps@3": 1.0}}, "its time stands behind it"),
+        ({"faults": "gps"}, "it must map faults to their times"),
+        ({"faults": {"gps": 1.0}, "robot": "turtlebot", "world": "maze"}, "robot 'turtlebot' has none"),
+    ],
+)
+def test_what_cannot_be_is_said(options: dict[str, Any], why: str) -> None:
+    with pytest.raises(EnvOptionError, match=why):
+        gym.make("sitl/Navigate-v0", **{**ROVER, **options})

@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Faults in the air, beside those of a real ArduPilot.
+
+The figures "of ArduPilot" were flown with its unmodified 4.7-dev executable, frame +, hovering at 10 m in calm air.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sitl.missions.testing.factory import VehicleFactory
+from sitl.missions.testing.golden import GoldenStore
+from sitl.missions.testing.setup import Defaults
+from sitl.missions.testing.vehicle import Copter
+
+FRAME = "ardupilot_quad"
+Fly = Callable[..., Copter]
+
+
+def hover(copter: Copter) -> None:
+    copter.takeoff(10)
+    copter.set_rc(roll=1500, pitch=1500, throttle=1500, yaw=1500)
+    copter.change_mode("LOITER")
+    copter.delay(5)
+
+
+@pytest.fixture
+def fly(tmp_path: Path) -> Iterator[Fly]:
+    """Makes copters that hover."""
+    factory = VehicleFactory(Defaults(folders=(tmp_path,)), GoldenStore(tmp_path, test="a fault"), tmp_path / "logs")
+    yield lambda **options: factory("copter", frame=FRAME, after=hover, **options)
+    factory.close()
+
+
+def where(copter: Copter) -> np.ndarray:
+    """True north, east, height [m]."""
+    x, y, z = copter.simulation.v.physics.body.pos
+    return np.array((x, y, -z))
+
+
+def lean(copter: Copter) -> float:
+    """Pitch [deg], nose up positive."""
+    return float(np.degrees(copter.attitude[1]))
+
+
+def watch(copter: Copter, seconds: float) -> np.ndarray:
+    """True places, ten a second, shape (n, 3)."""
+    rows = []
+    for _ in range(round(10 * seconds)):
+        copter.delay(0.1)
+        rows.append(where(copter))
+    return np.array(rows)
+
+
+def heard(copter: Copter, text: str, since: float) -> float:
+    """When a text came [s since ``since``]."""
+    return next(t.time for t in copter.texts if text in t.text and t.time >= since) - since
+
+
+def test_gps_glitch(fly: Fly) -> None:
+    """22 m to the north. ArduPilot believes it 10 s later and stays where it is, within 0.1 m."""
+    copter = fly()
+    at = where(copter)
+    copter.fail("gps", "wrong", amount=22.26)
+    seen = watch(copter, 7)
+    assert copter.mode == "LOITER" and abs(copter.position.north - at[0]) < 2.0
+    copter.wait(lambda _: copter.position.north - at[0] > 20.0, timeout=8)
+    seen = np.vstack((seen, watch(copter, 2)))
+    assert copter.position.north - at[0] == pytest.approx(22.2, abs=1.5)
+    assert np.abs(seen - at)[:, :2].max() < 1.0
+
+
+@pytest.mark.parametrize(("name", "value"), [("NOISE", 10), ("DRFTALT", 10), ("ALT_OFS", 5), ("GLTCH_Z", 5)])
+def test_height_does_not_come_from_the_receiver(fly: Fly, name: str, value: float) -> None:
+    """ArduPilot: the altitude that the receiver tells is off by so much, the height held by 0.1 m at most."""
+    copter = fly()
+    before = where(copter)
+    copter.set_rate("GPS_RAW_INT", 5)
+    copter.fail(f"SIM_GPS1_{name}", amount=value)
+    with copter.messages("GPS_RAW_INT") as told:
+        seen = watch(copter, 13)
+    off = [1e-3 * message.alt - 584.0 - before[2] for message in told[2:]]
+    assert max(off) == pytest.approx(value, rel=0.25, abs=1.0)
+    assert (min(off) < -0.8 * value) == (name == "NOISE")
+    assert np.abs(seen - before).max() < 1.0
+
+
+def test_satellites_are_told_and_no_more(fly: Fly) -> None:
+    """ArduPilot hovers on with three: their number counts before take-off only."""
+    copter = fly()
+    before = where(copter)
+    copter.fail("SIM_GPS1_NUMSATS", amount=3)
+    assert np.abs(watch(copter, 5) - before).max() < 1.0
+    assert copter.message("GPS_RAW_INT").satellites_visible == 3
+
+
+def test_barometer_glitch(fly: Fly) -> None:
+    """3 m too high. ArduPilot, with 10 m, sinks by 4.2 m in 4 s and by 9.3 m in 12 s, and climbs back after it; here
+    the barometer is believed sooner.
+    """
+    copter = fly()
+    high = where(copter)[2]
+    copter.fail("baro", "wrong", amount=3)
+    assert watch(copter, 12)[-1, 2] - high == pytest.approx(-3.0, abs=0.5)
+    assert copter.height == pytest.approx(10, abs=0.5)
+    copter.restore("baro")
+    assert abs(watch(copter, 12)[-1, 2] - high) < 0.6
+
+
+def test_barometer_drift(fly: Fly) -> None:
+    """0.5 m/s. ArduPilot sinks by 4.9 m in 12 s and stays low when the drift ends: what has drifted is still there."""
+    copter = fly()
+    high = where(copter)[2]
+    copter.fail("baro", "slow", amount=0.5, until=12.0)
+    seen = watch(copter, 22)[:, 2] - high
+    assert seen[119] == pytest.approx(-4.9, abs=1.2) and seen[-1] == pytest.approx(-6.0, abs=1.0)
+
+
+def test_frozen_barometer(fly: Fly) -> None:
+    """Throttle at 1700 us for 6 s. ArduPilot climbs by 5.1 m and believes 2.7 m, until it ends."""
+    copter = fly()
+    high = where(copter)[2]
+    copter.fail("baro", "stuck")
+    copter.delay(1)
+    copter.set_rc(throttle=1700)
+    copter.delay(6)
+    copter.set_rc(throttle=1500)
+    assert where(copter)[2] - high > 4.0 and copter.height - 10 < 0.55 * (where(copter)[2] - high)
+    copter.restore("baro")
+    copter.delay(14)
+    assert copter.height == pytest.approx(where(copter)[2], abs=1.0)
+
+
+def test_late_barometer(fly: Fly) -> None:
+    """0.5 s late. ArduPilot climbs at 0.7 m/s and believes to be 0.3 m lower; it holds the height afterwards."""
+    copter = fly()
+    copter.fail("baro", "delayed")
+    copter.delay(2)
+    copter.set_rc(throttle=1700)
+    copter.delay(4)
+    assert 0.2 < where(copter)[2] - copter.height < 1.2
+    copter.set_rc(throttle=1500)
+    copter.delay(10)
+    assert where(copter)[2] == pytest.approx(copter.height, abs=0.6) and abs(copter.climb_rate) < 0.5
+
+
+def test_noisy_barometer(fly: Fly) -> None:
+    """3 m. ArduPilot's height wavers by 0.3 m."""
+    copter = fly()
+    high = where(copter)[2]
+    copter.fail("baro", "garbage")
+    assert 0.05 < np.abs(watch(copter, 10)[:, 2] - high).max() < 2.5
+
+
+def test_no_barometer(fly: Fly) -> None:
+    """The barometer's bit of SYS_STATUS goes out."""
+    baro = 8
+    copter = fly()
+    copter.fail("baro")
+    copter.delay(5)
+    assert not copter.message("SYS_STATUS").onboard_control_sensors_health & baro
+    copter.restore("baro")
+    copter.delay(3)
+    assert copter.message("SYS_STATUS").onboard_control_sensors_health & baro
+
+
+@pytest.mark.parametrize(
+    ("params", "pitch"),
+    [
+        ({"SIM_WIND_T": 1}, 29.1),
+        ({"SIM_WIND_T": 0}, 9.0),
+        ({"SIM_WIND_T": 2, "SIM_WIND_T_COEF": 0.1}, 11.8),
+    ],
+)
+def test_wind_by_height(fly: Fly, params: dict[str, float], pitch: float) -> None:
+    """10 m/s from the south at 60 m. ArduPilot leans by so much against it at 10 m."""
+    copter = fly()
+    for name, value in {**params, "SIM_WIND_SPD": 10}.items():
+        copter.fail(name, amount=value)
+    copter.delay(25)
+    heading = np.radians(copter.heading)
+    against = lean(copter) * np.cos(heading) - np.degrees(copter.attitude[0]) * np.sin(heading)
+    assert against == pytest.approx(pitch, abs=1.2)
+
+
+def test_wind_from_below(fly: Fly) -> None:
+    """5 m/s, 30 degrees upwards: ArduPilot hovers with 33 % throttle in place of 36 %."""
+    copter = fly()
+    before = copter.message("VFR_HUD").throttle
+    for name, value in {"SIM_WIND_DIR_Z": 30, "SIM_WIND_SPD": 5}.items():
+        copter.fail(name, amount=value)
+    copter.delay(25)
+    assert copter.message("VFR_HUD").throttle - before == pytest.approx(-3, abs=1)
+
+
+def test_twist_and_shove(fly: Fly) -> None:
+    """1 rad/s/s about the vertical for 0.5 s. ArduPilot's heading goes off by 2.5 degrees and is back 1 s later."""
+    copter = fly()
+    heading = copter.heading
+    turn = lambda: (copter.heading - heading + 180.0) % 360.0 - 180.0  # noqa: E731
+    copter.fail("twist", amount=1.0)
+    copter.delay(0.5)
+    assert turn() == pytest.approx(2.5, abs=1.0)
+    copter.delay(1.5)
+    assert abs(turn()) < 1.0
+    before = where(copter)
+    copter.fail("shove", amount=4.0)
+    seen = watch(copter, 10)
+    assert np.hypot(*(seen - before)[:, :2].T).max() > 0.5
+    assert np.hypot(*(seen - before)[-1, :2]) < 0.5
+
+
+@pytest.mark.parametrize(("kind", "after"), [("off", 1.0), ("wrong", 0.1)])
+def test_transmitter(fly: Fly, kind: str, after: float) -> None:
+    """ArduPilot: "Radio Failsafe" and RTL 1.0 s after silence, 0.09 s after a throttle of 950 us; it lands from where
+    it is, 10 m high, at 0.5 m/s after 7 s.
+    """
+    copter = fly(params={"RC_OVERRIDE_TIME": 0.5})
+    copter.release_rc()
+    copter.change_mode("ALT_HOLD")
+    copter.delay(1.0)
+    start = copter.now
+    copter.fail("rc", kind)
+    copter.wait_mode("RTL", timeout=3)
+    assert heard(copter, "Radio Failsafe", start) == pytest.approx(after, abs=0.15)
+    assert (copter.message("RC_CHANNELS").chan3_raw == 950) == (kind == "wrong")
+
+
+def test_gps_off_and_on_again(fly: Fly) -> None:
+    """ArduPilot: "EKF Failsafe" and LAND 8.5 s later, sinking from there; "Cleared" 1.3 s after the return."""
+    copter = fly()
+    start = copter.now
+    copter.fail("gps", until=13.0)
+    copter.wait_mode("LAND", timeout=12)
+    assert heard(copter, "EKF Failsafe", start) == pytest.approx(8.5, abs=1.0)
+    copter.wait_statustext("EKF Failsafe Cleared", timeout=10)
+    assert heard(copter, "EKF Failsafe Cleared", start + 13.0) == pytest.approx(1.3, abs=2.0)
+    assert copter.mode == "LAND"
+    copter.wait_disarmed()
+
+
+def test_lost_bytes_of_the_receiver(fly: Fly) -> None:
+    """A fix of 100 bytes comes through with a probability of 0.13 at 2 % loss: ArduPilot stays within 0.2 m. At 20 %
+    none comes, and it lands.
+    """
+    copter = fly()
+    before = where(copter)
+    copter.fail("gps", "intermittent", amount=0.02)
+    assert np.abs(watch(copter, 10) - before).max() < 1.5 and copter.mode == "LOITER"
+    copter.fail("gps", "intermittent", amount=0.2)
+    copter.wait_mode("LAND", timeout=15)
+
+
+def test_late_fixes(fly: Fly) -> None:
+    """0.5 s late. ArduPilot believes to be 2 m behind at 5.5 m/s, and overshoots when it stops; it still holds on."""
+    copter = fly()
+    copter.fail("gps", "delayed")
+    copter.delay(2)
+    copter.set_rc(pitch=1200)
+    copter.delay(6)
+    behind = float(np.hypot(*(where(copter)[:2] - np.array((copter.position.north, copter.position.east)))))
+    assert behind == pytest.approx(2.0, abs=0.8)
+    copter.set_rc(pitch=1500)
+    copter.delay(20)
+    assert copter.mode == "LOITER" and copter.groundspeed < 2.5
+
+
+def test_wrong_speeds_of_the_receiver(fly: Fly) -> None:
+    """0.5 m/s too much to the north: it goes the other way until places and speeds contradict each other, and is back
+    when that is over.
+    """
+    copter = fly()
+    at = where(copter)
+    copter.fail("SIM_GPS1_VERR_X", amount=0.5, until=12)
+    seen = watch(copter, 12) - at
+    assert -4.0 < seen[:, 0].min() < -0.5 and np.abs(seen[:, 1]).max() < 0.5
+    assert np.abs(watch(copter, 14)[-1] - at).max() < 1.0 and copter.mode == "LOITER"
+
+
+def test_a_jammed_receiver(fly: Fly) -> None:
+    """Nothing that it says is believed; the copter lands."""
+    copter = fly()
+    at = where(copter)
+    copter.fail("gps", "garbage")
+    copter.wait_mode("LAND", timeout=20)
+    copter.wait_disarmed(timeout=60)
+    assert np.hypot(*(where(copter) - at)[:2]) < 15.0
+
+
+def test_wind_on_the_barometer(fly: Fly) -> None:
+    """0.3 of the dynamic pressure. ArduPilot is 0.4 m too high after 8 s of flying forward at up to 6.3 m/s."""
+    copter = fly()
+    high = where(copter)[2]
+    copter.fail("SIM_BARO_WCF_FWD", amount=0.3)
+    copter.delay(1)
+    copter.set_rc(pitch=1200)
+    copter.delay(8)
+    speed = copter.groundspeed
+    assert where(copter)[2] - high == pytest.approx(0.3 * 0.5 * speed**2 / 9.81, rel=0.4)
+    assert copter.height == pytest.approx(10.0, abs=0.6)
+
+
+def test_battery(fly: Fly) -> None:
+    """10 V. ArduPilot: "Battery 1 is low 10.00V" and RTL 10.2 s later (BATT_LOW_TIMER)."""
+    copter = fly(params={"BATT_FS_LOW_ACT": 2})
+    start = copter.now
+    copter.fail("battery", amount=10.0)
+    copter.wait_mode("RTL", timeout=12)
+    assert heard(copter, "Battery 1 is low", start) == pytest.approx(10.2, abs=0.5)
+
+
+def test_a_battery_that_sags_and_one_that_is_small(fly: Fly) -> None:
+    copter = fly()
+    status = copter.message("SYS_STATUS")
+    copter.fail("battery", "slow", amount=0.05)
+    copter.delay(5)
+    sag = status.voltage_battery - copter.message("SYS_STATUS").voltage_battery
+    assert sag == pytest.approx(0.05 * 10.0 * status.current_battery, rel=0.25)
+    copter.restore("battery")
+    copter.fail("SIM_BATT_CAP_AH", amount=2.0)
+    copter.delay(20)
+    left = copter.simulation.v.physics.battery.charge
+    assert left == pytest.approx(1.0 - 0.01 * status.current_battery * 20 / 3600 / 2.0, abs=0.01)
+
+
+def test_a_weak_motor(fly: Fly) -> None:
+    """Motor 1 with 0.3 of its thrust: "Potential Thrust Loss", and down to the ground. ArduPilot takes the share from
+    the pulse: with 0.6 it tells after 3.3 s, and is on the ground after 6 s.
+    """
+    copter = fly()
+    start = copter.now
+    copter.fail("motor", motor=1, thrust=0.3)
+    seen = watch(copter, 12)
+    assert heard(copter, "Potential Thrust Loss (1)", start) < 8.0
+    assert seen[-1, 2] < 2.0
+
+
+def test_stuck_motors(fly: Fly) -> None:
+    """A command that stays. ArduPilot has no parameter for it."""
+    copter = fly()
+    copter.fail("motor", "stuck", motor=2)
+    copter.delay(3)
+    rotors = copter.simulation.v.physics.rotors
+    before = float(rotors.command[1])
+    copter.set_rc(throttle=1800)
+    copter.delay(1)
+    assert rotors.command[1] == before and rotors.command[0] != before
+    copter.restore("motor")
+    copter.delay(0.1)
+    assert rotors.command[1] != before
+
+
+def test_lidar_and_range_finder_see_less(tmp_path: Path) -> None:
+    factory = VehicleFactory(Defaults(folders=(tmp_path,)), GoldenStore(tmp_path, test="a fault"), tmp_path / "logs")
+    copter = factory("copter", world="office_erlecopter")
+    sensors = copter.simulation.v.sensors
+    scan = lambda: np.array(sensors.lidar_ranges[: sensors.lidar_samples])  # noqa: E731
+    whole = np.isfinite(scan()).sum()
+    copter.fail("lidar", "intermittent", amount=0.5)
+    copter.delay(1)
+    assert 0.3 * whole < np.isfinite(scan()).sum() < 0.7 * whole
+    copter.fail("lidar")
+    copter.delay(1)
+    assert not np.isfinite(scan()).any()
+    copter.restore("lidar")
+    copter.delay(1)
+    assert np.isfinite(scan()).sum() == pytest.approx(whole, abs=2)
+    factory.close()
