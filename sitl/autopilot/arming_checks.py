@@ -39,6 +39,7 @@ BY_FENCE = 15
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
+BY_PARACHUTE = 34
 
 # Checks (those of the radio: radio_checks.py)
 NOT_INITIALISED = 1
@@ -80,8 +81,9 @@ FENCE_SHIFT = 38
 NOTHING_SEEN = 1 << 43
 OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
-ACCELS_SILENT, GYROS_SILENT = 1 << 60, 1 << 61
 CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
+PARACHUTE_RELEASED = 1 << 60
+ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -94,6 +96,7 @@ TEXTS = {
     REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
     ACCELS_SILENT: "Accels not healthy",
     GYROS_SILENT: "Gyros not healthy",
+    PARACHUTE_RELEASED: "Chute is released",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",

@@ -58,14 +58,15 @@ RETURN_ACTIVE = 51  # copter: it flies a part that brings it back already; a: wh
 SYSTEM_ID_DID = 52  # copter; a: what (systemid.py), b: a number of it
 SYSTEM_ID_SAMPLE = 53  # copter: a sample of SYSTEMID, for the log
 CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
-EKF_LANE_SWITCHED = 63  # a: IMU whose filter is flown by now
-EKF_COMPASS_CHANGED = 64  # a: IMU of the filter, b: compass
 NO_WAY = 60  # there is no way around the areas of the fence
 EKF_RELATIVE = 70  # the filter's position is relative to where it began; a: IMU
 EKF_STOPPED_AIDING = 71  # a: IMU
 EKF_USES = 72  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
 LANDING_TARGET_DID = 61  # a: what (landing_target/state.py)
 DOCK_DID = 62  # rover; a: what (dock.py)
+YAW_IMBALANCE = 65  # copter; a: the integrator of the yaw rate loop
+EKF_LANE_SWITCHED = 81  # a: IMU whose filter is flown by now
+EKF_COMPASS_CHANGED = 82  # a: IMU of the filter, b: compass
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

@@ -66,7 +66,8 @@ def test_a_copter_among_walls_with_lidar_and_a_gps_that_fails(physics) -> None:
         pilot.send_command(31011)  # not a command of this vehicle: both say so
         pilot.stream_setpoint(6.0, 0b0000110111000111, (3.0, 2.0, 0.0))  # into a wall
         pilot.send("PARAM_SET", param_id=b"SIM_GPS1_ENABLE", param_value=0, param_type=2)
-        pilot.send("PARAM_SET", param_id=b"SIM_ACC1_BIAS_X", param_value=1, param_type=9)  # it has no effect
+        for name in (b"SIM_ACC1_BIAS_X", b"SIM_ACC2_BIAS_X"):  # of both: a link carries one IMU
+            pilot.send("PARAM_SET", param_id=name, param_value=1, param_type=9)
         pilot.fly(4.0)
         pilot.send_command("NAV_LAND")
         pilot.fly(20.0)

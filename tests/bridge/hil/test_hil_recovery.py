@@ -113,7 +113,15 @@ def test_physics_killed_in_flight_and_started_again(physics) -> None:
         fresh = Simulation(seed=1)
         fresh.advance(1.0)
         expected = fresh.fleet[0]["sensors"].copy()
-        for name in ("mag2", "mag3", "esc_count", "esc_time_us", "esc_motors", "esc_rpm"):  # they do not cross the link
+        for name in (
+            "mag2",
+            "mag3",
+            "mag_us",
+            "esc_count",
+            "esc_time_us",
+            "esc_motors",
+            "esc_rpm",
+        ):  # they do not cross the link
             expected[name] = 0
         assert first_difference(expected, simulation.fleet[0]["sensors"]) is None
         simulation.close()
