@@ -40,6 +40,7 @@ BY_FENCE = 15
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
+BY_PARACHUTE = 34
 
 # Checks (those of the radio: radio_checks.py)
 NOT_INITIALISED = 1
@@ -82,6 +83,7 @@ NOTHING_SEEN = 1 << 43
 OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
 CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
+PARACHUTE_RELEASED = 1 << 60
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
@@ -92,6 +94,7 @@ TEXTS = {
     CALIBRATING_COMPASS: "Compass calibration running",
     REBOOT_FOR_COMPASS: "Compass calibrated requires reboot",
     REBOOT_FOR_ACCELS: "Accels calibrated requires reboot",
+    PARACHUTE_RELEASED: "Chute is released",
     ACCELS: "Accels inconsistent",
     GYROS: "Gyros inconsistent",
     ATTITUDE: "EKF attitude is bad",

@@ -62,6 +62,7 @@ NO_WAY = 60  # there is no way around the areas of the fence
 LANDING_TARGET_DID = 61  # a: what (landing_target/state.py)
 DOCK_DID = 62  # rover; a: what (dock.py)
 AUTOTUNE_DID = 63  # copter; a: what (autotune_gains.py), b: a number of it
+YAW_IMBALANCE = 65  # copter; a: the integrator of the yaw rate loop
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

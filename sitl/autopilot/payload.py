@@ -1,21 +1,34 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gripper, winch, sprayer and mount: numbers and parameters. The core does not read these."""
+"""Gripper, winch, sprayer, parachute and mount: numbers and parameters. The core does not read these."""
 
 from __future__ import annotations
 
 OUTPUTS = 16
 
 # SERVOn_FUNCTION
-MOUNT_YAW, MOUNT_PITCH, MOUNT_ROLL, CAMERA_TRIGGER, PUMP, SPINNER, GRIPPER, WINCH = 6, 7, 8, 10, 22, 23, 28, 88
+MOUNT_YAW, MOUNT_PITCH, MOUNT_ROLL, CAMERA_TRIGGER, PUMP, SPINNER, PARACHUTE, GRIPPER, WINCH = (
+    6,
+    7,
+    8,
+    10,
+    22,
+    23,
+    27,
+    28,
+    88,
+)
 
 # RCn_OPTION of switches
 SWITCH_CAMERA, SWITCH_SPRAYER, SWITCH_GRIPPER, SWITCH_FOLD, SWITCH_WINCH, SWITCH_WINDING = 9, 15, 19, 27, 44, 45
 SWITCH_LOCK = 163
+SWITCH_PARACHUTE_ENABLE, SWITCH_PARACHUTE_RELEASE, SWITCH_PARACHUTE = 21, 22, 23
 SWITCH_RELAYS = {28: 0, 34: 1, 35: 2, 36: 3, 66: 4, 67: 5}
 """Relay, from 0, by function."""
 
 BY_SERVO = 1
 """GRIP_TYPE, WINCH_TYPE and MNT1_TYPE."""
+PARACHUTE_BY_SERVO = 10
+"""CHUTE_TYPE."""
 
 MEANINGS = {
     "GRIP_ENABLE": "1: there is a gripper, from the next boot on; 0 refuses its commands at once",
@@ -31,6 +44,14 @@ MEANINGS = {
     "SPRAY_PUMP_RATE": "Pump's rate for each m/s over the ground [%]",
     "SPRAY_PUMP_MIN": "Least rate of the pump while the sprayer sprays [%]",
     "SPRAY_SPEED_MIN": "The sprayer pauses below this speed over the ground [cm/s]",
+    "CHUTE_ENABLED": "1: there is a parachute, from the next boot on or from the command or switch that enables it",
+    "CHUTE_TYPE": "What releases the parachute: 0 to 3 relay 1 to 4, 10 the outputs of function 27",
+    "CHUTE_SERVO_ON": "Pulse that releases the parachute [us]",
+    "CHUTE_SERVO_OFF": "Pulse while the parachute is packed, and from two seconds after its release on [us]",
+    "CHUTE_ALT_MIN": "The parachute is not released below this height above home [m]; 0: at any height",
+    "CHUTE_DELAY_MS": "Time from the stop of the motors until the parachute is released [ms]",
+    "CHUTE_CRT_SINK": "A vehicle that sinks faster for a second releases its parachute [m/s]; 0: it does not",
+    "CHUTE_OPTIONS": "Bits: 1 the output stays at CHUTE_SERVO_ON, 2 the motors are not stopped",
     "MNT1_TYPE": "1: a gimbal of outputs of functions 6 (yaw), 7 (pitch), 8 (roll), from the next boot on; 0: none",
     "MNT1_DEFLT_MODE": "What the gimbal does at boot: 0 folded, 1 neutral, 2 angles of commands, 3 sticks",
     "MNT1_RC_RATE": "0: sticks of the gimbal give angles; else angular rates, at most this [deg/s]",
@@ -46,7 +67,7 @@ MEANINGS = {
     },
     **{
         f"SERVO{n}_FUNCTION": f"What output {n} does: 6, 7, 8 yaw, pitch, roll of the gimbal; 10 the camera's trigger; "
-        "22, 23 pump and spinner of the sprayer; 28 gripper; 88 winch; 0 nothing (free for DO_SET_SERVO)"
+        "22, 23 pump and spinner of the sprayer; 27 parachute; 28 gripper; 88 winch; 0 nothing (free for DO_SET_SERVO)"
         for n in range(5, OUTPUTS + 1)
     },
     **{

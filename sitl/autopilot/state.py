@@ -129,6 +129,7 @@ class Arming(Record):
     emergency_stop: bool  # a switch keeps the motors from turning
     interlock_used: bool  # a channel is the motor interlock
     interlock_on: bool  # and lets the motors turn
+    parachute_released: bool
 
 
 class Failsafe(Record):

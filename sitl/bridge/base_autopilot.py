@@ -18,7 +18,7 @@ from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
 from .autopilot_api import Note, Vector, Vehicle
 
-CRITICAL, WARNING, INFO = 2, 4, 6
+EMERGENCY, CRITICAL, WARNING, INFO = 0, 2, 4, 6
 """MAV_SEVERITY"""
 BY_GROUND_STATION = 2
 """Reason of a mode change (ArduPilot's number)."""

@@ -25,6 +25,7 @@ from ..arming_checks import (
     NEED_ALTITUDE,
     NEED_POSITION,
     NO_MISSION,
+    PARACHUTE_RELEASED,
     RUDDER_DISABLED,
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
@@ -99,6 +100,8 @@ def check(v: Vehicle) -> int:
             failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
+    if ap.arming.parachute_released:
+        failed |= PARACHUTE_RELEASED
     fence = p.FENCE
     if (
         fence_arming.needs_position(ap.fence, fence)

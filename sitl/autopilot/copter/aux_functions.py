@@ -127,6 +127,13 @@ FUNCTIONS = shared.by_number(
         shared.fitted(
             payload.SWITCH_WINDING, "high: the winch lowers; low: it raises; middle: it stops", "WinchControl"
         ),
+        shared.fitted(payload.SWITCH_PARACHUTE_ENABLE, "high: the parachute is enabled; else not", "ParachuteEnable"),
+        shared.fitted(payload.SWITCH_PARACHUTE_RELEASE, "high: releases the parachute", "ParachuteRelease"),
+        shared.fitted(
+            payload.SWITCH_PARACHUTE,
+            "the parachute: low not enabled, middle enabled, high released",
+            "Parachute3Position",
+        ),
         AuxFunction(61, _zigzag, "in ZIGZAG: low stores or flies to A, high B, middle gives back to the sticks"),
         AuxFunction(
             83, _sweep, "in ZIGZAG, with ZIGZ_AUTO_ENABLE: high begins a sweep or goes on with it; else pauses it"

@@ -60,6 +60,7 @@ OTHERS = (
     commands.DO_SET_ROI,
     commands.DO_JUMP_TAG,
     commands.DO_GUIDED_LIMITS,
+    commands.DO_PARACHUTE,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.VIDEO_COMMANDS,

@@ -38,6 +38,7 @@ DO_RETURN_PATH_START = 188
 DO_LAND_START = 189
 NAV_VTOL_TAKEOFF = 84
 NAV_VTOL_LAND = 85
+DO_PARACHUTE = 208
 DO_GRIPPER = 211
 DO_SPRAYER = 216
 JUMP_TAG = 600
@@ -104,6 +105,7 @@ COMMANDS = {
     DO_REPEAT_RELAY: Command("RepeatRelay", False, False),
     DO_SET_SERVO: Command("SetServo", False, False),
     DO_REPEAT_SERVO: Command("RepeatServo", False, False),
+    DO_PARACHUTE: Command("Parachute", False, False),
     DO_GRIPPER: Command("Gripper", False, False),
     DO_SPRAYER: Command("Sprayer", False, False),
     JUMP_TAG: Command("JumpTag", False, False),
@@ -135,8 +137,11 @@ VIDEO_COMMANDS = (VIDEO_START_CAPTURE, VIDEO_STOP_CAPTURE)
 OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
 MOUNT_COMMANDS = (DO_MOUNT_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
 PAYLOAD_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
+"""In missions of all firmwares."""
 ROI_COMMANDS = (DO_SET_ROI_LOCATION, DO_SET_ROI_NONE, DO_SET_ROI)
-CARRIED_OUT = frozenset((*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS))
+CARRIED_OUT = frozenset(
+    (*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS, DO_PARACHUTE)
+)
 """By what is fitted to the vehicle, besides what the autopilot does with them."""
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""

@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot import events, smart_rtl_path
+from ...autopilot import arming_checks, events, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
     auto,
     autotune,
     commands,
+    ground,
     guided_setpoints,
     set_mode,
     simple,
@@ -21,14 +22,16 @@ from ...autopilot.copter.modes import (
     throw,
     zigzag,
 )
+from ...autopilot.copter.modes.acro import ACRO
 from ...autopilot.copter.modes.auto_yaw import Turn
+from ...autopilot.copter.modes.flip import FLIP
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
 from ...autopilot.mission.notes import ParametersFound, Text
 from ...autopilot.navigation.state import RTL
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
-from ..base_autopilot import BY_GROUND_STATION, CRITICAL, INFO, WARNING, BaseAutopilot
+from ..base_autopilot import BY_GROUND_STATION, CRITICAL, EMERGENCY, INFO, WARNING, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
@@ -60,6 +63,8 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(INFO, "starting motor test" if a else "finished motor test")]
         if code == events.TAKEOFF_BLOCKED:
             return [Text(CRITICAL, f"Takeoff blocked: {_BLOCKED[int(a)]}")]
+        if code == events.YAW_IMBALANCE:
+            return [Text(EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")]
         if code == events.SIMPLE_CHANGED:
             return [Text(INFO, _SIMPLE[int(a)])]
         if code == events.PATH_LOST:
@@ -125,6 +130,31 @@ class CopterAutopilot(BaseAutopilot):
     def terminate(self) -> None:
         """Stop the motors, in flight too."""
         failsafe.terminate(self._v)
+
+    # ------------------------------------------------------------------ parachute
+
+    def is_landed(self) -> bool:
+        return bool(self._v.autopilot.arming.landed)
+
+    def height(self) -> float:
+        """Above home [m]."""
+        ap = self._v.autopilot
+        return float(ap.home.pos.z - ap.estimate.pos.z)
+
+    def sink_rate(self) -> float:
+        """[m/s]."""
+        return float(self._v.autopilot.estimate.vel.z)
+
+    def lean_error(self) -> float:
+        """How far the thrust is from where it should point [rad]; 0 in modes that turn over on purpose."""
+        turns_over = self.mode() in (ACRO, FLIP)
+        return 0.0 if turns_over else float(self._v.autopilot.control.attitude.thrust_error_angle)
+
+    def release_parachute(self, stop_motors: bool) -> None:
+        """Note that it is released: the vehicle is not armed again before the next boot."""
+        self._v.autopilot.arming.parachute_released = True
+        if stop_motors:
+            ground.disarm(self._v, arming_checks.BY_PARACHUTE)
 
     # ------------------------------------------------------------------ GUIDED
 

@@ -15,6 +15,7 @@ from ..services import command_table
 from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry
 from ..services.command_table import set_mode
 from ..services.mount import MountService
+from ..services.parachute import ParachuteService
 from ..services.service import ACCEPTED, DENIED, FAILED
 from ..services.winch import WinchService
 
@@ -127,6 +128,13 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
+def release_parachute(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """208: p1 0 disables the parachute, 1 enables it, 2 releases it: in flight and above CHUTE_ALT_MIN, else a text."""
+    answer = bridge.get(ParachuteService).act(command.p1)
+    bridge.say_pending()
+    return int(answer)
+
+
 def return_path(bridge: Bridge, channel: Channel, command: Command) -> int:
     """188: AUTO_RTL by the mission's return path that is nearest."""
     return _go_back(bridge, BY_PATH)
@@ -159,6 +167,7 @@ COMMANDS: dict[int, Entry] = {
     195: Entry(set_roi, required=(5, 6, 7), place=True),
     197: Entry(no_roi),
     201: Entry(set_roi, required=(5, 6, 7), place=True),
+    208: Entry(release_parachute, required=(1,)),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
     42600: Entry(winch),
 }

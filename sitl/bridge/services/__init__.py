@@ -17,6 +17,7 @@ from .mission import MissionService
 from .mount import MountService
 from .old_points import OldPointService
 from .outputs import OutputService
+from .parachute import ParachuteService
 from .parameters import ParameterService
 from .service import Service
 from .setpoints import SetpointService
@@ -49,6 +50,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     GripperService,
     WinchService,
     SprayerService,
+    ParachuteService,
     MountService,
     CalibrationService,
     CompassCalibrationService,

@@ -13,6 +13,7 @@ from .camera import CameraService
 from .gripper import GripperService
 from .mount import MountService
 from .outputs import OutputService
+from .parachute import ParachuteService
 from .service import Service
 from .sprayer import SprayerService
 from .winch import WinchService
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 CARRIED_OUT_BY: dict[int, type[Service]] = {
     **dict.fromkeys(commands.CAMERA_COMMANDS, CameraService),
     **dict.fromkeys((*commands.MOUNT_COMMANDS, *commands.ROI_COMMANDS), MountService),
+    commands.DO_PARACHUTE: ParachuteService,
     commands.DO_GRIPPER: GripperService,
     commands.DO_SPRAYER: SprayerService,
     commands.DO_WINCH: WinchService,
@@ -50,6 +52,7 @@ _SWITCHES: dict[int, tuple[type[Service], Callable[[Any, int], None]]] = {
     ),
 }
 """By function."""
+_PARACHUTE = (payload.SWITCH_PARACHUTE_ENABLE, payload.SWITCH_PARACHUTE_RELEASE, payload.SWITCH_PARACHUTE)
 
 
 def switched(bridge: Bridge, function: int, position: int) -> None:
@@ -57,6 +60,9 @@ def switched(bridge: Bridge, function: int, position: int) -> None:
     if function in payload.SWITCH_RELAYS:
         if position != MIDDLE:
             bridge.get(OutputService).set_relay(payload.SWITCH_RELAYS[function], float(position == HIGH))
+        return
+    if function in _PARACHUTE:
+        bridge.get(ParachuteService).switched(function, position)
         return
     service, act = _SWITCHES[function]
     act(bridge.get(service), position)

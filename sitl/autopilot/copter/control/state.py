@@ -157,6 +157,8 @@ class MotorsState(Record):
     boosting: bool  # thrust is being lost: the strongest motor does not limit the others
     boost_ratio: float  # 0 .. 1, follows while unbalanced
     loss_ticks: int  # for which thrust seemed to be lost
+    yaw_trim: float  # size of the yaw rate loop's integrator, low-passed
+    yaw_trim_told_us: int  # when that was last told to be large
     voltage_ratio: float  # resting voltage over MOT_BAT_VOLT_MAX, filtered; 1 when not compensated
     lift_max: float  # thrust at full throttle at that voltage, 1 at MOT_BAT_VOLT_MAX
     compensation_gain: float  # of thrust demands for voltage and air density

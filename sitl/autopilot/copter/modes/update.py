@@ -13,7 +13,19 @@ from ...navigation.path import areas_of, watch_detour
 from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...radio import RC_TICKS
 from ...state import Arming
-from .. import arming, avoidance, crash, failsafe, fence, landing, motor_test, pilot, takeoff_check, thrust_loss
+from .. import (
+    arming,
+    avoidance,
+    crash,
+    failsafe,
+    fence,
+    landing,
+    motor_test,
+    pilot,
+    takeoff_check,
+    thrust_loss,
+    yaw_imbalance,
+)
 from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
@@ -102,6 +114,7 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.watch_vibration(v)
     arming.disarm_idle(v)
     takeoff_check.check(v)
+    yaw_imbalance.check(v)
     avoidance.watch(v)
     ap = v.autopilot
     watch_detour(ap.modes.nav, areas_of(ap.fence, ap.params.OA, ap.params.FENCE), ap.events, v.time_us)

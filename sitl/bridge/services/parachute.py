@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The copter's parachute (CHUTE_*): released by command, switch or mission, or by itself in a fall.
+
+Its output moves; the physics has no canopy, so that the vehicle falls on. Released in the air only, above
+CHUTE_ALT_MIN, and only once: then the motors are stopped, and the vehicle cannot be armed until it boots again.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple, Protocol, cast
+
+from ...autopilot import payload, relays
+from ...autopilot.aux_switch import HIGH, LOW
+from ...autopilot.mission.item import MissionItem
+from ..wire.port import NEVER
+from .outputs import OFF, ON, OutputService
+from .payload import PayloadService
+from .service import ACCEPTED, FAILED, INFO
+from .statustext import StatusTextService
+
+DISABLE, ENABLE, RELEASE = 0, 1, 2
+"""PARACHUTE_ACTION"""
+ALERT = 1
+"""MAV_SEVERITY"""
+EVERY_US = 100_000
+"""So often a fall is looked for."""
+FALLS_US = 1_000_000
+"""A fall lasts so long before the parachute is released."""
+OPEN_US = 2_000_000
+"""So long the output stays at CHUTE_SERVO_ON, unless it is to stay there for ever."""
+LEAN_ERROR_MAX = math.radians(30.0)
+"""A vehicle that is further from the lean that it wants is out of control [rad]."""
+HOLD_OPEN, KEEP_MOTORS = 1, 2
+"""CHUTE_OPTIONS"""
+PACKED, RELEASED, OPEN, DONE = range(4)
+"""Stages."""
+
+
+class State(NamedTuple):
+    """What it does. Times since boot [us]."""
+
+    stage: int = PACKED
+    next_us: int = NEVER
+    """End of the stage."""
+    lost: int = 0
+    """Tenths of a second out of control."""
+    lost_height: float = 0.0
+    """Height above home where that began [m]."""
+    sinks_us: int = 0
+    """Since when it sinks faster than CHUTE_CRT_SINK; 0: it does not."""
+
+
+class Falling(Protocol):
+    """What a firmware with a parachute tells of the vehicle."""
+
+    def armed(self) -> bool: ...
+    def is_landed(self) -> bool: ...
+    def height(self) -> float: ...
+    def sink_rate(self) -> float: ...
+    def lean_error(self) -> float: ...
+    def release_parachute(self, stop_motors: bool) -> None: ...
+
+
+class ParachuteService(PayloadService):
+    """The parachute."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._state = State()
+        self._watch(0)
+        if self._is_enabled():
+            self._move(False)
+
+    @property
+    def _pilot(self) -> Falling:
+        return cast(Falling, self.bridge.autopilot)
+
+    def snapshot(self) -> Any:
+        return (tuple(self._state), self.due_us)
+
+    def restore(self, state: Any) -> None:
+        found, self.due_us = state
+        self._state = State(*found)
+
+    def carry_out(self, item: MissionItem) -> None:
+        """A mission's DO_PARACHUTE."""
+        self.act(item.p1)
+
+    def switched(self, function: int, position: int) -> None:
+        """A switch was moved: one that enables, one that releases, or one of three positions that does both."""
+        if function == payload.SWITCH_PARACHUTE_RELEASE:
+            if position == HIGH:
+                self.act(RELEASE)
+            return
+        three = function == payload.SWITCH_PARACHUTE
+        self.act(ENABLE if position == HIGH or (three and position != LOW) else DISABLE)
+        if three and position == HIGH:
+            self.act(RELEASE)
+
+    def act(self, action: float) -> int:
+        """A PARACHUTE_ACTION. Its MAV_RESULT: releasing is accepted even where nothing comes of it."""
+        if action not in (DISABLE, ENABLE, RELEASE):
+            return FAILED
+        if action == RELEASE:
+            self._release_by_command()
+        elif "CHUTE_ENABLED" in self._values.table:
+            self._values["CHUTE_ENABLED"] = action
+            self._state = self._state._replace(lost=0, sinks_us=0)
+            self._watch(self.bridge.now_us)
+        return ACCEPTED
+
+    def _is_enabled(self) -> bool:
+        return self._value("CHUTE_ENABLED") > 0.0
+
+    def _watch(self, now_us: int) -> None:
+        self.due_us = now_us + EVERY_US if self._state.stage == PACKED and self._is_enabled() else self._state.next_us
+
+    def _release_by_command(self) -> None:
+        pilot, say = self._pilot, self.bridge.get(StatusTextService).say
+        if not self._is_enabled() or self._state.stage != PACKED:
+            return
+        if pilot.is_landed():
+            say(INFO, "Parachute: Landed")
+        elif self._is_low():
+            say(ALERT, "Parachute: Too low")
+        else:
+            self._release()
+
+    def _is_low(self) -> bool:
+        return bool(0.0 < self._values["CHUTE_ALT_MIN"] > self._pilot.height())
+
+    def _release(self) -> None:
+        self.bridge.get(StatusTextService).say(INFO, "Parachute: Released")
+        self._pilot.release_parachute(int(self._values["CHUTE_OPTIONS"]) & KEEP_MOTORS == 0)
+        delay_us = round(min(max(self._values["CHUTE_DELAY_MS"], 0.0), 1e6) * 1e3)
+        self._state = State(RELEASED, self.bridge.now_us + delay_us)
+        self.due_us = self._state.next_us
+
+    def _move(self, on: bool) -> None:
+        kind = int(self._values["CHUTE_TYPE"])
+        if 0 <= kind < relays.RELAYS:
+            self.bridge.get(OutputService).set_relay(kind, ON if on else OFF)
+        elif kind == payload.PARACHUTE_BY_SERVO:
+            self._send(payload.PARACHUTE, self._values["CHUTE_SERVO_ON" if on else "CHUTE_SERVO_OFF"])
+
+    def service(self, now_us: int) -> None:
+        state = self._state
+        if state.stage == PACKED:
+            self._watch(now_us)
+            if self._is_enabled():
+                self._look_for_a_fall(now_us)
+        elif state.stage == RELEASED and now_us >= state.next_us:
+            self._move(True)
+            stays = int(self._values["CHUTE_OPTIONS"]) & HOLD_OPEN
+            self._state = State(DONE) if stays else State(OPEN, now_us + OPEN_US)
+            self.due_us = self._state.next_us
+        elif state.stage == OPEN and now_us >= state.next_us:
+            self._move(False)
+            self._state = State(DONE)
+            self.due_us = NEVER
+
+    def _look_for_a_fall(self, now_us: int) -> None:
+        pilot = self._pilot
+        if not pilot.armed() or pilot.is_landed():
+            self._state = State()
+            return
+        sinks_us = self._state.sinks_us
+        if 0.0 < self._values["CHUTE_CRT_SINK"] < pilot.sink_rate():
+            sinks_us = sinks_us or now_us
+        else:
+            sinks_us = 0
+        lost, height = self._state.lost, pilot.height()
+        lost_height = self._state.lost_height if lost else height
+        lost = lost + 1 if pilot.lean_error() > LEAN_ERROR_MAX else max(lost - 1, 0)
+        if lost > 1 and height >= lost_height:
+            lost = 0  # it does not fall
+        self._state = self._state._replace(lost=lost, lost_height=lost_height, sinks_us=sinks_us)
+        falls = lost * EVERY_US >= FALLS_US or (sinks_us and now_us - sinks_us >= FALLS_US)
+        if falls and not self._is_low():
+            self._release()

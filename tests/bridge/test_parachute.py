@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The parachute: answers, texts, pulses and times are those of ArduCopter 4.7 with the same parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
+from sitl.autopilot.mission import item as c
+from sitl.bridge.services.parachute import ParachuteService
+from sitl.simulation import Core
+from tests.bridge.fakes import FakeRover
+from tests.bridge.test_payload import Fitted, bench, pulse
+from tests.flights.aviator import FLIP, STABILIZE, Aviator, Item
+
+DISABLE, ENABLE, RELEASE = 0, 1, 2
+ACCEPTED, UNSUPPORTED, FAILED = 0, 3, 4
+CHUTE = {"CHUTE_ENABLED": 1.0, "CHUTE_TYPE": 10.0, "SERVO9_FUNCTION": 27.0}
+
+
+def packed(core: Core, height: float, **params: float) -> Aviator:
+    """A copter in the air with a parachute."""
+    p = Aviator(core, "ardupilot_quad", **{**CHUTE, **params}).hover(height)
+    p.texts.clear()
+    return p
+
+
+def said(p: Aviator) -> list[str]:
+    """What was said of the parachute and the motors."""
+    texts = [text.text for text in p.texts]
+    return [text for text in texts if "achute" in text or "Disarming" in text or "Crash" in text]
+
+
+def turns(p: Aviator) -> bool:
+    """Whether it is armed now; a client hears of it a second later."""
+    return bool(p.ap.arming.armed)
+
+
+def servo(p: Aviator) -> int:
+    return int(p.simulation.v.actuators.pwm[8])
+
+
+def test_released_by_command(core: Core) -> None:
+    p = packed(core, 20.0)
+    assert servo(p) == 1100
+    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    released = p.texts[-1].time
+    assert (said(p), turns(p)) == (["Parachute: Released", "Disarming motors"], False)
+    pulses = []
+    for _ in range(60):
+        pulses.append((p.simulation.time_us * 1e-6 - released, servo(p)))
+        p.fly(0.05)
+    moved = [time for time, pulse in pulses if pulse == 1300]
+    assert moved[0] == pytest.approx(0.5, abs=0.1), "half a second for the rotors to stop"
+    assert moved[-1] == pytest.approx(2.5, abs=0.1)
+    assert pulses[-1][1] == 1100
+    p.fly(5.0)
+    assert p.ask(400, 1) == FAILED
+    assert p.said("Arm: Chute is released")
+
+
+def test_neither_on_the_ground_nor_low(core: Core) -> None:
+    p = Aviator(core, "ardupilot_quad", **CHUTE).ready()
+    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    p.arm()
+    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert said(p) == ["Parachute: Landed", "Parachute: Landed"]
+    p.take_off(5.0)
+    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert turns(p) and said(p)[2:] == ["Parachute: Too low"]
+
+
+def test_enabled_and_disabled(core: Core) -> None:
+    p = packed(core, 15.0)
+    assert p.ask(c.DO_PARACHUTE, DISABLE) == ACCEPTED
+    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert (turns(p), p.simulation.parameters["CHUTE_ENABLED"]) == (True, 0.0)
+    assert p.ask(c.DO_PARACHUTE, 7) == FAILED
+    assert p.ask(c.DO_PARACHUTE, ENABLE) == ACCEPTED
+    assert p.simulation.parameters["CHUTE_ENABLED"] == 1.0
+    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert not turns(p)
+
+
+def test_a_fall_out_of_control_releases_it(core: Core) -> None:
+    """Two motors of one side stop: it turns over, falls, and 1 s later the parachute comes."""
+    p = packed(core, 40.0)
+    p.set_parameter("SIM_ENGINE_FAIL", 9)
+    height = p.height
+    assert p.fly(4.0, lambda: not turns(p))
+    assert said(p)[0] == "Parachute: Released"
+    assert 3.0 < height - p.height < 20.0
+
+
+def test_a_flip_does_not_release_it(core: Core) -> None:
+    p = packed(core, 40.0)
+    assert p.set_mode(STABILIZE)
+    p.sticks(0.5, throttle=1600)
+    assert p.set_mode(FLIP)
+    p.sticks(3.0, throttle=1600)
+    assert turns(p) and said(p) == []
+
+
+def test_sinking_too_fast_releases_it_after_a_second(core: Core) -> None:
+    p = packed(core, 30.0, CHUTE_CRT_SINK=2.0)
+    assert p.set_mode(STABILIZE)
+    p.hold(throttle=1000)
+    assert p.fly(2.0, lambda: p.vel[2] > 2.0)
+    assert p.fly(2.0, lambda: not turns(p))
+    assert said(p)[0] == "Parachute: Released"
+    assert p.vel[2] == pytest.approx(2.0 + 9.0, abs=1.5)
+
+
+def test_a_mission_releases_it(core: Core) -> None:
+    p = Aviator(core, "ardupilot_quad", **CHUTE).ready()
+    way = Item(c.NAV_WAYPOINT, (20.0, 0.0), 15.0)
+    p.start_mission(Item(c.NAV_TAKEOFF, None, 15.0), Item(c.DO_PARACHUTE, p=(2.0,)), way)
+    p.wait_disarmed(40.0)
+    assert p.said("Mission: 2 Parachute") and "Parachute: Released" in said(p)
+
+
+def flying(b: Fitted) -> dict[str, Any]:
+    """Lets the fake autopilot be in the air at 50 m."""
+    answers: dict[str, Any] = {"landed": False, "error": 0.0, "height": 50.0, "released": []}
+    b.autopilot.is_landed = lambda: answers["landed"]  # type: ignore[attr-defined]
+    b.autopilot.height = lambda: answers["height"]  # type: ignore[attr-defined]
+    b.autopilot.sink_rate = lambda: 0.0  # type: ignore[attr-defined]
+    b.autopilot.lean_error = lambda: answers["error"]  # type: ignore[attr-defined]
+    b.autopilot.release_parachute = answers["released"].append  # type: ignore[attr-defined]
+    return answers
+
+
+def test_switches() -> None:
+    b = bench(**{**CHUTE, "CHUTE_ENABLED": 0.0})
+    answers = flying(b)
+    enabled = b.vehicle.parameters
+    for function, position, value in ((21, HIGH, 1), (21, LOW, 0), (23, MIDDLE, 1), (23, LOW, 0)):
+        b.bridge.switched(function, position)
+        assert enabled["CHUTE_ENABLED"] == value
+    b.bridge.switched(22, HIGH)
+    assert answers["released"] == [], "not enabled"
+    b.bridge.switched(23, HIGH)
+    assert answers["released"] == [True]
+    b.bridge.switched(22, HIGH)
+    assert answers["released"] == [True], "once only"
+
+
+def test_relay_held_open_with_the_motors_on() -> None:
+    b = bench(
+        CHUTE_ENABLED=1.0, CHUTE_TYPE=0.0, CHUTE_OPTIONS=3.0, CHUTE_DELAY_MS=1000.0, RELAY1_FUNCTION=1.0, RELAY1_PIN=9.0
+    )
+    answers = flying(b)
+    assert b.command(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert answers["released"] == [False]
+    state = b.bridge.get(ParachuteService).snapshot()
+    b.run(30.0)
+    assert b.bridge.get(ParachuteService).snapshot()[0][0] == 3, "done"
+    b.bridge.get(ParachuteService).restore(state)
+    assert b.bridge.get(ParachuteService).snapshot() == state
+
+
+def test_a_rover_has_none() -> None:
+    b = bench(FakeRover())
+    assert b.command(c.DO_PARACHUTE, RELEASE) == UNSUPPORTED
+    assert pulse(b) is None
