@@ -59,15 +59,15 @@ SYSTEM_ID_DID = 52  # copter; a: what (systemid.py), b: a number of it
 SYSTEM_ID_SAMPLE = 53  # copter: a sample of SYSTEMID, for the log
 CIRCLE_BEGINS = 59  # copter: the next circle of a mission's LOITER_TURNS; a: its number, b: how many
 NO_WAY = 60  # there is no way around the areas of the fence
-EKF_RELATIVE = 70  # the filter's position is relative to where it began; a: IMU
-EKF_STOPPED_AIDING = 71  # a: IMU
-EKF_USES = 72  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
 LANDING_TARGET_DID = 61  # a: what (landing_target/state.py)
 DOCK_DID = 62  # rover; a: what (dock.py)
-YAW_IMBALANCE = 65  # copter; a: the integrator of the yaw rate loop
-EKF_LANE_SWITCHED = 81  # a: IMU whose filter is flown by now
-EKF_COMPASS_CHANGED = 82  # a: IMU of the filter, b: compass
 AUTOTUNE_DID = 63  # copter; a: what (autotune_gains.py), b: a number of it
+YAW_IMBALANCE = 64  # copter; a: the integrator of the yaw rate loop
+EKF_RELATIVE = 65  # the filter's position is relative to where it began; a: IMU
+EKF_STOPPED_AIDING = 66  # a: IMU
+EKF_USES = 67  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
+EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
+EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

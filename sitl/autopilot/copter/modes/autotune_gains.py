@@ -26,7 +26,7 @@ FAILED = 5
 STARTED, STOPPED, PROGRESS, COMPLETE, SUCCESS, FAILURE, OVERRIDDEN, TRIES, SAVED, RESTORED, INCOMPLETE, D_LIMIT = range(
     12
 )
-MEASURED, SAMPLE = 12, 13  # for the log alone: a twitch is over; a tick of one
+MEASURED = 12  # for the log alone: a twitch is over
 
 TESTING_I = 0.1
 """I between twitches, as a part of P: it must not interfere,"""

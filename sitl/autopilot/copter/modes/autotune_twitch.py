@@ -142,7 +142,6 @@ def run(v: Vehicle) -> None:
         t.came_to = rules.judge_angle(t, goal, p.AUTOTUNE.AGGR)
     if t.came_to == rules.GOES_ON and v.time_us - t.begun_us >= t.limit_us:
         t.came_to = rules.MEASURED
-    gains.tell(v, gains.SAMPLE, 0.0)
     if t.came_to == rules.MEASURED:
         gains.tell(v, gains.MEASURED, 0.0)
 
