@@ -38,7 +38,8 @@ PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 
 
 def blocks(page: Path, language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+    return [text for name, text in fenced if name == language]
 
 
 def test_the_python_of_the_readme_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
@@ -66,7 +67,7 @@ def test_the_examples_of_faults_run_and_every_fault_and_option_is_explained(core
         assert f"`--link-{name} " in page.read_text()
     for effect in EFFECTS:
         assert effect.does in page.read_text() and f"`{effect.unit}" in page.read_text()
-    for line in "\n".join(blocks(page, "")[:2]).splitlines():
+    for line in "".join(blocks(page, "")[:2]).splitlines():
         words = shlex.split(line.split(" -- ")[0])
         options = parser().parse_args(words[1:] if words[0] == "sitl" else words)
         for fault in getattr(options, "fail", ()):

@@ -31,12 +31,12 @@ ARM, SET_MODE, TAKEOFF, START, REBOOT = 400, 176, 22, 300, 246
 MODES = {
     "copter": {
         "STABILIZE": 0, "ACRO": 1, "ALT_HOLD": 2, "AUTO": 3, "GUIDED": 4, "LOITER": 5, "RTL": 6, "CIRCLE": 7, "LAND": 9,
-        "DRIFT": 11, "FLIP": 14, "POSHOLD": 16, "BRAKE": 17, "THROW": 18, "AVOID_ADSB": 19,
+        "DRIFT": 11, "FLIP": 14, "AUTOTUNE": 15, "POSHOLD": 16, "BRAKE": 17, "THROW": 18, "AVOID_ADSB": 19,
         "GUIDED_NOGPS": 20, "SMART_RTL": 21, "FLOWHOLD": 22, "FOLLOW": 23, "ZIGZAG": 24,
         "SYSTEMID": 25, "AUTO_RTL": 27, "TURTLE": 28,
     },
     "rover": {
-        "MANUAL": 0, "ACRO": 1, "STEERING": 3, "HOLD": 4, "LOITER": 5, "FOLLOW": 6, "SIMPLE": 7, "CIRCLE": 9,
+        "MANUAL": 0, "ACRO": 1, "STEERING": 3, "HOLD": 4, "LOITER": 5, "FOLLOW": 6, "SIMPLE": 7, "DOCK": 8, "CIRCLE": 9,
         "AUTO": 10, "RTL": 11, "SMART_RTL": 12, "GUIDED": 15,
     },
 }  # fmt: skip

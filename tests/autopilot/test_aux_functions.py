@@ -90,7 +90,7 @@ def test_relays(number: int, relay: int) -> None:
 def test_functions_of_what_is_not_fitted_do_nothing(kind: type[FakeVehicle]) -> None:
     vehicle = kind()
     before = vehicle.fleet.tobytes()
-    for number in (30, 62, 78, 90, 164):
+    for number in (30, 62, 78, 100, 164):
         notes = move(vehicle, number, HIGH)
         assert notes[-1] == Text(6, f"Aux function {number} has no effect in this simulator")
     assert vehicle.fleet.tobytes() == before

@@ -29,7 +29,8 @@ def _matrix(q: np.ndarray) -> np.ndarray:
 def _predict(P: np.ndarray, q: np.ndarray, dv: np.ndarray, dt: float, mirrored: bool = False) -> np.ndarray:
     params, ekf = Ekf3(), Ekf()
     for name in params.fields:
-        params[name] = 1.0
+        if isinstance(params[name], float):  # else a group, of sources
+            params[name] = 1.0
     ekf.P[:], ekf.q, ekf.step_dv, ekf.step_dt = P, Quat(*q), Vec3(*dv), dt
     ekf.biases_mirrored = mirrored
     covariance.predict(ekf, params)

@@ -134,7 +134,7 @@ def test_barometer_shows_the_standard_atmosphere(rig):
 @pytest.mark.parametrize("heading", [0.0, 90.0, 217.0])
 def test_magnetometer_shows_heading_and_declination(rig, heading):
     r = rig(heading=heading, mag_noise=0.0)
-    magnetometer.sample(r.p, r.v.sensors, r.v.rng)
+    magnetometer.sample(r.p, r.v.sensors, r.v.rng, 0)
     x, y, z = list(r.v.sensors.mag)
     magnetic = math.degrees(math.atan2(-y, x)) % 360.0
     assert (heading - magnetic) % 360.0 == approx(12.8, abs=0.3)  # ArduPilot's COMPASS_DEC there: 12.80 deg
@@ -188,7 +188,7 @@ def test_a_vehicle_without_barometer_gets_no_samples(rig):
 def test_more_compasses_differ_by_their_offsets_alone(rig):
     r = rig()
     r.p.sensors.irons[1].hard, r.p.sensors.irons[2].hard = Vec3(0.1, 0.0, 0.0), Vec3(0.0, 0.0, -0.2)
-    magnetometer.sample(r.p, r.v.sensors, r.v.rng)
+    magnetometer.sample(r.p, r.v.sensors, r.v.rng, 0)
     first = np.array(r.v.sensors.mag)
     assert np.array(r.v.sensors.mag2) - first == approx([-0.1, 0.0, 0.0], abs=1e-6)
     assert np.array(r.v.sensors.mag3) - first == approx([0.0, 0.0, 0.2], abs=1e-6)
