@@ -21,6 +21,7 @@ BATTERY_CRITICAL = 4
 EKF = 5
 BATTERY_MISSING = 8
 VIBRATION = 9
+TERRAIN = 15
 """More are each firmware's own (6, 7)."""
 
 _ON = {

@@ -203,6 +203,7 @@ class Modes(Record):
     mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
     mission_lands: bool  # it has a landing sequence (DO_LAND_START; written by the shell)
     mission_returns: bool  # it has a return path (DO_RETURN_PATH_START; written by the shell)
+    mission_over_ground: bool  # heights of it are above the ground (written by the shell)
     follow: FollowState
     nav: Nav
 

@@ -35,6 +35,7 @@ from .services.setpoints import SetpointService
 from .services.signing import SigningService
 from .services.statustext import EventService
 from .services.streams import StreamService
+from .services.terrain import TerrainService
 from .switchboard import Switchboard
 from .telemetry.builder import shell_messages
 from .wire import streams
@@ -603,6 +604,7 @@ class Bridge:
         new.get(MissionService).follow(self.get(MissionService))
         new.get(SigningService).follow(self._signing)
         new.get(FaultService).follow(self.get(FaultService))
+        new.get(TerrainService).follow(self.get(TerrainService))
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

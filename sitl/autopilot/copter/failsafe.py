@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from .. import failsafe_checks
-from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
-from ..events import FAILSAFE, emit
+from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION, BY_TERRAIN_FAILSAFE
+from ..events import FAILSAFE, TERRAIN_DID, emit
 from ..failsafe_checks import (
     EKF,
     GCS,
     RADIO,
+    TERRAIN,
     VIBRATION,
     battery_fell_to,
     is_estimate_bad,
@@ -26,8 +27,12 @@ from ..modes import (
     REASON_EKF_FAILSAFE,
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
+    REASON_TERRAIN_FAILSAFE,
 )
 from ..state import Arming, Failsafe
+from ..terrain.ground import is_long_missing
+from ..terrain.state import FAILSAFE as GROUND_MISSING
+from ..terrain.state import RTL_BEGINS_ANEW
 from .control import vibration
 from .failsafe_actions import (
     CONTINUE_LANDING,
@@ -45,11 +50,12 @@ from .failsafe_actions import (
     land_with_pause,
     radio_action,
 )
-from .modes import ground, set_mode
+from .modes import ground, rtl, set_mode
 from .modes.alt_hold import ALT_HOLD
 from .modes.auto import AUTO
 from .modes.guided import GUIDED
 from .modes.land import LAND
+from .modes.rtl import RTL
 from .modes.state import Modes
 from .modes.table import is_autonomous, is_landing, requires_position
 from .parameters.safety import Battery
@@ -268,6 +274,25 @@ def watch_vibration(v: Vehicle) -> None:
     change = vibration.watch(ap.control.vibration, ap.estimate, watched, v.time_us)
     if change != vibration.NOTHING:
         report(ap.events, v.time_us, VIBRATION, change == vibration.BEGINS)
+
+
+@law
+def watch_terrain(v: Vehicle) -> None:
+    """Ten times a second: the height of the ground is needed and has been missing for too long."""
+    ap = v.autopilot
+    t, modes = ap.terrain, ap.modes
+    if t.missed_us == 0 or not is_long_missing(t, v.time_us):
+        return
+    t.missed_us = 0
+    emit(ap.events, v.time_us, TERRAIN_DID, float(GROUND_MISSING), 0.0)
+    report(ap.events, v.time_us, TERRAIN, True)
+    if is_idle(modes, ap.arming.landed):
+        ground.disarm(v, BY_TERRAIN_FAILSAFE)
+    elif modes.number == RTL:
+        emit(ap.events, v.time_us, TERRAIN_DID, float(RTL_BEGINS_ANEW), 0.0)
+        rtl.prepare(v, False)
+    elif set_mode.request(v, RTL, REASON_TERRAIN_FAILSAFE) != ACCEPTED:
+        land_with_pause(v, REASON_TERRAIN_FAILSAFE)
 
 
 def terminate(v: Vehicle) -> None:

@@ -41,6 +41,7 @@ from .flight import (
     ZigZag,
 )
 from .safety import Battery, Failsafes, Fence, Simulated
+from .terrain import TerrainData
 
 
 class Frame(ParameterGroup):
@@ -129,6 +130,7 @@ class Parameters(shared.Parameters):
     SRTL: SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
+    TERRAIN: TerrainData
     THR_DZ: float = param(
         100,
         0,
