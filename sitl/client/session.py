@@ -334,6 +334,10 @@ class Session:
                 if self.now - begin >= timeout:
                     self.raise_error(WaitTimeoutError(name, timeout, "", begin))
 
+    def collected(self, name: str, into: list[Any]) -> None:
+        """From now on, append every message of a name to a list."""
+        self._collected.append((name, into))
+
     @contextmanager
     def messages(self, name: str, rate_hz: float | None = None) -> Iterator[list[Any]]:
         """All messages of a name that come while the block flies, as a list that grows; ``rate_hz``: ask for them."""

@@ -110,8 +110,8 @@ def places_of(block: Block, part: int, spacing: float) -> Iterator[tuple[float, 
         yield add_offset(block.lat, block.lon, north, east)
 
 
-def measured(block: Block, part: int, spacing: float, height: Callable[[float, float], float]) -> Part:
-    """A part of a block by a function that gives the height [m] at a latitude and a longitude [deg]."""
-    return tuple(
-        min(max(round(height(lat * 1e-7, lon * 1e-7)), -32768), 32767) for lat, lon in places_of(block, part, spacing)
-    )
+def measured(block: Block, part: int, spacing: float, height: Callable[[float, float], float | None]) -> Part | None:
+    """A part of a block by a function of latitude and longitude [deg]; None where that does not know a height [m]."""
+    found = [height(lat * 1e-7, lon * 1e-7) for lat, lon in places_of(block, part, spacing)]
+    known = tuple(min(max(round(height), -32768), 32767) for height in found if height is not None)
+    return known if len(known) == len(found) else None
