@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
-from ...core.geodesy import METRES_PER_DEGE7, add_offset, longitude_scale, offset_ne
+from ...core.geodesy import add_offset, offset_ne
 
 SIDE = 4
 """Points of a side of a part."""
@@ -47,12 +47,11 @@ class Square(NamedTuple):
 
 
 def block_of(lat: float, lon: float, spacing: float) -> Block:
-    """The block in which a place [degE7] lies; ``spacing`` of the points [m]."""
+    """The block in which a place [degE7] lies; ``spacing`` of the points [m]. Blocks count from whole degrees."""
     south, west = math.floor(lat / _DEGREE) * _DEGREE, math.floor(lon / _DEGREE) * _DEGREE
-    step = STRIDE_N * spacing / METRES_PER_DEGE7
-    row = south + math.floor((lat - south) / step) * step
-    step = STRIDE_E * spacing / (METRES_PER_DEGE7 * longitude_scale(row))
-    return Block(round(row), round(west + math.floor((lon - west) / step) * step))
+    away, step_n, step_e = offset_ne(south, west, lat, lon), STRIDE_N * spacing, STRIDE_E * spacing
+    corner = add_offset(south, west, math.floor(away.x / step_n) * step_n, math.floor(away.y / step_e) * step_e)
+    return Block(round(corner.lat), round(corner.lon))
 
 
 def around(lat: float, lon: float, spacing: float) -> Iterator[Block]:
