@@ -21,6 +21,7 @@ from .bridge.bridge import Bridge, BridgeState
 from .bridge.links import Link, LinkFaults
 from .bridge.services.faults import FaultService
 from .bridge.services.statustext import EventService, StatusTextService
+from .bridge.services.terrain import TerrainService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
 from .core.constants import TICK_US
@@ -35,7 +36,7 @@ from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
 from .vehicle.faults import Failure
 from .vehicles import Airframe, AirframeError
-from .worlds import World
+from .worlds import World, heights
 
 Array = np.ndarray[Any, Any]
 _WARNING = 4
@@ -164,6 +165,8 @@ class Simulation:
         self.bridge.core.load(self.plant.runs_in_core, progress)
         if isinstance(self.plant, LocalPlant):
             self.plant.load()
+        if scenario.terrain is not None:
+            self.bridge.get(TerrainService).use(heights.load(scenario.terrain, self.home[:3]))
         for text in scenario.faults:
             self.bridge.get(FaultService).fail(Failure.of_text(text))
 

@@ -7,13 +7,13 @@ https://mavlink.io/en/services/terrain.html. The grid is here; the vehicle's rec
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from ...autopilot.fence.state import POINTS
 from ...autopilot.mission.item import COMMANDS, MissionItem
 from ...autopilot.terrain import grid
-from ...autopilot.terrain.grid import NOTHING, PARTS, Block, Blocks
+from ...autopilot.terrain.grid import NOTHING, PARTS, Block, Blocks, Part
 from ...core.geodesy import add_offset, offset_ne
 from ..channel import Channel
 from ..dialect import message
@@ -32,6 +32,8 @@ BLOCKS_MAX = 256
 """More are forgotten, the oldest first."""
 CHECKED_MAX = 8
 """Places of TERRAIN_CHECK that are kept."""
+Source = Callable[[float, float], float | None]
+"""Height of the ground [m above sea level] at a latitude and a longitude [deg]; None: not known."""
 LAT_MAX, LON_MAX = 900_000_000, 1_800_000_000
 START_RADIUS = 100.0
 """The estimate's origin is so near to where the vehicle was switched on, or the simulated ground stays flat [m]."""
@@ -51,6 +53,9 @@ class TerrainService(Service):
         self._checked: tuple[Block, ...] = ()
         self._asked: tuple[Block, ...] = ()
         """What has been asked for, the last one last."""
+        self._source: Source | None = None
+        self._tried: tuple[Block, ...] = ()
+        """What the source does not know all of."""
         self._items: tuple[MissionItem, ...] = ()
         self._on_mission: tuple[Block, ...] = ()
 
@@ -72,12 +77,35 @@ class TerrainService(Service):
         spacing = int(self._ap.params.TERRAIN.SPACING)
         if spacing != self._spacing:
             self._spacing, self._blocks, self._checked, self._asked, self._on_mission = spacing, {}, (), (), ()
-            self._items = ()
+            self._items = self._tried = ()
             self.look_up()
-        t.asked = bool(self._listeners())
+        t.asked = bool(self._listeners()) or self._uses_source()
         self.due_us = (self.bridge.now_us // EVERY_US + 1) * EVERY_US if t.asked else NEVER
         self._count()
         self._shape()
+
+    def use(self, source: Source) -> None:
+        """Take heights from a source of the simulator's own; what it does not know is asked for."""
+        self._source = source
+        self.look()
+
+    def _uses_source(self) -> bool:
+        return self._source is not None and self._ap.params.TERRAIN.ENABLE > 0.0
+
+    def _fill(self, block: Block) -> None:
+        """Take what the source knows of a block."""
+        if self._source is None:
+            return
+        parts = list(self._blocks.get(block, NOTHING))
+        for k in range(PARTS):
+            parts[k] = parts[k] or grid.measured(block, k, self._spacing, self._source) or ()
+        self._keep(block, parts)
+
+    def _keep(self, block: Block, parts: list[Part]) -> None:
+        others = {b: held for b, held in self._blocks.items() if b != block}
+        if len(others) >= BLOCKS_MAX:
+            del others[next(iter(others))]
+        self._blocks = {**others, block: tuple(parts)}
 
     def _listeners(self) -> list[Channel]:
         p = self._ap.params.TERRAIN
@@ -128,16 +156,24 @@ class TerrainService(Service):
         """Tell the core how much is missing."""
         t = self._terrain
         t.loaded = sum(bool(part) for parts in self._blocks.values() for part in parts)
-        t.pending = 0
-        if t.asked:
-            needed = self._needed()
-            t.pending = sum(self._missing(block).bit_count() for block in needed) if needed else PARTS
+        needed = self._needed()
+        if not self._listeners():  # nobody knows more than the source
+            needed = tuple(block for block in needed if block not in self._tried)
+        missing = sum(self._missing(block).bit_count() for block in needed)
+        t.pending = 0 if not t.asked else missing if self._ap.estimate.origin_set else PARTS
         t.waits = t.pending > 0
 
     def service(self, now_us: int) -> None:
         self.due_us = (now_us // EVERY_US + 1) * EVERY_US
         listeners = self._listeners()
         missing = [block for block in self._needed() if self._missing(block)]
+        if missing and self._uses_source():
+            for block in missing:
+                if block not in self._tried:
+                    self._fill(block)
+            self._tried = tuple(missing)
+            missing = [block for block in missing if self._missing(block)]
+            self.look_up()
         if missing and listeners:
             latest = self._asked[-1] if self._asked else None
             k = missing.index(latest) + 1 if latest in missing else 0
@@ -159,10 +195,7 @@ class TerrainService(Service):
             return
         parts = list(self._blocks.get(block, NOTHING))
         parts[m.gridbit] = tuple(m.data)
-        others = {b: held for b, held in self._blocks.items() if b != block}
-        if len(others) >= BLOCKS_MAX:
-            del others[next(iter(others))]
-        self._blocks = {**others, block: tuple(parts)}
+        self._keep(block, parts)
         self._count()
         self.look_up()
 
@@ -244,12 +277,14 @@ class TerrainService(Service):
     def follow(self, before: TerrainService) -> None:
         """Go on after a reboot: heights stay known."""
         self._blocks, self._spacing, self._asked = before._blocks, before._spacing, before._asked
+        self._source = before._source
+        self.look()
 
     def snapshot(self) -> Any:
         held = tuple(self._blocks.items())
-        return held, self._spacing, self._checked, self._asked, self.due_us
+        return held, self._spacing, self._checked, self._asked, self._tried, self.due_us
 
     def restore(self, state: Any) -> None:
-        blocks, self._spacing, self._checked, self._asked, self.due_us = state
+        blocks, self._spacing, self._checked, self._asked, self._tried, self.due_us = state
         self._blocks = dict(blocks)
         self._items, self._on_mission = (), ()
