@@ -164,8 +164,12 @@ class Simulation:
         self.bridge.core.load(self.plant.runs_in_core, progress)
         if isinstance(self.plant, LocalPlant):
             self.plant.load()
-        for fault in scenario.faults:
-            self.bridge.get(FaultService).fail(Failure.of(fault))
+        try:
+            for fault in scenario.faults:
+                self.bridge.get(FaultService).fail(Failure.of(fault))
+        except OptionError:
+            self.close()
+            raise
 
     @property
     def resolved(self) -> Scenario:

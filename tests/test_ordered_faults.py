@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from sitl import Fleet, Simulation
+from sitl.bridge.services.faults import FaultService
 from sitl.client import Client
 from sitl.errors import OptionError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.scenario import Scenario
+from sitl.simulation import Core
 from sitl.vehicle.faults import Failure
 
 OFF, OK, STUCK, SLOW = 1, 0, 2, 5
@@ -152,6 +154,20 @@ def test_a_fleet_takes_all_of_an_order_or_nothing() -> None:
             order()
         assert all(fleet.view(k).physics.sensors.gps_off for k in range(2))
     fleet.close()
+
+
+@pytest.mark.parametrize("fault", ["motor:1@5", "servo", "wind", "shove", "twist", "SIM_WIND_DIR=10"])
+def test_what_does_nothing_to_physics_elsewhere_is_refused(core: Core, fault: str) -> None:
+    where = "json:127.0.0.1:9"
+    with pytest.raises(OptionError, match=rf"does nothing to physics {where}; there are gps, gyro, .* rc"):
+        Simulation("erle_copter", physics=where, faults=[fault])
+    simulation = Simulation("erle_copter", physics=where, faults=["gps", "rc@5"])
+    with pytest.raises(OptionError, match=f"does nothing to physics {where}"):
+        simulation.fail(fault)
+    order = lambda *params: simulation.bridge.get(FaultService).command(*params)  # noqa: E731
+    simulation.parameters["SYS_FAILURE_EN"] = 1.0
+    assert (order(MOTOR, OFF, 0), order(GPS, STUCK, 0), order(GPS, OFF, 0)) == (UNSUPPORTED, UNSUPPORTED, ACCEPTED)
+    simulation.close()
 
 
 def test_what_is_no_list_of_faults() -> None:

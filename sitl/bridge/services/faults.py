@@ -7,6 +7,7 @@ from typing import Any
 
 from ...autopilot.params.parameter import stored
 from ...autopilot.shell_parameters import FAILURES
+from ...errors import OptionError
 from ...vehicle.faults import TYPES, UNITS, Failure, known
 from ...vehicle.ordered_faults import Ordered, OrderedFaults, Repair
 from ..wire.port import NEVER
@@ -30,8 +31,18 @@ class FaultService(Service):
         return [order.fault for order in self._faults.orders]
 
     def check(self, failure: Failure) -> None:
-        """OptionError when the vehicle has no such fault."""
-        failure.checked(self._table)
+        """OptionError when the vehicle has no such fault, or it does nothing to its physics."""
+        vehicle: Any = self.bridge.vehicle
+        table = self._table
+        names, idle = failure.checked(table).values(table, {}), vehicle.plant.idle_parameters
+        without = next((name for name in names if name.startswith(idle)), None) if idle else None
+        if without is not None:
+            works = [unit for unit, types in known(table).items() for effect in types.values()
+                     if not effect.names()[0].startswith(idle)]  # fmt: skip
+            there_are = ", ".join(dict.fromkeys(works))
+            raise OptionError(
+                f"fault {failure.unit}: {without} does nothing to physics {vehicle.physics}; there are {there_are}"
+            )
 
     def repair_of(self, what: object, instance: object = 0) -> Repair:
         """What is to be repaired, checked.
@@ -45,8 +56,9 @@ class FaultService(Service):
         """Let something fail now or later.
 
         Raises:
-            OptionError: the vehicle has no such fault.
+            OptionError: as of ``check``.
         """
+        self.check(failure)
         self._faults.order(failure, self.bridge.elapsed_us)
         self.service(self.bridge.now_us)
 
@@ -96,7 +108,10 @@ class FaultService(Service):
         if kind == 0.0:
             self.repair(self.repair_of(name, int(instance)))
         else:
-            self.fail(Failure(name, TYPES[int(kind)], int(instance)))
+            try:
+                self.fail(Failure(name, TYPES[int(kind)], int(instance)))
+            except OptionError:  # not with this physics
+                return UNSUPPORTED
         return ACCEPTED
 
     def follow(self, before: FaultService) -> None:
