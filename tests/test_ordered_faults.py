@@ -125,14 +125,16 @@ def test_a_client_that_sets_the_parameter_of_a_fault_has_the_last_word() -> None
 def test_a_recording_has_the_faults_that_were_ordered_before_it(tmp_path: Path) -> None:
     simulation = Simulation("erle_rover", faults=["gps@1", "rc@1"])
     simulation.fail("motor:1@0.5")
-    simulation.repair("rc")
+    simulation.fail("rc/stuck@0.5")
+    simulation.repair("rc:4")
     recorder = Recorder(simulation, tmp_path / "a.rec")
     simulation.advance(2.0)
     recorder.close()
     replay = Replay(read(tmp_path / "a.rec"))
     assert replay.run() == []
     assert replay.simulation.parameters["SIM_ENGINE_FAIL"] == 1.0 and is_off(replay.simulation)
-    assert replay.simulation.parameters["SIM_RC_FAIL"] == 0.0
+    assert replay.simulation.parameters["SIM_RC_STUCK"] == 0xFFF7
+    assert replay.simulation.parameters["SIM_RC_FAIL"] == 1.0
 
 
 def test_a_fleet_takes_all_of_an_order_or_nothing() -> None:

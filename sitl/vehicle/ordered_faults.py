@@ -32,6 +32,17 @@ class Ordered(NamedTuple):
     has_begun: bool = False
     released: tuple[str, ...] = ()
     """Parameters that somebody else has set since it began: it sets them no more."""
+    over: tuple[int, ...] = ()
+    """Instances that were repaired."""
+
+    def failures(self, table: Table) -> list[Failure]:
+        """What fails: the failure, or those of its instances that are not over."""
+        failure = Failure.of_text(self.fault)
+        return [replace(failure, instance=n) for n in self.left(table)] if self.over else [failure]
+
+    def left(self, table: Table) -> list[int]:
+        """Its instances that are not over."""
+        return [n for n in Failure.of_text(self.fault).numbers(table) if n not in self.over]
 
 
 class Repair(NamedTuple):
@@ -92,12 +103,12 @@ class Repair(NamedTuple):
         instance, kind = f":{self.instance}" if self.instance else "", f"/{self.type}" if self.type else ""
         return self.fault or f"{self.unit}{instance}{kind}"
 
-    def remains(self, failure: Failure, table: Table) -> list[Failure]:
-        """What is left of a failure: itself, nothing, or all its instances but one."""
-        numbers = failure.numbers(table)
-        if not self._concerns(failure, table) or (self.instance and self.instance not in numbers):
-            return [failure]
-        return [replace(failure, instance=n) for n in numbers if n != self.instance] if self.instance else []
+    def remains(self, order: Ordered, table: Table) -> Ordered | None:
+        """What is left of a fault that was ordered; None: nothing."""
+        failure, left = Failure.of_text(order.fault), order.left(table)
+        if not self._concerns(failure, table) or (self.instance and self.instance not in left):
+            return order
+        return order._replace(over=(*order.over, self.instance)) if self.instance and len(left) > 1 else None
 
     def _concerns(self, failure: Failure, table: Table) -> bool:
         if not self.unit:
@@ -148,12 +159,8 @@ class OrderedFaults:
             over = max(same, key=lambda o: (o.has_begun, o.begin_us), default=None)
             self.orders = tuple(o for o in self.orders if o is not over)
             return
-        self.orders = tuple(
-            o if left.instance == failure.instance else o._replace(fault=str(left))
-            for o in self.orders
-            for failure in (Failure.of_text(o.fault),)
-            for left in repair.remains(failure, self._table)
-        )
+        remain = [repair.remains(order, self._table) for order in self.orders]
+        self.orders = tuple(order for order in remain if order is not None)
 
     def was_set(self, name: str) -> None:
         """Somebody else has set a parameter: it is no concern of the faults that have begun any more."""
@@ -173,7 +180,7 @@ class OrderedFaults:
             if o.end_us <= now_us:
                 continue
             if not o.has_begun and o.begin_us <= now_us:
-                values = Failure.of_text(o.fault).values(self._table, {})
+                values = {name: x for f in o.failures(self._table) for name, x in f.values(self._table, {}).items()}
                 once |= {name: value for name, value in values.items() if name in ONE_SHOT}
                 for name in values.keys() - once.keys() - self.before.keys():
                     self.before[name] = present(name)
@@ -182,9 +189,10 @@ class OrderedFaults:
         self.orders = tuple(orders)
         wanted, are_set = dict(sorted(self.before.items())), set[str]()
         for o in sorted((o for o in orders if o.has_begun), key=lambda o: o.begin_us):
-            for name, value in Failure.of_text(o.fault).values(self._table, wanted).items():
-                if name not in o.released:
-                    wanted[name] = value
-                    are_set.add(name)
+            for failure in o.failures(self._table):
+                for name, value in failure.values(self._table, wanted).items():
+                    if name not in o.released:
+                        wanted[name] = value
+                        are_set.add(name)
         self.before = {name: value for name, value in self.before.items() if name in are_set}
         return wanted | once

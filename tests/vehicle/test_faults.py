@@ -138,6 +138,8 @@ def test_a_repair_is_of_what_it_names() -> None:
     assert v.has(SIM_GPS1_ENABLE=0, SIM_GPS1_GLTCH_X=0.0)
     v.repair("gyro/off").repair("gyro")
     assert v.has(SIM_GYR_FAIL_MSK=0, SIM_GYR2_BIAS_X=0.0, SIM_MAG1_FAIL=1)
+    v.fail("rc/stuck").repair("rc:3").repair("rc:16").repair("rc/stuck@0")
+    assert v.has(SIM_RC_STUCK=0)
     v.fail("SIM_GPS1_JAM=1").repair("SIM_GPS1_ENABLE")
     assert v.has(SIM_GPS1_ENABLE=1, SIM_GPS1_JAM=1)
     assert v.repair("gps").has(SIM_GPS1_JAM=0)

@@ -28,7 +28,7 @@ class FaultService(Service):
     @property
     def texts(self) -> list[str]:
         """Those that were ordered and are not over, as they were ordered."""
-        return [order.fault for order in self._faults.orders]
+        return [str(failure) for order in self._faults.orders for failure in order.failures(self._table)]
 
     def check(self, failure: Failure) -> None:
         """OptionError when the vehicle has no such fault, or it does nothing to its physics."""
