@@ -12,6 +12,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from numbers import Integral, Real
 from typing import NamedTuple
 
@@ -108,8 +109,9 @@ EFFECTS: tuple[Effect, ...] = (
 """The first type of a unit is the one that counts when none is said."""
 
 
+@cache
 def known(table: Table) -> dict[str, dict[str, Effect]]:
-    """Unit -> type -> effect: those that a vehicle with these parameters has."""
+    """Unit -> type -> effect: those that a vehicle with these parameters has; not to be changed."""
     found: dict[str, dict[str, Effect]] = {}
     for effect in EFFECTS:
         if effect.is_in(table):
@@ -297,6 +299,12 @@ class Text(NamedTuple):
             return cls(unit, int(instance or 0), kind or "", *(None if n is None else float(n) for n in numbers))
         except ValueError:
             raise OptionError(f"fault {text!r} is not {FORM}, as in gps@12 or motor:2=0.5@20..30") from None
+
+
+def is_fault(name: str) -> bool:
+    """Whether a text begins with a unit of the table or names a SIM_ parameter."""
+    unit = unit_name(re.split("[:/=@]", name, maxsplit=1)[0])
+    return unit.startswith(PARAMETERS) or any(unit == effect.unit for effect in EFFECTS)
 
 
 def unit_name(unit: str) -> str:
