@@ -67,6 +67,10 @@ class TerrainService(Service):
     def channel_removed(self, channel: Channel) -> None:
         self.look()
 
+    def parameter_changed(self, name: str) -> None:
+        if name.startswith(TERRAIN):
+            self.look()
+
     # ------------------------------------------------------------------ whom to ask, and for what
 
     def look(self) -> None:
