@@ -104,7 +104,7 @@ class Bridge:
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
         """Set by who lets clients push the clock (``sitl.run.standstill``)."""
-        self.places = Places(vehicle.v.autopilot)
+        self.places = Places(vehicle.v.autopilot, lambda lat, lon: self.get(TerrainService).rise(lat, lon))
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}
         """By message number: place of the field target_system, -1 when there is none, and what is to be done."""

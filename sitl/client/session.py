@@ -242,6 +242,8 @@ class Session:
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
             self.telemetry.mode_names = mode_names(fields.type)
         self._awaited.discard(name)
+        for companion in self.companions:
+            companion.take(name, fields)
         for wanted, seen in self._collected:
             if wanted == name:
                 seen.append(fields)
@@ -334,10 +336,6 @@ class Session:
                     return seen[-1]
                 if self.now - begin >= timeout:
                     self.raise_error(WaitTimeoutError(name, timeout, "", begin))
-
-    def collected(self, name: str, into: list[Any]) -> None:
-        """From now on, append every message of a name to a list."""
-        self._collected.append((name, into))
 
     @contextmanager
     def messages(self, name: str, rate_hz: float | None = None) -> Iterator[list[Any]]:

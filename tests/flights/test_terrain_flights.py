@@ -37,7 +37,7 @@ class Flight:
         self.simulation = Simulation("ardupilot_quad", core=core, seed=1, home=home, params=params, terrain=terrain)
         self.client = Client(self.simulation)
         self.terrain = self.simulation.v.autopilot.terrain
-        self.answers = TerrainAnswers(self.client, ridge) if answers else None
+        self.answers = TerrainAnswers(self.client, ridge).start() if answers else None
         self.client.wait_ready()
         if answers:
             self.client.wait(lambda t: self.terrain.pending == 0, 40.0, "all heights")

@@ -219,6 +219,14 @@ class TerrainService(Service):
             return None
         return grid.height_of(self._blocks, lat, lon, self._spacing)
 
+    def rise(self, lat: float, lon: float) -> float | None:
+        """How much higher the ground is at a place [degE7] than at home [m]: 0 where it is a plain; None: not known."""
+        t = self._terrain
+        if t is None or not (t.asked or t.was_known or self._ap.params.TERRAIN.ENABLE <= 0.0):
+            return 0.0
+        height = self.height(lat, lon) if self._ap.params.TERRAIN.ENABLE > 0.0 else None
+        return height - t.home if height is not None and t.was_known else None
+
     def _check(self, channel: Channel, m: Any, sender: Sender) -> None:
         """TERRAIN_CHECK is answered at once; what is not known there is asked for."""
         t = self._terrain
