@@ -428,6 +428,11 @@ class Simulation:
         """Whether ``truth`` is what the record says: the physics runs in this process."""
         return self.plant.has_truth_in_record
 
+    @property
+    def has_plain_ground(self) -> bool:
+        """Whether the ground is a plain without solids, on native physics."""
+        return self.world is None and self.physics == NATIVE
+
     def truth(self) -> Carried:
         """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
         return self.plant.truth()

@@ -135,7 +135,7 @@ def terrain_check(v: Vehicle) -> int:
         return 0
     if v.autopilot.params.TERRAIN.ENABLE <= 0.0:
         return TERRAIN_OFF if v.autopilot.modes.mission_over_ground else RTL_TERRAIN_OFF
-    return TERRAIN_WAITS if v.autopilot.terrain.waits else 0
+    return TERRAIN_WAITS if v.autopilot.terrain.pending > 0 else 0
 
 
 @law

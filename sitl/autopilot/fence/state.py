@@ -62,4 +62,4 @@ class RallyState(Record):
     lat: Ints = array(POINTS, stored="i4")  # [degE7]
     lon: Ints = array(POINTS, stored="i4")  # [degE7]
     alt: Ints = array(POINTS, stored="i4")  # [m]
-    is_amsl: Ints = array(POINTS, stored="i4")  # 1: heights count from mean sea level, 0: from home
+    is_amsl: Ints = array(POINTS, stored="u1")  # 1: heights count from mean sea level, 0: from home

@@ -20,6 +20,16 @@ PARTS = ROWS * COLUMNS
 STRIDE_N, STRIDE_E = (ROWS - 1) * SIDE, (COLUMNS - 1) * SIDE
 """Points from one block to the next."""
 _DEGREE = 10_000_000
+SPACING, OPTIONS, MARGIN, OFFSET_MAX, SIM_TERRAIN = (
+    "TERRAIN_SPACING", "TERRAIN_OPTIONS", "TERRAIN_MARGIN", "TERRAIN_OFS_MAX", "SIM_TERRAIN",
+)  # fmt: skip
+MEANINGS = {
+    SPACING: "Distance between two points of the grid of heights [m], 1 to 10000",
+    OPTIONS: "1: nobody is asked for heights of the ground",
+    MARGIN: "Greatest distance of an answer's place from what was asked for [m]",
+    OFFSET_MAX: "Most that the told height of the ground is corrected by, to be home's where it is armed [m]",
+    SIM_TERRAIN: "1: the simulated ground is as high as the heights say, beside where it started",
+}
 Part = tuple[int, ...]
 """Heights [m above sea level] of 16 points, eastward, then row by row northward; empty: not known."""
 NOTHING: tuple[Part, ...] = ((),) * PARTS

@@ -23,7 +23,6 @@ class Terrain(Record):
     has_square: bool  # the vehicle is in the square below, as far as it has looked
     is_known: bool  # the heights of its corners are known
     was_known: bool  # heights have been known, and that at home: ``difference`` is good
-    waits: bool  # for heights that were asked for
     shapes: bool  # the simulated ground follows the heights (SIM_TERRAIN)
     spacing: Int32  # of the grid [m]
     north: float  # south-west corner of the square, from the origin [m]

@@ -21,7 +21,7 @@ from ...autopilot.copter.modes.guided_setpoints import (
     stop,
     takes_attitudes,
 )
-from ...autopilot.copter.terrain import ground_below, is_flat
+from ...autopilot.copter.terrain import is_flat
 from ...autopilot.mission.item import MissionItem
 from ...core.algebra import IDENTITY
 from ...core.kernels import law
@@ -84,15 +84,12 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int
 
 @law
 def follow_over_ground(v: Copter, m: SetPositionTargetGlobalInt, place: LocalPlace) -> None:
-    """Fly to a place at a height above the ground; with a velocity, above the ground that is below now."""
-    ground, pos = ground_below(v), place.pos
-    if not (place.is_known and ground.is_known):
-        return
-    target = global_target(m, Vec3(pos.x, pos.y, ground.d - m.alt))
+    """Fly to a place at a height above the ground; with a velocity that is nothing that can be flown."""
+    target = global_target(m, Vec3(place.pos.x, place.pos.y, -m.alt))
     if target.use_vel or target.use_acc or not is_finite(target):
-        follow(v, target, (m.type_mask & FORCE) != 0)
-    else:
-        set_position_over_ground(v, Vec3(pos.x, pos.y, -m.alt), yaw_of(target))
+        stop(v)
+    elif place.is_known:
+        set_position_over_ground(v, target.pos, yaw_of(target))
 
 
 @law

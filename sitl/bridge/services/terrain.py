@@ -22,12 +22,12 @@ from ..wire.streams import interval_of
 from .service import Handler, Sender, Service
 
 REPORT, REQUEST = message("TERRAIN_REPORT"), message("TERRAIN_REQUEST")
-TERRAIN = "TERRAIN_", "SIM_TERRAIN"
+TERRAIN = "TERRAIN_", grid.SIM_TERRAIN
 """Beginnings of the names of its parameters."""
 EVERY_US = 2_000_000
 """A block is asked for so often, as ArduPilot does."""
-NO_DOWNLOAD = 1
-"""TERRAIN_OPTIONS"""
+NO_DOWNLOAD, LONGEST = 1, 10_000
+"""TERRAIN_OPTIONS; greatest TERRAIN_SPACING [m]."""
 BLOCKS_MAX = 256
 """More are forgotten, the oldest first."""
 CHECKED_MAX = 8
@@ -44,7 +44,7 @@ class TerrainService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._ap = bridge.vehicle.v.autopilot
+        self._ap, self._values = bridge.vehicle.v.autopilot, bridge.vehicle.parameters
         self._terrain: Any = getattr(self._ap, "terrain", None)
         """Its record; None: this firmware has none."""
         self._blocks: Blocks = {}
@@ -78,7 +78,7 @@ class TerrainService(Service):
         t = self._terrain
         if t is None:
             return
-        spacing = int(self._ap.params.TERRAIN.SPACING)
+        spacing = min(max(int(self._values[grid.SPACING]), 1), LONGEST)
         if spacing != self._spacing:
             self._spacing, self._blocks, self._checked, self._asked, self._on_mission = spacing, {}, (), (), ()
             self._items = self._tried = ()
@@ -113,7 +113,7 @@ class TerrainService(Service):
 
     def _listeners(self) -> list[Channel]:
         p = self._ap.params.TERRAIN
-        if p.ENABLE <= 0.0 or int(p.OPTIONS) & NO_DOWNLOAD:
+        if p.ENABLE <= 0.0 or int(self._values[grid.OPTIONS]) & NO_DOWNLOAD:
             return []
         channels = self.bridge.channels
         return [c for c in channels if not c.peer.is_log and interval_of(c.port, REPORT.id) > 0]
@@ -165,7 +165,6 @@ class TerrainService(Service):
             needed = tuple(block for block in needed if block not in self._tried)
         missing = sum(self._missing(block).bit_count() for block in needed)
         t.pending = 0 if not t.asked else missing if self._ap.estimate.origin_set else PARTS
-        t.waits = t.pending > 0
 
     def service(self, now_us: int) -> None:
         self.due_us = (now_us // EVERY_US + 1) * EVERY_US
@@ -209,7 +208,7 @@ class TerrainService(Service):
             return block
         if abs(lat) > LAT_MAX or abs(lon) > LON_MAX:
             return None
-        margin = float(self._ap.params.TERRAIN.MARGIN)
+        margin = self._values[grid.MARGIN]
         near = [b for b in self._asked if max(map(abs, offset_ne(b.lat, b.lon, lat, lon))) <= margin]
         return near[0] if near else None
 
@@ -269,19 +268,20 @@ class TerrainService(Service):
         """Whether the simulated ground follows the heights: on a plain without solids, where all is simulated here."""
         t, vehicle, est = self._terrain, self.bridge.vehicle, self._ap.estimate
         t.shapes = False
-        if not (self._blocks and vehicle.has_truth_in_record and getattr(vehicle, "world", None) is None):
+        is_plain = vehicle.has_truth_in_record and vehicle.has_plain_ground
+        if not (self._blocks and is_plain):
             return
         start = vehicle.v.physics.place
         height = self.height(start.lat, start.lon)
         away = offset_ne(start.lat, start.lon, est.origin_lat, est.origin_lon)
         if height is not None and max(map(abs, away)) < START_RADIUS:
-            t.start, t.shapes = height, self._ap.params.SIM.TERRAIN > 0.0
+            t.start, t.shapes = height, self._values[grid.SIM_TERRAIN] > 0.0
 
     def armed(self) -> None:
         """Home is as high as the ground there from now on (TERRAIN_OFS_MAX)."""
         t = self._terrain
         if t is not None and t.was_known:
-            most = float(self._ap.params.TERRAIN.OFS_MAX)
+            most = abs(self._values[grid.OFFSET_MAX])
             t.offset = min(max(float(self._ap.home.alt) - t.home, -most), most)
 
     # ------------------------------------------------------------------ other times, other boots

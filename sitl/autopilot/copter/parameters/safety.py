@@ -75,9 +75,8 @@ class Fence(fence.Fence):
 
 
 class Simulated(simulation.Simulated):
-    """SIM_: with the ground, speed controllers, shoves and twists."""
+    """SIM_: with speed controllers, shoves and twists."""
 
-    TERRAIN: float = param(1, 0, 1, "", "1: the ground is as high as TERRAIN_DATA says, beside where it started", INT8)
     ESC_TELEM: float = param(1, 0, 1, "", "1: speed controllers tell how fast their motors turn", INT8)
     ESC_ARM_RPM: float = param(0, 0, 100000, "RPM", "Speed that the controllers of armed motors tell at least")
     VIB_MOT_MAX: float = param(0, 0, 10000, "Hz", "Turns a second at full command, of rotors whose model has no speed")
