@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,7 +14,9 @@ from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services.terrain import TerrainService
 from sitl.client import Client
 from sitl.client.terrain import TerrainAnswers
+from sitl.run.runner import open_dataflash
 from sitl.simulation import Core
+from tests.logs.dataflash.conftest import read_log
 
 LAT, LON, ALT = -35.363262, 149.165237, 584.0
 ABOVE_GROUND, ABOVE_GROUND_INT = 10, 11
@@ -322,3 +325,20 @@ def test_heights_from_a_file(core: Core, tmp_path: Any) -> None:
     f.client.delay(5.0)
     assert f.over_ground == pytest.approx(20.0, abs=0.3)
     assert f.client.altitude == pytest.approx(33.9, abs=0.5)
+
+
+def test_the_log_has_the_ground_and_that_it_is_missing(core: Core, tmp_path: Path) -> None:
+    f = Flight(core)
+    log = open_dataflash(f.simulation, tmp_path / "flight.bin")
+    f.client.take_off(15.0)
+    f.target(150.0, 20.0)
+    f.client.delay(30.0)
+    f.client.params["TERRAIN_ENABLE"] = 0
+    f.client.wait_mode("RTL", timeout=2.0)
+    log.close()
+    rows = read_log(tmp_path / "flight.bin")
+    last = rows["TERR"][-1]
+    assert (last.Spacing, last.Pending, last.Loaded) == (100, 0, 504)
+    assert last.TerrH == pytest.approx(ALT + 13.9, abs=0.5)
+    assert last.CHeight == pytest.approx(20.0, abs=0.5)
+    assert [(row.Subsys, row.ECode) for row in rows["ERR"]][-1:] == [(23, 1)]
