@@ -196,10 +196,11 @@ class TerrainService(Service):
         block = self._asked_for(m.lat, m.lon)
         if block is None or m.grid_spacing != self._spacing or m.gridbit >= PARTS or not self._terrain.asked:
             return
-        parts = list(self._blocks.get(block, NOTHING))
+        t, parts = self._terrain, list(self._blocks.get(block, NOTHING))
+        if not parts[m.gridbit]:
+            t.loaded, t.pending = t.loaded + 1, max(t.pending - 1, 0)
         parts[m.gridbit] = tuple(m.data)
         self._keep(block, parts)
-        self._count()
         self.look_up()
 
     def _asked_for(self, lat: int, lon: int) -> Block | None:
