@@ -49,7 +49,7 @@ def test_steering_without_force(core: Core) -> None:
 
 
 def test_a_slow_servo_and_a_slow_motor(core: Core) -> None:
-    """SIM_SERVO_SPEED: seconds for 60 degrees. SIM_ENGINE_LAG: 63 % of a new speed after that time."""
+    """SIM_SERVO_SPEED: seconds for 60 degrees. SIM_ENGINE_LAG: the motor's time constant."""
     p = at_speed(core, "erle_rover", 4.0)
     wheels, derived = p.simulation.v.physics.wheels, p.simulation.v.physics.derived
     before = bytes(derived._bytes)
@@ -63,9 +63,11 @@ def test_a_slow_servo_and_a_slow_motor(core: Core) -> None:
     assert wheels.angle == pytest.approx(p.simulation.v.physics.airframe.steering_angle, rel=0.05)
     p.simulation.fail("motor/slow=2")
     full = wheels.speed.x
-    p.sticks(2.0, 1500, 1500)
-    assert wheels.speed.x / full == pytest.approx(math.exp(-1.0), abs=0.06)
+    p.sticks(1.0, 1500, 1500)
+    assert 0.45 < wheels.speed.x / full < math.exp(-0.5), "rolling resistance takes some of it"
     p.simulation.repair("motor")
+    p.sticks(1.0, 1500, 1500)
+    assert wheels.speed.x < 0.05 * full
     assert bytes(derived._bytes) == before
 
 
