@@ -22,7 +22,6 @@ from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults, Setup
 from sitl.missions.testing.vehicle import Copter
-from sitl.run.pacing import Pacing
 from sitl.simulation import Simulation
 from tests.foreign.arducopter_stand_in import install
 
@@ -99,6 +98,13 @@ def test_a_script_is_run_on_the_clock_of_a_program(arducopter, tmp_path):
     assert slept == pytest.approx(5.0, abs=0.1) and passed == pytest.approx(5.0, abs=0.5)
 
 
+class AsFastAsItGoes:
+    slice_us = 10_000
+
+    def after_slice(self, session):
+        pass
+
+
 @pytest.fixture
 def held(arducopter, copter_plant, tmp_path):
     """A session in slices."""
@@ -111,20 +117,20 @@ def held(arducopter, copter_plant, tmp_path):
 
 @pytest.mark.slow
 def test_a_program_that_is_killed_ends_its_slices(held):
-    held.serve_slices(Pacing(None), until_us=1_000_000)
+    held.serve_slices(AsFastAsItGoes(), until_us=1_000_000)
     held.process._signal(signal.SIGKILL)
     with pytest.raises(AutopilotEndedError, match="ended by signal 9"):
-        held.serve_slices(Pacing(None))
+        held.serve_slices(AsFastAsItGoes())
 
 
 @pytest.mark.slow
 def test_a_program_that_asks_for_nothing_any_more_ends_its_slices(held, monkeypatch):
+    held.serve_slices(AsFastAsItGoes(), until_us=1_000_000)
+    held.process._signal(signal.SIGSTOP)
     monkeypatch.setattr("sitl.foreign.session.LOST_S", 0.5)
     monkeypatch.setattr("sitl.plants.physics_server.PATIENCE_S", 0.2)
-    held.serve_slices(Pacing(None), until_us=1_000_000)
-    held.process._signal(signal.SIGSTOP)
     with pytest.raises(LinkLostError, match=r"has not asked its physics in 0.5 s; it said: .*Ready"):
-        held.serve_slices(Pacing(None))
+        held.serve_slices(AsFastAsItGoes())
     assert held.said[-1].startswith("the autopilot is silent: time stands at 1.")
 
 
