@@ -60,7 +60,7 @@ class Faulty(Forking):
             instance: which one, from 1; 0: all.
             amount: how much; None: the usual amount.
             at, until: simulated seconds from now; None: it stays.
-            motor, thrust: of "motor": which one, and the share of its thrust that is left.
+            motor, thrust: of "motor": which one, and the share of its pulse that is left.
             speed, direction, turbulence: of "wind" [m/s], where it comes from [deg], [m/s].
 
         Raises:
