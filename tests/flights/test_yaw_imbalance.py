@@ -2,7 +2,8 @@
 """Yaw imbalance, as ArduCopter 4.7 tells it: motors 1 and 2, which turn the same way, keep 87 % of their pulse.
 
 With a limit of the yaw rate loop's integrator (ATC_RAT_YAW_IMAX) a little above what it comes to in the end, the first
-text comes 13.9 s after on this physics, then one each ten seconds, with 6, 8, 8 and 8 %; with FLIGHT_OPTIONS 2, and while thrust is lost, there is none.
+text comes 13.9 s after on this physics, then one each ten seconds, with 6, 8, 8 and 8 %; with FLIGHT_OPTIONS 2, and
+while thrust is lost, there is none.
 """
 
 from __future__ import annotations
