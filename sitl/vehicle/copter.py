@@ -137,9 +137,9 @@ def apply_sim_parameters(v: Copter) -> None:
     params, rotors = v.autopilot.params, v.physics.rotors
     rotors.telemetry = params.SIM.ESC_TELEM != 0
     rotors.rpm_armed, rotors.rpm_max = params.SIM.ESC_ARM_RPM, 60.0 * params.SIM.VIB_MOT_MAX
-    for k in range(len(rotors.efficiency)):
+    for k in range(len(rotors.share)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
-        rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0
+        rotors.share[k] = params.SIM.ENGINE_MUL if fails else 1.0
     rotors.stuck = int(params.SIM.ENGINE_STUCK)
     sim, shove, derived = params.SIM, v.physics.shove, v.physics.derived
     if derived.motor_lag != sim.ENGINE_LAG and derived.dt > 0.0:  # before power-on it is 0
