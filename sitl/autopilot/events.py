@@ -68,6 +68,7 @@ EKF_STOPPED_AIDING = 66  # a: IMU
 EKF_USES = 67  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
 EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
+BATTERY_LOW, BATTERY_CRITICAL, BATTERY_MISSING = 80, 81, 82  # a: voltage, b: charge used [mAh]
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 
