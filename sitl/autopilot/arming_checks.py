@@ -88,7 +88,7 @@ ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
-    BAROMETER: "Barometer not healthy",
+    BAROMETER: "Baro: not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
     FENCE_POSITION: "Fence enabled, need position estimate",
@@ -143,6 +143,8 @@ OBSTACLE_ROOM = 0.6
 """Room that a copter with a proximity sensor needs around it [m]."""
 ACC_DIFFERENCE, GYRO_DIFFERENCE = 0.75, math.radians(5.0)
 """Greatest differences of what two IMUs show [m/s^2], [rad/s]."""
+_BARO_US = 500_000
+"""A barometer that is silent for longer is not healthy."""
 _READY_US = 2_450_000
 _ACCELS_US = 13_400_000
 _GYROS_US = 23_400_000
@@ -206,12 +208,13 @@ def imu_checks(sensors: Sensors) -> int:
 
 
 @law
-def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, p: Parameters) -> int:
-    """Failed checks of sensors and attitude."""
+def sensor_checks(time_us: int, sensors: Sensors, baro_us: int, attitude_ok: bool, p: Parameters) -> int:
+    """Failed checks of sensors and attitude; ``baro_us``: when the filter last heard the barometer, 0 never."""
     failed, params = 0, p.ARMING
     if time_us < _READY_US:
         failed |= NOT_INITIALISED
-    if sensors.baro_count == 0 and wants(params, CHECK_BARO):
+    silent = baro_us > 0 and time_us - baro_us > _BARO_US
+    if (sensors.baro_count == 0 or silent) and wants(params, CHECK_BARO):
         failed |= BAROMETER
     if not is_heard(0, sensors, time_us) and wants(params, CHECK_COMPASS):
         failed |= COMPASS

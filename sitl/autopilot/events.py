@@ -70,6 +70,7 @@ EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
 TERRAIN_DID = 70  # copter; a: what (terrain/state.py)
 TERRAIN_LEFT = 71  # copter: it has left the square of the grid whose heights it knows
+BATTERY_LOW, BATTERY_CRITICAL, BATTERY_MISSING = 80, 81, 82  # a: voltage, b: charge used [mAh]
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

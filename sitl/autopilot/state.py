@@ -160,7 +160,8 @@ class Failsafe(Record):
     battery_low_us: int  # since when below the low limit; 0 not
     battery_critical_us: int
     battery_missing: bool  # its monitor has failed in flight
-    ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
+    ekf: int  # 1 the estimate is bad
+    glitch: bool  # the receiver's fixes are not believed
     ekf_count: int  # tenths of a second of bad variance
     ekf_vel: float  # filtered variances
     ekf_pos: float

@@ -95,7 +95,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
-    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
+    failed = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
     failed |= calibration_checks(ap.calibrated.state, p.ARMING)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3

@@ -110,7 +110,7 @@ def check_slowly(v: Vehicle) -> None:
     fs.gcs = is_gcs_lost(fs, v.time_us, p.FS)
     failsafe.watch(v, failsafe.BIT_GCS, fs.gcs)
     level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
-    report_battery(ap.events, v.time_us, level)
+    report_battery(ap.events, v.time_us, level, ap.battery)
     watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)
     failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
