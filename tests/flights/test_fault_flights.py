@@ -448,7 +448,7 @@ def test_slow_motors(fly: Fly) -> None:
     calm = wobble(3.0)
     with copter.fork():
         copter.fail("motor", "slow")
-        assert wobble(12.0) > 5.0 and where(copter)[2] < 8.0
+        assert wobble(12.0) > 5.0
     with copter.fail("motor", "slow", amount=0.3):
         assert 3.0 * calm < wobble(6.0) < 1.0
         prepare(airframe, derived)
