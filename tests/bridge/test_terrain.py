@@ -120,6 +120,13 @@ def test_a_snapshot_goes_on_with_the_same_requests() -> None:
     assert [(m.lat, m.lon, m.mask) for m in bench.requests(10.0)] == first
 
 
+def test_a_check_is_answered_though_nobody_is_asked() -> None:
+    bench = Bench()
+    for place in (HOME[:2], (0, 0), (1_000_000_000, 0), (-900_000_000, 1_800_000_000), (900_000_000, -1_800_000_000)):
+        (answer,) = bench.ask(mavlink.MAVLink_terrain_check_message(*place), "TERRAIN_REPORT")
+        assert (answer.lat, answer.lon, answer.spacing, answer.terrain_height) == (*place, 0, 0.0)
+
+
 def test_a_rover_asks_nobody() -> None:
     bench = Bench(FakeRover())
     bench.vehicle.locate()

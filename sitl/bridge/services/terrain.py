@@ -48,7 +48,7 @@ class TerrainService(Service):
         self._terrain: Any = getattr(self._ap, "terrain", None)
         """Its record; None: this firmware has none."""
         self._blocks: Blocks = {}
-        self._spacing = 0
+        self._spacing = 0 if self._terrain is None else self._wanted_spacing()
         """Of the points in ``_blocks`` [m]."""
         self._checked: tuple[Block, ...] = ()
         self._asked: tuple[Block, ...] = ()
@@ -78,7 +78,7 @@ class TerrainService(Service):
         t = self._terrain
         if t is None:
             return
-        spacing = min(max(int(self._values[grid.SPACING]), 1), LONGEST)
+        spacing = self._wanted_spacing()
         if spacing != self._spacing:
             self._spacing, self._blocks, self._checked, self._asked, self._on_mission = spacing, {}, (), (), ()
             self._items = self._tried = ()
@@ -87,6 +87,9 @@ class TerrainService(Service):
         self.due_us = (self.bridge.now_us // EVERY_US + 1) * EVERY_US if t.asked else NEVER
         self._count()
         self._shape()
+
+    def _wanted_spacing(self) -> int:
+        return min(max(int(self._values[grid.SPACING]), 1), LONGEST)
 
     def use(self, source: Source) -> None:
         """Take heights from a source of the simulator's own; what it does not know is asked for."""
