@@ -15,7 +15,7 @@ from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .path import areas_of, set_place
 from .profile import clear, evaluate
-from .state import DETOUR, GO_ON, Leg
+from .state import DETOUR, ENDED, GO_ON, STRAIGHT, Leg
 
 A = TypeVar("A", bound=Autopilot)
 TOLD_US = 5_000_000
@@ -88,6 +88,7 @@ class Planner(ABC, Generic[A]):
         nav = ap.modes.nav
         detour = nav.detour
         detour.left = detour.blocked_us = 0
+        detour.bend = STRAIGHT
         detour.areas = areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
         if detour.areas == 0:
             self.begin_leg(ap, time_us, target)
@@ -113,7 +114,9 @@ class Planner(ABC, Generic[A]):
         before, a way to the destination is laid anew."""
         nav = ap.modes.nav
         detour = nav.detour
-        is_old = detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+        has_bent = detour.bend == ENDED
+        detour.bend = STRAIGHT if has_bent else detour.bend
+        is_old = has_bent or detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
         if is_old and not nav.reached and nav.current.segments > 0:
             target = vector_at(detour.places, 0) if detour.left > 0 else end(nav.current)
             self.begin(ap, time_us, target)

@@ -21,10 +21,12 @@ from ....core.scalars import constrain
 from ....core.vectors import Vec3
 from ...control.shaping import Motion, Motion2
 from ...navigation import path
+from ...navigation.state import STRAIGHT
 from ...state import Estimate
 from ..control.altitude import set_pos_vel_accel_d
 from ..control.altitude_start import init_d_stopping_point, set_max_speed_accel_d
 from ..control.position import set_pos_vel_accel_ne
+from ..control.position_ned import input_pos_ned
 from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
 from ..control.state import DT, Control
 from ..parameters import Parameters
@@ -102,6 +104,9 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     if nav.request_pending != 0 or nav.current.segments < 1:
         return False
     nav.active_us = time_us
+    if nav.detour.bend != STRAIGHT:
+        steer(nav, control)
+        return False
     feasible = path.feasible_time_scale(nav, est.pos, est.vel, p.PSC.POSXY_P)
     path.scale_time(nav, feasible, CM * legs.ACCEL / max(legs.JERK, 0.1), DT)
     advance_pause(nav, legs, p.PSC.JERK_XY)
@@ -117,6 +122,13 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     if done and (nav.current.fast or is_near_end(nav, est.pos, CM * legs.RADIUS)):
         path.arrive(nav)
     return nav.reached
+
+
+@law
+def steer(nav: CopterNav, control: Control) -> None:
+    """One tick straight to BendyRuler's target."""
+    nav.pos, nav.vel, nav.acc = nav.detour.bent_target, ZERO, ZERO
+    input_pos_ned(control.pos_ne, control.pos_d, nav.pos)
 
 
 @law
