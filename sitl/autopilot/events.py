@@ -68,7 +68,7 @@ EKF_STOPPED_AIDING = 66  # a: IMU
 EKF_USES = 67  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
 EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
-BENDY_RULER_LOOKED = 70  # a: margin [m], b: 1 it steers, 2 it kept its bearing, 3 both
+BENDY_RULER_LOOKED = 70  # a: margin [m], b: 1 it steers, 3 and goes on as before
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...core.algebra import cross2, dot, dot2, horizontal, norm, norm2
+from ...core.algebra import cross2, dot, dot2, horizontal, norm, norm2, with_down
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_pi
 from ...core.vectors import Vec2, Vec3
@@ -66,6 +66,7 @@ class Found(NamedTuple):
     margin: float  # that it keeps [m]
     is_free: bool
     bends: bool  # the vehicle is steered
+    is_kept: bool  # it goes on as before
 
 
 @law
@@ -184,16 +185,22 @@ def clear_side(ap: Autopilot, ruler: Ruler, start: Vec3, time_us: int) -> int:
 
 
 @law
+def is_same_place(a: Vec2, b: Vec2) -> bool:
+    """Whether two places are one."""
+    return a.x == b.x and a.y == b.y
+
+
+@law
 def kept(ap: Autopilot, ruler: Ruler, found: Found, time_us: int) -> Found:
     """``found``, or the last direction again where a great change gains little."""
     detour, p = ap.modes.nav.detour, ap.params.OA.BR
-    same = detour.bent_from == horizontal(ruler.destination)
+    same = is_same_place(detour.bent_from, horizontal(ruler.destination))
     if found.bends and same and p.CONT_RATIO > 0.0:
         last = wrap_pi(detour.bearing if ruler.upright else detour.bearing - ruler.bearing)
         if abs(wrap_pi(last - found.angle)) > math.radians(p.CONT_ANGLE):
             margin = margin_of(ap, ruler.pos, towards(ruler, last, ruler.first), ruler, time_us)
             if found.margin < p.CONT_RATIO * margin:
-                found = Found(last, margin, True, True)
+                found = Found(last, margin, True, True, True)
     else:
         detour.bent_from = horizontal(ruler.destination)
     detour.bearing = found.angle if ruler.upright else wrap_pi(ruler.bearing + found.angle)
@@ -205,7 +212,7 @@ def look(ap: Autopilot, ruler: Ruler, time_us: int) -> Found:
     """The first direction that is free; else one that is so as far as the first look goes, as near to the course as
     can be; else the one with the greatest margin."""
     margin_max = ap.params.OA.MARGIN_MAX
-    widest, half = Found(0.0, -FAR, False, True), Found(0.0, -FAR, False, True)
+    widest, half = Found(0.0, -FAR, False, True, False), Found(0.0, -FAR, False, True, False)
     step, steps = (SLOPE_STEP, SLOPE_STEPS) if ruler.upright else (STEP, STEPS)
     for i in range(2 * steps + 1):
         angle = step * ((i + 1) // 2) * (1.0 if i % 2 == 0 else -1.0)
@@ -214,14 +221,14 @@ def look(ap: Autopilot, ruler: Ruler, time_us: int) -> Found:
         end = towards(ruler, angle, ruler.first)
         margin = margin_of(ap, ruler.pos, end, ruler, time_us)
         if margin > widest.margin:
-            widest = Found(angle, margin, False, True)
+            widest = Found(angle, margin, False, True, False)
         if margin > margin_max:
             turn = abs(wrap_pi(ruler.course - ruler.bearing - angle))
             if half.margin == -FAR or turn < abs(wrap_pi(ruler.course - ruler.bearing - half.angle)):
-                half = Found(angle, margin, False, True)
+                half = Found(angle, margin, False, True, False)
             side = clear_side(ap, ruler, end, time_us)
             if side >= 0:
-                return kept(ap, ruler, Found(angle, margin, True, i != 0 or side != 0), time_us)
+                return kept(ap, ruler, Found(angle, margin, True, i != 0 or side != 0, False), time_us)
     return half if half.margin > -FAR else widest
 
 
@@ -251,13 +258,16 @@ def plan(ap: Autopilot, destination: Vec3, time_us: int) -> None:
     found = look(ap, ruler, time_us)
     detour.lookahead = min(reach, detour.lookahead * 1.1) if found.is_free else max(0.5 * reach, detour.lookahead * 0.9)
     target = towards(ruler, found.angle, min(ruler.first, distance))
-    detour.bent_target = target if upright else target.replace(z=height_on_leg(nav.current, destination, target))
+    if not upright:
+        target = with_down(horizontal(target), height_on_leg(nav.current, destination, target))
+    detour.bent_target = target
     if found.bends:
         detour.bend = BENT
     elif detour.bend == BENT:
         detour.bend = ENDED
         emit_and_return(ap.events, time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)
-    emit(ap.events, time_us, BENDY_RULER_LOOKED, found.margin, 1.0 if found.bends else 0.0)
+    how = (1.0 if found.bends else 0.0) + (2.0 if found.is_kept else 0.0)
+    emit(ap.events, time_us, BENDY_RULER_LOOKED, found.margin, how)
 
 
 @law
