@@ -27,7 +27,9 @@ from .session import LIMIT_S, SILENCE_S
 __tracebackhide__ = True
 
 AT_ONCE = 40
-"""As many pieces are asked for together."""
+"""As many pieces of a file are asked for together."""
+GAPS = 120
+"""As many gaps of a log are; the vehicle keeps 128 requests waiting."""
 
 
 class Log(NamedTuple):
@@ -161,9 +163,9 @@ class Files(Missions):
                     runs[-1][1] += PIECE
                 else:
                     runs.append([at, at + PIECE])
-            for begin, end in runs[:AT_ONCE]:
+            for begin, end in runs[:GAPS]:
                 self.send("LOG_REQUEST_DATA", id=number, ofs=begin, count=end - begin)
-            return sum((end - begin) // PIECE for begin, end in runs[:AT_ONCE])
+            return sum((end - begin) // PIECE for begin, end in runs[:GAPS])
 
         def take(m: Any) -> None:
             if m.id == number and m.count:

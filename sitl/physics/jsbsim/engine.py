@@ -107,6 +107,7 @@ class JsbsimEngine(Engine):
     """
 
     name: ClassVar[str] = "jsbsim"
+    idle_parameters: ClassVar[tuple[str, ...]] = ("SIM_SHOVE_", "SIM_TWIST_")
 
     def __init__(self, vehicle: EngineVehicle, model: VehicleModel) -> None:
         super().__init__(vehicle)
