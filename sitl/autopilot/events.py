@@ -69,6 +69,9 @@ EKF_USES = 67  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its h
 EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
 BENDY_RULER_LOOKED = 70  # a: margin [m], b: 1 it steers, 3 and goes on as before
+FENCE_LOADED = 71  # areas of the fence
+RALLY_LOADED = 72  # rally points
+WAY_LAID = 73  # the way around areas has turns
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

@@ -10,7 +10,7 @@ from typing import Generic, TypeVar
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
 from ...core.vectors import Vec3
 from ..avoidance.shortest_path import find_path
-from ..events import NO_WAY, emit
+from ..events import NO_WAY, WAY_LAID, emit
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .path import areas_of, set_place
@@ -108,6 +108,8 @@ class Planner(ABC, Generic[A]):
             set_place(detour, k, place)
         detour.left = len(places)
         self._go_to_next(ap, time_us)
+        if len(places) > 1:
+            emit(ap.events, time_us, WAY_LAID, 0.0, 0.0)
 
     def go_on(self, ap: A, time_us: int) -> None:
         """A place of a detour is reached: on to the next one. Where there was no way, or the areas are others than
