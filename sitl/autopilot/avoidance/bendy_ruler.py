@@ -4,7 +4,7 @@
 A bearing is free when the vehicle keeps OA_MARGIN_MAX as far as it looks ahead, and then as far again in one of three
 directions. It looks OA_BR_LOOKAHEAD far; nearer, down to half of it, while no bearing is free. A bearing that differs
 much from the last one (OA_BR_CONT_ANGLE) has to be better by OA_BR_CONT_RATIO. While a bearing bends away from the
-destination, or would soon, the vehicle steers for the place at its end.
+destination, or would soon, the vehicle steers for the place at its end (vertically for one as far as the destination).
 
 Behaviour: https://ardupilot.org/copter/docs/common-oa-bendyruler.html
 """
@@ -257,7 +257,7 @@ def plan(ap: Autopilot, destination: Vec3, time_us: int) -> None:
     )  # fmt: skip
     found = look(ap, ruler, time_us)
     detour.lookahead = min(reach, detour.lookahead * 1.1) if found.is_free else max(0.5 * reach, detour.lookahead * 0.9)
-    target = towards(ruler, found.angle, min(ruler.first, distance))
+    target = towards(ruler, found.angle, distance if upright else min(ruler.first, distance))
     if not upright:
         target = with_down(horizontal(target), height_on_leg(nav.current, destination, target))
     detour.bent_target = target

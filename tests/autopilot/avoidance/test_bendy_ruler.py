@@ -99,7 +99,7 @@ def test_a_great_change_of_bearing_must_gain_enough() -> None:
         return math.degrees(math.atan2(detour.bent_target.y, detour.bent_target.x)), how
 
     freely, how = bearing(BR_CONT_RATIO=0.0)
-    assert freely < 60.0 and how == 1
+    assert freely < 75.0 and how == 1
     assert bearing() == (pytest.approx(88.0), 3)
 
 
@@ -116,7 +116,7 @@ def test_over_an_object_when_that_is_asked_for() -> None:
     ap.modes.nav.detour.lookahead = 15.0
     objects.note(ap.objects, Vec3(10.0, 0.0, 0.0), 10.0, ZERO, SECOND, ap.params.OA.DB)
     assert look(ap, (0.0, 0.0), (3.0, 0.0), NORTH)[1] == 1
-    assert ap.modes.nav.detour.bent_target.z == pytest.approx(-15.0)
+    assert ap.modes.nav.detour.bent_target.z == pytest.approx(-100.0)
 
 
 def test_an_object_is_renewed_and_forgotten() -> None:
