@@ -173,8 +173,8 @@ def switch_floor(fence: FenceState, params: Fence, autoenable: int, events: Even
 
 @law
 def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, time_us: int) -> None:
-    """FENCE_OPTIONS 4: within the margin of which fences the vehicle is, breached ones, too, and how far the first of them
-    is; anew with each further fence, while not all of them are breached. And that it has left a margin."""
+    """FENCE_OPTIONS 4: within the margin of which fences the vehicle is, breached ones, too, and how far the first of
+    them is; anew with each further fence, while not all of them are breached. And that it has left a margin."""
     if int(params.OPTIONS) & TELLS_MARGIN == 0:
         return
     left = before & ~fence.near
