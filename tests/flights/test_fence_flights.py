@@ -213,6 +213,33 @@ def test_no_other_mode_while_breached(core: Core) -> None:
     assert p.fly(20.0, lambda: p.said("Fence breach cleared")) and p.set_mode(LOITER)
 
 
+def test_the_least_height_is_on_where_it_is_the_only_fence(core: Core) -> None:
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=LOWEST, FENCE_ALT_MIN=15.0).hover(25.0)
+    assert p.said("Min Alt fence enabled (auto enable)")
+    assert p.set_mode(LOITER)
+    p.hold(throttle=1200)
+    assert p.fly(25.0, lambda: p.mode == RTL) and p.said("Min Alt fence breached")
+    assert p.height == pytest.approx(15.0, abs=0.5)
+
+
+def test_the_margins_of_two_fences_are_told_as_they_are_reached(core: Core) -> None:
+    """Texts of a real ArduPilot on the same flight, but for tenths."""
+    params = {"FENCE_RADIUS": 30.0, "FENCE_MARGIN": 6.0, "FENCE_OPTIONS": 4.0}
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE | AREAS, **params).ready()
+    p.upload_fence(square(p, c.FENCE_INCLUSION, 0.0, 0.0, 28.0))
+    p.hover()
+    assert p.set_mode(LOITER)
+    p.hold(pitch=1250)
+    assert p.fly(25.0, lambda: p.mode == RTL)
+    p.hold()
+    p.fly(15.0)
+    told = [text.text.partition(" in ")[0] for text in p.texts if "fence" in text.text and "recovery" not in text.text]
+    said = [text for text in told if "Indexed" not in text and "PreArm" not in text]
+    assert said[:3] == ["Polygon fence", "Circle and Polygon fences", "Polygon fence breached"]
+    assert said[-2:] == ["Circle fence cleared margin breach", "Polygon fence cleared margin breach"]
+    assert "Circle fence" not in said
+
+
 def test_the_margin_is_told(core: Core) -> None:
     params = {"FENCE_RADIUS": 30.0, "FENCE_MARGIN": 10.0, "FENCE_OPTIONS": 4.0, "FENCE_NTF_FREQ": 0.2}
     p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, **params).hover()
