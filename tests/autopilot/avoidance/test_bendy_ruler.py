@@ -98,9 +98,9 @@ def test_a_great_change_of_bearing_must_gain_enough() -> None:
         _, how = look(ap, (0.0, 0.0), (3.0, 0.0), NORTH)
         return math.degrees(math.atan2(detour.bent_target.y, detour.bent_target.x)), how
 
-    freely, how = bearing(BR_CONT_RATIO=0.0)
+    freely, how = bearing(BR_CONT_RATIO=0.0, BR_CONT_ANGLE=10.0)
     assert freely < 75.0 and how == 1
-    assert bearing() == (pytest.approx(88.0), 3)
+    assert bearing(BR_CONT_ANGLE=10.0) == (pytest.approx(88.0), 3)
 
 
 def test_the_end_of_a_bend_asks_for_a_leg() -> None:
