@@ -80,7 +80,7 @@ class Engine(ABC):
     """
 
     name: ClassVar[str]
-    idle_parameters: ClassVar[tuple[str, ...]] = ()
+    idle_parameters: tuple[str, ...] = ()
     """Beginnings of the names of SIM_ parameters that do nothing to it."""
 
     def __init__(self, vehicle: EngineVehicle) -> None:

@@ -19,7 +19,6 @@ from .faults import PARAMETERS, Failure, Text, known, unit_name
 NEVER = 1 << 62
 ONE_SHOT = ("SIM_SHOVE_TIME", "SIM_TWIST_TIME")
 """The vehicle takes these when they are set, and they are 0 again."""
-SAME_PARAMETERS = {"servo": "motor"}
 
 
 class Ordered(NamedTuple):
@@ -119,8 +118,9 @@ class Repair(NamedTuple):
             effects = known(table)[self.unit].values()
             names = {name for effect in effects if self.type in ("", effect.type) for name in effect.names()}
             return not self.instance and failure.unit in names
-        same = SAME_PARAMETERS.get(self.unit, self.unit) == SAME_PARAMETERS.get(failure.unit, failure.unit)
-        return same and self.type in ("", failure.type)
+        same = known(table)[self.unit].get(failure.type)  # motor and servo may be the same thing
+        sets_the_same = same is not None and not failure.values(table, {}).keys().isdisjoint(same.names())
+        return self.type in ("", failure.type) and (self.unit == failure.unit or sets_the_same)
 
 
 class OrderedFaults:

@@ -124,6 +124,21 @@ def test_flow_is_lost_in_flight(core: Core) -> None:
     assert p.fly(60.0, lambda: not p.ap.arming.armed)
 
 
+def test_flow_fails_on_demand(core: Core) -> None:
+    p = hover(core)
+    assert p.set_mode(LOITER)
+    p.sticks(2.0)
+    down = p.simulation.v.physics.downward
+    for fault, wanted in (("optical_flow/garbage=2", (40, 0, 2.0)), ("optical_flow/delayed=0.05", (40, 20, 0.05))):
+        p.simulation.fail(fault)
+        assert (down.flow_period, down.flow_delay, down.flow_noise) == pytest.approx(wanted)
+        p.simulation.repair("optical_flow")
+    p.simulation.fail("optical_flow@1..4")
+    assert p.fly(3.0, lambda: not flags(p) & POS_HORIZ_REL)
+    p.fly(4.0)
+    assert flags(p) & POS_HORIZ_REL
+
+
 TWO_SETS: dict[str, float] = {
     **FLOW, "EK3_SRC1_POSXY": 3, "EK3_SRC1_VELXY": 3, "EK3_SRC1_VELZ": 3, "EK3_SRC2_POSXY": 0, "EK3_SRC2_VELXY": 5,
     "EK3_SRC2_YAW": 1, "GPS1_TYPE": 1,

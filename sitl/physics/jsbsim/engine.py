@@ -107,7 +107,6 @@ class JsbsimEngine(Engine):
     """
 
     name: ClassVar[str] = "jsbsim"
-    idle_parameters: ClassVar[tuple[str, ...]] = ("SIM_SHOVE_", "SIM_TWIST_")
 
     def __init__(self, vehicle: EngineVehicle, model: VehicleModel) -> None:
         super().__init__(vehicle)
@@ -117,6 +116,7 @@ class JsbsimEngine(Engine):
                 f"world {vehicle.world.name!r}: physics 'jsbsim' knows no solids; take physics 'native' or 'pybullet'"
             )
         self.model = model
+        self.idle_parameters = model.idle_parameters
         self.executive: Any = None
         """JSBSim's FGFDMExec."""
         self._figures = b""
