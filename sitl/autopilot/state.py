@@ -14,7 +14,7 @@ from ..core.kernels import law
 from ..core.records import Float32, Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .avoidance.proximity import Proximity
-from .avoidance.state import Avoidance
+from .avoidance.state import Avoidance, Objects
 from .estimation.state import Ekf
 from .events import Events
 from .fence.state import FenceState, RallyState
@@ -257,6 +257,7 @@ class Autopilot(Record):
     rally: RallyState
     proximity: Proximity
     avoid: Avoidance
+    objects: Objects
     flow: OpticalFlow
     odometry: VisualOdometry
     landing_target: LandingTarget

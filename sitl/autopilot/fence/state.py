@@ -29,9 +29,9 @@ class FenceState(Record):
 
     shapes: int  # areas that are loaded
     corners: int  # corners of all of them, in their order
-    kind: Ints = array(SHAPES, stored="i4")  # STAY_IN, STAY_OUT, CIRCLE_IN, CIRCLE_OUT
-    first: Ints = array(SHAPES, stored="i4")  # the area's first corner; a circle's is its centre
-    count: Ints = array(SHAPES, stored="i4")  # of its corners; 1 for a circle
+    kind: Ints = array(SHAPES, stored="i2")  # STAY_IN, STAY_OUT, CIRCLE_IN, CIRCLE_OUT
+    first: Ints = array(SHAPES, stored="i2")  # the area's first corner; a circle's is its centre
+    count: Ints = array(SHAPES, stored="i2")  # of its corners; 1 for a circle
     radius: Floats = array(SHAPES, stored="f4")  # of a circle [m]
     north: Floats = array(CORNERS, stored="f4")  # of the point of reference [m]
     east: Floats = array(CORNERS, stored="f4")  # [m]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home, optical_flow, visual_odometry
-from ...avoidance import proximity
+from ...avoidance import bendy_ruler, proximity
 from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
 from ...navigation.path import areas_of, watch_detour
@@ -122,7 +122,8 @@ def check_slowly(v: Vehicle) -> None:
     takeoff_check.check(v)
     yaw_imbalance.check(v)
     avoidance.watch(v)
-    ap = v.autopilot
+    ap, nav = v.autopilot, v.autopilot.modes.nav
+    bendy_ruler.watch(ap, nav.ground_d if nav.over_ground else 0.0, v.time_us)
     watch_detour(ap.modes.nav, areas_of(ap.fence, ap.params.OA, ap.params.FENCE), ap.events, v.time_us)
 
 

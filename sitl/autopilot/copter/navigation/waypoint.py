@@ -21,10 +21,12 @@ from ....core.scalars import constrain
 from ....core.vectors import Vec3
 from ...control.shaping import Motion, Motion2
 from ...navigation import path
+from ...navigation.state import STRAIGHT
 from ...state import Estimate
 from ..control.altitude import input_vel_accel_d, set_pos_vel_accel_d
 from ..control.altitude_start import init_d_stopping_point, set_max_speed_accel_d
 from ..control.position import brake_ne, set_pos_vel_accel_ne
+from ..control.position_ned import input_pos_ned
 from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
 from ..control.state import DT, Control
 from ..parameters import Parameters
@@ -109,6 +111,9 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
             input_vel_accel_d(control.pos_d, 0.0, 0.0)
             return False
         pos, vel = Vec3(pos.x, pos.y, pos.z - nav.ground_d), Vec3(vel.x, vel.y, vel.z - nav.ground_vel)
+    if nav.detour.bend != STRAIGHT:
+        steer(nav, control)
+        return False
     feasible = path.feasible_time_scale(nav, pos, vel, p.PSC.POSXY_P)
     path.scale_time(nav, feasible, CM * legs.ACCEL / max(legs.JERK, 0.1), DT)
     advance_pause(nav, legs, p.PSC.JERK_XY)
@@ -124,6 +129,15 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     if done and (nav.current.fast or is_near_end(nav, pos, CM * legs.RADIUS)):
         path.arrive(nav)
     return nav.reached
+
+
+@law
+def steer(nav: CopterNav, control: Control) -> None:
+    """One tick straight to BendyRuler's target."""
+    target = nav.detour.bent_target
+    nav.pos = Vec3(target.x, target.y, target.z - nav.ground_d) if nav.over_ground else target
+    nav.vel, nav.acc = ZERO, ZERO
+    input_pos_ned(control.pos_ne, control.pos_d, target)
 
 
 @law

@@ -9,7 +9,7 @@ from ....core.records import Records
 from ....core.vectors import Vec3
 from ... import aux_switch, battery, home, optical_flow, smart_rtl_path, visual_odometry
 from ...arming_checks import BY_RUDDER
-from ...avoidance import limit, proximity
+from ...avoidance import bendy_ruler, limit, proximity
 from ...events import LEG_ENDING, Events, emit_and_return
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
@@ -117,6 +117,7 @@ def check_slowly(v: Vehicle) -> None:
     fence.watch(v)
     crash.check(v)
     limit.watch(v, False)
+    bendy_ruler.watch(ap, 0.0, v.time_us)
     watch_detour(ap.modes.nav, areas_of(ap.fence, p.OA, p.FENCE), ap.events, v.time_us)
 
 
