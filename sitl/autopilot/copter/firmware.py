@@ -28,7 +28,7 @@ def update(fleet: Records[Vehicle], index: int) -> None:
     estimate(fleet, index)
     decide(fleet, index)
     control(fleet, index)
-    if fleet[index].autopilot.params.PLND.ENABLED != 0.0:
+    if fleet[index].autopilot.params.PLND.ENABLED != 0.0 or fleet[index].autopilot.landing_target.running:
         landing_target.estimate(fleet[index], DOWN)
 
 

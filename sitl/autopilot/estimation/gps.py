@@ -123,10 +123,10 @@ def has_held(ekf: Ekf) -> bool:
 
 
 @law
-def may_start(ekf: Ekf, origin_set: bool) -> bool:
+def may_start(ekf: Ekf) -> bool:
     """Whether GPS may be used: the first time after long checks, after a loss with a few good fixes."""
     again = ekf.gps_used_before and ekf.gps_good_us != 0 and ekf.gps_fixes >= RETURN_FIXES
-    return (has_held(ekf) or again) and origin_set and ekf.bias_learned and ekf.yaw_aligned
+    return (has_held(ekf) or again) and ekf.bias_learned and ekf.yaw_aligned
 
 
 @law
@@ -254,12 +254,14 @@ def fuse(
         learn_field(ekf, estimate, sensors.gps_lat, sensors.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
         place_origin(ekf, estimate, log, Origin(sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter))
+        if is_source:
+            ekf.gps_in_use = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)
     when_us = ekf.gps_arrival_us - delay_us(params.GPS1_DELAY_MS)
-    if not is_source:
+    if not is_source or not estimate.origin_set:
         return False
     if ekf.gps_in_use:
         return fuse_fix(ekf, estimate, sensors, params.EK3, when_us, takes_velocity)
-    if may_start(ekf, estimate.origin_set):
+    if may_start(ekf):
         start_using(ekf, estimate, log, sensors, 1e-6 * (ekf.now_us - when_us))
     return False
