@@ -101,6 +101,16 @@ def test_a_dock_out_of_sight_is_driven_to_up_to_its_last_part(core: Core) -> Non
     assert d.stands() and 2.2 < away(d, dock) < 3.0  # 2.56 m
 
 
+def test_it_stops_at_its_dock_without_its_sensor(core: Core) -> None:
+    d, dock = docker(core)
+    assert d.set_mode(DOCK)
+    d.fly(2.0)
+    d.set_parameter("PLND_ENABLED", 0)
+    assert d.fly(60.0, lambda: d.said("Dock: Docking complete"))
+    d.fly(4.0)
+    assert d.stands() and away(d, dock) < 4.0
+
+
 def test_a_sensor_that_looks_back_docks_in_reverse(core: Core) -> None:
     d = Driver(core, "ardupilot_rover", **{**SEEN, "SIM_PLD_ORIENT": 0, "PLND_ORIENT": 4}, DOCK_SPEED=2.0).armed_in(
         GUIDED

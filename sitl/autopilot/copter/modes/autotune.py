@@ -316,7 +316,7 @@ def fail(v: Vehicle, why: int) -> None:
 
 @law
 def conclude(v: Vehicle) -> None:
-    """The tick after a twitch: another gain, and another step or axis when the answers were right."""
+    """The tick after a twitch: another gain, and another step or axis when enough of them succeeded."""
     t = v.autopilot.modes.autotune
     if t.came_to == rules.NO_ROOM:
         fail(v, rules.NO_ROOM)
