@@ -103,7 +103,7 @@ class Wind(Record):
 
 
 GPS_RING = 8
-"""Fixes under way to the reader: delay times rate must stay below this."""
+"""Fixes under way to the reader; while there are so many, no more are taken (SIM_GPS1_LAG_MS)."""
 
 
 class Fix(Record):
