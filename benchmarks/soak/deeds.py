@@ -20,7 +20,7 @@ SPECIAL = (246, 209, 42428)
 """Commands that have deeds of their own, or end with motors turning: reboot, motor tests."""
 MARKS, SHORTEST = (b"\xfd", b"\xfe"), 8
 """How a frame begins, and its least length."""
-FLOOD = 30
+FLOOD = 100
 """Deeds at once."""
 MODES = 30
 """Numbers of modes are below this."""
@@ -114,8 +114,8 @@ class Dice:
         return self._deed(kind.name, self._frame(kind, bytes(payload)))
 
     def _flood(self) -> list[Deed]:
-        """Many frames of all sorts at once."""
-        makers = (self._garbage, self._any_message, self._command, self._command_int, self._target, self._sticks)
+        """Many frames at once; none is garbage, which may swallow the next ones."""
+        makers = (self._any_message, self._command, self._command_int, self._target, self._sticks)
         deeds = [deed for _ in range(FLOOD) for deed in self._dice.choice(makers)()]
         return [
             deeds[-1]._replace(
