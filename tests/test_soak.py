@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -14,7 +15,8 @@ from benchmarks.soak.__main__ import Soak, main
 from benchmarks.soak.deeds import Deed
 from benchmarks.soak.episode import BrokenError, Episode, _limit
 from benchmarks.soak.minimise import minimise
-from sitl.bridge.frame import Splitter
+from sitl.bridge import dialect
+from sitl.bridge.frame import Splitter, encode_v2
 from sitl.simulation import Core
 from sitl.vehicle.kinds import KINDS
 
@@ -59,6 +61,38 @@ def test_what_is_wrong_is_found_made_short_kept_and_repeated(
     assert "not finite: autopilot.estimate.pos[0]" in capsys.readouterr().out
     monkeypatch.setattr(Episode, "_do", whole)
     assert main(["--repeat", str(tmp_path / "rover-2.json")]) == 0
+
+
+def message(name: str, **fields: Any) -> str:
+    """A frame of a ground station, in hex."""
+    kind = dialect.message(name)
+    return encode_v2(kind, kind.payload(target_system=1, **fields), 0, 255, 190).hex()
+
+
+def test_motors_may_run_down_for_a_period_after_disarming_but_no_longer(
+    soak: Soak, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disarm = Deed("bytes", message("COMMAND_LONG", command=400, param2=21196.0), 0.0, "disarm", 1)
+    wait = Deed("bytes", "", 0.01)
+    moving = 2  # seed of an episode that begins in motion
+    assert soak.run(moving, [disarm, wait, wait, wait]) is None
+    whole = Episode._do
+
+    def keeps_turning(self: Episode, deed: Deed) -> None:
+        whole(self, deed)
+        self.simulation.v.actuators.controls[:4] = 0.25
+
+    monkeypatch.setattr(Episode, "_do", keeps_turning)
+    assert soak.run(moving, [disarm, wait, wait, wait]) == (2, "disarmed, and the motors turn: 0.25")
+    assert soak.run(moving, [wait] * 9) is None  # it is armed
+
+
+def test_an_answer_counts_that_is_on_its_way_while_the_system_id_is_set(soak: Soak) -> None:
+    ask = Deed("bytes", message("COMMAND_LONG", command=176, param1=1.0, param2=4.0), 0.0, "mode 4", 1)
+    rename = message("PARAM_SET", param_id=b"MAV_SYSID", param_value=7.0, param_type=9)
+    for faults in ("", "delay=0.2"):
+        deeds = [Deed("link", faults, 0.1), ask, Deed("bytes", rename, 0.1, "MAV_SYSID = 7", 1), Deed("bytes", "", 1.0)]
+        assert soak.run(0, deeds) is None
 
 
 def test_a_deed_that_hangs_is_noticed() -> None:

@@ -14,8 +14,10 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from sitl.client import Client
+from sitl.logs.dataflash.log import attach
 from sitl.simulation import Simulation, Snapshot
 from sitl.vehicle.kinds import KINDS
 
@@ -23,8 +25,12 @@ from .deeds import Deed, Dice
 from .episode import Episode
 from .minimise import minimise
 
-WARM_UP, ALLOWED_KB, ALLOWED_KB_AN_EPISODE = 20, 30_000, 20
+WARM_UP, ALLOWED_KB, ALLOWED_KB_AN_EPISODE = 20, 40_000, 2
 """Memory may grow by so much after the first episodes, and by so much with each."""
+MANY = 4
+"""Parts from which on a deed is taken apart."""
+LOGGED = 4
+"""Every so many episodes there is an on-board log."""
 REPORT = 250
 """Episodes between two lines of what was done so far."""
 
@@ -98,7 +104,11 @@ class Soak:
     def run(self, seed: int, deeds: Sequence[Deed]) -> tuple[int, str] | None:
         """Fly an episode; gives the deed that went wrong, and what; None: all is well."""
         simulation = Simulation(KINDS[self.kind].default_frame, core=self._core)
-        found = Episode(simulation, self._beginnings[seed % len(self._beginnings)]).run(deeds)
+        with TemporaryDirectory() as folder:
+            logger = attach(simulation, Path(folder) / "soak.bin") if seed % LOGGED == 0 else None
+            found = Episode(simulation, self._beginnings[seed % len(self._beginnings)]).run(deeds)
+            if logger is not None:
+                logger.close()
         self.end = simulation.fleet.tobytes()
         simulation.close()
         return found
@@ -110,7 +120,19 @@ class Soak:
             found = self.run(seed, fewer)
             return found is not None and _same(found[1], what)
 
-        return minimise(deeds, fails)
+        single = [one for deed in deeds for one in apart(deed)]
+        return minimise(single if fails(single) else deeds, fails)
+
+
+def apart(deed: Deed) -> list[Deed]:
+    """A deed of many frames as deeds of one each."""
+    parts = deed.data.split() if deed.kind == "bytes" else []
+    if len(parts) < MANY:
+        return [deed]
+    return [
+        deed._replace(data=part, frames=1, seconds=deed.seconds if k == len(parts) - 1 else 0.0)
+        for k, part in enumerate(parts)
+    ]
 
 
 def _same(found: str, what: str) -> bool:

@@ -3,38 +3,25 @@
 
 from __future__ import annotations
 
-import math
 import random
 import struct
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from sitl.autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT
 from sitl.autopilot.params.table import Table
 from sitl.bridge import dialect
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import encode_v1, encode_v2
 
-NUMBERS = (0.0, 1.0, -1.0, 2.0, 10.0, 400.0, 21196.0, math.nan, math.inf, -math.inf, 3.4e38, -3.4e38, 1e-30, 1e9)
-WHOLE = (0, 1, 2, 3, 5, 10, 255, 65535, -1, 2**31 - 1, -(2**31), 900_000_000, -1_800_000_000, -353632621, 1491652371)
-FAULTS = {
-    "SIM_WIND_SPD": (0.0, 12.0), "SIM_WIND_TURB": (0.0, 3.0), "SIM_GPS1_ENABLE": (0.0, 1.0),
-    "SIM_GPS1_JAM": (0.0, 1.0), "SIM_RC_FAIL": (0.0, 1.0), "SIM_ENGINE_FAIL": (0.0, 15.0),
-    "SIM_ENGINE_MUL": (0.0, 1.0), "SIM_ACC1_BIAS_Z": (-2.0, 2.0), "SIM_SHOVE_X": (-20.0, 20.0),
-    "SIM_SHOVE_TIME": (0.0, 500.0), "SIM_BATT_VOLTAGE": (8.0, 12.6), "SIM_BATT_CAP_AH": (0.0, 1.0),
-    "SIM_BATT_RES": (0.0, 1.0), "SIM_TWIST_Z": (-20.0, 20.0), "SIM_TWIST_TIME": (0.0, 500.0),
-    "SIM_ENGINE_STUCK": (0.0, 15.0), "SIM_GPS1_GLTCH_X": (-30.0, 30.0), "SIM_GPS1_GLTCH_Y": (-30.0, 30.0),
-    "SIM_GPS1_VERR_X": (-10000.0, 10000.0), "SIM_GPS1_LAG_MS": (0.0, 1000.0), "SIM_GPS1_BYTELOS": (0.0, 100.0),
-    "SIM_BARO_GLITCH": (-10000.0, 10000.0), "SIM_BARO_DRIFT": (-1000.0, 1000.0), "SIM_BARO_RND": (0.0, 1000.0),
-    "SIM_BARO_FREEZE": (0.0, 1.0), "SIM_BARO_DISABLE": (0.0, 1.0), "SIM_BARO_DELAY": (0.0, 1000.0),
-    "SIM_BARO_WCF_UP": (-10.0, 10.0), "SIM_WIND_T": (0.0, 2.0), "SIM_WIND_DIR_Z": (-90.0, 90.0),
-    "SIM_RC_STUCK": (0.0, 65535.0), "SIM_RC_NOISE": (0.0, 1000.0), "SIM_SONAR_GLITCH": (-1000.0, 1000.0),
-    "SIM_LIDAR_LOSS": (0.0, 1.0),
-}  # fmt: skip
-"""Parameter -> least and greatest value."""
+from .tables import FAULTS, NUMBERS, PARTS, WHOLE
+
 SPECIAL = (246, 209, 42428)
 """Commands that have deeds of their own, or end with motors turning: reboot, motor tests."""
 MARKS, SHORTEST = (b"\xfd", b"\xfe"), 8
 """How a frame begins, and its least length."""
+FLOOD = 100
+"""Deeds at once."""
 MODES = 30
 """Numbers of modes are below this."""
 
@@ -45,7 +32,8 @@ class Deed(NamedTuple):
     kind: str
     """"bytes", "link", "forget" (the client's link is closed, another opened) or "reboot"."""
     data: str
-    """Bytes in hex; faults of the link as words (``LinkFaults.of_texts``) in "name=word,..."."""
+    """Bytes in hex, a space between those that can do without each other; faults of the link as words
+    (``LinkFaults.of_texts``) in "name=word,..."."""
     seconds: float
     """Simulated time after it."""
     what: str = ""
@@ -71,6 +59,7 @@ class Dice:
         self._table = table
         self._commands = [number for number in commands if number not in SPECIAL]
         self._items = list(items)
+        self._parameters = [p for p in table if p.has_effect or p.doc]
         self._kinds = [kind for kind in map(dialect.find_message, range(512)) if kind is not None]
         self._sequence = 0
 
@@ -80,7 +69,7 @@ class Dice:
         makers = (
             self._garbage, self._any_message, self._any_message, self._command, self._command, self._command_int,
             self._mission, self._set_parameter, self._set_parameter, self._fault, self._link, self._mode, self._arm,
-            self._target, self._sticks, self._reboot, self._forget, self._download,
+            self._target, self._sticks, self._reboot, self._forget, self._download, self._flood, self._equip,
         )  # fmt: skip
         while len(found) < count:
             found += self._dice.choice(makers)()
@@ -91,7 +80,7 @@ class Dice:
     def _deed(self, what: str, *frames: bytes, seconds: float | None = None) -> list[Deed]:
         wait = self._dice.choice((0.0, 0.0025, 0.02, 0.1, 0.5, 2.0)) if seconds is None else seconds
         count = sum(frame[:1] in MARKS and len(frame) >= SHORTEST for frame in frames)
-        return [Deed("bytes", b"".join(frames).hex(), wait, what, count)]
+        return [Deed("bytes", " ".join(frame.hex() for frame in frames), wait, what, count)]
 
     def _frame(self, kind: MessageType, payload: bytes) -> bytes:
         self._sequence = (self._sequence + 1) & 0xFF
@@ -123,6 +112,16 @@ class Dice:
         if kind.name in ("COMMAND_LONG", "COMMAND_INT") or kind.name == "SETUP_SIGNING":
             return self._command()  # a command has deeds of its own, and a key would lock us out
         return self._deed(kind.name, self._frame(kind, bytes(payload)))
+
+    def _flood(self) -> list[Deed]:
+        """Many frames at once; none is garbage, which may swallow the next ones."""
+        makers = (self._any_message, self._command, self._command_int, self._target, self._sticks)
+        deeds = [deed for _ in range(FLOOD) for deed in self._dice.choice(makers)()]
+        return [
+            deeds[-1]._replace(
+                data=" ".join(deed.data for deed in deeds), what="flood", frames=sum(deed.frames for deed in deeds)
+            )
+        ]
 
     def _number(self) -> float:
         d = self._dice
@@ -180,7 +179,9 @@ class Dice:
     def _mission(self) -> list[Deed]:
         """An upload, right or with a mistake, and perhaps AUTO."""
         d = self._dice
-        count, kind = d.randint(0, 6), d.choice((0, 0, 0, 1, 2, 7))
+        count, kind = d.randint(0, 6), d.choice((0, 0, 0, 1, 1, 2, 7))
+        commands = {1: FENCE_COMMANDS, 2: (RALLY_POINT,)}.get(kind, self._items)
+        corners = float(d.randint(3, 6))
         found = self._deed(
             f"mission of {count}", self._message("MISSION_COUNT", count=count, mission_type=kind), seconds=0.0
         )
@@ -191,9 +192,11 @@ class Dice:
                 "z": d.uniform(1, 30),
             }  # fmt: skip
             fields = {f"param{k}": self._number() if wild else float(d.randint(0, 5)) for k in range(1, 5)}
+            if kind == 1 and not wild:
+                fields["param1"] = corners  # or the radius of a circle
             item = self._message(
                 "MISSION_ITEM_INT", seq=seq if d.random() < 0.97 else d.randint(0, 9), frame=d.choice((0, 3, 3, 6, 10)),
-                command=d.choice(self._items) if d.random() < 0.95 else d.randint(0, 65535), mission_type=kind,
+                command=d.choice(commands) if d.random() < 0.95 else d.randint(0, 65535), mission_type=kind,
                 autocontinue=1, **fields, **place,
             )  # fmt: skip
             found += self._deed(f"item {seq}", item, seconds=0.0)
@@ -222,7 +225,7 @@ class Dice:
 
     def _set_parameter(self) -> list[Deed]:
         d = self._dice
-        parameter = d.choice(self._table.with_effect)
+        parameter = d.choice(self._parameters)
         value = (
             self._number() if d.random() < 0.3 else parameter.used(d.choice((0, 1, 2, 5, 100, d.uniform(-10, 2000))))
         )
@@ -232,6 +235,11 @@ class Dice:
         name = self._dice.choice([name for name in FAULTS if name in self._table])
         (deed,) = self._set(name, round(self._dice.uniform(*FAULTS[name]), 3))
         return [deed._replace(is_fault=True)]
+
+    def _equip(self) -> list[Deed]:
+        """Parts, and the boot that looks for them."""
+        parts = {name: value for name, value in self._dice.choice(PARTS).items() if name in self._table}
+        return [deed for name, value in parts.items() for deed in self._set(name, value)] + self._reboot()
 
     def _link(self) -> list[Deed]:
         d = self._dice

@@ -8,6 +8,7 @@ import traceback
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,9 @@ from .deeds import Deed
 
 FINITE = ("autopilot.estimate", "autopilot.home", "autopilot.modes", "physics.body")
 """Parts of the record in which every number must be one."""
+FORMS = ("f8", "f4")
+PERIOD_S = 0.02
+"""A rover's motors are at rest within this after it is disarmed; a copter's within a tick [s]."""
 HANG_S = 60.0
 """Wall time that a deed may take [s]."""
 COMMANDS = {"COMMAND_LONG", "COMMAND_INT"}
@@ -37,16 +41,20 @@ class Traffic:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation, self._splitter = simulation, Splitter()
+        self._systems: set[int] = set()
+        """System ids that the vehicle has had: answers may be on their way while MAV_SYSID is set."""
         self.heard, self.answered = Counter[int](), Counter[int]()
 
     def frame(self, time_us: int, raw: bytes) -> None:
         """One frame, in or out."""
+        system = self._simulation.bridge.system
+        self._systems.add(system)
         for frame in self._splitter.feed(raw):
-            name, system = frame.kind.name, self._simulation.bridge.system
+            name = frame.kind.name
             if name not in (*COMMANDS, "SET_MODE", "COMMAND_ACK"):
                 continue
             fields: Any = frame.kind.decode(frame.payload)
-            is_own = (frame.system, frame.component) == (system, 1)
+            is_own = frame.system in self._systems and frame.component == 1
             if name == "COMMAND_ACK" and is_own:
                 self.answered[fields.command] += fields.result != IN_PROGRESS
             elif name != "COMMAND_ACK" and not is_own and fields.target_system in (0, system):
@@ -61,18 +69,28 @@ class Numbers:
     """
 
     def __init__(self, fleet: npt.NDArray[Any]) -> None:
-        places = [place for name in FINITE for place in _places(fleet.dtype, name.split("."))]
-        self._views = []
-        for form in ("f8", "f4"):
-            chosen = [(name, at) for name, at, code in places if code == form]
-            view = fleet.view(np.uint8).reshape(-1).view(form)
-            self._views.append((view, [at // view.itemsize for _, at in chosen], [name for name, _ in chosen]))
+        self._chosen = _chosen(fleet.dtype)
+        self._views = [fleet.view(np.uint8).reshape(-1).view(form) for form in FORMS]
 
     def not_finite(self) -> list[str]:
         """Names of those that are not finite."""
         return [
-            names[k] for view, at, names in self._views for k in np.flatnonzero(~np.isfinite(view[at])).tolist()
-        ]  # fmt: skip
+            names[k]
+            for view, (at, names) in zip(self._views, self._chosen, strict=True)
+            for k in np.flatnonzero(~np.isfinite(view[at])).tolist()
+        ]
+
+
+@cache
+def _chosen(dtype: np.dtype[Any]) -> list[tuple[npt.NDArray[np.int64], list[str]]]:
+    """Places of FINITE in arrays of each of FORMS on a record's memory, and names."""
+    places = [place for name in FINITE for place in _places(dtype, name.split("."))]
+    chosen = [[(name, at) for name, at, code in places if code == form] for form in FORMS]
+    sizes = [np.dtype(form).itemsize for form in FORMS]
+    return [
+        (np.array([at // size for _, at in of_form]), [name for name, _ in of_form])
+        for of_form, size in zip(chosen, sizes, strict=True)
+    ]
 
 
 def _places(dtype: np.dtype[Any], path: Sequence[str], name: str = "", at: int = 0) -> Iterator[tuple[str, int, str]]:
@@ -106,6 +124,10 @@ class Episode:
         self._traffic, self._numbers = Traffic(simulation), Numbers(simulation.fleet)
         simulation.bridge.taps.append(self._traffic)
         self._is_rewired = False
+        self._armed_us = -1
+        """When it was armed last; -1 it is armed, or not known."""
+        self._disarmed_s = 0.0
+        """How long it has been disarmed at least [s]."""
 
     def run(self, deeds: Sequence[Deed]) -> tuple[int, str] | None:
         """Do them all; gives the number of the deed after which something was wrong, and what; None: all was right."""
@@ -113,7 +135,7 @@ class Episode:
             try:
                 with _limit(HANG_S):
                     self._do(deed)
-                    self._check()
+                    self._check(deed.seconds)
             except BrokenError as error:
                 return number, str(error)
             except Exception as error:
@@ -138,13 +160,18 @@ class Episode:
         simulation.advance(deed.seconds)
         self._link.receive()
 
-    def _check(self) -> None:
+    def _check(self, seconds: float) -> None:
+        """``seconds`` after the last check."""
         v, kind = self.simulation.v, self.simulation.kind
         if bad := self._numbers.not_finite():
             raise BrokenError(f"not finite: {', '.join(bad)}")
         if not all(-1.0 <= float(c) <= 1.0 for c in v.actuators.controls[:8]):
             raise BrokenError(f"controls {list(v.actuators.controls[:8])}")
-        if not (v.autopilot.arming.armed or self._is_rewired) and kind.motor_output(v) != 0.0:
+        arming = v.autopilot.arming
+        is_as_before = not arming.armed and arming.armed_us == self._armed_us
+        self._armed_us = -1 if arming.armed else arming.armed_us
+        self._disarmed_s = self._disarmed_s + seconds if is_as_before else 0.0
+        if self._disarmed_s >= PERIOD_S and not self._is_rewired and kind.motor_output(v) != 0.0:
             raise BrokenError(f"disarmed, and the motors turn: {kind.motor_output(v):g}")
         traffic = self._traffic
         if traffic.heard != traffic.answered:

@@ -236,6 +236,29 @@ def test_servos_without_a_function_are_free(rover: FirmwareBench) -> None:
     assert rover.command(183, 2, 1500) == FAILED
 
 
+@pytest.mark.parametrize(
+    ("pulse", "sent", "control"),
+    [
+        (0, 0, 0.0),
+        (1, 1, -1.0),
+        (500, 500, -1.0),
+        (1750, 1750, 0.5),
+        (2500, 2500, 1.0),
+        (-9, 0, 0.0),
+        (9000, 3000, 1.0),
+    ],
+)
+def test_controls_of_servos_stay_within_their_range(
+    copter: FirmwareBench, rover: FirmwareBench, pulse: int, sent: int, control: float
+) -> None:
+    """A trim or an end of the travel (SERVOn_TRIM, _MIN, _MAX) may be any number."""
+    for bench in (copter, rover):
+        bench.ready()
+        assert bench.autopilot.set_servo(9, pulse)
+        actuators = bench.vehicle.v.actuators
+        assert (int(actuators.pwm[8]), float(actuators.controls[8])) == (sent, control)
+
+
 def test_motor_test_is_refused_for_outputs_that_are_not_there(rover: FirmwareBench) -> None:
     rover.ready()
     assert [rover.command(209, n, 0, 10, 1) for n in (0, 3, 5)] == [FAILED] * 3

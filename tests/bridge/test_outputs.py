@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services.outputs import OutputService
 from tests.bridge.fakes import Bench, FakeRover
 
 ACCEPTED, DENIED, FAILED = 0, 2, 4
@@ -141,3 +144,40 @@ def test_setting_their_parameters_is_no_surprise() -> None:
     b.run(0.1)
     assert not [m.text for m in b.client.receive("STATUSTEXT") if "RELAY" in m.text]
     assert status(b)[0] == 7
+
+
+@pytest.mark.parametrize("pulse", [-1.0, 3001.0, 1e30, -1e30])
+def test_pulses_out_of_range_are_refused(pulse: float) -> None:
+    """By missions, too: nothing is set, and the mission goes on."""
+    b = bench()
+    assert b.command(SET_SERVO, 9, pulse) == DENIED
+    assert b.command(REPEAT_SERVO, 9, pulse, 3, 1.0) == DENIED
+    for number in (SET_SERVO, REPEAT_SERVO):
+        b.bridge.get(OutputService).carry_out(MissionItem(number, p1=9.0, p2=pulse, p3=3.0, p4=1.0))
+    b.run(2.0)
+    assert servos(b) == []
+
+
+@pytest.mark.parametrize("number", [-18.0, 0.0, 17.0, 999999999.0, 3.4e38])
+def test_outputs_that_do_not_exist_are_refused(number: float) -> None:
+    b = bench()
+    assert b.command(SET_SERVO, number, 1500) == FAILED
+    for count in (0, 1, -1):
+        assert b.command(REPEAT_SERVO, number, 1500, count, 1.0) == FAILED
+    assert b.command(SET_RELAY, -abs(number) - 1.0, 1) == FAILED
+
+
+def test_numbers_that_are_none_are_refused() -> None:
+    b = bench()
+    for k in range(4):
+        values = [9.0, 1500.0, 3.0, 1.0]
+        values[k] = math.nan
+        assert b.command(REPEAT_SERVO, *values) == DENIED
+    assert servos(b) == []
+
+
+def test_the_fraction_of_an_output_number_is_cut_off() -> None:
+    """As by ArduPilot."""
+    b = bench()
+    assert b.command(SET_SERVO, 9.5, 1700) == ACCEPTED
+    assert servos(b) == [(9, 1700)]

@@ -30,8 +30,9 @@ from ...autopilot.mission import returning
 from ...autopilot.mission.notes import ParametersFound, Text
 from ...autopilot.navigation.state import RTL
 from ...autopilot.terrain.state import TEXTS as TERRAIN_TEXTS
+from ...core.scalars import constrain
 from ...core.vectors import Vec3
-from ..autopilot_api import Note, Vector
+from ..autopilot_api import LONGEST_US, Note, Vector
 from ..base_autopilot import BY_GROUND_STATION, CRITICAL, EMERGENCY, INFO, WARNING, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
@@ -122,12 +123,12 @@ class CopterAutopilot(BaseAutopilot):
         return answer == motor_test.OK
 
     def set_servo(self, number: int, pulse: int) -> bool:
-        """Outputs without a motor are free."""
+        """Outputs without a motor are free; no pulse (0) is a control of 0."""
         actuators, motors = self._v.actuators, self._v.autopilot.control.motors
         if not 0 < number <= len(actuators.pwm) or number - 1 in motors.output[: motors.count]:
             return False
-        actuators.pwm[number - 1] = pulse
-        actuators.controls[number - 1] = (pulse - 1500) / 500.0
+        actuators.pwm[number - 1] = pulse = min(max(pulse, 0), LONGEST_US)
+        actuators.controls[number - 1] = constrain((pulse - 1500) / 500.0, -1.0, 1.0) if pulse != 0 else 0.0
         return True
 
     def terminate(self) -> None:

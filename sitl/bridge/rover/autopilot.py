@@ -14,7 +14,7 @@ from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
 from ...core.vectors import Vec2
-from ..autopilot_api import Note, Vector
+from ..autopilot_api import LONGEST_US, Note, Vector
 from ..base_autopilot import INFO, BaseAutopilot
 from ..dialect import message_by_id
 
@@ -43,6 +43,7 @@ class RoverAutopilot(BaseAutopilot):
 
     def set_servo(self, number: int, pulse: int) -> bool:
         """Outputs without a function (SERVOn_FUNCTION 0) are free."""
+        pulse = min(max(pulse, 0), LONGEST_US)
         return bool(servos.set_servo(self._v.autopilot.params, self._v.actuators, number - 1, pulse))
 
     # ------------------------------------------------------------------ GUIDED

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ...autopilot.aux_switch import LOW
 from ...autopilot.fence.checks import ALL, kinds, switch_by_user
+from ..autopilot_api import LONGEST_US
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
@@ -220,15 +221,15 @@ def return_to_launch(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def set_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """183: p1 output (those of motors are refused), p2 pulse [us]."""
-    if command.p1 != int(command.p1) or not 0.0 <= command.p2 <= 3000.0:
+    """183: p1 output (those of motors are refused), p2 pulse, 0 .. 3000 us, else DENIED."""
+    if not 0.0 <= command.p2 <= LONGEST_US:
         return DENIED
     return ACCEPTED if bridge.get(OutputService).set_servo(int(command.p1), int(command.p2)) else FAILED
 
 
 def repeat_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """184: p1 output, p2 pulse [us], by turns with SERVOn_TRIM, p3 times (below 0 for ever), each p4 [s]."""
-    if not 0.0 <= command.p2 <= 3000.0 or not abs(command.p3) <= MANY:
+    """184: p1 output, p2 pulse, 0 .. 3000 us, by turns with SERVOn_TRIM, p3 times (below 0 for ever), each p4 [s]."""
+    if not 0.0 <= command.p2 <= LONGEST_US or not abs(command.p3) <= MANY:
         return DENIED
     outputs, number = bridge.get(OutputService), int(command.p1)
     return ACCEPTED if outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4) else FAILED

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ...autopilot import relays
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
+from ..autopilot_api import LONGEST_US
 from ..wire.port import NEVER
 from .service import WARNING, Service
 from .statustext import StatusTextService
@@ -67,7 +68,9 @@ class OutputService(Service):
             self.repeat_relay(int(item.p1), int(item.p2), item.p3)
 
     def set_servo(self, number: int, pulse: int) -> bool:
-        """A pulse [us] on output ``number``, from 1; whether it is free: a function may have it."""
+        """A pulse [us] (0: none) on output ``number``, from 1; whether it can be: a function may have the output."""
+        if not 0 <= pulse <= LONGEST_US:
+            return False
         if not self._is_free(number) or not self.bridge.autopilot.set_servo(number, pulse):
             if number > 0:
                 text = f"ServoRelayEvent: Channel {number} is already in use"
