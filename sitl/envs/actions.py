@@ -165,3 +165,24 @@ class Continuous:
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
         out[:, self.columns] = actions
+
+
+class Normalised(Continuous):
+    """A box of set-points whose actions are all within [-1, 1]: -1 is the low limit, 1 the high one.
+
+    Args:
+        box: the actions in their units.
+    """
+
+    def __init__(self, box: Continuous) -> None:
+        super().__init__(box.setpoint, box.space.low.tolist(), box.space.high.tolist(), box.columns)
+        low, high = box.space.low.astype(np.float64), box.space.high.astype(np.float64)
+        self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        self.limits = tuple(zip(self._low, self._high))
+        """(Low, high) of each number in the set-point's unit."""
+        self.space = gym.spaces.Box(-1.0, 1.0, (len(self.columns),), np.float32)
+        self._low, self._high = self.space.low.tolist(), self.space.high.tolist()
+
+    def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
+        """See ``Action``."""
+        out[:, self.columns] = self._middle + self._half * actions

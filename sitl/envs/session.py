@@ -19,18 +19,20 @@ from sitl.worlds import World, WorldError
 
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
+from .arena import normalised
 from .faults import EpisodeFaults, Faults
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
 from .options import COMMON, EnvOptionError, unknown
+from .parts import Part, observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import LateRobot, PreparedRobot, Robot
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
-FORMS = ("discrete", "continuous")
+FORMS = ("discrete", "continuous", "normalised")
 RESET_OPTIONS = ("pose", "reset_mask")
 """Options of ``reset``; the second one only in vector environments."""
 MAX_STEP_S = 3600.0
@@ -63,8 +65,9 @@ class NavigateOptions:
         robot: name (``robots.ROBOTS``) or class.
         world: name (``sitl.worlds.names()``), .toml file or World.
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
-        observation: name (``observations.OBSERVATIONS``) or Observation.
-        action: "discrete", "continuous", a table (name of an action -> numbers of its set-point), or an Action.
+        observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
+            "scan+velocity": a dict), or Observation.
+        action: "discrete", "continuous" (in units), "normalised" (within [-1, 1]), a table (name of an action -> numbers of its set-point), or an Action.
         setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
         step_time: simulated time of a step [s], exact; None: the robot's default.
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
@@ -84,7 +87,7 @@ class NavigateOptions:
     robot: str | Callable[..., Robot] = "turtlebot"
     world: str | Path | World = "circuit2"
     task: str | Task = "wander"
-    observation: str | Observation = "scan"
+    observation: str | Sequence[str | Part] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
     setpoint: str | None = None
     step_time: float | None = None
@@ -129,7 +132,9 @@ class Session:
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")
-        self.observation: Observation = _named("observation", options.observation, OBSERVATIONS, "observe")
+        self.observation: Observation = observation_of(options.observation, OBSERVATIONS) or _named(
+            "observation", options.observation, OBSERVATIONS, "observe"
+        )
         if not isinstance(self.action.space, gym.spaces.Discrete) and any(
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):
@@ -145,6 +150,9 @@ class Session:
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
             watch(self.task)
+        prepare = getattr(self.observation, "prepare", None)
+        if prepare is not None:
+            prepare(self)
         self.observation_space = self.observation.space(self.robot)
 
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
@@ -160,7 +168,7 @@ class Session:
         if isinstance(action, str):
             if action not in FORMS:
                 raise unknown("action", action, FORMS)
-            return robot.action(action, usual)
+            return normalised(robot, usual) if action == "normalised" else robot.action(action, usual)
         if isinstance(action, type) or not hasattr(action, "commands"):
             raise EnvOptionError(f"action {action!r} is neither a name ({', '.join(FORMS)}) nor a table nor an Action")
         if action.setpoint.name not in kinds:

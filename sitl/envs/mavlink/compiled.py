@@ -26,6 +26,7 @@ from sitl.core.records import Floats, Ints, Record, Records
 from sitl.core.vectors import Euler, Vec3
 from sitl.worlds.shapes import from_heading, from_ned, to_heading, to_ned
 
+from ..robots.truth import STATE
 from .setpoints import (
     ATTITUDE_AND_RATES,
     BODY_OFFSET_NED,
@@ -123,7 +124,8 @@ class RobotArrays(NamedTuple):
     scan: NarrowTable
     """Readings of the last whole scan [m], from right to left, shape (count, readings)."""
     state: Table
-    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; shape (count, 8)."""
+    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; roll to the right, pitch up [rad], their rates
+    [rad/s]; shape (count, STATE)."""
     collided: IntLine
     """1 for each robot that touched something during the last step, shape (count,)."""
     time: Line
@@ -136,7 +138,7 @@ def robot_arrays(count: int, readings: int) -> RobotArrays:
     """For ``count`` robots at rest, of which nothing is known."""
     scan = np.full((count, readings), np.inf, np.float32)
     numbers = np.zeros((2, count), np.int64)
-    return RobotArrays(scan, np.zeros((count, 8)), numbers[0], np.zeros(count), numbers[1])
+    return RobotArrays(scan, np.zeros((count, STATE)), numbers[0], np.zeros(count), numbers[1])
 
 
 # ---------------------------------------------------------------------- set-points
@@ -399,6 +401,8 @@ def show_robots(
         state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
         state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c
         state[i, 6], state[i, 7] = -v.z, -end.rates.z
+        state[i, 8], state[i, 9] = end.euler.roll, end.euler.pitch
+        state[i, 10], state[i, 11] = end.rates.x, end.rates.y
         robots.collided[i] = 1 if end.hits > 0 else 0
         end.hits = 0
         robots.time[i] = 1e-6 * (origins.before_boot_us[i] + origins.since_boot_us[i] - robots.began_us[i])

@@ -102,8 +102,9 @@ class AutopilotRobot:
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         arrays: Any = robot_arrays(count, readings)
-        self.scan, self._state, self.collided, self.time, self._began_us = arrays
-        self.pose, self.velocity = self._state[:, :4], self._state[:, 4:]
+        self.scan, self.state, self.collided, self.time, self._began_us = arrays
+        self.pose, self.velocity = self.state[:, :4], self.state[:, 4:8]
+        self._truth = np.zeros_like(self.state)
         setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
@@ -252,14 +253,21 @@ class AutopilotRobot:
         c, s = math.cos(heading), math.sin(heading)
         origin = now.origin
         x, y, z = from_ned(origin[0] + n + self._base_along * c, origin[1] + e + self._base_along * s, origin[2] + d)
-        self._state[index] = (
-            x, y, z, from_heading(heading), vn * c + ve * s, vn * s - ve * c, -vd, -inbox.attitude[6]
+        self.state[index] = (
+            x, y, z, from_heading(heading), vn * c + ve * s, vn * s - ve * c, -vd, -inbox.attitude[6],
+            *inbox.attitude[1:3], *inbox.attitude[4:6],
         )  # fmt: skip
         self.scan[index] = inbox.scan[: self.scan.shape[1]]
         self.time[index] = 1e-6 * (self._vehicles.time_us(index) - now.began_us)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """See ``Robot``; ``reset`` has already read the scan."""
+
+    @property
+    def true_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``; the array is written anew by each call."""
+        self._vehicles.true_states(self._base_along, self._truth)
+        return self._truth
 
     def use_threads(self, threads: int) -> None:
         """Let so many threads advance the vehicles, before their first reset; without effect on vehicles that have

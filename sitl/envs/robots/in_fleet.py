@@ -45,6 +45,7 @@ from ..options import EnvOptionError
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
+from .truth import true_states
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
@@ -110,6 +111,7 @@ class FleetVehicles(InProcessVehicles):
         origins: Any = Origins(self._origins, *fleet.clocks)
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
         self._ranges = fleet.records["sensors"]["lidar_ranges"]
+        self._bodies = fleet.records["physics"]["body"]
 
     # ------------------------------------------------------------------ episodes
 
@@ -277,6 +279,9 @@ class FleetVehicles(InProcessVehicles):
     def view(self, index: int) -> Any:
         """See ``Vehicles``; no copy."""
         return self.fleet.view(index)
+
+    def true_states(self, ahead: float, out: Floats) -> None:
+        true_states(self._bodies, ahead, out)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         return None

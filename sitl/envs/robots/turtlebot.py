@@ -91,6 +91,16 @@ class Turtlebot:
         return np.stack([b["speed"], np.zeros(self.count), np.zeros(self.count), 0.0 - b["yaw_rate"]], axis=1)
 
     @property
+    def state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``: it knows where it is."""
+        return np.concatenate([self.pose, self.velocity, np.zeros((self.count, 4))], axis=1)
+
+    @property
+    def true_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``."""
+        return self.state
+
+    @property
     def time(self) -> Floats:
         """See ``Robot``."""
         out: Floats = 1e-6 * self._robots.fleet["time_us"]

@@ -25,6 +25,7 @@ from ..mavlink.preparation import INTERVAL_US, SIMULATOR, prepare
 from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
+from .truth import true_states
 
 INPROCESS = "inprocess"
 _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
@@ -205,6 +206,17 @@ class Vehicles(ABC):
             EnvOptionError: the vehicle is in another process.
         """
         return self.simulation(index).v
+
+    def true_states(self, ahead: float, out: Floats) -> None:
+        """Write where the vehicles really are: see ``truth.write_truth``.
+
+        Raises:
+            EnvOptionError: a vehicle is in another process.
+        """
+        for index in range(self.setup.count):
+            simulation = self.simulation(index)
+            body = simulation.fleet[simulation.index : simulation.index + 1]["physics"]["body"]
+            true_states(body, ahead, out[index : index + 1])
 
     def fail(self, index: int, failure: Failure) -> None:
         """Let something fail in one vehicle; times count from the beginning of its next step."""
