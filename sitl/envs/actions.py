@@ -40,8 +40,16 @@ POSITION = Setpoint("position", ("x [m]", "y [m]", "z [m]", "yaw [rad]"))
 """SET_POSITION_TARGET_LOCAL_NED, a place in the frame of world files."""
 ATTITUDE = Setpoint("attitude", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "climb or throttle [-1, 1]"))
 """SET_ATTITUDE_TARGET; roll to the right, pitch up, turn counter-clockwise."""
+ACCELERATION = Setpoint("acceleration", ("forward [m/s^2]", "left [m/s^2]", "up [m/s^2]", "turn [rad/s]"))
+"""SET_POSITION_TARGET_LOCAL_NED, accelerations along the body's heading; turn counter-clockwise."""
+THRUST = Setpoint("thrust", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "thrust [0, 1]"))
+"""SET_ATTITUDE_TARGET as ``ATTITUDE``, but with a thrust, a share of the greatest, in place of the climb rate."""
+RATES = Setpoint("rates", ("roll rate [rad/s]", "pitch rate [rad/s]", "turn [rad/s]", "thrust [0, 1]"))
+"""SET_ATTITUDE_TARGET with rates of the body alone: roll to the right, pitch up, turn counter-clockwise; and a thrust."""
 
-SETPOINTS = {kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE)}
+SETPOINTS = {
+    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES)
+}
 
 
 Floats = npt.NDArray[np.float64]

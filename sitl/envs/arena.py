@@ -57,7 +57,7 @@ def flies(robot: Robot) -> bool:
 
 def normalised(robot: Robot, setpoint: Setpoint) -> Normalised:
     """A robot's usual continuous actions within [-1, 1]; positions are scaled to its arena."""
-    box = robot.action("continuous", setpoint)
+    box = robot.action("agile", setpoint)
     if not isinstance(box, Continuous):
         raise EnvOptionError(f'action "normalised": {robot.name} has no continuous actions for {setpoint.name!r}')
     if setpoint is POSITION:

@@ -100,6 +100,30 @@ def set_mode(link: Connection, number: int) -> None:
         raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_last_texts(link)}")
 
 
+def set_bit(link: Connection, name: str, bit: int, may_change: bool) -> None:
+    """See to it that a bit of a parameter is set.
+
+    Args:
+        link: to the vehicle.
+        name: of the parameter.
+        bit: its value.
+        may_change: whether the vehicle is ours to change; else it must be so already.
+
+    Raises:
+        NotReadyError: it is not, and cannot be set.
+    """
+    value = link.parameter(name)
+    if value is not None and int(value) & bit:
+        return
+    if may_change and value is not None:
+        wanted = float(int(value) | bit)
+        target = {"target_system": link.inbox.system, "target_component": 1}
+        link.endpoint.send("PARAM_SET", param_id=name.encode(), param_value=wanted, param_type=_REAL_4, **target)
+        if link.parameter(name) == wanted:
+            return
+    raise NotReadyError(f"{link.name}: {name} is {value}; these set-points need its bit {bit}: set it on the vehicle")
+
+
 def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callable[[], None]) -> None:
     """Everything from power-on until the vehicle stands armed in GUIDED, or hovers there.
 

@@ -32,7 +32,7 @@ from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import Action, Setpoint
 from ..mavlink.compiled import robot_arrays
-from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_intervals, set_mode
+from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
 from ..options import COMMON, EnvOptionError, unknown
 from .foreign import ForeignVehicles, SocketVehicles
 from .in_fleet import FleetVehicles
@@ -236,6 +236,8 @@ class AutopilotRobot:
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
+            if setpoint in self.kind.parameters:
+                set_bit(link, *self.kind.parameters[setpoint], may_change=self._vehicles.simulates)
             set_mode(link, self.kind.modes[setpoint])
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 

@@ -24,11 +24,14 @@ from sitl.turtlebots.native import full_pose
 from sitl.vehicle.faults import Failure
 
 from ..mavlink.compiled import (
+    ACCELERATION,
     ATTITUDE,
     POSITION,
+    RATES,
     RC,
     ROVER_ATTITUDE,
     ROVER_POSITION,
+    THRUST,
     VELOCITY,
     ClientEnd,
     Origins,
@@ -37,8 +40,18 @@ from ..mavlink.compiled import (
     send_all,
     show_all,
 )
-from ..mavlink.preparation import set_intervals, set_mode
-from ..mavlink.setpoints import Encode, override, position, rover_attitude, rover_position, velocity
+from ..mavlink.preparation import set_bit, set_intervals, set_mode
+from ..mavlink.setpoints import (
+    Encode,
+    acceleration,
+    override,
+    position,
+    rates,
+    rover_attitude,
+    rover_position,
+    thrust,
+    velocity,
+)
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
 from ..options import EnvOptionError
@@ -50,7 +63,8 @@ from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
     override: RC, velocity: VELOCITY, position: POSITION, copter_attitude: ATTITUDE,
-    rover_position: ROVER_POSITION, rover_attitude: ROVER_ATTITUDE,
+    rover_position: ROVER_POSITION, rover_attitude: ROVER_ATTITUDE, acceleration: ACCELERATION, thrust: THRUST,
+    rates: RATES,
 }  # fmt: skip
 """What makes a set-point's message -> its number in the core."""
 Rows = npt.NDArray[np.int64]
@@ -199,6 +213,8 @@ class FleetVehicles(InProcessVehicles):
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
+            if setpoint in self.setup.kind.parameters:
+                set_bit(link, *self.setup.kind.parameters[setpoint], may_change=True)
             set_mode(link, self.setup.kind.modes[setpoint])
         return simulation.snapshot()
 

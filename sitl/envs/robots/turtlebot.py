@@ -107,8 +107,8 @@ class Turtlebot:
         return out
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """Discrete: the paper's forward, left and right. Continuous: 0 .. 0.3 m/s, +-0.3 rad/s."""
-        if form == "continuous":
+        """Discrete: the paper's forward, left and right. Else: 0 .. 0.3 m/s, +-0.3 rad/s."""
+        if form != "discrete":
             return Continuous(DRIVE, (0.0, -0.3), (0.3, 0.3))
         return Discrete(DRIVE, {"forward": (0.3, 0.0), "left": (0.05, 0.3), "right": (0.05, -0.3)})
 

@@ -92,8 +92,12 @@ class PlacesTask(Task):
 
     def ways(self, count: int) -> Floats:
         """Ways to the next ``count`` places: forward, left, up [m] of the robot's heading, shape (robots, count, 3)."""
+        return self.ways_from(self._robot.pose, count)
+
+    def ways_from(self, pose: Floats, count: int) -> Floats:
+        """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
         out = np.empty((len(self.at), 3 * count))
-        _ways(np.ascontiguousarray(self._robot.pose), self.places.reshape(-1, 3), self.at, self.per_robot, out)
+        _ways(np.ascontiguousarray(pose), self.places.reshape(-1, 3), self.at, self.per_robot, out)
         return out.reshape(len(out), count, 3)
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
