@@ -45,7 +45,7 @@ ACCELERATION = Setpoint("acceleration", ("forward [m/s^2]", "left [m/s^2]", "up 
 THRUST = Setpoint("thrust", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "thrust [0, 1]"))
 """SET_ATTITUDE_TARGET as ``ATTITUDE``, but with a thrust, a share of the greatest, in place of the climb rate."""
 RATES = Setpoint("rates", ("roll rate [rad/s]", "pitch rate [rad/s]", "turn [rad/s]", "thrust [0, 1]"))
-"""SET_ATTITUDE_TARGET with rates of the body alone: roll to the right, pitch up, turn counter-clockwise; and a thrust."""
+"""SET_ATTITUDE_TARGET with rates of the body alone (roll to the right, pitch up) and a thrust."""
 
 SETPOINTS = {
     kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES)

@@ -32,11 +32,17 @@ class Surroundings(Protocol):
 class Part(Protocol):
     """Some numbers of each robot."""
 
-    columns: tuple[str, ...]
-    """Name and unit of each; valid after ``prepare``."""
-    low: Sequence[float]
-    high: Sequence[float]
-    """Bounds of each; what is beyond is clipped."""
+    @property
+    def columns(self) -> Sequence[str]:
+        """Name and unit of each; valid after ``prepare``."""
+
+    @property
+    def low(self) -> Sequence[float]:
+        """Least value of each; what is beyond is clipped."""
+
+    @property
+    def high(self) -> Sequence[float]:
+        """Greatest value of each."""
 
     def prepare(self, session: Surroundings) -> None:
         """Called once, before the first episode, when the task is prepared.
@@ -138,35 +144,30 @@ class LastAction:
             out[:] = self._session.actions
 
 
-class Goal:
-    """Way to the task's target: forward, left, up [m] of the robot's heading."""
+WAY = ("ahead [m]", "to the left [m]", "above [m]")
 
-    columns = ("target ahead [m]", "target to the left [m]", "target above [m]")
-    high = (3.0 * FAR,) * 3
-    low = [-bound for bound in high]
+
+class Path:
+    """Ways to the next ``count`` places of the task: forward, left, up [m] of the robot's heading, one after another.
+
+    "goal" is the way to the next one alone.
+    """
+
+    def __init__(self, count: int = 3) -> None:
+        self.count = count
+        self.columns = tuple(f"place {k + 1} {name}" for k in range(count) for name in WAY)
+        self.high = (3.0 * FAR,) * (3 * count)
+        self.low = (-3.0 * FAR,) * (3 * count)
 
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
         if not hasattr(session.task, "ways"):
-            raise EnvOptionError(f'observation "goal": task {session.task!r} has no target')
+            raise EnvOptionError(f'observation "goal", "path": task {session.task!r} has no places')
         self._task = session.task
 
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
-        out[:] = self._task.ways(1)[:, 0]
-
-
-class Path(Goal):
-    """Ways to the next ``count`` places of the task: forward, left, up [m] of the robot's heading, one after another."""
-
-    def __init__(self, count: int = 3) -> None:
-        self.count = count
-        self.columns = tuple(f"{k + 1}. {name}" for k in range(count) for name in Goal.columns)  # type: ignore[assignment]
-        self.high, self.low = (3.0 * FAR,) * (3 * count), [-3.0 * FAR] * (3 * count)  # type: ignore[assignment]
-
-    def write(self, out: Narrow) -> None:
-        """See ``Part``."""
-        out[:] = self._task.ways(self.count).reshape(len(out), 3 * self.count)
+        out[:] = self._task.ways(self.count).reshape(out.shape)
 
 
 PARTS: dict[str, Callable[[], Part]] = {
@@ -175,7 +176,7 @@ PARTS: dict[str, Callable[[], Part]] = {
     "scan": Readings,
     "digits": DigitReadings,
     "last_action": LastAction,
-    "goal": Goal,
+    "goal": lambda: Path(1),
     "path": Path,
 }
 """By name."""
@@ -226,7 +227,7 @@ class NamedParts(Parts):
 
     def space(self, robot: Robot) -> gym.Space[Any]:
         """See ``Observation``."""
-        boxes = {
+        boxes: dict[str, gym.Space[Any]] = {
             name: gym.spaces.Box(self._low[at], self._high[at], dtype=np.float32) for name, at in self.slices.items()
         }
         return gym.spaces.Dict(boxes)

@@ -131,8 +131,8 @@ class RobotArrays(NamedTuple):
     scan: NarrowTable
     """Readings of the last whole scan [m], from right to left, shape (count, readings)."""
     state: Table
-    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; roll to the right, pitch up [rad], their rates
-    [rad/s]; shape (count, STATE)."""
+    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; roll to the right, pitch up [rad], and their
+    rates [rad/s]; shape (count, STATE)."""
     collided: IntLine
     """1 for each robot that touched something during the last step, shape (count,)."""
     time: Line

@@ -67,8 +67,8 @@ class Gates(PlacesTask):
     """Fly or drive through gates, round after round.
 
     Gates are seen: "goal" and "path" are the true ways to their middles, and where the robot really is counts.
-    ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time [s], 0 before it; the last round
-    ends the episode, and is success. A gate's plane that is crossed beside the gate ends the episode, too.
+    ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time [s], 0 before it. The last
+    round ends the episode, and is success. A gate's plane that is crossed beside the gate ends the episode, too.
 
     Args:
         gates: in their order.

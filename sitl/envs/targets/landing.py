@@ -24,9 +24,9 @@ DOWN = 0.12
 class Land(MovingTask):
     """Come down on a pad on the floor, gently.
 
-    The pad is a beacon that the robot sees: "goal" and "path" are the true way to it, and the landing is judged by where
-    the robot really is. Each step pays what it has come nearer [m] times ``progress``; touching the floor ends the
-    episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking slower
+    The pad is a beacon that the robot sees: "goal" and "path" are the true way to it, and the landing is judged by
+    where the robot really is. Each step pays what it has come nearer [m] times ``progress``; touching the floor ends
+    the episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking slower
     than 1 m/s; else with ``crash_reward``.
 
     Args:

@@ -65,7 +65,8 @@ class MovingTask(PlacesTask):
 
     @abstractmethod
     def along(self, time: Floats) -> Floats:
-        """Where each robot's target is at times of its episode [s], shape (count, k): x, y, z [m], shape (count, k, 3)."""
+        """Where each robot's target is: x, y, z [m], shape (count, k, 3), at times of its episode [s], shape (count,
+        k)."""
 
     @property
     def targets(self) -> Floats:
