@@ -36,6 +36,7 @@ _NAMES = (
     "circuit2c",
     "circuit3",
     "circle",
+    "open",
 )
 """The six of the paper, then those of gym-gazebo that were not in it."""
 
