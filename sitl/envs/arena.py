@@ -30,6 +30,11 @@ class Arena(NamedTuple):
         low[:2], high[:2] = low[:2] + margin, high[:2] - margin
         return rng.uniform(low, np.maximum(high, low))
 
+    def around(self, places: Floats) -> Arena:
+        """The smallest one that holds this one and places, shape (n, 3)."""
+        low, high = np.minimum(self.low, places.min(axis=0)), np.maximum(self.high, places.max(axis=0))
+        return Arena(tuple(low.tolist()), tuple(high.tolist()))
+
     def grown(self, by: float) -> Arena:
         """The same with its sides so far out [m]; its floor stays."""
         x, y, z = self.low

@@ -35,14 +35,14 @@ class Gate(NamedTuple):
 
 
 @law
-def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Flags, missed: Flags) -> None:
-    """Which robots have crossed their gate's plane in its direction during a step, inside or beside it.
+def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Flags) -> None:
+    """Which robots have passed their gate in its direction during a step.
 
     Args:
         before, now: x, y, z of each robot at the step's ends [m], shape (count, 3).
         gates: rows of ``Gate``, shape (gates, 6).
         at: number of each robot's gate, shape (count,).
-        passed, missed: written, shape (count,).
+        passed: written, shape (count,).
     """
     for i in range(at.shape[0]):
         row = at[i] % gates.shape[0]
@@ -51,13 +51,11 @@ def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Fl
         u, v = now[i, 0] - gates[row, 0], now[i, 1] - gates[row, 1]
         a, b = x * c + y * s, u * c + v * s
         passed[i] = False
-        missed[i] = False
         if a < 0.0 <= b:
             share = a / (a - b)
             aside = (y * c - x * s) + share * ((v * c - u * s) - (y * c - x * s))
             above = before[i, 2] + share * (now[i, 2] - before[i, 2]) - gates[row, 2]
             passed[i] = abs(aside) <= 0.5 * gates[row, 4] and abs(above) <= 0.5 * gates[row, 5]
-            missed[i] = not passed[i]
 
 
 _cross = Kernel(cross_gates)
@@ -68,7 +66,7 @@ class Gates(PlacesTask):
 
     Gates are seen: "goal" and "path" are the true ways to their middles, and where the robot really is counts.
     ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time [s], 0 before it. The last
-    round ends the episode, and is success. A gate's plane that is crossed beside the gate ends the episode, too.
+    round ends the episode, and is success. Who passes beside a gate has to come back and pass it.
 
     Args:
         gates: in their order.
@@ -97,6 +95,7 @@ class Gates(PlacesTask):
             raise EnvOptionError(f"Gates(gates={gates!r}); it must be (x, y, z, yaw[, width, height]), one at least")
         if not 1 <= laps <= 100:
             raise EnvOptionError(f"Gates(laps={laps}); it must be 1 .. 100")
+        self._fixed = self._gates[:, :3]
         self.laps, self.progress, self.gate_reward, self.each_second = laps, progress, gate_reward, each_second
 
     @property
@@ -116,7 +115,7 @@ class Gates(PlacesTask):
         super().prepare(robot)
         self._sensing: SensingRobot = robot
         self._before, self._now = np.zeros((robot.count, 3)), np.zeros((robot.count, 3))
-        self._passed, self._missed = np.zeros(robot.count, np.bool_), np.zeros(robot.count, np.bool_)
+        self._passed = np.zeros(robot.count, np.bool_)
         self._lap = np.zeros((robot.count, 2))
         """When each robot's round began, and how long its last one took [s]."""
 
@@ -133,7 +132,7 @@ class Gates(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         targets = self.targets
         self._now[:] = self._sensing.true_state[:, :3]
-        _cross(self._before, self._now, self._gates, self.at, self._passed, self._missed)
+        _cross(self._before, self._now, self._gates, self.at, self._passed)
         nearer = np.sqrt(((targets - self._before) ** 2).sum(axis=1)) - np.sqrt(
             ((targets - self._now) ** 2).sum(axis=1)
         )
@@ -143,8 +142,7 @@ class Gates(PlacesTask):
         done = self._passed & (self.at % len(self._gates) == 0)
         self._lap[done] = np.stack([step.robot.time, step.robot.time - self._lap[:, 0]], axis=1)[done]
         self.success = self.at == self.per_robot
-        rewards[self._missed] += self.out_reward
-        terminated |= self.success | self._missed
+        terminated |= self.success
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""

@@ -63,12 +63,16 @@ class PlacesTask(Task):
     ) -> None:  # fmt: skip
         super().__init__(**{"rewards": (), "crash_range": 0.0, **others}, crash_reward=crash_reward)
         self._given, self._reach, self.out_reward = arena, reach, out_reward
+        self._fixed: Floats | None = None
+        """Places that are the same in every episode [m]; the arena holds them. None: they are drawn."""
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         super().prepare(robot)
         count = robot.count
         self.arena = self._given or arena_of(robot, self._reach)
+        if self._fixed is not None and self._given is None:
+            self.arena = self.arena.around(self._fixed[:, :3])
         self.flies = flies(robot)
         self._limits = self.arena.grown(BEYOND)
         self.places = np.zeros((count, self.per_robot, 3))
