@@ -31,6 +31,8 @@ PAPER = {
 
 _STEPS = {
     "copter-hover": 200,
+    "copter-reach-goal": 100,
+    "rover-reach-goal": 100,
     "copter-waypoint": 200,
     "copter-course": 500,
     "copter-gates": 400,

@@ -9,7 +9,7 @@ import gymnasium as gym
 
 from sitl.worlds import World
 
-from .options import unknown
+from .options import EnvOptionError, unknown
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -110,6 +110,17 @@ class Navigate(gym.Env[Any, Any]):
         if self._is_dict:
             return {name: value[0] for name, value in rows.items()}
         return rows[0]
+
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``.
+
+        Raises:
+            EnvOptionError: the task has no goal that counts alone.
+        """
+        rule = getattr(self.task, "compute_reward", None)
+        if rule is None:
+            raise EnvOptionError(f"compute_reward: task {self.task!r} has no goal that counts alone")
+        return rule(achieved_goal, desired_goal, info)
 
     def snapshot(self) -> Snapshot:
         """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.

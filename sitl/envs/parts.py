@@ -238,6 +238,32 @@ class NamedParts(Parts):
         return {name: numbers[:, where].copy() for name, where in self.slices.items()}
 
 
+class GoalConditioned(Parts):
+    """The same for goal-conditioned learning: a dict of "observation", "achieved_goal" (x, y, z of the robot [m]) and
+    "desired_goal" (of its target), as Gymnasium-Robotics has it; ``compute_reward`` of the environment tells what they
+    are worth. The task needs a target, and the parts should not tell it."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Parts``."""
+        super().prepare(session)
+        if not hasattr(session.task, "compute_reward"):
+            raise EnvOptionError(f"observation: task {session.task!r} has no goal that counts alone")
+        self._task, self._robot = session.task, session.robot
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        place = gym.spaces.Box(-FAR, FAR, (3,), np.float32)
+        return gym.spaces.Dict({"observation": super().space(robot), "achieved_goal": place, "desired_goal": place})
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        return {
+            "observation": super().observe(robot),
+            "achieved_goal": self._task.achieved().astype(np.float32),
+            "desired_goal": self._task.targets.astype(np.float32),
+        }
+
+
 def _part(part: str | Part) -> Part:
     if isinstance(part, str):
         if part not in PARTS:

@@ -10,6 +10,7 @@ from typing import Any
 from . import paper
 from .ids import NEW
 from .navigate import Navigate
+from .parts import GoalConditioned
 from .targets.gates import Gate, Gates
 from .targets.hold import Hold
 from .targets.landing import Land
@@ -24,12 +25,12 @@ DRIVEN = ("goal", "velocity", "last_action")
 DRIVEN_ON_A_WAY = ("path", "velocity", "last_action")
 COPTER_MOVES = {
     "stay": (0.0, 0.0, 0.0, 0.0),
-    "forward": (2.0, 0.0, 0.0, 0.0),
-    "back": (-2.0, 0.0, 0.0, 0.0),
-    "left": (0.0, 2.0, 0.0, 0.0),
-    "right": (0.0, -2.0, 0.0, 0.0),
-    "up": (0.0, 0.0, 1.0, 0.0),
-    "down": (0.0, 0.0, -1.0, 0.0),
+    "forward": (1.5, 0.0, 0.0, 0.0),
+    "back": (-1.5, 0.0, 0.0, 0.0),
+    "left": (0.0, 1.5, 0.0, 0.0),
+    "right": (0.0, -1.5, 0.0, 0.0),
+    "up": (0.0, 0.0, 0.7, 0.0),
+    "down": (0.0, 0.0, -0.7, 0.0),
 }
 ROVER_MOVES = {
     "forward": (1.2, 0.0, 0.0, 0.0),
@@ -62,6 +63,12 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
 WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
 _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-hover": lambda: _copter(Hold(), randomise=WIND),
+    "copter-reach-goal": lambda: _copter(
+        Hold((5.0, 2.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *SEEN[1:]))
+    ),
+    "rover-reach-goal": lambda: _rover(
+        Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *DRIVEN[1:]))
+    ),
     "copter-waypoint": lambda: _copter(Waypoints(1)),
     "copter-course": lambda: _copter(Waypoints(5), ON_A_WAY),
     "copter-gates": lambda: _copter(Gates(TRACK), ON_A_WAY),

@@ -26,6 +26,7 @@ class Hold(PlacesTask):
         hold: how long to be there [s].
         scale: distance beyond which nothing is paid [m].
         effort: what squared actions cost a second.
+        is_sparse: a step pays what ``compute_reward`` says instead.
         others: further arguments of ``PlacesTask``.
     """
 
@@ -38,6 +39,7 @@ class Hold(PlacesTask):
         hold: float = 5.0,
         scale: float = 4.0,
         effort: float = 0.05,
+        is_sparse: bool = False,
         **others: Any,
     ) -> None:
         super().__init__(**others)
@@ -45,6 +47,7 @@ class Hold(PlacesTask):
             if not value > 0.0:
                 raise EnvOptionError(f"Hold({name}={value}); it must be above 0")
         self.offset, self.radius, self.hold, self.scale, self.effort = offset, radius, hold, scale, effort
+        self.is_sparse = is_sparse
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -62,11 +65,23 @@ class Hold(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         way = self.places[:, 0] - step.pose[:, :3]
         distance = np.sqrt((way * way).sum(axis=1))
+        if self.is_sparse:
+            rewards += self.compute_reward(self.achieved(), self.targets, None)
+        else:
+            self._pay(step, rewards, distance)
+        self.since = np.where(distance < self.radius, self.since + step.seconds, 0.0)
+        self.success = self.since >= self.hold - 1e-9
+
+    def _pay(self, step: Step, rewards: Floats, distance: Floats) -> None:
         rewards += step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
         if self.effort and step.actions.ndim == 2:
             rewards -= self.effort * step.seconds * (step.actions * step.actions).mean(axis=1)
-        self.since = np.where(distance < self.radius, self.since + step.seconds, 0.0)
-        self.success = self.since >= self.hold - 1e-9
+
+    def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
+        """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3)."""
+        way = np.asarray(achieved, np.float64) - np.asarray(desired, np.float64)
+        out: Floats = np.where(np.sqrt((way * way).sum(axis=-1)) < self.radius, 0.0, -1.0)
+        return out
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -94,6 +94,10 @@ class PlacesTask(Task):
         out: Floats = self.places[np.arange(len(self.at)), np.minimum(self.at, self.per_robot - 1)]
         return out
 
+    def achieved(self) -> Floats:
+        """x, y, z of each robot, as the task judges them [m], shape (count, 3)."""
+        return self._robot.pose[:, :3]
+
     def ways(self, count: int) -> Floats:
         """Ways to the next ``count`` places: forward, left, up [m] of the robot's heading, shape (robots, count, 3)."""
         return self.ways_from(self._robot.pose, count)
