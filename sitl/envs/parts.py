@@ -27,6 +27,7 @@ class Surroundings(Protocol):
     task: Any
     action: Any
     actions: npt.NDArray[Any]
+    acted: npt.NDArray[np.bool_]
 
 
 class Part(Protocol):
@@ -122,7 +123,7 @@ class DigitReadings:
 
 
 class LastAction:
-    """The agent's last action; zeros before the first one of the environment. Of a table: one number for each row."""
+    """The agent's last action; zeros before the first one of an episode. Of a table: one number for each row."""
 
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
@@ -138,10 +139,9 @@ class LastAction:
 
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
-        if self._rows:
-            out[:] = np.eye(self._rows, dtype=np.float32)[self._session.actions]
-        else:
-            out[:] = self._session.actions
+        actions = self._session.actions
+        out[:] = np.eye(self._rows, dtype=np.float32)[actions] if self._rows else actions
+        out[~self._session.acted] = 0.0
 
 
 WAY = ("ahead [m]", "to the left [m]", "above [m]")

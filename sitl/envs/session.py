@@ -53,6 +53,8 @@ class Snapshot:
     """Whether the next step of a vector environment starts another episode."""
     late: Late | None = None
     """Pending commands; None: there is no latency."""
+    action: Any = None
+    """The episode's last action; None: there was none."""
     fault: tuple[int, float] | None = None
     """Number and time of the episode's fault; None: there are no faults."""
 
@@ -142,6 +144,8 @@ class Session:
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
         self.actions = self.action.room(count)
         """Actions of the next ``advance``, a row a robot, as ``action.check`` returns them."""
+        self.acted = np.zeros(count, np.bool_)
+        """Whether each robot's episode has had an action, shape (count,)."""
         self.commands = np.zeros((count, self.action.setpoint.width))
         self.rewards = np.zeros(count)
         self.terminated = np.zeros(count, np.bool_)
@@ -205,6 +209,7 @@ class Session:
         for option in options or ():
             if option not in RESET_OPTIONS:
                 raise unknown("reset: option", option, RESET_OPTIONS[:1])
+        self.acted[index] = False
         pose = self.starts.draw(rng)
         if options and options.get("pose") is not None:
             pose = self.starts.pose(options["pose"])
@@ -224,6 +229,7 @@ class Session:
     def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Advance these robots (None: all) by one step; fills ``rewards`` and ``terminated``, shapes (count,)."""
         self.action.commands(self.actions, self.commands)
+        self.acted[:] = True
         if self.latency is None:
             self.robot.apply(self.action.setpoint, self.commands)
             self.robot.advance(self.seconds, rows)
@@ -246,8 +252,9 @@ class Session:
         late = None if self.latency is None else self.latency.memory(index)
         fault = None if self.faults is None else self.faults.memory(index)
         return Snapshot(
-            self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault
-        )
+            self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault,
+            action=np.copy(self.actions[index]) if self.acted[index] else None,
+        )  # fmt: skip
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
         """Restore one robot and its random generator.
@@ -267,6 +274,9 @@ class Session:
             self.latency.recall(index, snapshot.late)
         if self.faults is not None and snapshot.fault is not None:
             self.faults.recall(index, snapshot.fault)
+        self.acted[index] = snapshot.action is not None
+        if snapshot.action is not None:
+            self.actions[index] = snapshot.action
         rng.bit_generator.state = dict(snapshot.rng)
 
 
