@@ -15,7 +15,8 @@ from .ids import MAX_EPISODE_STEPS, NEW, PAPER, Listed
 from .options import EnvOptionError
 
 __all__ = [
-    "MAX_EPISODE_STEPS", "NEW", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError", "NotReadyError", "register",
+    "MAX_EPISODE_STEPS", "NEW", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError", "NotReadyError",
+    "register",
 ]  # fmt: skip
 
 

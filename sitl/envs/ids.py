@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ids of environments, with what Gymnasium needs to know of each; plain data, so that registering them loads nothing."""
+"""Ids of environments, with what Gymnasium needs to know of each: data alone, so that registering loads nothing."""
 
 from __future__ import annotations
 
@@ -40,8 +40,11 @@ _STEPS = {
     "copter-follow": 400,
     "copter-land": 300,
     "copter-land-moving": 300,
+    "copter-forest": 400,
+    "copter-rooms": 600,
     "rover-waypoint": 300,
     "rover-course": 600,
+    "rover-labyrinth": 1000,
 }
 
 

@@ -21,6 +21,7 @@ from .vector import NavigateVector
 
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
 ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
+AMONG = (*SEEN, "scan")
 DRIVEN = ("goal", "velocity", "last_action")
 DRIVEN_ON_A_WAY = ("path", "velocity", "last_action")
 COPTER_MOVES = {
@@ -60,6 +61,11 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
     }  # fmt: skip
 
 
+def _among(**others: Any) -> Task:
+    """One place among solids; touching one is a crash."""
+    return Waypoints(1, reachable=True, apart=8.0, crash_reward=-20.0, **others)
+
+
 WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
 _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-hover": lambda: _copter(Hold(), randomise=WIND),
@@ -76,8 +82,13 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-follow": lambda: _copter(Follow(), ON_A_WAY),
     "copter-land": lambda: _copter(Land()),
     "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_WAY),
+    "copter-forest": lambda: _copter(_among(), AMONG, world="forest:seed=1", take_off=1.5),
+    "copter-rooms": lambda: _copter(_among(), AMONG, world="rooms:seed=1", take_off=1.5),
     "rover-waypoint": lambda: _rover(Waypoints(1)),
     "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
+    "rover-labyrinth": lambda: _rover(
+        _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60"
+    ),
 }
 
 

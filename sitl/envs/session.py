@@ -69,8 +69,8 @@ class NavigateOptions:
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
             "scan+velocity": a dict), or Observation.
-        action: "discrete", "continuous" (in units), "normalised" (within [-1, 1]), a table (name of an action -> numbers
-            of its set-point), or an Action.
+        action: "discrete", "continuous" (in units), "normalised" (within [-1, 1]), a table (name of an action ->
+            numbers of its set-point), or an Action.
         setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
         step_time: simulated time of a step [s], exact; None: the robot's default.
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",

@@ -17,8 +17,8 @@ from .places import PlacesTask
 class Hold(PlacesTask):
     """Go to a place near the start and hold it.
 
-    Each step pays ``step_time * (1 - distance / scale)``, at least 0, and takes ``effort * step_time`` times the mean of
-    the squared actions. ``info["is_success"]``: the robot has been within ``radius`` for the last ``hold`` seconds.
+    Each step pays ``step_time * (1 - distance / scale)``, at least 0, and takes ``effort * step_time`` times the mean
+    of the squared actions. ``info["is_success"]``: the robot has been within ``radius`` for the last ``hold`` seconds.
 
     Args:
         offset: places are drawn so far from the start, horizontally and vertically [m].

@@ -26,8 +26,8 @@ class Land(MovingTask):
 
     The pad is a beacon that the robot sees: "goal" and "path" are the true way to it, and the landing is judged by
     where the robot really is. Each step pays what it has come nearer [m] times ``progress``; touching the floor ends
-    the episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking slower
-    than 1 m/s; else with ``crash_reward``.
+    the episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking
+    slower than 1 m/s; else with ``crash_reward``.
 
     Args:
         offset: the pad is drawn so far from the start, horizontally [m].

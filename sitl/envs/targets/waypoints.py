@@ -15,6 +15,7 @@ from sitl.core.kernels import law
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
+from ..starts import ReachableCells
 from .places import PlacesTask
 
 
@@ -57,6 +58,7 @@ class Waypoints(PlacesTask):
 
     Args:
         count: how many are drawn in the arena for each episode.
+        reachable: draw them where the robot can get to among the world's solids, at the height of its start.
         places: these instead of drawn ones: (x, y, z) in the world's frame [m].
         apart: least distance between one and the next [m].
         radius: distance at which a place is passed [m].
@@ -70,6 +72,7 @@ class Waypoints(PlacesTask):
         self,
         count: int = 1,
         places: Sequence[tuple[float, float, float]] | None = None,
+        reachable: bool = False,
         apart: float = 4.0,
         radius: float = 1.0,
         progress: float = 1.0,
@@ -87,6 +90,7 @@ class Waypoints(PlacesTask):
         if not (radius > 0.0 and apart >= 0.0):
             raise EnvOptionError(f"Waypoints(radius={radius}, apart={apart}); they must be above 0 m")
         self.apart, self.radius, self.progress = apart, radius, progress
+        self.reachable = reachable
         self.place_reward, self.each_second = place_reward, each_second
 
     @property
@@ -99,6 +103,7 @@ class Waypoints(PlacesTask):
         super().prepare(robot)
         self._distance, self._gain = np.zeros(robot.count), np.zeros(robot.count)
         self._passed = np.zeros(robot.count, np.bool_)
+        self._cells = ReachableCells(robot) if self.reachable and self._fixed is None else None
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
@@ -111,7 +116,7 @@ class Waypoints(PlacesTask):
         out = np.empty((self._count, 3))
         for k in range(self._count):
             for _ in range(100):
-                out[k] = self.arena.draw(rng)
+                out[k] = self.arena.draw(rng) if self._cells is None else (*self._cells.draw(rng), here[2])
                 if ((out[k] - here) ** 2).sum() >= self.apart * self.apart:
                     break
             here = out[k]
