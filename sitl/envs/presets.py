@@ -87,7 +87,7 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "rover-waypoint": lambda: _rover(Waypoints(1)),
     "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
     "rover-labyrinth": lambda: _rover(
-        _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60"
+        _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60,scale=3"
     ),
 }
 

@@ -22,39 +22,41 @@ SMALLEST, LARGEST = 10.0, 200.0
 """Limits of a side [m]."""
 
 
-def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0) -> World:
+def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0, scale: float = 1.0) -> World:
     """Trees, thicker and closer together the more difficult it is; a clearing of 3 m round the start in the middle.
 
     Args:
         seed: of the places of the trees.
         difficulty: 0: a tree each 60 m^2; 1: one each 8 m^2. Between two trees are 1.2 m at least.
         size: side of the square [m].
+        scale: gaps, doors and corridors are so many times as wide, for robots that need more room.
     """
     rng = np.random.default_rng([1, seed])
-    wanted = round(size * size / (60.0 * (8.0 / 60.0) ** difficulty))
+    wanted = round(size * size / (60.0 * (8.0 / 60.0) ** difficulty) / scale**2)
     trees: list[tuple[float, float, float]] = []
     for _ in range(20 * wanted):
         x, y = rng.uniform(-0.5 * size, 0.5 * size, 2).tolist()
         radius = float(rng.uniform(0.12, 0.2 + 0.2 * difficulty))
-        is_free = math.hypot(x, y) > 3.0 + radius
-        if is_free and all(math.hypot(x - a, y - b) > 1.2 + radius + r for a, b, r in trees):
+        is_free = math.hypot(x, y) > 3.0 * scale + radius
+        if is_free and all(math.hypot(x - a, y - b) > 1.2 * scale + radius + r for a, b, r in trees):
             trees.append((x, y, radius))
         if len(trees) == wanted:
             break
     solids = [Cylinder((x, y, 4.0), radius, 8.0, f"tree {k}") for k, (x, y, radius) in enumerate(trees, 1)]
-    return _world("forest", seed, difficulty, size, solids, f"A forest of {len(trees)} trees.")
+    return _world("forest", (seed, difficulty, size, scale), solids, f"A forest of {len(trees)} trees.")
 
 
-def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0) -> World:
+def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale: float = 1.0) -> World:
     """A house: a square that walls part into rooms, with a door in each wall.
 
     Args:
         seed: of walls and doors.
         difficulty: 0: rooms of 6 m at least and doors 2 m wide; 1: 3 m and 1.1 m.
         size: side of the square [m].
+        scale: gaps, doors and corridors are so many times as wide, for robots that need more room.
     """
     rng = np.random.default_rng([2, seed])
-    smallest, door = 6.0 - 3.0 * difficulty, 2.0 - 0.9 * difficulty
+    smallest, door = scale * (6.0 - 3.0 * difficulty), scale * (2.0 - 0.9 * difficulty)
     half = 0.5 * size
     solids: list[Solid] = list(_around(half))
     todo, doors = [(-half, -half, half, half)], list[Door]()
@@ -66,7 +68,7 @@ def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0) -> World:
             continue
         drawn = rng.uniform(low + smallest, high - smallest, 50).tolist()
         ends_at = (y0, y1) if along_x else (x0, x1)
-        at = next((a for a in drawn if abs(a) > 1.0 and not _meets_door(doors, along_x, a, ends_at)), None)
+        at = next((a for a in drawn if abs(a) > scale and not _meets_door(doors, along_x, a, ends_at)), None)
         if at is None:
             continue
         first, last = (y0, y1) if along_x else (x0, x1)
@@ -77,19 +79,20 @@ def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0) -> World:
             solids.append(_wall(begin, end, f"wall {len(solids)}"))
         halves = [(x0, y0, at, y1), (at, y0, x1, y1)] if along_x else [(x0, y0, x1, at), (x0, at, x1, y1)]
         todo += halves
-    return _world("rooms", seed, difficulty, size, solids, "A house of rooms with doors.")
+    return _world("rooms", (seed, difficulty, size, scale), solids, "A house of rooms with doors.")
 
 
-def labyrinth(seed: int = 0, difficulty: float = 0.5, size: float = 20.0) -> World:
+def labyrinth(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale: float = 1.0) -> World:
     """A labyrinth on a grid: one can get from everywhere to everywhere.
 
     Args:
         seed: of the walls.
         difficulty: 0: corridors 4 m wide and many loops; 1: 2 m, and one way only.
         size: side of the square [m].
+        scale: gaps, doors and corridors are so many times as wide, for robots that need more room.
     """
     rng = np.random.default_rng([3, seed])
-    n = max(int(size / (4.0 - 2.0 * difficulty)) | 1, 3)  # odd: the start is in the middle of a cell
+    n = max(int(size / (scale * (4.0 - 2.0 * difficulty))) | 1, 3)  # odd: the start is in the middle of a cell
     cell, half = size / n, 0.5 * size
     walls = {(i, j, side) for i in range(n) for j in range(n) for side in (0, 1) if (i, j)[side] < n - 1}
     seen, path = {(0, 0)}, [(0, 0)]
@@ -109,12 +112,12 @@ def labyrinth(seed: int = 0, difficulty: float = 0.5, size: float = 20.0) -> Wor
         x, y = cell * (i + (side == 0)) - half, cell * (j + (side == 1)) - half
         end = (x, y + cell) if side == 0 else (x + cell, y)
         solids.append(_wall((x, y), end, f"wall {len(solids)}"))
-    return _world("labyrinth", seed, difficulty, size, solids, f"A labyrinth of {n} x {n} cells.")
+    return _world("labyrinth", (seed, difficulty, size, scale), solids, f"A labyrinth of {n} x {n} cells.")
 
 
 GENERATORS: dict[str, Callable[..., World]] = {"forest": forest, "rooms": rooms, "labyrinth": labyrinth}
 """By name."""
-KEYS = {"seed": int, "difficulty": float, "size": float}
+KEYS = {"seed": int, "difficulty": float, "size": float, "scale": float}
 
 
 def is_generated(text: str) -> bool:
@@ -144,11 +147,14 @@ def generate(text: str) -> World:
         raise WorldError(f"world {text!r}: difficulty must be 0 .. 1")
     if not SMALLEST <= given.get("size", SMALLEST) <= LARGEST:
         raise WorldError(f"world {text!r}: size must be {SMALLEST:g} .. {LARGEST:g} m")
+    if not 0.2 <= given.get("scale", 1.0) <= 20.0:
+        raise WorldError(f"world {text!r}: scale must be 0.2 .. 20")
     return GENERATORS[name.strip().lower().replace("-", "_")](**given)
 
 
-def _world(name: str, seed: int, difficulty: float, size: float, solids: Sequence[Solid], description: str) -> World:
-    full = f"{name}:seed={seed},difficulty={difficulty:g},size={size:g}"
+def _world(name: str, figures: tuple[int, float, float, float], solids: Sequence[Solid], description: str) -> World:
+    full = name + ":" + ",".join(f"{key}={value:g}" for key, value in zip(KEYS, figures))
+    size = figures[2]
     start = Start("middle", (0.0, 0.0, 0.0), 0.0)
     ground = Marking((0.0, 0.0), size=(size, size), colour="white", name="ground")
     return World(full, tuple(solids), (start,), description, plan_height=1.0, markings=(ground,))

@@ -31,7 +31,7 @@ def test_one_can_get_to_every_room(kind, difficulty):
 def test_a_text_is_one_world(kind):
     text = f"{kind}:seed=3,difficulty=0.7"
     assert generate(text) == generate(text) != generate(f"{kind}:seed=4,difficulty=0.7")
-    assert worlds.load(text).name == f"{kind}:seed=3,difficulty=0.7,size={worlds.load(text).name.split('=')[-1]}"
+    assert worlds.load(text).name == f"{text},size={40 if kind == 'forest' else 20},scale=1"
     assert worlds.load(worlds.load(text).name) == worlds.load(text)
     easy, hard = (len(generate(f"{kind}:seed=3,difficulty={d}").solids) for d in (0, 1))
     assert hard > 2 * easy
@@ -40,7 +40,7 @@ def test_a_text_is_one_world(kind):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("forest:sed=1", "'sed' is not known; there are seed, difficulty, size"),
+        ("forest:sed=1", "'sed' is not known; there are seed, difficulty, size, scale"),
         ("forest:seed=x", "seed='x' is no number"),
         ("forest:seed=-1", "seed must be 0"),
         ("rooms:difficulty=1.5", "difficulty must be 0 .. 1"),

@@ -103,7 +103,7 @@ class Waypoints(PlacesTask):
         super().prepare(robot)
         self._distance, self._gain = np.zeros(robot.count), np.zeros(robot.count)
         self._passed = np.zeros(robot.count, np.bool_)
-        self._cells = ReachableCells(robot) if self.reachable and self._fixed is None else None
+        self._cells = ReachableCells(robot, self.limit) if self.reachable and self._fixed is None else None
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
