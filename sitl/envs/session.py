@@ -229,7 +229,7 @@ class Session:
     def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Advance these robots (None: all) by one step; fills ``rewards`` and ``terminated``, shapes (count,)."""
         self.action.commands(self.actions, self.commands)
-        self.acted[:] = True
+        self.acted[... if rows is None else rows] = True
         if self.latency is None:
             self.robot.apply(self.action.setpoint, self.commands)
             self.robot.advance(self.seconds, rows)
