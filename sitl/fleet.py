@@ -24,6 +24,7 @@ import numpy as np
 from .bridge.channel import ChannelState
 from .bridge.links import LinkFaults
 from .bridge.links.inprocess import InProcessLink
+from .bridge.services.faults import FaultService
 from .bridge.wire import fleet as wire
 from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
@@ -317,8 +318,10 @@ class Fleet:
         """Let something fail in vehicles, as ``Simulation.fail`` does (docs/faults.md); times count from now.
 
         Raises:
-            OptionError: they have no such fault, or the fleet has no such vehicle.
+            OptionError: they have no such fault, or the fleet has no such vehicle; no vehicle is changed.
         """
+        failure = Failure.of(failure)
+        self.shell.bridge.get(FaultService).check(failure)
         for index in self._by_shell(which):
             self.shell.fail(failure)
             self._give([index], self._take())
@@ -327,17 +330,20 @@ class Fleet:
         """End faults of vehicles, as ``Simulation.repair`` does.
 
         Raises:
-            OptionError: there is no such unit, or no such vehicle.
+            OptionError: there is no such unit, type or instance, or no such vehicle; no vehicle is changed.
         """
+        self.shell.bridge.get(FaultService).repair_of(unit, instance)
         for index in self._by_shell(which):
             self.shell.repair(unit, instance)
             self._give([index], self._take())
 
     def _by_shell(self, which: int | Iterable[int]) -> Iterator[int]:
         """Vehicles, the shell being in the state of each."""
-        for index in [which] if isinstance(which, int | np.integer) else list(which):
+        rows = [which] if isinstance(which, int | np.integer) else list(which)
+        for index in rows:
             self._check(index)
-            self._check_open()
+        self._check_open()
+        for index in rows:
             self.shell.restore(self.snapshot(index))
             self.shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
             yield int(index)

@@ -39,7 +39,7 @@ class Options(TypedDict, total=False):
     world: str | Path | World | None
     start: StartPose | None
     physics: str
-    faults: Sequence[str]
+    faults: Sequence[str | Failure]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,8 @@ class Scenario:
         physics: "native", "pybullet", "jsbsim", or where the physics is: "hil:tcp:HOST:PORT" (``sitl physics``),
             "json:HOST:PORT" (a simulator with ArduPilot's JSON interface). Home, seed, world and start of a physics
             elsewhere are its own.
-        faults: what fails, and when after power-on: "gps@12", "motor:2=0.5@20..30" (docs/faults.md).
+        faults: what fails, and when after power-on: "gps@12", or several: ["gps@12", "motor:2=0.5@20..30"]
+            (docs/faults.md). It is kept as a tuple of texts.
 
     Raises:
         OptionError, sitl.vehicles.AirframeError: a value that cannot be taken, named.
@@ -73,13 +74,17 @@ class Scenario:
     world: str | Path | World | None = None
     start: StartPose | None = None
     physics: str = NATIVE
-    faults: Sequence[str] = ()
+    faults: Sequence[str | Failure] = ()
 
     def __post_init__(self) -> None:
         if self.estimator not in ESTIMATORS:
             raise OptionError(f"estimator {self.estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         object.__setattr__(self, "params", dict(self.params or {}))
-        object.__setattr__(self, "faults", tuple(str(Failure.of_text(text)) for text in self.faults))
+        faults = (self.faults,) if isinstance(self.faults, str | Failure) else self.faults
+        try:
+            object.__setattr__(self, "faults", tuple(str(Failure.of(fault)) for fault in faults))
+        except TypeError:
+            raise OptionError(f"faults = {faults!r}: a fault such as gps@12 or a list of faults is needed") from None
         if self.home is not None:
             object.__setattr__(self, "home", checked_home(self.home))
         if self.seed is not None:
@@ -167,7 +172,7 @@ class Scenario:
             "world": _world_to_json(self.world),
             "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
             "params": {name: float(value) for name, value in (self.params or {}).items()},
-            "faults": list(self.faults),
+            "faults": list(map(str, self.faults)),
         }
 
     @classmethod

@@ -164,8 +164,12 @@ class Simulation:
         self.bridge.core.load(self.plant.runs_in_core, progress)
         if isinstance(self.plant, LocalPlant):
             self.plant.load()
-        for text in scenario.faults:
-            self.bridge.get(FaultService).fail(Failure.of_text(text))
+        try:
+            for fault in scenario.faults:
+                self.bridge.get(FaultService).fail(Failure.of(fault))
+        except OptionError:
+            self.close()
+            raise
 
     @property
     def resolved(self) -> Scenario:
@@ -310,28 +314,30 @@ class Simulation:
         Raises:
             OptionError: this vehicle has no such fault; the message says what it has.
         """
-        failure = Failure.of_text(failure) if isinstance(failure, str) else failure
+        failure = Failure.of(failure)
         self.bridge.get(FaultService).fail(failure)
         self._note_fault(str(failure))
 
     def repair(self, unit: str = "", instance: int = 0) -> None:
-        """A unit's faults are over, those to come too: its parameters are what they were before the first one.
+        """Faults are over, those to come too: parameters are what they would be without them.
 
         Args:
-            unit: as "gps", or a SIM_ parameter; "": all that has failed.
+            unit: as "gps" or "gps/wrong", or a SIM_ parameter; "": all that has failed; or a fault with its amount or
+                time, "motor:2=0.5@20.0..30.0": that one.
             instance: which one, from 1; 0: all.
 
         Raises:
-            OptionError: there is no such unit.
+            OptionError: there is no such unit, type or instance.
         """
-        self.bridge.get(FaultService).repair(unit, instance)
-        self._note_fault(f"-{unit}:{instance}")
+        faults = self.bridge.get(FaultService)
+        repair = faults.repair_of(unit, instance)
+        faults.repair(repair)
+        self._note_fault(f"-{repair}")
 
     def order_fault(self, text: str) -> None:
         """``fail`` or ``repair`` by the text under which recordings keep it."""
         if text.startswith("-"):
-            unit, _, instance = text[1:].partition(":")
-            self.repair(unit, int(instance or 0))
+            self.repair(text[1:].removesuffix(":0"))
         else:
             self.fail(text)
 

@@ -5,15 +5,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sitl import Fleet, Simulation
+from sitl.bridge.services.faults import FaultService
 from sitl.client import Client
 from sitl.errors import OptionError
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
 from sitl.scenario import Scenario
+from sitl.simulation import Core
 from sitl.vehicle.faults import Failure
 
 OFF, OK, STUCK, SLOW = 1, 0, 2, 5
@@ -85,6 +88,95 @@ def test_recordings_and_scenarios_have_them(tmp_path: Path) -> None:
     replay = Replay(read(tmp_path / "a.rec"))
     assert replay.run() == []
     assert replay.simulation.parameters["SIM_BATT_VOLTAGE"] == 9.0 and not is_off(replay.simulation)
+
+
+def test_faults_overlap_over_snapshots_and_reboots() -> None:
+    simulation = Simulation("erle_rover", faults="motor:1@1..4")
+    for text in ("motor:3=0.5@2..3", Failure("battery", amount=np.float64(9.0), begin=np.float64(1.5))):  # type: ignore[arg-type]
+        simulation.fail(text)
+    values = lambda: [simulation.parameters[f"SIM_{name}"] for name in ("ENGINE_FAIL", "ENGINE_MUL", "BATT_VOLTAGE")]  # noqa: E731
+    simulation.advance_to(2_500_000)
+    assert values() == [5.0, 0.5, 9.0]
+    moment = simulation.snapshot()
+    for way in ("on", "again", "reboot"):
+        if way != "on":
+            simulation.restore(moment)
+        if way == "reboot":
+            simulation.request_reboot()
+        simulation.advance_to(3_500_000)
+        assert values() == [1.0, 0.0, 9.0]
+        simulation.repair("battery")
+        simulation.advance_to(4_500_000)
+        assert values() == [0.0, 0.0, pytest.approx(12.6)], way
+
+
+def test_a_client_that_sets_the_parameter_of_a_fault_has_the_last_word() -> None:
+    client = Client(Simulation("erle_rover", faults=["battery=9", "gps@0..3"]))
+    client.params["SIM_BATT_VOLTAGE"] = 11
+    client.params["SIM_GPS1_ENABLE"] = 0
+    client.delay(4.0)
+    assert client.params["SIM_GPS1_ENABLE"] == 0 and is_off(client.simulation)
+    client.simulation.fail("battery=10")
+    assert client.params["SIM_BATT_VOLTAGE"] == 10
+    client.simulation.repair("battery")
+    assert client.params["SIM_BATT_VOLTAGE"] == 11
+
+
+def test_a_recording_has_the_faults_that_were_ordered_before_it(tmp_path: Path) -> None:
+    simulation = Simulation("erle_rover", faults=["gps@1", "rc@1"])
+    simulation.fail("motor:1@0.5")
+    simulation.fail("rc/stuck@0.5")
+    simulation.repair("rc:4")
+    recorder = Recorder(simulation, tmp_path / "a.rec")
+    simulation.advance(2.0)
+    recorder.close()
+    replay = Replay(read(tmp_path / "a.rec"))
+    assert replay.run() == []
+    assert replay.simulation.parameters["SIM_ENGINE_FAIL"] == 1.0 and is_off(replay.simulation)
+    assert replay.simulation.parameters["SIM_RC_STUCK"] == 0xFFF7
+    assert replay.simulation.parameters["SIM_RC_FAIL"] == 1.0
+
+
+def test_a_fleet_takes_all_of_an_order_or_nothing() -> None:
+    fleet = Fleet("erle_rover", 2)
+    for order, why in (
+        (lambda: fleet.fail([0, 2], "gps"), "no vehicle 2"),
+        (lambda: fleet.fail([0, 1], "gsp"), "there is no fault 'gsp'"),
+        (lambda: fleet.fail(0, 3), "fault 3 is neither"),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(OptionError, match=why):
+            order()
+        assert not any(fleet.view(k).physics.sensors.gps_off for k in range(2))
+    fleet.fail([0, 1], "gps")
+    for order, why in (
+        (lambda: fleet.repair([0, -1]), "no vehicle -1"),
+        (lambda: fleet.repair([0, 1], "gps", 4), "there is no number 4"),
+    ):
+        with pytest.raises(OptionError, match=why):
+            order()
+        assert all(fleet.view(k).physics.sensors.gps_off for k in range(2))
+    fleet.close()
+
+
+@pytest.mark.parametrize("fault", ["motor:1@5", "servo", "wind", "shove", "twist", "SIM_WIND_DIR=10"])
+def test_what_does_nothing_to_physics_elsewhere_is_refused(core: Core, fault: str) -> None:
+    where = "json:127.0.0.1:9"
+    with pytest.raises(OptionError, match=rf"does nothing to physics {where}; there are gps, gyro, .* rc"):
+        Simulation("erle_copter", physics=where, faults=[fault])
+    simulation = Simulation("erle_copter", physics=where, faults=["gps", "rc@5"])
+    with pytest.raises(OptionError, match=f"does nothing to physics {where}"):
+        simulation.fail(fault)
+    order = lambda *params: simulation.bridge.get(FaultService).command(*params)  # noqa: E731
+    simulation.parameters["SYS_FAILURE_EN"] = 1.0
+    assert (order(MOTOR, OFF, 0), order(GPS, STUCK, 0), order(GPS, OFF, 0)) == (UNSUPPORTED, UNSUPPORTED, ACCEPTED)
+    simulation.close()
+
+
+def test_what_is_no_list_of_faults() -> None:
+    assert Scenario(faults=[Failure("gps", begin=2.0), "rc"]).faults == ("gps@2.0", "rc@0.0")
+    for faults in (3, [3], [None]):
+        with pytest.raises(OptionError, match="fault"):
+            Scenario(faults=faults)  # type: ignore[arg-type]
 
 
 def test_a_vehicle_of_a_fleet_fails_as_one_alone() -> None:

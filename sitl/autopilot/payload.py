@@ -44,7 +44,7 @@ MEANINGS = {
     "SPRAY_PUMP_RATE": "Pump's rate for each m/s over the ground [%]",
     "SPRAY_PUMP_MIN": "Least rate of the pump while the sprayer sprays [%]",
     "SPRAY_SPEED_MIN": "The sprayer pauses below this speed over the ground [cm/s]",
-    "CHUTE_ENABLED": "1: there is a parachute, from the next boot on or from the command or switch that enables it",
+    "CHUTE_ENABLED": "1: there is a parachute",
     "CHUTE_TYPE": "What releases the parachute: 0 to 3 relay 1 to 4, 10 the outputs of function 27",
     "CHUTE_SERVO_ON": "Pulse that releases the parachute [us]",
     "CHUTE_SERVO_OFF": "Pulse while the parachute is packed, and from two seconds after its release on [us]",

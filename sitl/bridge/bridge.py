@@ -119,6 +119,9 @@ class Bridge:
         self._signing: SigningService = self.get(SigningService)
         self.board.signer = self._signing
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
+        self._following = [
+            s for s in self.services.values() if type(s).parameter_changed is not Service.parameter_changed
+        ]
         self._stateful = [s for s in self.services.values() if type(s).snapshot is not Service.snapshot]
 
     def _add_handler(self, name: str, handler: Handler) -> None:
@@ -555,6 +558,11 @@ class Bridge:
         """Parameters were changed by the firmware, for good."""
         for name in names:
             self.get(ParameterService).set(name, self.vehicle.v.autopilot.params[name])
+
+    def parameter_changed(self, name: str) -> None:
+        """A parameter was set: services follow."""
+        for service in self._following:
+            service.parameter_changed(name)
 
     def switched(self, function: int, position: int) -> None:
         """A switch of gimbal or payload was moved."""

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from .companion import Companion
 from .files import Files
 from .session import Repeated
 from .telemetry import Telemetry
@@ -29,6 +30,8 @@ class Moment:
     next_us: dict[str, int]
     texts_read: int
     is_silent: bool
+    asked: tuple[int, int, frozenset[str]]
+    companions: tuple[tuple[Companion, dict[str, Any]], ...]
 
 
 class Client(Files):
@@ -47,6 +50,8 @@ class Client(Files):
         return Moment(
             self.simulation.snapshot(), self.telemetry.copy(), self.connection.endpoint.sequence,
             dict(self._repeated), dict(self._next_us), self._texts_read, self._is_silent,
+            (self._asked_us, self._unanswered, frozenset(self._awaited)),
+            tuple((companion, companion.state()) for companion in self.companions),
         )  # fmt: skip
 
     def restore(self, moment: Moment) -> None:
@@ -57,6 +62,9 @@ class Client(Files):
         self.connection.endpoint.sequence = moment.sequence
         self._repeated, self._next_us = dict(moment.repeated), dict(moment.next_us)
         self._texts_read, self._is_silent = moment.texts_read, moment.is_silent
+        self._asked_us, self._unanswered, awaited = moment.asked
+        self._awaited = set(awaited)
+        self.companions[:] = [companion.restored(state, self) for companion, state in moment.companions]
         self._boots = self.connection.boots
 
     @contextmanager

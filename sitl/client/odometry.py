@@ -7,6 +7,7 @@ import numpy as np
 
 from ..core.algebra import rotate_inverse
 from ..core.vectors import Vec3
+from .companion import Companion
 from .session import Session
 
 LOCAL_FRD, BODY_FRD = 20, 12
@@ -18,7 +19,7 @@ PARAMETERS: dict[str, float] = {
 """With these a vehicle flies by odometry alone, with the compass for its heading."""
 
 
-class Odometry:
+class Odometry(Companion):
     """Sends ODOMETRY ten times a second from the simulation's truth, from ``start`` to ``stop``.
 
     Positions count from where the vehicle was when this was made.
@@ -40,33 +41,25 @@ class Odometry:
         drift: tuple[float, float] = (0.0, 0.0),
         seed: int = 0,
     ) -> None:
-        self._client, self._drift = client, drift
+        super().__init__(client)
+        self._drift = drift
         self._noise = position_noise, velocity_noise
-        self._draw = np.random.default_rng(seed).normal
-        self._body = client.simulation.v.physics.body
-        self._from = Vec3(*self._body.pos)
+        self._random = np.random.default_rng(seed)
+        self._from = Vec3(*client.simulation.v.physics.body.pos)
         self._since = client.now
         self.resets = 0
         """Reset counter: add 1 and move the position, and the estimate follows at once."""
         self.offset = Vec3(0.0, 0.0, 0.0)
         """Added to positions, NED [m]."""
 
-    def start(self) -> Odometry:
-        """Send from now on, while the client lets time pass."""
-        self._client.companions.append(self.tell)
-        return self
-
-    def stop(self) -> None:
-        """Send no more."""
-        self._client.companions.remove(self.tell)
-
     def tell(self) -> None:
         """Send one message."""
-        body, (at, speed), time = self._body, self._noise, self._client.now - self._since
+        body, (at, speed), time = self.client.simulation.v.physics.body, self._noise, self.client.now - self._since
+        draw = self._random.normal
         north, east = (rate * time for rate in self._drift)
-        pos = body.pos - self._from + self.offset + Vec3(north, east, 0.0) + at * Vec3(*self._draw(size=3).tolist())
-        vel = rotate_inverse(body.q, body.vel) + speed * Vec3(*self._draw(size=3).tolist())
-        self._client.send(
+        pos = body.pos - self._from + self.offset + Vec3(north, east, 0.0) + at * Vec3(*draw(size=3).tolist())
+        vel = rotate_inverse(body.q, body.vel) + speed * Vec3(*draw(size=3).tolist())
+        self.client.send(
             "ODOMETRY", frame_id=LOCAL_FRD, child_frame_id=BODY_FRD, x=pos.x, y=pos.y, z=pos.z, q=list(body.q),
             vx=vel.x, vy=vel.y, vz=vel.z, pose_covariance=UNKNOWN, velocity_covariance=UNKNOWN,
             reset_counter=self.resets % 256, estimator_type=2, quality=100,

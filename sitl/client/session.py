@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from ..bridge.dialect import message
 from ..errors import OptionError, did_you_mean
 from .commands import arguments, command_name, command_number, constant, entry_name
+from .companion import Companion
 from .connection import Connection, InProcess, connect
 from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError
 from .telemetry import Attitude, Position, Telemetry, Text
@@ -83,8 +84,8 @@ class Session:
         self._rates = RATES_HZ if rates is None else dict(rates)
         self._asked_us, self._unanswered, self._awaited = 0, 0, set[str]()
         self._repeated: dict[str, Repeated] = {}
-        self.companions: list[Callable[[], None]] = []
-        """Called before each step: other programs on board that send messages (``sitl.client.odometry``)."""
+        self.companions: list[Companion] = []
+        """Other programs on board that send messages (``sitl.client.odometry``)."""
         self._next_us = {_HEARTBEAT: 0} if heartbeat else {}
         self._texts_read = 0
         self._is_silent = False
@@ -219,7 +220,7 @@ class Session:
                 self._repeat(name)
                 self._next_us[name] = now + (HEARTBEAT_US if name == _HEARTBEAT else REPEAT_US)
         for companion in self.companions:
-            companion()
+            companion.step(now)
         until = now // STEP_US * STEP_US + STEP_US
         connection.run((until if stop_us is None else min(until, stop_us)) - now)
         if connection.boots != self._boots:

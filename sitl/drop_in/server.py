@@ -13,6 +13,7 @@ from ..autopilot.params import files
 from ..autopilot.params.table import Table
 from ..autopilot.shell_parameters import clears_mission
 from ..bridge.links import Link
+from ..bridge.services.faults import FaultService
 from ..bridge.services.mission import MissionService
 from ..bridge.services.signing import SigningService
 from ..bridge.signing import WINDOW, Signing
@@ -159,8 +160,9 @@ class Session:
         """Progress is for clients."""
 
     def parameter_set(self, name: str) -> None:
-        """Keep what a client has set."""
-        self.storage.keep(name, self._values[name])
+        """Keep what a client has set; what a fault sets would outlive it."""
+        if not self.simulation.bridge.get(FaultService).is_setting:
+            self.storage.keep(name, self._values[name])
         if name in self._serial:
             self._serial[name].is_high_latency = self._values[name] == HIGH_LATENCY
         if name == "SIM_SPEEDUP":

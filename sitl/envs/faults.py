@@ -33,6 +33,48 @@ class FailingRobot(Protocol):
         """Let something fail in one robot; times count from now. After its ``reset``."""
 
 
+def amount_of(name: str, values: Any, robot: Robot) -> Failure:
+    """A fault whose amount is drawn for each episode (``Randomise``).
+
+    Args:
+        name: of the fault, as "gps/wrong", "motor:2" or "SIM_WIND_SPD".
+        values: (low, high), or a function.
+        robot: that fails.
+
+    Raises:
+        EnvOptionError: no such fault, it takes no amount, or a value that it cannot have.
+    """
+    if not isinstance(robot, FailingRobot):
+        raise EnvOptionError(f"randomise: {name}: robot {robot.name!r} has no faults; vehicles with an autopilot do")
+    try:
+        failure = Failure.of_text(name)
+        if "=" in name or "@" in name:
+            raise OptionError(f"fault {name!r}: amounts are drawn, and it begins with the episode: neither is said")
+        low, high = (1.0, 1.0) if callable(values) else values
+        if not low <= high:
+            raise OptionError(f"fault {name!r}: {values!r} is not (low, high)")
+        for share in () if callable(values) else (0.0, 1.0, 0.618):  # the last for what takes whole numbers alone
+            robot.check_failure(replace(failure, amount=low + share * (high - low)))
+    except OptionError as error:
+        raise EnvOptionError(f"randomise: {error}") from None
+    return failure
+
+
+def drawn(failure: Failure, amount: float, robot: Robot) -> Failure:
+    """A fault with the amount that was drawn.
+
+    Raises:
+        EnvOptionError: it cannot have that.
+    """
+    try:
+        found = replace(failure, amount=amount)
+        if isinstance(robot, FailingRobot):
+            robot.check_failure(found)
+    except OptionError as error:
+        raise EnvOptionError(f"randomise: {error}") from None
+    return found
+
+
 class EpisodeFaults:
     """Draws a fault for each episode, each as likely.
 

@@ -9,14 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from sitl.vehicle.faults import Failure, is_fault
 from sitl.vehicles.figures.figure import Figure
 
+from .faults import FailingRobot, amount_of, drawn
 from .latency import LATENCY, Latency
 from .options import EnvOptionError, unknown
 from .robots.robot import Robot
 
 Randomise = Mapping[str, tuple[float, float] | Callable[[np.random.Generator], float] | int]
-"""Figure -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of sets."""
+"""Figure, or fault -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of sets.
+A fault ("gps/wrong", "motor:2", "SIM_WIND_SPD") begins with the episode; its amount is drawn."""
 DRAWS = "draws"
 """Key whose value N means: N sets of figures are drawn once (always the same ones), and each episode takes one."""
 _MAX_DRAWS = 100_000
@@ -34,7 +37,7 @@ def ranges_of(randomise: Any) -> Randomise:
 
 
 class Randomisation:
-    """Draws figures of a robot for each episode.
+    """Draws figures of a robot, and amounts of faults, for each episode.
 
     Args:
         ranges: see ``Randomise``; "latency" is one of the figures.
@@ -42,7 +45,7 @@ class Randomisation:
         latency: latency of its commands; None: it has none.
 
     Raises:
-        EnvOptionError: unknown figure, no valid range, or a range beyond the figure's limits.
+        EnvOptionError: unknown figure or fault, no valid range, or a range beyond the limits.
     """
 
     def __init__(self, ranges: Randomise, robot: Robot, latency: Latency | None = None) -> None:
@@ -50,10 +53,15 @@ class Randomisation:
         self._latency = latency
         draws = self.ranges.pop(DRAWS, None)
         known = {**robot.figures, LATENCY.name: LATENCY}
+        self._faults: dict[str, Failure] = {}
+        self._failing: dict[int, list[Failure]] = {}
+        """Robot -> what fails in its next episode."""
         for name, values in self.ranges.items():
-            if name not in known:
+            if is_fault(name):
+                self._faults[name] = amount_of(name, values if callable(values) else _range(name, values), robot)
+            elif name not in known:
                 raise unknown("randomise: figure", name, [*known, DRAWS])
-            if not callable(values):
+            elif not callable(values):
                 self._check(known[name], values, robot)
         self._sets: list[dict[str, float]] | None = None
         if draws is not None:
@@ -65,10 +73,7 @@ class Randomisation:
     @staticmethod
     def _check(figure: Figure, values: Any, robot: Robot) -> None:
         name = figure.name
-        try:
-            low, high = (float(v) for v in values)
-        except (TypeError, ValueError):
-            raise EnvOptionError(f"randomise: {name} = {values!r}; it must be (low, high) or a function") from None
+        low, high = _range(name, values)
         if not figure.low <= low <= high <= figure.high:
             limits = f"{figure.low:g} .. {figure.high:g} {figure.unit}".strip()
             raise EnvOptionError(f"randomise: {name} = {values!r}; it must be low <= high within {limits}")
@@ -86,8 +91,25 @@ class Randomisation:
     def draw(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """Give one robot its figures for the next episode."""
         figures = self._drawn(rng) if self._sets is None else self._sets[int(rng.integers(len(self._sets)))]
+        self._failing[index] = []
         for name, value in figures.items():
-            if name != LATENCY.name:
+            if name in self._faults:
+                self._failing[index].append(drawn(self._faults[name], value, robot))
+            elif name != LATENCY.name:
                 robot.set_figure(index, name, value)
             elif self._latency is not None:
                 self._latency.set(index, value)
+
+    def begin(self, index: int, robot: Robot) -> None:
+        """The episode of a robot begins: let fail in it what was drawn. After its ``reset``."""
+        for failure in self._failing.pop(index, ()):
+            if isinstance(robot, FailingRobot):
+                robot.fail(index, failure)
+
+
+def _range(name: str, values: Any) -> tuple[float, float]:
+    try:
+        low, high = (float(v) for v in values)
+    except (TypeError, ValueError):
+        raise EnvOptionError(f"randomise: {name} = {values!r}; it must be (low, high) or a function") from None
+    return low, high

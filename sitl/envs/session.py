@@ -76,7 +76,8 @@ class NavigateOptions:
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
             "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
             or a function of a random generator that gives one; None: the world's for the robot.
-        randomise: figure of the robot, or "latency", -> (low, high), drawn for each episode; "draws" -> N: of N sets.
+        randomise: figure of the robot, "latency", or a fault whose amount is drawn -> (low, high), drawn for each
+            episode; "draws" -> N: of N sets.
         latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
             The previous command holds until then; at the start of an episode the robot stands or hovers.
         faults: fault, as "gps" or "motor:2=0.5" ("": none) -> when it begins in an episode [s], or (earliest, latest);
@@ -218,6 +219,7 @@ class Session:
         if self.latency is not None:
             self.latency.begin(index)
         self.robot.reset(index, pose, seed)
+        self.randomisation.begin(index, self.robot)
         if self.faults is not None:
             self.faults.begin(index, rng)
         self.task.start(index, self.robot, rng)

@@ -80,6 +80,8 @@ class Engine(ABC):
     """
 
     name: ClassVar[str]
+    idle_parameters: tuple[str, ...] = ()
+    """Beginnings of the names of SIM_ parameters that do nothing to it."""
 
     def __init__(self, vehicle: EngineVehicle) -> None:
         self.vehicle = vehicle

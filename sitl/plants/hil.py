@@ -42,6 +42,7 @@ class HilPlant(Plant):
 
     name = "hil"
     has_truth_in_record = False
+    idle_parameters = ("SIM_ACC2_", "SIM_ACCEL2_", "SIM_GYR2_", "SIM_MAG2_", "SIM_MAG3_")
 
     def __init__(self, vehicle: SimulatedVehicle, link: HilLink, patience_s: float) -> None:
         super().__init__(vehicle)
@@ -157,8 +158,9 @@ class HilPlant(Plant):
         return end.truth
 
     def parameter_changed(self, name: str) -> None:
-        super().parameter_changed(name)
-        self.end.set_parameter(name, float(self.vehicle.v.autopilot.params[name]))
+        value = float(self.vehicle.v.autopilot.params[name])
+        super().parameter_changed(name)  # takes a shove
+        self.end.set_parameter(name, value)
 
     def reseed(self, seed: int) -> None:
         self.end.reseed(seed)

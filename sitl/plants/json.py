@@ -66,6 +66,7 @@ class JsonPlant(Plant):
     """
 
     name = "json"
+    idle_parameters = ("SIM_ENGINE_", "SIM_SHOVE_", "SIM_TWIST_", "SIM_WIND_")
 
     def __init__(
         self,

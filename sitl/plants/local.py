@@ -63,6 +63,7 @@ class LocalPlant(Plant):
                     f"physics {backend!r} has no bench for airframe {vehicle.airframe.name!r}; {NATIVE!r} has"
                 )
             self.engine = find(backend, vehicle.kind.name, vehicle.kind.engines)(self._engine_vehicle())
+            self.idle_parameters = self.engine.idle_parameters
         self.runs_in_core = self.engine is None
         self._run: Callable[[int], None] | None = None
         self._tick: Callable[[], None] | None = None

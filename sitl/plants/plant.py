@@ -53,6 +53,8 @@ class Plant(ABC):
     """Whether physics and autopilot are one compiled piece, so that the core goes on by itself."""
     has_truth_in_record: ClassVar[bool] = True
     """Whether ``truth`` is what the record says (``sitl.physics.carried``)."""
+    idle_parameters: tuple[str, ...] = ()
+    """Beginnings of the names of SIM_ parameters that do nothing to this plant."""
 
     def __init__(self, vehicle: SimulatedVehicle) -> None:
         self.vehicle = vehicle

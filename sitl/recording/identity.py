@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
+from ..bridge.services.faults import FaultService
 from ..core import compile as compiler
 from ..core.fingerprint import reached
 from ..physics.engines import NATIVE
@@ -68,8 +69,9 @@ def of_world(world: World) -> str:
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
-    """Description of a simulation's code and settings, as JSON types."""
+    """Description of the code and settings of a simulation at power-on, as JSON types."""
     found = simulation.resolved.to_json()
+    found["faults"] = simulation.bridge.get(FaultService).texts
     if found["world"] is not None and simulation.world is not None:
         found["world"]["digest"] = of_world(simulation.world)
     kind, physics = simulation.kind, simulation.physics

@@ -129,7 +129,10 @@ def apply_sim_parameters(v: Copter) -> None:
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
         rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0
     rotors.stuck = int(params.SIM.ENGINE_STUCK)
-    sim, shove = params.SIM, v.physics.shove
+    sim, shove, derived = params.SIM, v.physics.shove, v.physics.derived
+    if derived.motor_lag != sim.ENGINE_LAG and derived.dt > 0.0:  # before power-on it is 0
+        derived.motor_lag = sim.ENGINE_LAG
+        prepare(v.physics.airframe, derived)
     if sim.SHOVE_TIME > 0.0:
         shove.accel = Vec3(sim.SHOVE_X, sim.SHOVE_Y, sim.SHOVE_Z)
         shove.until_us = v.time_us + round(sim.SHOVE_TIME * 1000.0)

@@ -10,10 +10,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
+from numbers import Integral, Real
 from typing import NamedTuple
 
+from ..autopilot.params.parameter import FLOAT
 from ..autopilot.params.table import Table
 from ..errors import OptionError, did_you_mean
 
@@ -23,6 +26,8 @@ UNITS = {
 }  # fmt: skip
 """FAILURE_UNIT by name; units of ours have no number."""
 OTHER_NAMES = {"rc_signal": "rc", "lidar": "avoidance", "rangefinder": "distance_sensor"}
+PARAMETERS = "SIM_"
+"""Beginning of the names of parameters that can stand in place of a unit."""
 TYPES = ("ok", "off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent")
 """FAILURE_TYPE, by number."""
 
@@ -54,8 +59,12 @@ class Effect(NamedTuple):
 
     def is_in(self, table: Table) -> bool:
         """Whether a firmware has all of its parameters."""
-        names = (name.format(n=1) for name in self.values)
-        return all(name in table and table[name].has_effect for name in names)
+        return all(name in table and table[name].has_effect for name in self.names(1))
+
+    def names(self, instances: int = 0) -> list[str]:
+        """Its parameters, of the first so many instances; 0: of all."""
+        last = instances or self.instances
+        return [name.format(n=k) for name in self.values for k in range(1, last + 1 if "{n}" in name else 2)]
 
 
 EFFECTS: tuple[Effect, ...] = (
@@ -81,12 +90,17 @@ EFFECTS: tuple[Effect, ...] = (
     Effect("battery", "slow", {"SIM_BATT_RES": AMOUNT}, "the voltage sags under load", 0.1, "[Ohm]"),
     Effect("motor", "off", {"SIM_ENGINE_MUL": AMOUNT, "SIM_ENGINE_FAIL": MASK}, "weaker motors", 0.0, "share left", 8),
     Effect("motor", "stuck", {"SIM_ENGINE_STUCK": MASK}, "motors stay at their command", instances=8),
+    Effect("motor", "slow", {"SIM_ENGINE_LAG": AMOUNT}, "all motors follow late", 0.5, "[s]"),
     Effect("servo", "off", {"SIM_ENGINE_MUL": AMOUNT, "SIM_ENGINE_FAIL": MASK}, "weaker outputs", 0.0, "share left", 8),
     Effect("servo", "stuck", {"SIM_ENGINE_STUCK": MASK}, "outputs stay as they are", instances=8),
+    Effect("servo", "slow", {"SIM_SERVO_SPEED": AMOUNT}, "the steering servo is slow", 1.0, "[s] for 60 degrees"),
     Effect("rc", "off", {"SIM_RC_FAIL": 1}, "the transmitter is silent"),
     Effect("rc", "wrong", {"SIM_RC_FAIL": 2}, "sticks centred, throttle at 950 us"),
     Effect("rc", "stuck", {"SIM_RC_STUCK": MASK}, "channels stay as they are", instances=16),
     Effect("rc", "garbage", {"SIM_RC_NOISE": AMOUNT}, "noise on all channels", 100.0, "[us]"),
+    Effect("optical_flow", "off", {"SIM_FLOW_ENABLE": 0}, "no optical flow any more"),
+    Effect("optical_flow", "garbage", {"SIM_FLOW_RND": AMOUNT}, "noise of the flow", 1.0, "[rad/s]"),
+    Effect("optical_flow", "delayed", {"SIM_FLOW_DELAY": (AMOUNT, 1000.0)}, "the flow comes late", 0.1, "[s]"),
     Effect("distance_sensor", "off", {"SIM_SONAR_LOSS": 1}, "nothing in range"),
     Effect("distance_sensor", "wrong", {"SIM_SONAR_GLITCH": AMOUNT}, "other readings", 5.0, "[m]"),
     Effect("distance_sensor", "garbage", {"SIM_SONAR_RND": AMOUNT}, "noise", 1.0, "[m]"),
@@ -100,8 +114,9 @@ EFFECTS: tuple[Effect, ...] = (
 """The first type of a unit is the one that counts when none is said."""
 
 
+@cache
 def known(table: Table) -> dict[str, dict[str, Effect]]:
-    """Unit -> type -> effect: those that a vehicle with these parameters has."""
+    """Unit -> type -> effect: those that a vehicle with these parameters has; not to be changed."""
     found: dict[str, dict[str, Effect]] = {}
     for effect in EFFECTS:
         if effect.is_in(table):
@@ -132,16 +147,41 @@ class Failure:
     end: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "unit", OTHER_NAMES.get(self.unit, self.unit))
+        for name, text in (("unit", self.unit), ("type", self.type)):
+            if not isinstance(text, str):
+                raise OptionError(f"fault {self.unit!r}: {name} {text!r} is not a text")
+        unit = unit_name(self.unit)
+        if not isinstance(self.instance, Integral) or isinstance(self.instance, bool):
+            raise OptionError(f"fault {unit}: instance {self.instance!r} is not a whole number")
         if self.amount is not None and not _is_finite(self.amount):
-            raise OptionError(f"fault {self.unit}: amount {self.amount!r} is not a finite number")
-        if not isinstance(self.instance, int) or isinstance(self.instance, bool):
-            raise OptionError(f"fault {self.unit}: instance {self.instance!r} is not a whole number")
+            raise OptionError(f"fault {unit}: amount {self.amount!r} is not a finite number")
         for name, time in (("begin", self.begin), ("end", self.begin if self.end is None else self.end)):
             if not (_is_finite(time) and 0.0 <= time <= LATEST_S):
-                raise OptionError(f"fault {self.unit}: {name} {time!r} is not a time from 0 to {LATEST_S:g} s")
+                raise OptionError(f"fault {unit}: {name} {time!r} is not a time from 0 to {LATEST_S:g} s")
         if self.end is not None and self.end <= self.begin:
-            raise OptionError(f"fault {self.unit}: its end, {self.end:g} s, is not after its begin, {self.begin:g} s")
+            raise OptionError(f"fault {unit}: its end, {self.end:g} s, is not after its begin, {self.begin:g} s")
+        plain = {  # NumPy's numbers have texts of their own
+            "unit": unit,
+            "instance": int(self.instance),
+            "amount": None if self.amount is None else float(self.amount),
+            "begin": float(self.begin),
+            "end": None if self.end is None else float(self.end),
+        }
+        for name, value in plain.items():
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def of(cls, failure: Failure | str) -> Failure:
+        """One as functions take it: made already, or a text.
+
+        Raises:
+            OptionError: it is neither.
+        """
+        if isinstance(failure, cls):
+            return failure
+        if not isinstance(failure, str):
+            raise OptionError(f"fault {failure!r} is neither a Failure nor a text such as gps@12")
+        return cls.of_text(failure)
 
     @classmethod
     def of_text(cls, text: str) -> Failure:
@@ -150,19 +190,19 @@ class Failure:
         Raises:
             OptionError: it is none.
         """
-        found = _FORM.fullmatch(text.strip())
-        try:
-            if found is None:
-                raise ValueError
-            unit, instance, kind, amount, begin, end = found.groups()
-            return cls(
-                unit, kind or "", int(instance or 0), None if amount is None else float(amount), float(begin or 0.0),
-                None if end is None else float(end),
-            )  # fmt: skip
-        except OptionError:
-            raise
-        except ValueError:
-            raise OptionError(f"fault {text!r} is not {FORM}, as in gps@12 or motor:2=0.5@20..30") from None
+        found = Text.of(text)
+        return cls(found.unit, found.type, found.instance, found.amount, found.begin or 0.0, found.end)
+
+    @property
+    def is_parameter(self) -> bool:
+        """Whether it is a SIM_ parameter, not a unit of the table."""
+        return self.unit.startswith(PARAMETERS)
+
+    def numbers(self, table: Table) -> list[int]:
+        """The instances that fail, of a vehicle for which it has been ``checked``."""
+        if self.is_parameter:
+            return []
+        return [self.instance] if self.instance else list(range(1, known(table)[self.unit][self.type].instances + 1))
 
     def __str__(self) -> str:
         instance = f":{self.instance}" if self.instance else ""
@@ -177,12 +217,16 @@ class Failure:
         Raises:
             OptionError: it has not; the message says what it has.
         """
-        if self.unit.startswith("SIM_"):
+        if self.is_parameter:
             if self.unit not in table or not table[self.unit].has_effect:
-                names = [p.name for p in table.with_effect if p.name.startswith("SIM_")]
+                names = [p.name for p in table.with_effect if p.name.startswith(PARAMETERS)]
                 raise OptionError(f"fault {self.unit}: no such parameter has an effect{did_you_mean(self.unit, names)}")
             if self.type or self.instance or self.amount is None:
                 raise OptionError(f"fault {self.unit}: a parameter takes a value and nothing else, as {self.unit}=1")
+            if text := table[self.unit].refusal(self.amount):
+                raise OptionError(f"fault {text}")
+            if table[self.unit].kind != FLOAT and self.amount % 1.0:
+                raise OptionError(f"fault {self.unit}: {self.amount:g} is not a whole number")
             return self
         units = known(table)
         if self.unit not in units:
@@ -211,11 +255,11 @@ class Failure:
             table: of the vehicle, for which it has been ``checked``.
             now: present values of masks.
         """
-        if self.unit.startswith("SIM_"):
-            return {self.unit: float(self.amount or 0.0)}
+        if self.is_parameter:
+            return {self.unit: self.amount or 0.0}
         effect = known(table)[self.unit][self.type]
         amount = self.amount if self.amount is not None else effect.amount or 0.0
-        which = [self.instance] if self.instance else list(range(1, effect.instances + 1))
+        which = self.numbers(table)
         found = {}
         for name, value in effect.values.items():
             for n in which if "{n}" in name else which[:1]:
@@ -235,30 +279,43 @@ _FORM = re.compile(
 )
 
 
-def parameters_of(unit: str, table: Table) -> Iterator[str]:
-    """Names of all parameters that faults of a unit set ("": of all units, none but those of the table).
+class Text(NamedTuple):
+    """The pieces of a fault's text; None and "": not given."""
 
-    Raises:
-        OptionError: there is no such unit.
-    """
-    unit = OTHER_NAMES.get(unit, unit)
-    units = known(table)
-    if unit in table:
-        yield unit
-    elif unit and unit not in units:
-        raise OptionError(f"there is no fault {unit!r}; there are {', '.join(units)}")
-    else:
-        for types in [units[unit]] if unit else list(units.values()):
-            for effect in types.values():
-                for name in effect.values:
-                    yield from (name.format(n=k) for k in range(1, effect.instances + 1 if "{n}" in name else 2))
+    unit: str
+    instance: int
+    type: str
+    amount: float | None
+    begin: float | None
+    end: float | None
+
+    @classmethod
+    def of(cls, text: str) -> Text:
+        """Take a text apart.
+
+        Raises:
+            OptionError: it is none.
+        """
+        found = _FORM.fullmatch(text.strip())
+        try:
+            if found is None:
+                raise ValueError
+            unit, instance, kind, *numbers = found.groups()
+            return cls(unit, int(instance or 0), kind or "", *(None if n is None else float(n) for n in numbers))
+        except ValueError:
+            raise OptionError(f"fault {text!r} is not {FORM}, as in gps@12 or motor:2=0.5@20..30") from None
 
 
-def masks_of(unit: str, table: Table) -> Sequence[str]:
-    """Those of them that are masks of instances."""
-    types = known(table).get(OTHER_NAMES.get(unit, unit), {})
-    return [name for effect in types.values() for name, value in effect.values.items() if value == MASK]
+def is_fault(name: str) -> bool:
+    """Whether a text begins with a unit of the table or names a SIM_ parameter."""
+    unit = unit_name(re.split("[:/=@]", name, maxsplit=1)[0])
+    return unit.startswith(PARAMETERS) or any(unit == effect.unit for effect in EFFECTS)
+
+
+def unit_name(unit: str) -> str:
+    """Name of a unit in the table, which may have been given under another one."""
+    return OTHER_NAMES.get(unit, unit)
 
 
 def _is_finite(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -6,9 +6,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..autopilot.params.simulation import Simulated
+import numpy as np
+
 from ..autopilot.rover.firmware import FIRMWARE, update
 from ..autopilot.rover.move import move as move_firmware
+from ..autopilot.rover.parameters import Simulated
 from ..autopilot.rover.state import Autopilot
 from ..core.algebra import euler_of
 from ..core.displacement import Displacement, speed_along
@@ -34,6 +36,8 @@ GROUND_ROVER, BOAT = 10, 11
 """MAV_TYPE"""
 SIMULATED_ENCODER = 10
 """WENC_TYPE"""
+DEFAULT_SERVO_SPEED = float(np.float32(0.14))
+"""SIM_SERVO_SPEED that leaves the airframe's steering servo as it is [s for 60 degrees]."""
 ENCODER_TICKS = 8
 """They are read 50 times a second, as ArduPilot's."""
 
@@ -104,10 +108,20 @@ def hold_outputs(p: Physics, sim: Simulated, controls: Floats) -> None:
     wheels.is_faulty = bool((fails | stuck) & (1 << first | 1 << second))
 
 
+def slow_down(p: Physics, sim: Simulated) -> None:
+    """Motors and steering servo as slow as the parameters say."""
+    d = p.derived
+    rate = 0.0 if sim.SERVO_SPEED == DEFAULT_SERVO_SPEED else math.radians(60.0) / sim.SERVO_SPEED
+    if (d.motor_lag, d.servo_rate) != (sim.ENGINE_LAG, rate) and d.control_scale > 0.0:  # before power-on it is 0
+        d.motor_lag, d.servo_rate = sim.ENGINE_LAG, rate
+        prepare(p.airframe, d)
+
+
 def apply_sim_parameters(v: Rover) -> None:
     """SIM_ parameters of all kinds, those of the outputs, and the simulated wheel encoders that WENC_TYPE asks for."""
     sim_parameters.apply(v)
     hold_outputs(v.physics, v.autopilot.params.SIM, v.actuators.controls)
+    slow_down(v.physics, v.autopilot.params.SIM)
     wheels, p = v.physics.wheels, v.autopilot.params.WENC
     wheels.encoder_period = ENCODER_TICKS if p.TYPE == SIMULATED_ENCODER else 0
     wheels.encoder_step = 2.0 * math.pi * p.RADIUS / p.CPR

@@ -10,6 +10,7 @@ import pytest
 from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
 from sitl.autopilot.mission import item as c
 from sitl.bridge.services.parachute import ParachuteService
+from sitl.bridge.services.parameters import ParameterService
 from sitl.simulation import Core
 from tests.bridge.fakes import FakeRover
 from tests.bridge.test_payload import Fitted, bench, pulse
@@ -145,6 +146,21 @@ def test_switches() -> None:
     assert answers["released"] == [True]
     b.bridge.switched(22, HIGH)
     assert answers["released"] == [True], "once only"
+
+
+def test_one_that_a_client_enables_is_there_at_once() -> None:
+    b = bench(**{**CHUTE, "CHUTE_ENABLED": 0.0})
+    answers = flying(b)
+    b.autopilot.armed = lambda: True  # type: ignore[method-assign]
+    answers["error"] = 1.0
+    b.run(3.0)
+    b.bridge.get(ParameterService).set("CHUTE_ENABLED", 1.0)
+    b.run(0.15)
+    answers["height"] = 40.0
+    b.run(0.5)
+    assert answers["released"] == []
+    b.run(2.0)
+    assert answers["released"] == [True]
 
 
 def test_relay_held_open_with_the_motors_on() -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from sitl.simulation import Core
@@ -44,6 +46,29 @@ def test_steering_without_force(core: Core) -> None:
     p.simulation.repair("servo")
     p.sticks(1.0, 1800, 1700)
     assert abs(p.heading - heading) > 20.0
+
+
+def test_a_slow_servo_and_a_slow_motor(core: Core) -> None:
+    """SIM_SERVO_SPEED: seconds for 60 degrees. SIM_ENGINE_LAG: the motor's time constant."""
+    p = at_speed(core, "erle_rover", 4.0)
+    wheels, derived = p.simulation.v.physics.wheels, p.simulation.v.physics.derived
+    before = bytes(derived._bytes)
+    p.simulation.fail("servo/slow=4")
+    p.sticks(0.5, 1500, 1700)
+    angle = wheels.angle
+    p.sticks(0.5, 2000, 1700)
+    assert math.degrees(wheels.angle - angle) == pytest.approx(60.0 / 4.0 * 0.5, abs=1.0)
+    p.simulation.repair("servo/slow")
+    p.sticks(0.5, 2000, 1700)
+    assert wheels.angle == pytest.approx(p.simulation.v.physics.airframe.steering_angle, rel=0.05)
+    p.simulation.fail("motor/slow=2")
+    full = wheels.speed.x
+    p.sticks(1.0, 1500, 1500)
+    assert 0.45 < wheels.speed.x / full < math.exp(-0.5), "rolling resistance takes some of it"
+    p.simulation.repair("motor")
+    p.sticks(1.0, 1500, 1500)
+    assert wheels.speed.x < 0.05 * full
+    assert bytes(derived._bytes) == before
 
 
 @pytest.mark.parametrize("frame", ["ardupilot_rover", "skid_rover"])

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from sitl.autopilot.mission.item import FENCE_INCLUSION, NAV_WAYPOINT, RALLY_POINT, MissionItem, home_item
+from sitl.bridge.services.parameters import ParameterService
 from sitl.drop_in.command_line import parse
 from sitl.drop_in.server import Session
 from sitl.drop_in.statistics import SINCE_S, Statistics
@@ -127,6 +128,27 @@ def test_logs_are_numbered_over_runs(core: Core, tmp_path: Path) -> None:
     logs.erase()
     assert list(folder.iterdir()) == [] and logs.entries() == []
     simulation.close()
+
+
+def test_what_a_fault_sets_is_not_kept(core: Core, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A real one keeps SIM_ parameters that a client sets, and so does this one."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Session, "_open_ports", lambda session: None)
+    session = Session("ardurover", parse(["-w"]), say=lambda text: None)
+    simulation = session.simulation
+    set_parameter = simulation.bridge.get(ParameterService).set
+    for text in ("gps@0.5..1", "battery=9", "rc"):
+        simulation.fail(text)
+    set_parameter("SIM_WIND_SPD", 3.0)
+    set_parameter("SIM_RC_FAIL", 2.0)
+    simulation.advance(0.7)
+    assert simulation.parameters["SIM_GPS1_ENABLE"] == 0.0
+    simulation.advance(0.7)
+    session.close()
+    kept = Storage(tmp_path / "ardurover-storage.json").parameters
+    assert {name: value for name, value in kept.items() if name.startswith("SIM_")} == {
+        "SIM_WIND_SPD": 3.0, "SIM_RC_FAIL": 2.0,
+    }  # fmt: skip
 
 
 def test_a_model_that_there_is_not_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -60,9 +60,48 @@ def test_a_vector_environment_and_snapshots_have_the_same() -> None:
     many.close()
 
 
+def test_amounts_are_drawn_for_each_episode() -> None:
+    ranges = {"motor:3": (0.3, 0.9), "battery": lambda rng: float(rng.integers(10, 13)), "SIM_GPS1_NOISE": (1.0, 2.0)}
+    options = {**ROVER, "randomise": ranges, "faults": {"gps/garbage": 0.0}}
+    env, many = gym.make("sitl/Navigate-v0", **options), gym.make_vec("sitl/Navigate-v0", num_envs=3, **options)
+
+    def seen(robot: Any, index: int = 0) -> tuple[float, ...]:
+        v = robot.view(index)
+        return (v.physics.wheels.share.y, v.physics.battery.full_voltage, v.physics.sensors.gps_fault.noise)
+
+    many.reset(seed=5)
+    many.step(np.zeros(3, np.int64))
+    drawn = [seen(many.unwrapped.robot, k) for k in range(3)]  # type: ignore[attr-defined]
+    for index, wanted in enumerate(drawn):
+        env.reset(seed=5 + index)
+        kept = env.unwrapped.snapshot()  # type: ignore[attr-defined]
+        env.step(0)
+        robot = env.unwrapped.robot  # type: ignore[attr-defined]
+        assert seen(robot) == wanted
+        env.reset()
+        env.unwrapped.restore(kept)  # type: ignore[attr-defined]
+        env.step(0)
+        assert seen(robot) == wanted and wanted[1] in (10, 11, 12) and 1.0 <= wanted[2] <= 2.0
+        assert robot.view(0).physics.sensors.gps_jammed
+    assert len(set(drawn)) == 3 and all(0.3 <= share <= 0.9 for share, *_ in drawn)
+    env.close()
+    many.close()
+
+
 @pytest.mark.parametrize(
     ("options", "why"),
     [
+        ({"randomise": {"gps": (0, 1)}}, "fault gps/off takes no amount"),
+        ({"randomise": {"gps/wrong@3": (0, 1)}}, "neither is said"),
+        ({"randomise": {"motor:2": (0.5, 1.5)}}, "SIM_ENGINE_MUL: 1.5 is outside 0 .. 1"),
+        ({"randomise": {"motor:2": (0.5, 0.2)}}, r"\(0.5, 0.2\) is not \(low, high\)"),
+        ({"randomise": {"motor:2": 3}}, r"it must be \(low, high\) or a function"),
+        ({"randomise": {"SIM_GPS1_NUMSATS": (3, 9)}}, "is not a whole number"),
+        ({"randomise": {"SIM_GPS1_NUMSAT": (3, 9)}}, "no such parameter has an effect"),
+        (
+            {"randomise": {"gps/wrong": (3, 9)}, "robot": "turtlebot", "world": "maze"},
+            "'turtlebot' has no faults",
+        ),
         ({"faults": {"gsp": 1.0}}, "there is no fault 'gsp'; there are gps"),
         ({"faults": {"gps": (3.0, 1.0)}}, r"'gps': \(3.0, 1.0\) is neither a time"),
         ({"faults": {"gps@3": 1.0}}, "its time stands behind it"),

@@ -6,6 +6,7 @@ The figures "of ArduPilot" were flown with its unmodified 4.7-dev executable, fr
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults
 from sitl.missions.testing.vehicle import Copter
+from sitl.physics.native.copter.prepare import prepare
 
 FRAME = "ardupilot_quad"
 Fly = Callable[..., Copter]
@@ -352,6 +354,30 @@ def test_stuck_motors(fly: Fly) -> None:
     copter.restore("motor")
     copter.delay(0.1)
     assert rotors.command[1] != before
+
+
+def test_slow_motors(fly: Fly) -> None:
+    """Rotors follow late: with 0.3 s it wobbles, 0.5 s is too much. A change of figures does not end that."""
+    copter = fly()
+    derived = copter.simulation.v.physics.derived
+    before, airframe = bytes(derived._bytes), copter.simulation.v.physics.airframe
+
+    def wobble(seconds: float) -> float:
+        rates = []
+        for _ in range(round(seconds / 0.05)):
+            copter.delay(0.05)
+            rates.append(math.hypot(*list(copter.simulation.v.physics.body.rates)[:2]))
+        return max(rates)
+
+    calm = wobble(3.0)
+    with copter.fork():
+        copter.fail("motor", "slow")
+        assert wobble(12.0) > 5.0 and where(copter)[2] < 8.0
+    with copter.fail("motor", "slow", amount=0.3):
+        assert 3.0 * calm < wobble(6.0) < 1.0
+        prepare(airframe, derived)
+        assert derived.decay_up == derived.decay_down == pytest.approx(math.exp(-derived.dt / 0.3))
+    assert bytes(derived._bytes) == before
 
 
 def test_lidar_and_range_finder_see_less(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from sitl.autopilot.estimation.status import CONST_POS_MODE, POS_HORIZ_ABS, POS_
 from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.flights.aviator import ALT_HOLD, GUIDED, LAND, LOITER, POSITION, RTL, STABILIZE, Aviator, target
+from tests.pilots.witness import KEEP, LOW, MIDDLE
 
 FLOW: dict[str, float] = {
     "EK3_SRC1_POSXY": 0, "EK3_SRC1_VELXY": 5, "EK3_SRC1_VELZ": 0, "FLOW_TYPE": 10, "SIM_FLOW_ENABLE": 1,
@@ -123,11 +124,46 @@ def test_flow_is_lost_in_flight(core: Core) -> None:
     assert p.fly(60.0, lambda: not p.ap.arming.armed)
 
 
+def test_flow_fails_on_demand(core: Core) -> None:
+    p = hover(core)
+    assert p.set_mode(LOITER)
+    p.sticks(2.0)
+    down = p.simulation.v.physics.downward
+    for fault, wanted in (("optical_flow/garbage=2", (40, 0, 2.0)), ("optical_flow/delayed=0.05", (40, 20, 0.05))):
+        p.simulation.fail(fault)
+        assert (down.flow_period, down.flow_delay, down.flow_noise) == pytest.approx(wanted)
+        p.simulation.repair("optical_flow")
+    p.simulation.fail("optical_flow@1..4")
+    assert p.fly(3.0, lambda: not flags(p) & POS_HORIZ_REL)
+    p.fly(4.0)
+    assert flags(p) & POS_HORIZ_REL
+
+
+TWO_SETS: dict[str, float] = {
+    **FLOW, "EK3_SRC1_POSXY": 3, "EK3_SRC1_VELXY": 3, "EK3_SRC1_VELZ": 3, "EK3_SRC2_POSXY": 0, "EK3_SRC2_VELXY": 5,
+    "EK3_SRC2_YAW": 1, "GPS1_TYPE": 1,
+}  # fmt: skip
+"""GPS first, optical flow second."""
+
+
+def test_a_switch_chooses_the_set_of_sources(core: Core) -> None:
+    """RCn_OPTION 90: low the first set, middle the second, high the third, which has none."""
+    p = Aviator(core, **TWO_SETS, RC7_OPTION=90, RC_OVERRIDE_TIME=-1).hover()
+    assert p.set_mode(LOITER)
+    p.sticks(3.0)
+    before = p.pos
+    for pulse, number, wanted in ((MIDDLE, 2, POS_HORIZ_REL), (LOW, 1, POS_HORIZ_ABS), (2000, 3, CONST_POS_MODE)):
+        p.override(*[KEEP] * 6, pulse)
+        p.fly(1.0 if number != 1 else 5.0)
+        assert p.said(f"Using EKF Source Set {number}"), p.texts[-3:]
+        seen = flags(p) & (POS_HORIZ_REL | POS_HORIZ_ABS | CONST_POS_MODE)
+        assert seen & wanted and bool(seen & POS_HORIZ_ABS) == (number == 1), (number, seen)
+        assert math.dist(p.pos[:2], before[:2]) < 1.0
+
+
 def test_from_gps_to_flow_and_back(core: Core) -> None:
-    """A switch (RCn_OPTION 90) in LOITER: no jump, flight goes on without the receiver, and with it again."""
-    params = {"EK3_SRC2_POSXY": 0, "EK3_SRC2_VELXY": 5, "EK3_SRC2_YAW": 1, "GPS1_TYPE": 1}
-    usual = {"EK3_SRC1_POSXY": 3, "EK3_SRC1_VELXY": 3, "EK3_SRC1_VELZ": 3}
-    p = Aviator(core, **{**FLOW, **params, **usual}).hover()
+    """Another set by a command in LOITER: no jump, flight goes on without the receiver, and with it again."""
+    p = Aviator(core, **TWO_SETS).hover()
     assert flags(p) & POS_HORIZ_ABS
     assert p.set_mode(LOITER)
     p.sticks(3.0)

@@ -166,6 +166,7 @@ class Simulated(ParameterGroup):
     ENGINE_FAIL: float = param(0, 0, 255, "", "Outputs that fail: 1 the first, 2 the second, 4 the third, ...", INT32)
     ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust or angle that failing outputs keep")
     ENGINE_STUCK: float = param(0, 0, 255, "", "Outputs that stay as they are: 1 the first, 2 the second, ...", INT32)
+    ENGINE_LAG: float = param(0, 0, 10, "s", "Time constant of all motors; 0: the airframe's")
     SONAR_GLITCH: float = param(0, -1000, 1000, "m", "Added to the reading of the range-finder")
     SONAR_RND: float = param(0, 0, 1000, "m", "Noise of the range-finder besides the airframe's")
     SONAR_LOSS: float = param(0, 0, 1, "", "Share of the range-finder's readings that see nothing")

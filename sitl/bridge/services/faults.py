@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...autopilot.params.parameter import stored
 from ...autopilot.shell_parameters import FAILURES
-from ...vehicle.faults import TYPES, UNITS, Failure, known, masks_of, parameters_of
+from ...errors import OptionError
+from ...vehicle.faults import TYPES, UNITS, Failure, known
+from ...vehicle.ordered_faults import Ordered, OrderedFaults, Repair
 from ..wire.port import NEVER
 from .parameters import ParameterService
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
-
-Order = tuple[int, str, bool]
-"""When [us since the start of the simulation], what, and whether it begins then or ends."""
 
 
 class FaultService(Service):
@@ -21,74 +21,75 @@ class FaultService(Service):
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
         self._table = bridge.vehicle.firmware.table
-        self._orders: tuple[Order, ...] = ()
-        self._before: dict[str, float] = {}
+        self._faults = OrderedFaults(self._table)
+        self.is_setting = False
+        """Whether the parameter that is set now is set by a fault."""
+
+    @property
+    def texts(self) -> list[str]:
+        """Those that were ordered and are not over, as they were ordered."""
+        return [str(failure) for order in self._faults.orders for failure in order.failures(self._table)]
+
+    def check(self, failure: Failure) -> None:
+        """OptionError when the vehicle has no such fault, or it does nothing to its physics."""
+        vehicle: Any = self.bridge.vehicle
+        table = self._table
+        names, idle = failure.checked(table).values(table, {}), vehicle.plant.idle_parameters
+        without = next((name for name in names if name.startswith(idle)), None) if idle else None
+        if without is not None:
+            works = [unit for unit, types in known(table).items() for effect in types.values()
+                     if not effect.names()[0].startswith(idle)]  # fmt: skip
+            there_are = ", ".join(dict.fromkeys(works))
+            raise OptionError(
+                f"fault {failure.unit}: {without} does nothing to physics {vehicle.physics}; there are {there_are}"
+            )
+
+    def repair_of(self, what: object, instance: object = 0) -> Repair:
+        """What is to be repaired, checked.
+
+        Raises:
+            OptionError: there is no such unit, type or instance.
+        """
+        return Repair.of(what, instance, self._table)
 
     def fail(self, failure: Failure) -> None:
         """Let something fail now or later.
 
         Raises:
-            OptionError: the vehicle has no such fault.
+            OptionError: as of ``check``.
         """
-        failure, now = failure.checked(self._table), self.bridge.elapsed_us
-        orders = [(now + round(1e6 * failure.begin), str(failure), True)]
-        if failure.end is not None:
-            orders.append((now + round(1e6 * failure.end), str(failure), False))
-        self._orders = tuple(sorted((*self._orders, *orders), key=lambda order: order[0]))
+        self.check(failure)
+        self._faults.order(failure, self.bridge.elapsed_us)
         self.service(self.bridge.now_us)
 
-    def repair(self, unit: str = "", instance: int = 0) -> None:
-        """All faults of a unit, or of all, are over: its parameters are what they were, and none begins later.
-
-        Args:
-            unit: "": all units and parameters.
-            instance: 0: all.
-
-        Raises:
-            OptionError: there is no such unit.
-        """
-        names = set(parameters_of(unit, self._table))
-        kept = []
-        for order in self._orders if unit else ():
-            later = Failure.of_text(order[1])
-            if not names & later.values(self._table, {}).keys() or instance not in (0, later.instance):
-                kept.append(order)
-        self._orders = tuple(kept)
-        self._look()
-        self._repair(names if unit else set(self._before), unit, instance)
-
-    def _repair(self, names: set[str], unit: str, instance: int) -> None:
-        values, masks = self.bridge.vehicle.parameters, masks_of(unit, self._table)
-        if instance and masks:
-            for name in masks:
-                left = int(values[name]) & ~(1 << (instance - 1))
-                if left:
-                    self._set(name, float(left))
-                    return
-        for name in sorted(names & self._before.keys()):
-            self._set(name, self._before.pop(name))
-
-    def _set(self, name: str, value: float) -> None:
-        if self.bridge.vehicle.parameters[name] != value:
-            self.bridge.get(ParameterService).set(name, value)
-
-    def _look(self) -> None:
-        elapsed = self.bridge.elapsed_us - self.bridge.now_us
-        self.due_us = self._orders[0][0] - elapsed if self._orders else NEVER
+    def repair(self, repair: Repair) -> None:
+        """Faults are over: parameters are what they would be without them, and none of them begins later."""
+        self._faults.repair(repair)
+        self._set_parameters()
 
     def service(self, now_us: int) -> None:
-        while self._orders and self._orders[0][0] <= self.bridge.elapsed_us:
-            (_, text, begins), *rest = self._orders
-            self._orders, failure = tuple(rest), Failure.of_text(text)
-            values = self.bridge.vehicle.parameters
-            wanted = failure.values(self._table, {name: values[name] for name in masks_of(failure.unit, self._table)})
-            if not begins:
-                self._repair(set(wanted), failure.unit, failure.instance)
-                continue
-            for name, value in wanted.items():
-                self._before.setdefault(name, values[name])
-                self._set(name, value)
+        if self._faults.due_us <= self.bridge.elapsed_us:
+            self._set_parameters()
         self._look()
+
+    def _set_parameters(self) -> None:
+        present, table = self.bridge.vehicle.parameters, self._table
+        self.is_setting = True
+        try:
+            for name, value in self._faults.values(self.bridge.elapsed_us, present.__getitem__).items():
+                if present[name] != stored(table[name], value):
+                    self.bridge.get(ParameterService).set(name, value)
+        finally:
+            self.is_setting = False
+        self._look()
+
+    def _look(self) -> None:
+        due_us = self._faults.due_us
+        self.due_us = NEVER if due_us >= NEVER else due_us - (self.bridge.elapsed_us - self.bridge.now_us)
+
+    def parameter_changed(self, name: str) -> None:
+        if not self.is_setting:
+            self._faults.was_set(name)
 
     def command(self, unit: float, kind: float, instance: float) -> int:
         """MAV_CMD_INJECT_FAILURE; gives the MAV_RESULT."""
@@ -105,19 +106,23 @@ class FaultService(Service):
         if instance not in range(max(effect.instances for effect in meant) + 1):
             return DENIED
         if kind == 0.0:
-            self.repair(name, int(instance))
+            self.repair(self.repair_of(name, int(instance)))
         else:
-            self.fail(Failure(name, TYPES[int(kind)], int(instance)))
+            try:
+                self.fail(Failure(name, TYPES[int(kind)], int(instance)))
+            except OptionError:  # not with this physics
+                return UNSUPPORTED
         return ACCEPTED
 
     def follow(self, before: FaultService) -> None:
         """Go on after a reboot."""
-        self._orders, self._before = before._orders, before._before
+        self._faults = before._faults
         self._look()
 
     def snapshot(self) -> Any:
-        return self._orders, tuple(self._before.items())
+        return tuple(map(tuple, self._faults.orders)), tuple(self._faults.before.items())
 
     def restore(self, state: Any) -> None:
-        self._orders, self._before = state[0], dict(state[1])
+        orders, before = state
+        self._faults.orders, self._faults.before = tuple(Ordered(*order) for order in orders), dict(before)
         self._look()

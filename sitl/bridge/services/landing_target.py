@@ -46,6 +46,8 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
         return
     line = Vec3(m.x, m.y, m.z)
     if m.position_valid == 0:
+        if not finite(m.angle_x + m.angle_y):
+            return
         line = Vec3(-math.tan(m.angle_y), math.tan(m.angle_x), 1.0)
     if finite(line.x + line.y + line.z + m.distance):
         take(t, line, SENSOR if m.frame == BODY_FRD else LEVEL_SENSOR, m.distance, v.time_us)

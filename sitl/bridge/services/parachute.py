@@ -106,9 +106,14 @@ class ParachuteService(PayloadService):
             self._release_by_command()
         elif "CHUTE_ENABLED" in self._values.table:
             self._values["CHUTE_ENABLED"] = action
+            self.parameter_changed("CHUTE_ENABLED")
+        return ACCEPTED
+
+    def parameter_changed(self, name: str) -> None:
+        """A parachute that a client enables is there at once."""
+        if name == "CHUTE_ENABLED":
             self._state = self._state._replace(lost=0, sinks_us=0)
             self._watch(self.bridge.now_us)
-        return ACCEPTED
 
     def _is_enabled(self) -> bool:
         return self._value("CHUTE_ENABLED") > 0.0

@@ -22,7 +22,6 @@ from ..dialect import message
 from ..wire.port import NEVER
 from .service import INFO, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
-from .streams import StreamService
 
 VALUE = message("PARAM_VALUE")
 WIRE_TYPES = {INT8: 2, INT16: 4, INT32: 6, FLOAT: 9}
@@ -137,7 +136,7 @@ class ParameterService(Service):
             listener.parameter_set(name)
         self.bridge.autopilot.parameter_changed(name)
         self.bridge.tell(self.bridge.autopilot.take_notes())
-        self.bridge.get(StreamService).parameter_changed(name)
+        self.bridge.parameter_changed(name)
         if name == "MAV_SYSID":
             self.bridge.refresh_identity()
         return None

@@ -42,6 +42,9 @@ class Service:
     def channel_removed(self, channel: Channel) -> None:
         """A client went away."""
 
+    def parameter_changed(self, name: str) -> None:
+        """A parameter was set, over MAVLink or by another service."""
+
     def service(self, now_us: int) -> None:
         """Called at or after ``due_us``."""
 

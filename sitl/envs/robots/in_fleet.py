@@ -92,7 +92,7 @@ class FleetVehicles(InProcessVehicles):
         self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
         """Start state, seed and move of each vehicle's episode, until its first step."""
         self._prepared: Prepared | None = None
-        self._failing: dict[int, Failure] = {}
+        self._failing: dict[int, list[Failure]] = {}
         """What is ordered to fail from the next step on."""
         self._used = "", 0
         """Kind of set-point and interval that a vehicle was last made ready for."""
@@ -262,12 +262,13 @@ class FleetVehicles(InProcessVehicles):
         self.show(rows)
 
     def fail(self, index: int, failure: Failure) -> None:
-        self._failing[index] = failure
+        self._failing.setdefault(index, []).append(failure)
 
     def _order(self, index: int) -> None:
         """Order what is to fail; the vehicle is ready for its set-points."""
         self._begun[index] = None
-        self.fleet.fail(index, self._failing.pop(index))
+        for failure in self._failing.pop(index):
+            self.fleet.fail(index, failure)
 
     def rows(self, which: npt.NDArray[np.bool_] | None) -> Rows:
         """Numbers of the vehicles that are meant."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, NoReturn
 
 from sitl import client
+from sitl.autopilot.params.parameter import stored
 from sitl.bridge.links import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.client.connection import Connection, InProcess
@@ -17,7 +18,8 @@ from sitl.client.session import RATES_HZ
 from sitl.errors import OptionError
 from sitl.plants.plant import is_remote
 from sitl.simulation import Simulation
-from sitl.vehicle.faults import Failure, parameters_of
+from sitl.vehicle.faults import Failure
+from sitl.vehicle.ordered_faults import OrderedFaults, Repair
 
 
 class Said(NamedTuple):
@@ -109,8 +111,8 @@ class Forking(client.Client):
 
     def __init__(self, build: Callable[[], Simulation | Connection], name: str = "vehicle") -> None:
         self.build = build
-        self._before_faults: dict[str, float] = {}
-        """Parameters of another autopilot before it failed."""
+        self._faults: OrderedFaults | None = None
+        """Of another autopilot."""
         made = build()
         connection = made if isinstance(made, Connection) else InProcess(made)
         rates = None
@@ -143,18 +145,18 @@ class Forking(client.Client):
 
     def _set_fault(self, text: str) -> None:
         assert self.connection.kind is not None
-        table, before = self.connection.kind.firmware.table, self._before_faults
+        table = self.connection.kind.firmware.table
+        faults = self._faults = self._faults or OrderedFaults(table)
         if text.startswith("-"):
-            unit = text[1:].partition(":")[0]
-            self.params.update({name: before.pop(name) for name in parameters_of(unit, table) if name in before})
-            return
-        failure = Failure.of_text(text).checked(table)
-        if failure.begin or failure.end is not None:
-            raise OptionError(f"fault {text}: of another autopilot it begins now, and ends when it is repaired")
-        values = failure.values(table, {})
-        for name in values:
-            before.setdefault(name, self.params[name])
-        self.params.update(values)
+            faults.repair(Repair.of(text[1:], 0, table))
+        else:
+            failure = Failure.of_text(text).checked(table)
+            if failure.begin or failure.end is not None:
+                raise OptionError(f"fault {text}: of another autopilot it begins now, and ends when it is repaired")
+            faults.order(failure, 0)
+        values = faults.values(0, self.params.__getitem__)
+        present = {name: self.params[name] for name in values}
+        self.params.update({name: x for name, x in values.items() if present[name] != stored(table[name], x)})
 
     def raise_error(self, error: ClientError) -> NoReturn:
         try:

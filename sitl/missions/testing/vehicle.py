@@ -49,8 +49,9 @@ class Faulty(Forking):
     """A vehicle that can fail."""
 
     def fail(self, what: str, type: str = "", *, instance: int = 0, amount: float | None = None, at: float = 0.0,
-             until: float | None = None, motor: int = 1, thrust: float = 0.0, speed: float = 10.0,
-             direction: float = 0.0, turbulence: float = 0.0, faults: LinkFaults | None = None) -> Fault:  # fmt: skip
+             until: float | None = None, motor: int | None = None, thrust: float | None = None,
+             speed: float | None = None, direction: float | None = None, turbulence: float | None = None,
+             faults: LinkFaults | None = None) -> Fault:  # fmt: skip
         """Let something fail, until ``restore(what)``, ``.repair()`` of what this gives, or for a ``with`` block.
 
         Args:
@@ -60,40 +61,51 @@ class Faulty(Forking):
             instance: which one, from 1; 0: all.
             amount: how much; None: the usual amount.
             at, until: simulated seconds from now; None: it stays.
-            motor, thrust: of "motor": which one, and the share of its thrust that is left.
-            speed, direction, turbulence: of "wind" [m/s], where it comes from [deg], [m/s].
+            motor, thrust: of "motor": other names of instance and amount (the share of its thrust that is left).
+            speed, direction, turbulence: of "wind": 10 m/s, from 0 deg (north), 0 m/s when they are not given.
 
         Raises:
-            OptionError: the vehicle has no such fault; the message says what it has.
+            OptionError: the vehicle has no such fault, or an argument that has no effect on it is given.
         """
+        own = {"motor": ("motor", motor), "thrust": ("motor", thrust), "speed": (WIND, speed), "faults": (LINK, faults),
+               "direction": (WIND, direction), "turbulence": (WIND, turbulence)}  # fmt: skip
+        for name, (unit, value) in own.items():
+            if value is not None and what != unit:
+                raise OptionError(f"fault {what!r} takes no {name} (given: {value!r}); {unit!r} does")
         if what in OF_CLIENTS:
             if at or until is not None:
                 raise OptionError(f"fault {what!r} is this client's, and begins now: at and until are of the vehicle's")
+            if type or instance or amount is not None:
+                raise OptionError(f"fault {what!r} is this client's: it has no type, instance or amount")
             if what == STATION:
                 self.heartbeats(False)
             else:
                 self.set_link_faults(faults if faults is not None else LinkFaults(loss=1.0))
             return Fault(lambda: self.restore(what))
+        for name, first, other, second in (
+            ("motor", motor, "instance", instance or None), ("thrust", thrust, "amount", amount),
+            ("speed", speed, "amount", amount),
+        ):  # fmt: skip
+            if first is not None and second is not None:
+                raise OptionError(f"fault {what!r}: {name}={first!r} and {other}={second!r} say the same thing")
+        share = next((number for number in (thrust, speed, amount) if number is not None), None)
+        failures = [Failure(what, type, instance if motor is None else motor, share, at, until)]
         if what == WIND:
-            figures = {"SIM_WIND_SPD": speed, "SIM_WIND_DIR": direction, "SIM_WIND_TURB": turbulence}
-            failures = [Failure(name, amount=value, begin=at, end=until) for name, value in figures.items()]
-        elif what == "motor":
-            share = thrust if amount is None and type in ("", "off") else amount
-            failures = [Failure(what, type, instance or motor, share, at, until)]
-        else:
-            failures = [Failure(what, type, instance, amount, at, until)]
+            figures = {"SIM_WIND_DIR": direction or 0.0, "SIM_WIND_TURB": turbulence or 0.0}
+            failures += [Failure(name, amount=value, begin=at, end=until) for name, value in figures.items()]
         assert self.connection.kind is not None
-        for failure in failures:
-            failure.checked(self.connection.kind.firmware.table)
-            self.order_fault(str(failure))
-        return Fault(lambda: self._repair([(failure.unit, failure.instance) for failure in failures]))
+        table = self.connection.kind.firmware.table
+        texts = [str(failure.checked(table)) for failure in failures]
+        for text in texts:
+            self.order_fault(text)
+        return Fault(lambda: self._repair(texts))
 
-    def _repair(self, units: Iterable[tuple[str, int]]) -> None:
-        for unit, instance in units:
-            self.order_fault(f"-{unit}:{instance}")
+    def _repair(self, texts: Iterable[str]) -> None:
+        for text in texts:
+            self.order_fault(f"-{text}")
 
     def restore(self, moment: Any) -> None:
-        """Put the vehicle back to a moment of ``snapshot()``, or end a fault by its name ("gps"; "": all)."""
+        """Put the vehicle back to a moment of ``snapshot()``, or end faults: "gps", "motor:2", "gps/wrong"; "": all."""
         if not isinstance(moment, str):
             super().restore(moment)
         elif moment == STATION:
@@ -101,7 +113,7 @@ class Faulty(Forking):
         elif moment == LINK:
             self.set_link_faults(None)
         else:
-            self._repair([(moment, 0)])
+            self._repair((moment, "SIM_WIND_DIR", "SIM_WIND_TURB") if moment == WIND else (moment,))
 
 
 __all__ = ["Copter", "Place", "Rover", "Text", "Vehicle"]

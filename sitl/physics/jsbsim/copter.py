@@ -20,6 +20,8 @@ from .model import Properties, VehicleModel
 class CopterModel(VehicleModel):
     """Commands in, rotor speeds and power out; touching the ground."""
 
+    idle_parameters = ("SIM_ENGINE_LAG", "SIM_SHOVE_", "SIM_TWIST_")
+
     def __init__(self, vehicle: EngineVehicle) -> None:
         super().__init__(vehicle)
         p = vehicle.v.physics

@@ -116,6 +116,7 @@ class JsbsimEngine(Engine):
                 f"world {vehicle.world.name!r}: physics 'jsbsim' knows no solids; take physics 'native' or 'pybullet'"
             )
         self.model = model
+        self.idle_parameters = model.idle_parameters
         self.executive: Any = None
         """JSBSim's FGFDMExec."""
         self._figures = b""

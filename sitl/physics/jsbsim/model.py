@@ -40,6 +40,8 @@ class VehicleModel(ABC):
 
     ahead = 0.0
     """From the origin of the body forward to its centre of mass, which JSBSim moves [m]."""
+    idle_parameters: tuple[str, ...] = ()
+    """As of ``Engine``."""
 
     def __init__(self, vehicle: EngineVehicle) -> None:
         self.vehicle = vehicle

@@ -57,6 +57,16 @@ def test_fly_a_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert (tmp_path / "logs" / "hop.tlog").stat().st_size > 1000
 
 
+def test_a_mission_with_a_fault(capsys: pytest.CaptureFixture[str]) -> None:
+    save(Draft("copter", "").take_off(4).to((6, 0), z=4.0).land().file(), "hop.plan")
+    assert (
+        cli.main(["mission", "fly", "hop.plan", "--time-limit", "60", "--fail", "motor:1@1", "--fail", "wind=3"]) == 1
+    )
+    assert "mission NOT COMPLETED" in capsys.readouterr().out
+    assert cli.main(["mission", "fly", "hop.plan", "--fail", "motor:9@1"]) == 2
+    assert "fault motor: there is no number 9; it has 1 to 8" in capsys.readouterr().err
+
+
 def test_a_mission_that_is_not_completed_is_code_1(capsys: pytest.CaptureFixture[str]) -> None:
     save(Draft("copter", "").to((6, 0), z=4.0).file(), "flat.waypoints")
     assert cli.main(["mission", "fly", "flat.waypoints", "--quiet"]) == 1

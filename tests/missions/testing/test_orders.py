@@ -6,15 +6,20 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from sitl.bridge.links import LinkFaults
+from sitl.bridge.services.faults import FaultService
 from sitl.client.waits import turn
 from sitl.errors import OptionError
 from sitl.missions.library import entries
 from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.logs import fly_again
+from sitl.missions.testing.vehicle import Copter
+from sitl.vehicle.kinds import KINDS
 
 
 def test_a_velocity_stays_until_another_order(make: VehicleFactory) -> None:
@@ -96,6 +101,75 @@ def test_faults_come_and_go(make: VehicleFactory) -> None:
         copter.fail("engine")
     with pytest.raises(ValueError, match="there is no fault 'twist'"):
         make("rover").fail("twist")
+
+
+def test_a_fault_ends_alone(make: VehicleFactory, tmp_path: Path) -> None:
+    copter = make("copter", params={"SIM_WIND_DIR": 45})
+    has = lambda *names: [copter.parameter(f"SIM_{name}") for name in names]  # noqa: E731
+    with copter.fail("motor", motor=1, thrust=0.5):
+        with copter.fail("motor", motor=1, thrust=0.2), copter.fail("motor", instance=3, amount=0.1):
+            assert has("ENGINE_FAIL", "ENGINE_MUL") == [5, pytest.approx(0.1)]
+        assert has("ENGINE_FAIL", "ENGINE_MUL") == [1, 0.5]
+    assert has("ENGINE_FAIL", "ENGINE_MUL") == [0, 0]
+    with copter.fail("motor"):
+        assert has("ENGINE_FAIL") == [255]
+    copter.fail("wind", speed=9, direction=270, turbulence=1)
+    copter.restore("wind")
+    assert has("WIND_SPD", "WIND_DIR", "WIND_TURB") == [0, 45, 0]
+    with copter.fail("wind", amount=3):
+        assert has("WIND_SPD", "WIND_DIR") == [3, 0]
+    assert has("WIND_SPD", "WIND_DIR", "WIND_TURB") == [0, 45, 0]
+    copter.fail("gps", "wrong")
+    copter.fail("gps")
+    copter.restore("gps/wrong")
+    assert has("GPS1_ENABLE", "GPS1_GLTCH_X") == [0, 0]
+    copter.fail("gyro")
+    copter.restore("gyro:1")
+    assert has("GYR1_BIAS_X", "GYR2_BIAS_X") == [0, 0.5]
+    assert fly_again(copter, tmp_path, "again", log=False).same
+
+
+def test_faults_of_another_autopilot_are_its_parameters() -> None:
+    kind = KINDS["copter"]
+
+    class Other(Copter):
+        params = {p.name: p.default for p in kind.firmware.table} | {"SIM_WIND_DIR": 45.0}  # type: ignore[assignment]
+        connection: Any = SimpleNamespace(simulation=None, kind=kind)
+        _faults = None
+
+    copter: Any = object.__new__(Other)
+    has = lambda *names: [copter.params[f"SIM_{name}"] for name in names]  # noqa: E731
+    with copter.fail("wind", speed=9, direction=270), copter.fail("motor", motor=1), copter.fail("gyro"):
+        with copter.fail("motor", motor=3, thrust=0.5):
+            assert has("ENGINE_FAIL", "ENGINE_MUL", "WIND_SPD", "WIND_DIR") == [5, 0.5, 9, 270]
+        assert has("ENGINE_FAIL", "ENGINE_MUL") == [1, 0]
+        copter.restore("gyro:1")
+        assert has("GYR1_BIAS_X", "GYR2_BIAS_X") == [0, 0.5]
+    assert has("ENGINE_FAIL", "WIND_SPD", "WIND_DIR", "GYR2_BIAS_X") == [0, 0, 45, 0]
+    with pytest.raises(OptionError, match="of another autopilot it begins now"):
+        copter.fail("gps", at=3.0)
+
+
+def test_an_argument_that_does_nothing_is_refused(make: VehicleFactory) -> None:
+    copter = make("copter")
+    refused: tuple[tuple[str, dict[str, Any], str], ...] = (
+        ("gps", {"thrust": 0.5}, "fault 'gps' takes no thrust"),
+        ("baro", {"speed": 3.0}, "fault 'baro' takes no speed"),
+        ("motor", {"motor": 2, "instance": 3}, "motor=2 and instance=3 say the same"),
+        ("motor", {"thrust": 0.2, "amount": 0.3}, "thrust=0.2 and amount=0.3 say the same"),
+        ("motor", {"type": "stuck", "thrust": 0.2}, "fault motor/stuck takes no amount"),
+        ("wind", {"type": "off"}, "fault wind has no type 'off'"),
+        ("wind", {"instance": 2}, "fault wind: there is no number 2"),
+        ("gps", {"faults": LinkFaults(loss=0.1)}, "fault 'gps' takes no faults"),
+        ("station", {"amount": 1.0}, "it has no type, instance or amount"),
+        ("link", {"type": "off"}, "it has no type, instance or amount"),
+    )
+    for what, arguments, why in refused:
+        with pytest.raises(OptionError, match=why):
+            copter.fail(what, **arguments)
+    with pytest.raises(OptionError, match="fault motor: there is no number 9"):
+        copter.restore("motor:9")
+    assert copter.simulation.bridge.get(FaultService).texts == []
 
 
 def test_faults_come_at_their_times(make: VehicleFactory, tmp_path: Path) -> None:

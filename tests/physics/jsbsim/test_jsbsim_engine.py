@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.errors import MissingExtra
+from sitl.errors import MissingExtra, OptionError
 from sitl.physics.engine import EngineError
 from sitl.physics.jsbsim.formula import component, difference, function, if_less, limited, product, total
 from sitl.simulation import Simulation
@@ -150,3 +150,12 @@ def test_nothing_where_a_number_is_needed_is_zero() -> None:
 def test_bounds_and_cases() -> None:
     assert limited("a", 2.0) == "<max><min><p>a</p><v>2.0</v></min><v>-2.0</v></max>"
     assert if_less("a", 0.0, 1.0, "b") == ("<ifthen><lt><p>a</p><v>0</v></lt><v>1.0</v><p>b</p></ifthen>")
+
+
+@pytest.mark.parametrize("fault", ["shove", "twist@5", "motor/slow"])
+def test_faults_that_do_nothing_to_it_are_refused(fault: str) -> None:
+    with pytest.raises(OptionError, match=r"does nothing to physics jsbsim; there are gps, gyro, .* motor, .* wind"):
+        Simulation("erle_copter", physics="jsbsim", faults=[fault])
+    simulation = Simulation("erle_rover", physics="jsbsim", faults=["motor/slow", "servo/slow"])
+    assert simulation.v.physics.derived.motor_lag == 0.5
+    simulation.close()

@@ -10,6 +10,7 @@ from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ... import shell_parameters
 from ...params import parameters as shared
+from ...params import simulation
 from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
@@ -17,13 +18,20 @@ from ...params.follow import Follow
 from ...params.parameter import INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
-from ...params.simulation import Simulated
 from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, SmartRtl, Statistics, StreamRates
 from ...params.table import Table
 from .control import Attitude, Motors, Position, SecondEncoder, ServoOutput, WheelEncoder
 from .driving import Circle, Cruise, Dock, Legs, Loiter, Manual, Mission
 from .precision_landing import PrecisionLanding
 from .safety import Battery, Failsafes, Fence
+
+
+class Simulated(simulation.Simulated):
+    """SIM_: with a steering servo."""
+
+    SERVO_SPEED: float = param(
+        0.14, 0.01, 100, "s", "Time in which the steering servo turns by 60 degrees; 0.14: the airframe's"
+    )
 
 
 class Parameters(shared.Parameters):

@@ -20,8 +20,8 @@ def prepare(a: Figures, d: Derived) -> None:
     d.inverse_inertia = Vec3(1.0 / a.inertia.x, 1.0 / a.inertia.y, 1.0 / a.inertia.z)
     d.control_scale = 1.0 / (a.control_max - a.control_min)
     d.command_step = a.command_slew * TICK_S
-    d.decay_up = decay(a.time_constant_up, dt)
-    d.decay_down = decay(a.time_constant_down, dt)
+    d.decay_up = decay(d.motor_lag if d.motor_lag > 0.0 else a.time_constant_up, dt)
+    d.decay_down = decay(d.motor_lag if d.motor_lag > 0.0 else a.time_constant_down, dt)
     d.speed_per_volt = 0.0
     if a.speed_voltage > 0.0:
         d.speed_per_volt = a.speed_max / a.speed_voltage

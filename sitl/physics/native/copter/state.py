@@ -17,6 +17,7 @@ class Derived(shared.Derived):
     inverse_inertia: Vec3  # about body x, y, z [1/(kg m^2)]
     control_scale: float  # 1 / (control_max - control_min)
     command_step: float  # largest change of command a tick
+    motor_lag: float  # time constant of all rotors in place of the figures' [s]; 0: theirs
     decay_up: float  # what is left of a speed error after a substep
     decay_down: float
     speed_per_volt: float  # speed_max / speed_voltage [rad/s/V], 0 without limit

@@ -43,15 +43,15 @@ def yaw_acceleration(a: Figures) -> float:
 def prepare(a: Figures, d: Derived) -> None:
     """Fill ``d`` from the airframe's figures."""
     d.control_scale = 1.0 / a.control_full
-    d.speed_decay = decay(a.time_constant, TICK_S)
+    lag = d.motor_lag if d.motor_lag > 0.0 else a.time_constant
+    d.speed_decay = decay(lag, TICK_S)
     d.speed_step = _step(a.drive_accel)
-    lag = a.time_constant
     resisting = lag * (1.0 - d.speed_decay) if lag > 0.0 else TICK_S  # exact for a motor of first order
     d.rolling_step = a.rolling_resistance * GRAVITY * resisting
     d.grip = a.grip * GRAVITY
     d.drive_grip = d.grip * a.driven_load
     d.yaw_step = _step(yaw_acceleration(a))
-    d.steering_step = _step(a.steering_rate)
+    d.steering_step = _step(d.servo_rate if d.servo_rate > 0.0 else a.steering_rate)
     d.inverse_wheelbase, d.circle_scale, d.inverse_track = 0.0, 0.0, 0.0
     if a.steering_model == STEERING_FRONT_WHEELS:
         d.inverse_wheelbase = 1.0 / a.wheelbase

@@ -13,6 +13,8 @@ class Derived(shared.Derived):
     """What follows from the figures (``prepare``), so that a tick divides little."""
 
     control_scale: float  # 1 / control_full
+    motor_lag: float  # time constant of the motors in place of the figures' [s]; 0: theirs
+    servo_rate: float  # of the steering servo in place of the figures' [rad/s]; 0: theirs
     speed_decay: float  # what is left of a wheel-speed error after a tick
     speed_step: float  # largest change of wheel speed a tick that the motors give [m/s]
     rolling_step: float  # speed that rolling resistance takes off a tick [m/s]
