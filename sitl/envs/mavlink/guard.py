@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -99,12 +99,12 @@ class Watch:
         if not self.deeds:
             self._centre = np.array(place, np.float64)
         self.in_charge, self.reason, self._limited, self._seen = True, "", False, None
-        self._note(time, "taken over", "")
+        self.note(time, "taken over", "")
 
     def give_up(self, time: float, why: str) -> None:
         """The agent is not in charge any more."""
         self.in_charge, self.reason = False, why
-        self._note(time, "handed over", why)
+        self.note(time, "handed over", why)
 
     def doubt(self, pose: Sequence[float], row: Sequence[float]) -> str:
         """Why the agent must not go on: it is late, its set-point is no number, the vehicle is outside; "": it may.
@@ -144,7 +144,7 @@ class Watch:
         is_limited = any(abs(a - b) > 1e-9 for a, b in zip(out, given))
         if is_limited and not self._limited:
             said, kept = ([round(number, 3) for number in numbers] for numbers in (given, out))
-            self._note(time, "limited", f"{setpoint.name} {said} to {kept}")
+            self.note(time, "limited", f"{setpoint.name} {said} to {kept}")
         self._limited = is_limited
         return out
 
@@ -182,7 +182,8 @@ class Watch:
         most = self.guard.acceleration
         return [*(min(max(number, -most), most) for number in row[:3]), *row[3:]]
 
-    def _note(self, time: float, what: str, why: str) -> None:
+    def note(self, time: float, what: str, why: str) -> None:
+        """Add a deed, at a time of the vehicle [s]."""
         deed = Deed(round(time, 3), what, why)
         self.deeds.append(deed)
         if self.guard.log is not None:
@@ -203,9 +204,11 @@ def guard_of(option: Any, is_simulator: bool) -> Guard | None:
         return None
     if isinstance(option, Guard):
         return option
-    if isinstance(option, dict):
+    if isinstance(option, Mapping):
         try:
             return Guard(**option)
         except TypeError as error:
-            raise EnvOptionError(f"guard: {error}; there are {', '.join(field.name for field in fields(Guard))}") from None
+            raise EnvOptionError(
+                f"guard: {error}; there are {', '.join(field.name for field in fields(Guard))}"
+            ) from None
     raise EnvOptionError(f"guard = {option!r}; it must be a Guard, its arguments, False, or None")
