@@ -21,7 +21,7 @@ from ..actions import ACCELERATION, ATTITUDE, POSITION, VELOCITY, Setpoint
 from ..options import EnvOptionError
 
 AHEAD_S, BRAKING = 1.0, 2.0
-"""A velocity must not lead out of the fence within 1 s and the way that braking at 2 m/s^2 takes."""
+"""The speed towards the fence is one that, kept for 1 s and then braked at 2 m/s^2, ends at the fence."""
 BEYOND = 2.0
 """So far outside of the fence the agent is not in charge any more [m]."""
 GUARDED = (VELOCITY, POSITION, ATTITUDE, ACCELERATION)
@@ -155,17 +155,13 @@ class Watch:
         c, s = math.cos(yaw), math.sin(yaw)
         v = np.array([row[0] * c - row[1] * s, row[0] * s + row[1] * c]) * share
         way = np.array(pose[:2]) - self._centre[:2]
-        speed = float(np.hypot(*v))
-        there = way + v * (AHEAD_S + (0.5 * speed / BRAKING))
-        distance = float(np.hypot(*there))
-        if distance > guard.radius:
-            outward = there / distance
-            v = v - max(float(v @ outward), 0.0) * outward
+        distance = float(np.hypot(*way))
+        if distance > 0.0:
+            outward = way / distance
+            v = v - max(float(v @ outward) - _speed_within(guard.radius - distance), 0.0) * outward
         up = min(max(row[2], -guard.climb), guard.climb)
-        if self._flies and pose[2] + AHEAD_S * up > guard.ceiling:
-            up = min(up, 0.0)
-        if self._flies and pose[2] + AHEAD_S * up < guard.floor:
-            up = max(up, 0.0)
+        if self._flies:
+            up = min(max(up, -_speed_within(pose[2] - guard.floor)), _speed_within(guard.ceiling - pose[2]))
         return [float(v[0] * c + v[1] * s), float(v[1] * c - v[0] * s), up, *row[3:]]
 
     def _position(self, row: list[float], pose: Sequence[float]) -> list[float]:
@@ -189,6 +185,11 @@ class Watch:
         if self.guard.log is not None:
             with Path(self.guard.log).open("a", encoding="utf-8") as file:
                 file.write(json.dumps(deed._asdict()) + "\n")
+
+
+def _speed_within(room: float) -> float:
+    """Greatest speed [m/s] towards a fence that is so far away [m]; outside of it one that leads back."""
+    return BRAKING * (math.sqrt(AHEAD_S**2 + 2.0 * room / BRAKING) - AHEAD_S) if room > 0.0 else room / AHEAD_S
 
 
 def guard_of(option: Any, is_simulator: bool) -> Guard | None:
