@@ -74,7 +74,7 @@ class State:
 
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
-        state = self._robot.true_state if self._is_true else self._robot.state
+        state = self._robot.true_state() if self._is_true else self._robot.state
         out[:] = state[:, self._slice]
 
 

@@ -45,10 +45,12 @@ class SensingRobot(Protocol):
     def state(self) -> Floats:
         """As telemetry tells it, shape (count, 12)."""
 
-    @property
     def true_state(self) -> Floats:
         """As it really is, shape (count, 12).
 
         Raises:
             EnvOptionError: nobody knows, of a vehicle in another process.
         """
+
+    def judged_state(self) -> Floats:
+        """What tasks judge by, shape (count, 12): as it really is; where nobody knows, as telemetry tells it."""

@@ -144,15 +144,15 @@ def watch(**figures):
 
 
 def test_velocities_stay_within_speed_and_fence():
-    w, _ = watch(radius=10.0, speed=3.0, climb=1.0, ceiling=8.0)
+    w, _ = watch(radius=10.0, speed=3.0, climb=0.8, ceiling=8.0)
     inside = (0.0, 0.0, 5.0, 0.0)
     assert w.limited(VELOCITY, (1.0, 0.5, 0.2, 0.1), inside, 0.0) == [1.0, 0.5, 0.2, 0.1]
     fast = w.limited(VELOCITY, (30.0, 40.0, 9.0, 0.1), inside, 0.0)
-    assert fast == pytest.approx([1.8, 2.4, 1.0, 0.1])
+    assert fast == pytest.approx([1.8, 2.4, 0.8, 0.1])
     edge = w.limited(VELOCITY, (3.0, 1.0, 1.0, 0.0), (9.9, 0.0, 7.9, 0.0), 0.0)
     assert 0.0 < edge[0] < 0.1 and 0.0 < edge[2] < 0.1
     home = w.limited(VELOCITY, (-3.0, 0.0, -1.0, 0.0), (9.9, 0.0, 7.9, 0.0), 0.0)
-    assert home == pytest.approx([-3.0, 0.0, -1.0, 0.0])
+    assert home == pytest.approx([-3.0, 0.0, -0.8, 0.0])
     turned = w.limited(VELOCITY, (3.0, 0.0, 0.0, 0.0), (9.9, 0.0, 5.0, math.pi), 0.0)
     assert turned == pytest.approx([3.0, 0.0, 0.0, 0.0])
 

@@ -79,9 +79,9 @@ def test_parts_are_named_and_bounded():
     assert len(seen.columns) == len(observation) and list(seen.slices) == list(PARTS)
     robot = env.unwrapped.robot
     assert np.allclose(observation[seen.slices["pose"]], robot.pose[0], atol=1e-6)
-    assert np.allclose(observation[seen.slices["true_pose"]][:3], robot.true_state[0, :3], atol=1e-6)
+    assert np.allclose(observation[seen.slices["true_pose"]][:3], robot.true_state()[0, :3], atol=1e-6)
     body = robot.view(0).physics.body.pos
-    assert np.allclose(robot.true_state[0, :3], (body[0], -body[1], -body[2]))
+    assert np.allclose(robot.true_state()[0, :3], (body[0], -body[1], -body[2]))
     named = gym.make("sitl/CopterWaypoint-v0", observation="+".join(PARTS))
     by_name, _ = named.reset(seed=1)
     assert all(np.array_equal(by_name[name], observation[where]) for name, where in seen.slices.items())
@@ -166,13 +166,13 @@ def test_an_acceleration_accelerates_and_a_rate_turns():
     env.reset(seed=1)
     for _ in range(2):
         env.step(np.array([0.25, 0.0, 0.0, 0.0], np.float32))  # 1 m/s^2
-    assert env.robot.true_state[0, 4] == pytest.approx(1.0, abs=0.35)
+    assert env.robot.true_state()[0, 4] == pytest.approx(1.0, abs=0.35)
     env = gym.make(HOVER, setpoint="rates", step_time=0.1).unwrapped
     env.reset(seed=1)
     hover = 2.0 * env.robot.view(0).autopilot.params.MOT.THST_HOVER - 1.0
     for _ in range(3):
         env.step(np.array([0.25, 0.0, 0.0, hover], np.float32))  # 1 rad/s to the right
-    assert env.robot.true_state[0, 10] == pytest.approx(1.0, abs=0.2) and env.robot.true_state[0, 8] > 0.1
+    assert env.robot.true_state()[0, 10] == pytest.approx(1.0, abs=0.2) and env.robot.true_state()[0, 8] > 0.1
 
 
 @pytest.mark.parametrize(

@@ -20,8 +20,9 @@ import numpy as np
 from ..actions import ACCELERATION, ATTITUDE, POSITION, VELOCITY, Setpoint
 from ..options import EnvOptionError
 
-AHEAD_S, BRAKING = 1.0, 2.0
-"""The speed towards the fence is one that, kept for 1 s and then braked at 2 m/s^2, ends at the fence."""
+AHEAD_S, BRAKING = 3.0, 2.0
+"""The speed towards the fence is one that, kept for 3 s (GUID_TIMEOUT: the agent dies without a word) and
+then braked at 2 m/s^2, ends at the fence."""
 BEYOND = 2.0
 """So far outside of the fence the agent is not in charge any more [m]."""
 GUARDED = (VELOCITY, POSITION, ATTITUDE, ACCELERATION)
@@ -189,7 +190,7 @@ class Watch:
 
 def _speed_within(room: float) -> float:
     """Greatest speed [m/s] towards a fence that is so far away [m]; outside of it one that leads back."""
-    return BRAKING * (math.sqrt(AHEAD_S**2 + 2.0 * room / BRAKING) - AHEAD_S) if room > 0.0 else room / AHEAD_S
+    return BRAKING * (math.sqrt(AHEAD_S**2 + 2.0 * room / BRAKING) - AHEAD_S) if room > 0.0 else room
 
 
 def guard_of(option: Any, is_simulator: bool) -> Guard | None:

@@ -16,7 +16,7 @@ from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.vehicle.kinds import KINDS
 from sitl.worlds.shapes import from_ned, to_ned
 
-from ..mavlink.guard import Watch, guard_of
+from ..mavlink.guard import Guard, Watch, guard_of
 from ..mavlink.preparation import (
     BY_FORCE,
     CUSTOM_MODE_ENABLED,
@@ -28,7 +28,7 @@ from ..mavlink.preparation import (
     reboot,
     refusal,
 )
-from ..mavlink.setpoints import LOCAL, LOCAL_NED, PLACE_ONLY, YAWS_IGNORED
+from ..mavlink.setpoints import LOCAL, LOCAL_NED, PLACE_ONLY, VELOCITY_ONLY, YAWS_IGNORED
 from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
@@ -53,13 +53,27 @@ class SocketVehicles(Vehicles):
             raise EnvOptionError(
                 f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
             )
+        self._safe = self._mode_of(guard_of(options.guard, False) or Guard(), setup)
         super().__init__(setup)
         self._pose: Pose | None = None
         self._origin: Origin | None = None
         """Of the vehicle's local frame in the world, of one that was taken over in flight: NED [m]."""
         self._first = (0.0, 0.0, 0.0)
         """Where that was, in its local frame: NED [m]."""
-        self._safe, self._heard_ms = 0, -1000
+        self._heard_ms = -1000
+
+    @staticmethod
+    def _mode_of(guard: Guard, setup: VehicleSetup) -> int:
+        """Number of the mode that takes over.
+
+        Raises:
+            EnvOptionError: the vehicle has none of that name.
+        """
+        names = {name: number for number, name in KINDS[setup.airframe.kind].firmware.mode_names.items()}
+        wanted = guard.hand_over or ("BRAKE" if setup.kind.takes_off else "HOLD")
+        if wanted not in names:
+            raise unknown("guard: hand_over", wanted, names)
+        return names[wanted]
 
     @property
     def where(self) -> str:
@@ -97,6 +111,8 @@ class SocketVehicles(Vehicles):
         """Take over a vehicle that somebody else has brought up; its place at the first episode is the world's start
         pose. Returns its local origin in the world: north, east, down [m]."""
         kind, inbox, wait = self.setup.kind, link.inbox, self.options.wait
+        if self.watch is not None and self.watch.in_charge and inbox.mode == kind.guided:
+            self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
         if self._origin is not None and self.options.reset == RETURN:
             self._go_back(link)
         join(link, kind.guided, kind.takes_off, wait)
@@ -106,6 +122,11 @@ class SocketVehicles(Vehicles):
             x, y, floor = to_ned(*pose[:3])
             self._origin, self._first = (x - north, y - east, floor - above - down), (north, east, down)
         return self._origin
+
+    def _stop(self, link: Connection) -> None:
+        """Ask for no speed, in GUIDED."""
+        fields = {"coordinate_frame": LOCAL_NED, "type_mask": VELOCITY_ONLY | YAWS_IGNORED, "vx": 0, "vy": 0, "vz": 0}
+        link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=link.inbox.system, **fields))
 
     def _go_back(self, link: Connection) -> None:
         """In GUIDED, if the vehicle still is."""
@@ -128,12 +149,6 @@ class SocketVehicles(Vehicles):
         guard = guard_of(self.options.guard, link.is_simulator)
         if guard is None:
             return
-        kind = self.setup.airframe.kind
-        names = {name: number for number, name in KINDS[kind].firmware.mode_names.items()}
-        wanted = guard.hand_over or ("BRAKE" if self.setup.kind.takes_off else "HOLD")
-        if wanted not in names:
-            raise unknown("guard: hand_over", wanted, names)
-        self._safe = names[wanted]
         if self.watch is None:
             self.watch = Watch(guard, self.setup.kind.takes_off, time.monotonic)
             atexit.register(self.close)

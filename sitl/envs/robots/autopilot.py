@@ -245,6 +245,11 @@ class AutopilotRobot:
         if watch is not None:
             watch.stepped()
 
+    @property
+    def watch(self) -> Watch | None:
+        """The guard at work between an agent and a vehicle at a connection; None: there is none."""
+        return self._vehicles.watch
+
     def _allows(self, index: int, watch: Watch, row: list[float]) -> bool:
         """Whether the agent may go on; else the vehicle is somebody else's, or has been handed over."""
         vehicles = self._vehicles
@@ -295,11 +300,14 @@ class AutopilotRobot:
         watch = self._vehicles.watch
         return watch.reason if watch is not None else ""
 
-    @property
     def true_state(self) -> Floats:
         """See ``sitl.envs.senses.SensingRobot``; the array is written anew by each call."""
         self._vehicles.true_states(self._base_along, self._truth)
         return self._truth
+
+    def judged_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``."""
+        return self.true_state() if self._vehicles.simulates else self.state
 
     def use_threads(self, threads: int) -> None:
         """Let so many threads advance the vehicles, before their first reset; without effect on vehicles that have

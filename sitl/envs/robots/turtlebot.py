@@ -95,8 +95,11 @@ class Turtlebot:
         """See ``sitl.envs.senses.SensingRobot``: it knows where it is."""
         return np.concatenate([self.pose, self.velocity, np.zeros((self.count, 4))], axis=1)
 
-    @property
     def true_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``."""
+        return self.state
+
+    def judged_state(self) -> Floats:
         """See ``sitl.envs.senses.SensingRobot``."""
         return self.state
 

@@ -123,15 +123,15 @@ class Gates(PlacesTask):
         """See ``Task``."""
         self.places[index] = np.tile(self._gates[:, :3], (self.laps, 1))
         self.at[index], self.success[index], self._lap[index] = 0, False, 0.0
-        self._before[index] = self._sensing.true_state[index, :3]
+        self._before[index] = self._sensing.judged_state()[index, :3]
 
     def ways(self, count: int) -> Floats:
         """See ``PlacesTask``: by where the robot really is."""
-        return self.ways_from(self._sensing.true_state[:, :4], count)
+        return self.ways_from(self._sensing.judged_state()[:, :4], count)
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         targets = self.targets
-        self._now[:] = self._sensing.true_state[:, :3]
+        self._now[:] = self._sensing.judged_state()[:, :3]
         _cross(self._before, self._now, self._gates, self.at, self._passed)
         nearer = np.sqrt(((targets - self._before) ** 2).sum(axis=1)) - np.sqrt(
             ((targets - self._now) ** 2).sum(axis=1)

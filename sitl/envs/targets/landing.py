@@ -77,7 +77,7 @@ class Land(MovingTask):
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         super().start(index, robot, rng)
-        way = self.centre[index] - self._sensing.true_state[index, :3]
+        way = self.centre[index] - self._sensing.judged_state()[index, :3]
         self._distance[index], self._sinking[index] = np.sqrt((way * way).sum()), 0.0
 
     def along(self, time: Floats) -> Floats:
@@ -88,10 +88,10 @@ class Land(MovingTask):
 
     def ways(self, count: int) -> Floats:
         """See ``PlacesTask``: by where the robot really is."""
-        return self.ways_from(self._sensing.true_state[:, :4], count)
+        return self.ways_from(self._sensing.judged_state()[:, :4], count)
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        time, state = step.robot.time, self._sensing.true_state
+        time, state = step.robot.time, self._sensing.judged_state()
         self.places[:, 0] = pad = self.along(time[:, None])[:, 0]
         way = pad - state[:, :3]
         distance = np.sqrt((way * way).sum(axis=1))
