@@ -18,6 +18,7 @@ from sitl.agents.deep.network import Layer, Network
 from sitl.agents.deep.policy import DeepPolicy
 from sitl.agents.deep.settings import settings_of
 from sitl.agents.errors import AgentError
+from sitl.agents.rollout import rollout
 
 WIDE = gym.spaces.Box(np.float32([-30.0, -3.0, 0.0]), np.float32([30.0, 3.0, 9.0]))
 MOVES = gym.spaces.Box(-1.0, 1.0, (2,), np.float32)
@@ -125,3 +126,14 @@ def test_onnx_without_a_graph_is_refused(tmp_path):
     pytest.importorskip("onnx")
     with pytest.raises(AgentError, match=r"write \.npz"):
         onnx_file.write(tmp_path / "p.onnx", made(SCAN, sectors=3), ABOUT)
+
+
+def test_rollouts_play_a_file_in_the_environment_that_it_says(tmp_path):
+    env = gym.make("sitl/RoverWaypointDiscrete-v0")
+    policy = made(env.observation_space, env.action_space, algorithm="dqn")
+    env.close()
+    policy_file.write(tmp_path / "p.npz", policy, {**ABOUT, "env": "sitl/RoverWaypointDiscrete-v0", "algorithm": "dqn"})
+    found = rollout(tmp_path / "p.npz", episodes=3, robots=2)
+    assert [one.steps for one in found.episodes] == [50, 50, 50]
+    with pytest.raises(AgentError, match="the model sees"):
+        rollout(tmp_path / "p.npz", "sitl/CopterWaypointDiscrete-v0", episodes=1)
