@@ -11,7 +11,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from .actions import Discrete
+from .actions import Discrete, Normalised
 from .observations import Digits, Observation
 from .options import EnvOptionError, unknown
 from .robots.robot import Robot
@@ -134,8 +134,11 @@ class LastAction:
             self.low, self.high = [0.0] * self._rows, [1.0] * self._rows
         else:
             self.low, self.high = space.low.tolist(), space.high.tolist()
-            columns = session.action.setpoint.columns
-            self.columns = tuple(f"last {columns[c]}" for c in session.action.columns)
+            columns, share = session.action.setpoint.columns, isinstance(session.action, Normalised)
+            names = [
+                columns[c].partition(" [")[0] + " [-1, 1]" if share else columns[c] for c in session.action.columns
+            ]
+            self.columns = tuple(f"last {name}" for name in names)
 
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
