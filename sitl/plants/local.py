@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Unpack
+from typing import NamedTuple, Unpack
 
 from ..autopilot import boot
 from ..autopilot.params import files
@@ -23,6 +23,15 @@ from ..vehicles import Airframe
 from .lidar import Rangers, Scene
 from .plant import Plant, SimulatedVehicle
 from .surroundings import Surroundings
+
+
+class Company(NamedTuple):
+    """The vehicles that share a world, and which of them this is."""
+
+    movers: int
+    """Address of what they show (``sitl.physics.native.traffic.Mover``), which stays in place."""
+    count: int
+    number: int
 
 
 class LocalPlant(Plant):
@@ -54,6 +63,7 @@ class LocalPlant(Plant):
         if self.surroundings is not None:
             self.home = (*self.home[:3], math.degrees(self.surroundings.heading))
         self.rangers: Rangers | None = None
+        self.company: Company | None = None
         self.core = core
         self.progress = progress
         self.engine: Engine | None = None
@@ -101,11 +111,25 @@ class LocalPlant(Plant):
             v.physics.downward.in_world = self.rangers.has_rangefinder
             vehicle.kind.apply_sim_parameters(v)
             self.ranging = self.rangers.address
+            if self.company is not None:
+                self.join(self.company)
             if self.engine is None:
                 self._list_near = self._unit(list_near)
                 self._list_near(self.ranging)
             self.measure()
             self._note_due()
+
+    def join(self, company: Company) -> None:
+        """Share the world with other vehicles, now and after each power-on; native physics in a world."""
+        assert self.rangers is not None
+        self.company, p = company, self.vehicle.v.physics
+        self.rangers.share(company.movers, company.count)
+        p.obstacles.number, p.obstacles.present, p.wind.is_shared = company.number, True, True
+
+    def stand_at(self, surroundings: Surroundings, seed: int) -> None:
+        """Where the vehicle stands, and the seed of its noise, from the next power-on."""
+        self.surroundings, self.seed = surroundings, seed
+        self.home = (*self.home[:3], math.degrees(surroundings.heading))
 
     # ------------------------------------------------------------------ going on
 

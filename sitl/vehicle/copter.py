@@ -26,12 +26,14 @@ from ..physics.native.copter.step import step
 from ..physics.native.copter.trim import balance, command_speeds
 from ..physics.native.move import show_field
 from ..physics.native.records import GROUND_AIRBORNE
+from ..physics.native.traffic import MOVER_SIZE, Mover
 from ..vehicles import CopterAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
 from .move import DONE, IN_SOLID, NO_HOVER, ORDER_SIZE, MoveOrder, displace, is_calm, look_around
 from .record import Vehicle
+from .traffic import show, take_push
 
 QUADROTOR, HEXAROTOR, OCTOROTOR = 2, 13, 14
 OTHER_MULTIROTORS = (HEXAROTOR, OCTOROTOR, 15, 29, 35)
@@ -119,6 +121,18 @@ def move(fleet: Sequence[Copter], index: int, count: int, orders: int, ranging: 
         order.result = obey(fleet[order.vehicle], order, ranging)
 
 
+@unit
+def meet(fleet: Sequence[Copter], index: int, last: int, movers: int, shows: int) -> None:
+    """Vehicles ``index`` .. ``last`` - 1 show themselves to those that share their world (``shows`` 1), or take over
+    what came of meeting them (0); ``movers``: address of the ``Mover`` of the first."""
+    for k in range(index, last):
+        m = record_at(Mover, movers + (k - index) * MOVER_SIZE)
+        if shows != 0:
+            show(fleet[k], m)
+        elif m.is_pushed:
+            take_push(fleet[k], m)
+
+
 def apply_sim_parameters(v: Copter) -> None:
     """SIM_ parameters of all kinds, those of a copter's motors, and its shove."""
     sim_parameters.apply(v)
@@ -157,6 +171,7 @@ COPTER = Kind(
     fly=fly,
     step=step,
     move=move,
+    meet=meet,
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=apply_sim_parameters,
