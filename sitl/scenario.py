@@ -40,6 +40,7 @@ class Options(TypedDict, total=False):
     start: StartPose | None
     physics: str
     faults: Sequence[str | Failure]
+    terrain: str | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +62,8 @@ class Scenario:
             elsewhere are its own.
         faults: what fails, and when after power-on: "gps@12", or several: ["gps@12", "motor:2=0.5@20..30"]
             (docs/faults.md). It is kept as a tuple of texts.
+        terrain: where the autopilot has the heights of the ground from, besides ground stations: "flat", an SRTM tile
+            (.hgt), an array (.npy); the simulated ground follows them (docs/terrain.md).
 
     Raises:
         OptionError, sitl.vehicles.AirframeError: a value that cannot be taken, named.
@@ -75,6 +78,7 @@ class Scenario:
     start: StartPose | None = None
     physics: str = NATIVE
     faults: Sequence[str | Failure] = ()
+    terrain: str | None = None
 
     def __post_init__(self) -> None:
         if self.estimator not in ESTIMATORS:
@@ -173,6 +177,7 @@ class Scenario:
             "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
             "params": {name: float(value) for name, value in (self.params or {}).items()},
             "faults": list(map(str, self.faults)),
+            "terrain": self.terrain,
         }
 
     @classmethod
@@ -197,6 +202,7 @@ class Scenario:
             "start": tuple(start) if isinstance(start, list) else start,
             "physics": data["physics"],
             "faults": data.get("faults", ()),
+            "terrain": data.get("terrain"),
         }
         return cls(**{**found, **{name: value for name, value in options.items() if value is not None}})
 

@@ -21,6 +21,7 @@ from .bridge.bridge import Bridge, BridgeState
 from .bridge.links import Link, LinkFaults
 from .bridge.services.faults import FaultService
 from .bridge.services.statustext import EventService, StatusTextService
+from .bridge.services.terrain import TerrainService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
 from .core.constants import TICK_US
@@ -35,7 +36,7 @@ from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
 from .vehicle.faults import Failure
 from .vehicles import Airframe, AirframeError
-from .worlds import World
+from .worlds import World, heights
 
 Array = np.ndarray[Any, Any]
 _WARNING = 4
@@ -165,6 +166,8 @@ class Simulation:
         if isinstance(self.plant, LocalPlant):
             self.plant.load()
         try:
+            if scenario.terrain is not None:
+                self.bridge.get(TerrainService).use(heights.load(scenario.terrain, self.home[:3]))
             for fault in scenario.faults:
                 self.bridge.get(FaultService).fail(Failure.of(fault))
         except OptionError:
@@ -424,6 +427,11 @@ class Simulation:
     def has_truth_in_record(self) -> bool:
         """Whether ``truth`` is what the record says: the physics runs in this process."""
         return self.plant.has_truth_in_record
+
+    @property
+    def has_plain_ground(self) -> bool:
+        """Whether the ground is a plain without solids, on native physics."""
+        return self.world is None and self.physics == NATIVE
 
     def truth(self) -> Carried:
         """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""

@@ -92,6 +92,12 @@ def test_the_example_of_precision_landing_runs(core: Core, capsys: pytest.Captur
     assert landed is not None and [float(x) for x in landed.groups()] == pytest.approx([3.0, 1.0], abs=0.4)
 
 
+def test_the_example_of_terrain_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = blocks(ROOT / "docs/terrain.md", "python")
+    exec(compile(example, "docs/terrain.md", "exec"), {})
+    assert capsys.readouterr().out == "49 m above home\n"
+
+
 def test_the_commands_of_the_readme_are_understood() -> None:
     text = "\n".join(blocks(ROOT / "README.md", ""))
     lines = [line for line in text.splitlines() if line.startswith("sitl ")]

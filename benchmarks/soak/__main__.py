@@ -12,6 +12,7 @@ import json
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from sitl.client import Client
@@ -24,6 +25,36 @@ from .minimise import minimise
 
 WARM_UP, ALLOWED_KB, ALLOWED_KB_AN_EPISODE = 20, 30_000, 20
 """Memory may grow by so much after the first episodes, and by so much with each."""
+REPORT = 250
+"""Episodes between two lines of what was done so far."""
+
+
+@dataclass
+class Tally:
+    """What was done so far."""
+
+    deeds: int = 0
+    frames: int = 0
+    clients: int = 0
+    """Sequences of deeds by one client, from its first frame to another one in its place."""
+    seconds: float = 0.0
+    faulty_s: float = 0.0
+    """Of them after a fault."""
+
+    def add(self, deeds: Sequence[Deed]) -> None:
+        """An episode."""
+        self.deeds += len(deeds)
+        self.frames += sum(deed.frames for deed in deeds)
+        self.clients += 1 + sum(deed.kind == "forget" for deed in deeds)
+        self.seconds += sum(deed.seconds for deed in deeds)
+        first = next((k for k, deed in enumerate(deeds) if deed.is_fault), len(deeds))
+        self.faulty_s += sum(deed.seconds for deed in deeds[first:])
+
+    def __str__(self) -> str:
+        return (
+            f"{self.deeds} deeds, {self.frames} frames, {self.clients} client sequences, {self.seconds / 3600:.2f} "
+            f"simulated hours, {self.faulty_s / 3600:.2f} of them after a fault"
+        )
 
 
 class Soak:
@@ -113,24 +144,25 @@ def main(words: Sequence[str] | None = None) -> int:
         return repeat(options.repeat)
     kinds = options.vehicle or sorted(KINDS)
     soaks = [Soak(kind, options.deeds) for kind in kinds]
-    end, seed, failures, first_kb, seconds = time.monotonic() + 60.0 * options.minutes, options.seed, 0, 0, 0.0
+    end, seed, failures, first_kb, total = time.monotonic() + 60.0 * options.minutes, options.seed, 0, 0, Tally()
     done = 0
     while done < options.episodes if options.episodes is not None else time.monotonic() < end:
         for soak in soaks:
             deeds = soak.deeds(seed)
             found = soak.run(seed, deeds)
-            seconds += sum(deed.seconds for deed in deeds)
+            total.add(deeds)
             if found is not None:
                 failures += 1
                 keep(soak, seed, deeds[: found[0] + 1], found[1], options.keep)
         seed, done = seed + 1, done + 1
         if done == WARM_UP:
             first_kb = memory_kb()
+        if done % REPORT == 0:
+            print(f"{done} episodes: {total}; {failures} failures", flush=True)
     grown = memory_kb() - first_kb if first_kb else 0
     print(
-        f"{done} episodes of each of {', '.join(kinds)} (seeds {options.seed} .. {seed - 1}), "
-        f"{done * len(kinds) * options.deeds} deeds, {seconds / 3600:.2f} simulated hours: {failures} failures; "
-        f"memory {memory_kb() / 1000:.0f} MB, {grown / 1000:+.1f} MB since episode {WARM_UP}"
+        f"{done} episodes of each of {', '.join(kinds)} (seeds {options.seed} .. {seed - 1}): {total}; {failures} "
+        f"failures; memory {memory_kb() / 1000:.0f} MB, {grown / 1000:+.1f} MB since episode {WARM_UP}"
     )
     if grown > ALLOWED_KB + ALLOWED_KB_AN_EPISODE * done:
         print("memory grows")

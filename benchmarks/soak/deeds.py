@@ -33,6 +33,8 @@ FAULTS = {
 """Parameter -> least and greatest value."""
 SPECIAL = (246, 209, 42428)
 """Commands that have deeds of their own, or end with motors turning: reboot, motor tests."""
+MARKS, SHORTEST = (b"\xfd", b"\xfe"), 8
+"""How a frame begins, and its least length."""
 MODES = 30
 """Numbers of modes are below this."""
 
@@ -48,6 +50,10 @@ class Deed(NamedTuple):
     """Simulated time after it."""
     what: str = ""
     """For people."""
+    frames: int = 0
+    """Frames among the bytes, right or wrong."""
+    is_fault: bool = False
+    """From then on something is not as it should be."""
 
 
 class Dice:
@@ -84,7 +90,8 @@ class Dice:
 
     def _deed(self, what: str, *frames: bytes, seconds: float | None = None) -> list[Deed]:
         wait = self._dice.choice((0.0, 0.0025, 0.02, 0.1, 0.5, 2.0)) if seconds is None else seconds
-        return [Deed("bytes", b"".join(frames).hex(), wait, what)]
+        count = sum(frame[:1] in MARKS and len(frame) >= SHORTEST for frame in frames)
+        return [Deed("bytes", b"".join(frames).hex(), wait, what, count)]
 
     def _frame(self, kind: MessageType, payload: bytes) -> bytes:
         self._sequence = (self._sequence + 1) & 0xFF
@@ -223,7 +230,8 @@ class Dice:
 
     def _fault(self) -> list[Deed]:
         name = self._dice.choice([name for name in FAULTS if name in self._table])
-        return self._set(name, round(self._dice.uniform(*FAULTS[name]), 3))
+        (deed,) = self._set(name, round(self._dice.uniform(*FAULTS[name]), 3))
+        return [deed._replace(is_fault=True)]
 
     def _link(self) -> list[Deed]:
         d = self._dice
@@ -233,7 +241,7 @@ class Dice:
             "seed": d.randrange(1000),
         }  # fmt: skip
         text = "" if d.random() < 0.4 else ",".join(f"{name}={word}" for name, word in words.items())
-        return [Deed("link", text, 0.1, text or "good link")]
+        return [Deed("link", text, 0.1, text or "good link", is_fault=bool(text))]
 
     def _reboot(self) -> list[Deed]:
         return [Deed("reboot", "", self._dice.choice((0.0, 1.0, 45.0)), "reboot")]

@@ -39,6 +39,7 @@ BY_FENCE = 15
 BY_RADIO_FAILSAFE = 16
 BY_DELAY = 17
 BY_GCS_FAILSAFE = 18
+BY_TERRAIN_FAILSAFE = 19
 BY_PARACHUTE = 34
 
 # Checks (those of the radio: radio_checks.py)
@@ -87,7 +88,7 @@ ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
-    BAROMETER: "Barometer not healthy",
+    BAROMETER: "Baro: not healthy",
     COMPASS: "Compass not healthy",
     COMPASSES: "Compasses inconsistent",
     FENCE_POSITION: "Fence enabled, need position estimate",
@@ -142,6 +143,8 @@ OBSTACLE_ROOM = 0.6
 """Room that a copter with a proximity sensor needs around it [m]."""
 ACC_DIFFERENCE, GYRO_DIFFERENCE = 0.75, math.radians(5.0)
 """Greatest differences of what two IMUs show [m/s^2], [rad/s]."""
+_BARO_US = 500_000
+"""A barometer that is silent for longer is not healthy."""
 _READY_US = 2_450_000
 _ACCELS_US = 13_400_000
 _GYROS_US = 23_400_000
@@ -205,12 +208,13 @@ def imu_checks(sensors: Sensors) -> int:
 
 
 @law
-def sensor_checks(time_us: int, sensors: Sensors, attitude_ok: bool, p: Parameters) -> int:
-    """Failed checks of sensors and attitude."""
+def sensor_checks(time_us: int, sensors: Sensors, baro_us: int, attitude_ok: bool, p: Parameters) -> int:
+    """Failed checks of sensors and attitude; ``baro_us``: when the filter last heard the barometer, 0 never."""
     failed, params = 0, p.ARMING
     if time_us < _READY_US:
         failed |= NOT_INITIALISED
-    if sensors.baro_count == 0 and wants(params, CHECK_BARO):
+    silent = baro_us > 0 and time_us - baro_us > _BARO_US
+    if (sensors.baro_count == 0 or silent) and wants(params, CHECK_BARO):
         failed |= BAROMETER
     if not is_heard(0, sensors, time_us) and wants(params, CHECK_COMPASS):
         failed |= COMPASS
@@ -277,7 +281,9 @@ def obstacle_text(found: int) -> str:
     return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
 
 
-def texts(failed: int, params: Parameters, sticks: Mapping[int, str], prefix: str = "") -> list[str]:
+def texts(
+    failed: int, params: Parameters, sticks: Mapping[int, str], prefix: str = "", own: Mapping[int, str] | None = None
+) -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks.
 
     Args:
@@ -285,11 +291,12 @@ def texts(failed: int, params: Parameters, sticks: Mapping[int, str], prefix: st
         params: the vehicle's parameters.
         sticks: how the firmware calls the sticks that must be calibrated.
         prefix: "PreArm: " or "Arm: ".
+        own: texts of the firmware's own checks, in place of another one's.
     """
     shown = failed
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
-    said = [text for bit, text in TEXTS.items() if shown & bit]
+    said = [text for bit, text in {**TEXTS, **(own or {})}.items() if shown & bit]
     said += radio_checks.texts(failed, params, sticks)
     fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
     said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])

@@ -68,6 +68,13 @@ EKF_STOPPED_AIDING = 66  # a: IMU
 EKF_USES = 67  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
 EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
 EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
+TERRAIN_DID = 70  # copter; a: what (terrain/state.py)
+TERRAIN_LEFT = 71  # copter: it has left the square of the grid whose heights it knows
+BATTERY_LOW, BATTERY_CRITICAL, BATTERY_MISSING = 80, 81, 82  # a: voltage, b: charge used [mAh]
+BENDY_RULER_LOOKED = 72  # a: margin [m], b: 1 it steers, 3 and goes on as before
+FENCE_LOADED = 73  # areas of the fence
+RALLY_LOADED = 74  # rally points
+WAY_LAID = 75  # the way around areas has turns
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)
 

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from ..core.kernels import law
 from ..core.scalars import TWO_PI
+from .events import BATTERY_CRITICAL as EVENT_BATTERY_CRITICAL
+from .events import BATTERY_LOW as EVENT_BATTERY_LOW
+from .events import BATTERY_MISSING as EVENT_BATTERY_MISSING
 from .events import FAILSAFE, Events, emit
 from .params.radio import RcMap
 from .params.system import Battery, Failsafes
@@ -21,28 +24,53 @@ BATTERY_CRITICAL = 4
 EKF = 5
 BATTERY_MISSING = 8
 VIBRATION = 9
-"""More are each firmware's own (6, 7)."""
+TERRAIN = 15
+VARIANCE = 7
+"""The estimate is bad (said in all modes)."""
+GLITCH = 10
+"""The receiver's fixes are not believed."""
+CRITICAL = (EKF, VARIANCE, VIBRATION, GLITCH)
+"""Told with MAV_SEVERITY_CRITICAL."""
 
 _ON = {
     RADIO: "Radio Failsafe",
     GCS: "GCS Failsafe",
-    BATTERY_LOW: "Battery 1 is low",
-    BATTERY_CRITICAL: "Battery 1 is critical",
+    BATTERY_LOW: "Battery Failsafe",
+    BATTERY_CRITICAL: "Battery Failsafe",
     EKF: "EKF Failsafe",
-    BATTERY_MISSING: "Battery 1 is missing",
+    VARIANCE: "EKF variance",
+    GLITCH: "GPS Glitch or Compass error",
+    BATTERY_MISSING: "Battery Failsafe",
     VIBRATION: "Vibration compensation ON",
 }
 _OFF = {
     RADIO: "Radio Failsafe Cleared",
     GCS: "GCS Failsafe Cleared",
     EKF: "EKF Failsafe Cleared",
+    GLITCH: "Glitch cleared",
     VIBRATION: "Vibration compensation OFF",
 }
 
 
 def text(which: int, on: bool) -> str | None:
-    """Status text (MAV_SEVERITY_WARNING) of a FAILSAFE event, None when there is none."""
+    """Status text of a FAILSAFE event, None when there is none."""
     return (_ON if on else _OFF).get(which)
+
+
+MISSING = 3
+"""Of ``report_battery``."""
+_OF_BATTERY = {
+    EVENT_BATTERY_LOW: "low",
+    EVENT_BATTERY_CRITICAL: "critical",
+    EVENT_BATTERY_MISSING: "missing, last:",
+}
+
+
+def battery_text(code: int, voltage: float, used_mah: float) -> str | None:
+    """Status text (MAV_SEVERITY_WARNING) of an event of the battery, None of others."""
+    if code not in _OF_BATTERY:
+        return None
+    return f"Battery 1 is {_OF_BATTERY[code]} {voltage:.2f}V used {used_mah:.0f} mAh"
 
 
 @law
@@ -111,10 +139,12 @@ def battery_fell_to(fs: Failsafe, battery: BatteryState, armed: bool, time_us: i
 
 
 @law
-def report_battery(events: Events, time_us: int, level: int) -> None:
-    """Report a battery that has become low (``level`` 1) or critical (2); 0: nothing."""
-    if level != 0:
-        report(events, time_us, BATTERY_CRITICAL if level == 2 else BATTERY_LOW, True)
+def report_battery(events: Events, time_us: int, level: int, battery: BatteryState) -> None:
+    """Report a battery that has become low (``level`` 1) or critical (2), or whose monitor fails (3); 0: nothing."""
+    if level == 0:
+        return
+    emit(events, time_us, EVENT_BATTERY_LOW + level - 1, battery.voltage, battery.consumed_mah)
+    report(events, time_us, BATTERY_MISSING if level == MISSING else BATTERY_LOW + level - 1, True)
 
 
 UNHEALTHY_US = 5_000_000
@@ -127,7 +157,7 @@ def watch_monitor(fs: Failsafe, battery: BatteryState, armed: bool, events: Even
     lasts = time_us - battery.healthy_us > UNHEALTHY_US
     if armed and lasts and battery.driver != 0 and fs.battery == 0 and not fs.battery_missing:
         fs.battery_missing = True
-        report(events, time_us, BATTERY_MISSING, True)
+        report_battery(events, time_us, MISSING, battery)
 
 
 _EKF_PERIOD_S = 0.1

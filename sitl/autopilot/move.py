@@ -9,6 +9,7 @@ from ..core.algebra import vector_at
 from ..core.displacement import Displacement, faster, moved, on_the_ground, turned
 from ..core.geodesy import add_offset
 from ..core.kernels import law
+from .avoidance import objects
 from .control.pid import Pid
 from .estimation.move import move_ekf, move_estimate
 from .landing_target.estimator import forget
@@ -49,6 +50,7 @@ def move_nav(nav: Nav, d: Displacement) -> None:
     nav.pos, nav.vel, nav.acc = moved(d, nav.pos), faster(d, nav.vel), turned(d, nav.acc)
     for k in range(nav.detour.left):
         set_place(nav.detour, k, moved(d, vector_at(nav.detour.places, 3 * k)))
+    nav.detour.bent_target = moved(d, nav.detour.bent_target)
     nav.request, nav.request_next = moved(d, nav.request), moved(d, nav.request_next)
 
 
@@ -79,5 +81,6 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
     move_home(ap.home, ap.estimate, d)
     move_nav(ap.modes.nav, d)
     ap.avoid.limited_us = 0
+    objects.forget(ap.objects)
     forget(ap.landing_target)
     ap.modes.follow.is_known, ap.modes.follow.update_us = False, 0  # reports count from where the origin was

@@ -14,7 +14,7 @@ from ..core.kernels import law
 from ..core.records import Float32, Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .avoidance.proximity import Proximity
-from .avoidance.state import Avoidance
+from .avoidance.state import Avoidance, Objects
 from .estimation.state import Ekf
 from .events import Events
 from .fence.state import FenceState, RallyState
@@ -160,7 +160,8 @@ class Failsafe(Record):
     battery_low_us: int  # since when below the low limit; 0 not
     battery_critical_us: int
     battery_missing: bool  # its monitor has failed in flight
-    ekf: int  # 1 the estimate is bad, 2 and the mode was ended for it
+    ekf: int  # 1 the estimate is bad
+    glitch: bool  # the receiver's fixes are not believed
     ekf_count: int  # tenths of a second of bad variance
     ekf_vel: float  # filtered variances
     ekf_pos: float
@@ -203,6 +204,7 @@ class Modes(Record):
     mission_takes_off: bool  # its first navigation command is a take-off (written by the shell)
     mission_lands: bool  # it has a landing sequence (DO_LAND_START; written by the shell)
     mission_returns: bool  # it has a return path (DO_RETURN_PATH_START; written by the shell)
+    mission_over_ground: bool  # heights of it are above the ground (written by the shell)
     follow: FollowState
     nav: Nav
 
@@ -255,6 +257,7 @@ class Autopilot(Record):
     rally: RallyState
     proximity: Proximity
     avoid: Avoidance
+    objects: Objects
     flow: OpticalFlow
     odometry: VisualOdometry
     landing_target: LandingTarget

@@ -43,6 +43,11 @@ class Vehicle(Protocol):
         """Whether ``truth`` is what the record says (``sitl.physics.carried``): its physics runs in this process."""
         ...
 
+    @property
+    def has_plain_ground(self) -> bool:
+        """Whether the ground is a plain without solids, on native physics."""
+        ...
+
     def truth(self) -> Carried:
         """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
         ...

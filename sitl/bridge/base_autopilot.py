@@ -9,6 +9,8 @@ from typing import Any
 from ..autopilot import battery, events, home
 from ..autopilot.arming_checks import BY_MAVLINK, refusal
 from ..autopilot.estimation import aiding, sources
+from ..autopilot.failsafe_checks import CRITICAL as MOST_SEVERE
+from ..autopilot.failsafe_checks import battery_text
 from ..autopilot.fence import texts as fence_texts
 from ..autopilot.landing_target.texts import TEXTS as LANDING_TARGET_TEXTS
 from ..autopilot.mission.item import MissionItem, home_item
@@ -65,9 +67,12 @@ class BaseAutopilot:
             return [Text(WARNING, "Set FOLL_ENABLE = 1")]
         if code == events.FOLLOW_OFFSET:
             return [Text(INFO, f"{'Relative' if a else 'N-E-D'} follow offset loaded")]
+        said_of_battery = battery_text(code, a, b)
+        if said_of_battery is not None:
+            return [Text(WARNING, said_of_battery)]
         if code == events.FAILSAFE:
             text = self._failsafe.text(int(a), int(b))
-            return [Text(WARNING, text)] if text else []
+            return [Text(CRITICAL if int(a) in MOST_SEVERE else WARNING, text)] if text else []
         return []
 
     def _say(self, severity: int, texts: list[str]) -> None:

@@ -35,6 +35,7 @@ from .services.setpoints import SetpointService
 from .services.signing import SigningService
 from .services.statustext import EventService
 from .services.streams import StreamService
+from .services.terrain import TerrainService
 from .switchboard import Switchboard
 from .telemetry.builder import shell_messages
 from .wire import streams
@@ -103,7 +104,7 @@ class Bridge:
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
         """Set by who lets clients push the clock (``sitl.run.standstill``)."""
-        self.places = Places(vehicle.v.autopilot)
+        self.places = Places(vehicle.v.autopilot, lambda lat, lon: self.get(TerrainService).rise(lat, lon))
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}
         """By message number: place of the field target_system, -1 when there is none, and what is to be done."""
@@ -611,6 +612,7 @@ class Bridge:
         new.get(MissionService).follow(self.get(MissionService))
         new.get(SigningService).follow(self._signing)
         new.get(FaultService).follow(self.get(FaultService))
+        new.get(TerrainService).follow(self.get(TerrainService))
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

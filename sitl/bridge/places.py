@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 from ..autopilot.state import Autopilot, Estimate
@@ -12,7 +13,7 @@ from ..core.kernels import law
 from ..core.scalars import finite
 from ..core.vectors import Vec3
 from .autopilot_api import Vector
-from .services.command import FRAMES_AMSL
+from .services.command import FRAMES_AMSL, FRAMES_TERRAIN
 
 LAT_MAX, LON_MAX = 900_000_000, 1_800_000_000
 """[degE7]"""
@@ -33,7 +34,7 @@ def home_alt(ap: Autopilot) -> float:
 
 @law
 def local_place(ap: Autopilot, lat: int, lon: int, z: float, frame: int) -> LocalPlace:
-    """NED of a place [degE7, m in a MAV_FRAME]; terrain frames count from home: the ground is flat."""
+    """NED of a place [degE7, m in a MAV_FRAME]; terrain frames as where the ground is flat."""
     estimate = ap.estimate
     if not (estimate.origin_set and abs(lat) <= LAT_MAX and abs(lon) <= LON_MAX and finite(z)):
         return LocalPlace(False, ZERO)
@@ -51,16 +52,19 @@ def over_origin(estimate: Estimate, north: float, east: float, alt: float) -> Lo
 class Places:
     """The same for services: reads origin and home from the record whenever it is asked."""
 
-    def __init__(self, autopilot: Autopilot) -> None:
-        self._autopilot = autopilot
+    def __init__(self, autopilot: Autopilot, ground: Callable[[int, int], float | None]) -> None:
+        """``ground``: how much higher it is at a latitude and longitude [degE7] than at home [m]; None: not known."""
+        self._autopilot, self._ground = autopilot, ground
 
     def home_alt(self) -> float:
         """Altitude [m above sea level] that relative heights count from: of home, else of the origin."""
         return home_alt(self._autopilot)
 
     def ned(self, lat: int, lon: int, z: float, frame: int) -> Vector | None:
-        """NED [m] of a place [degE7, m in a MAV_FRAME]; None before there is an origin or off the globe."""
-        return _vector(local_place(self._autopilot, lat, lon, z, frame))
+        """NED [m] of a place [degE7, m in a MAV_FRAME]; None before there is an origin, off the globe, and above ground
+        whose height is not known."""
+        rise = self._ground(lat, lon) if frame in FRAMES_TERRAIN else 0.0
+        return None if rise is None else _vector(local_place(self._autopilot, lat, lon, z + rise, frame))
 
     def over_origin(self, north: float, east: float, alt: float) -> Vector | None:
         """NED [m] of a point at ``alt`` [m above sea level]; None before there is an origin."""

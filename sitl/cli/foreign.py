@@ -64,7 +64,7 @@ def opened(
         is_relayed_by_slice: see ``ArduPilotSession``.
     """
     with contextlib.ExitStack() as undo, contextlib.ExitStack() as unless_opened:
-        plant = build_plant(options)
+        plant = build_plant(options, choice)
         unless_opened.callback(plant.close)
         links: list[Link] = []
         log: TlogWriter | None = None
@@ -122,12 +122,12 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
         raise OptionError(f"--params: {choice.name} runs already, with parameters of its own")
 
 
-def build_plant(options: argparse.Namespace) -> LocalPlant:
-    """Physics and world by the options; known SIM_ parameters of the parameter files act on them."""
+def build_plant(options: argparse.Namespace, choice: Choice) -> LocalPlant:
+    """Physics and world by the options, and by those of the parameter files that act on them."""
     values: dict[str, float] = {}
     for path in options.params:
-        values.update((name, value) for name, value in files.load(path).items() if name.startswith("SIM_"))
-    scenario = scenario_of(options, values)
+        values.update(files.load(path))
+    scenario = scenario_of(options, choice.for_physics(values))
     with CompileProgress() as progress:
         return stand_alone(scenario, progress=progress)
 

@@ -17,6 +17,7 @@ from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, chec
 from ..simulation import OptionError, Simulation
 from ..vehicle.faults import FORM
 from ..vehicle.kinds import DEFAULT, KINDS
+from ..worlds.heights import FORMS as FORMS_OF_HEIGHTS
 from .progress import CompileProgress
 
 
@@ -90,6 +91,7 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
         "--physics", default=NATIVE, metavar="NAME", help=f"what simulates it: {', '.join(FORMS)} (default {NATIVE})"
     )
     parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
+    parser.add_argument("--terrain", metavar="HEIGHTS", help=f"heights of the ground: {FORMS_OF_HEIGHTS}")
     parser.add_argument("--start", type=start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
     parser.add_argument("--seed", type=int, metavar="N", help="seed of sensor noise and turbulence")
     parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")
@@ -126,6 +128,7 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
         start=options.start,
         physics=options.physics,
         faults=getattr(options, "fail", ()),
+        terrain=getattr(options, "terrain", None),
     )
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Companion:
-    """Sends a message ten times a second, from ``start`` to ``stop``.
+    """Sends a message ten times a second, from ``start`` to ``stop``, and may answer messages of the vehicle.
 
     All that it knows besides its client is in its attributes, so that snapshots of the client have it.
     """
@@ -40,6 +40,9 @@ class Companion:
     def tell(self) -> None:
         """Send one message."""
         raise NotImplementedError
+
+    def take(self, name: str, fields: Any) -> None:
+        """A message of the vehicle has come."""
 
     def state(self) -> dict[str, Any]:
         """What it knows besides its client: a copy."""

@@ -242,6 +242,8 @@ class Session:
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
             self.telemetry.mode_names = mode_names(fields.type)
         self._awaited.discard(name)
+        for companion in self.companions:
+            companion.take(name, fields)
         for wanted, seen in self._collected:
             if wanted == name:
                 seen.append(fields)

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import SitlError
 
-_CODES = {"<f8": "d", "<i8": "q", "<f4": "f", "<i4": "i"}
+_CODES = {"<f8": "d", "<i8": "q", "<f4": "f", "<i4": "i", "<i2": "h", "<u2": "H"}
 
 
 class UnknownFieldError(SitlError, KeyError):

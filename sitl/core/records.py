@@ -115,7 +115,7 @@ class Stored:
     """How a field lies in memory, where its type does not say so."""
 
     code: str
-    """NumPy's code of one number: "f8", "i8", "f4", "i4"."""
+    """NumPy's code of one number: "f8", "i8", "f4", "i4"; of arrays "i2", "u2", too."""
     shape: tuple[int, ...] = ()
 
 

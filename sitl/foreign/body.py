@@ -67,14 +67,13 @@ class BodyLines:
         now, end_us, extras = self._motion(), self._clock(), self._extras
         if count == 1:
             return [motion.encode((end_us * _S, *now), extras)]
-        felt, place, began_us = now[:_PLACE], now[_PLACE:], end_us - TICK_US
-        made = []
+        place, began, began_us = now[_PLACE:], before[_PLACE:], end_us - TICK_US
+        times, places = [], []
         for k in range(1, count):
             share = k / count
-            between = [a + share * (b - a) for a, b in zip(before[_PLACE:], place)]
-            made.append(motion.encode(((began_us + k * TICK_US // count) * _S, *felt, *between), extras, is_short=True))
-        made.append(motion.encode((end_us * _S, *now), extras, is_short=True))
-        return made
+            times.append((began_us + k * TICK_US // count) * _S)
+            places.append(tuple([a + share * (b - a) for a, b in zip(began, place)]))
+        return motion.encode_parts([*times, end_us * _S], now[:_PLACE], [*places, place], extras)
 
     def _others(self, slow: tuple[Any, ...]) -> str:
         """Range-finder, battery, and apparent wind when there is wind; they change less often than the motion."""

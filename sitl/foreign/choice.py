@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import shutil
 import sysconfig
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from ..vehicle.kinds import KINDS
 
 NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
 FOREIGN = (ARDUPILOT, PX4)
+WIND = "SIM_WIND_"
+"""Beginning of the parameters of an ArduPilot that mean our physics."""
 _REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 FORMS = (
     '"native", "ardupilot" or "px4" (the program is looked for in PATH), "ardupilot:PROGRAM", "px4:PROGRAM", or, for '
@@ -36,6 +39,12 @@ class Choice:
     def name(self) -> str:
         """Name for messages."""
         return f"{self.kind}:{self.program or self.connection}"
+
+    def for_physics(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Those of the parameters that act on our physics. An ArduPilot has sensors, a battery and failing outputs of
+        its own, so only the wind does; a PX4 has no SIM_ parameters like ours."""
+        prefix = WIND if self.kind == ARDUPILOT else "SIM_"
+        return {name: value for name, value in values.items() if name.startswith(prefix)}
 
 
 def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | None:

@@ -16,7 +16,8 @@ from ..plants.local import LocalPlant, restart
 from ..plants.physics_server import Silence
 from .body import BodyLines
 
-_MAX_DATAGRAM = 65535
+_MAX_DATAGRAM = 1024
+"""Bytes of a datagram that are read: more than a frame has."""
 _GATHERED = 10_000
 """Largest number of waiting datagrams that are read before answering, so that nobody can prevent an answer."""
 _IDLE_S = 0.01
@@ -91,6 +92,8 @@ class JsonHost:
             now = self._wall()
             if now - self._answered > _IDLE_S:
                 asked = self._process_all(self._drain(datagram, peer), now)
+            elif self.end.is_answered(datagram, peer, now):
+                continue
             else:
                 asked = self._process(datagram, peer, now)
             if asked in _ENOUGH:

@@ -11,9 +11,10 @@ from typing import Protocol
 
 from ..bridge.hil.protocol import BASE_PORT
 from ..bridge.links.link import Link
+from ..errors import LinkLostError
 from ..plants.json_link import PORT
 from ..plants.local import LocalPlant
-from ..plants.physics_server import PhysicsServer
+from ..plants.physics_server import WAIT_S, PhysicsServer, Silence
 from ..run.pacing import Pacing
 from ..run.runner import Pace
 from . import ardupilot, px4
@@ -21,9 +22,12 @@ from .choice import Choice
 from .json_host import JsonHost
 from .process import HOST, AutopilotProcess, free_tcp_run
 from .relay import Relay
+from .wind import Wind
 
 Say = Callable[[str], None]
 Tap = Callable[[bytes], None]
+LOST_S = 30.0
+"""Wall time after which an autopilot that asks for nothing is lost to a script that waits for it [s]."""
 
 
 class Session(Protocol):
@@ -77,9 +81,14 @@ class ArduPilotSession:
         tap: Tap = lambda frame: None,
         is_relayed_by_slice: bool = False,
     ) -> None:
-        self.plant = plant
+        self.plant, self._say, self._name, self._wind = plant, say, choice.name, Wind(plant)
         self.process: AutopilotProcess | None = None
         self.relay: Relay | None = None
+
+        def listened(frame: bytes) -> None:
+            self._wind.frame(frame)
+            tap(frame)
+
         self.clients = choice.connection
         with contextlib.ExitStack() as undo:
             port = 0 if choice.program is not None else PORT + 10 * instance
@@ -93,7 +102,7 @@ class ArduPilotSession:
                     params=params, overrides=f"MAV_SYSID {1 + instance}\nSYSID_THISMAV {1 + instance}\n", folder=folder,
                 )  # fmt: skip
                 undo.callback(self.process.stop)
-                self.relay = Relay((HOST, base), links, tap)
+                self.relay = Relay((HOST, base), links, listened)
                 if not is_relayed_by_slice:
                     self.relay.start()
             undo.pop_all()
@@ -104,6 +113,7 @@ class ArduPilotSession:
         def goes_on() -> bool:
             if process is not None:
                 process.check()
+            self._wind.blow()
             return running()
 
         self.host.serve(goes_on, on_turn)
@@ -126,9 +136,11 @@ class ArduPilotSession:
 
         Raises:
             AutopilotEndedError: the program has ended.
+            LinkLostError: it has asked for no step in LOST_S.
         """
         host, relay, process = self.host, self.relay, self.process
         assert relay is not None and process is not None
+        silence = Silence(self._say, lambda: f"{self.time_us * 1e-6:.4f} s")
         while running() and (until_us is None or self.time_us < until_us):
             goal = self.time_us + pace.slice_us
             goal = goal if until_us is None else min(goal, until_us)
@@ -136,11 +148,21 @@ class ArduPilotSession:
                 if not host.listen():
                     process.check()
                     relay.turn(0.0)
-                elif self.time_us < goal:
-                    host.step(goal - host.before_boot_us)
-                else:
+                    silence.goes_on()
+                    if silence.waits * WAIT_S > LOST_S:
+                        last = process.last_output()
+                        raise LinkLostError(
+                            f"autopilot {self._name} has not asked its physics in {LOST_S:g} s; it said: {last}"
+                        )
+                    on_slice()
+                    continue
+                if silence.waits:
+                    silence.is_over()
+                if self.time_us >= goal:
                     break
+                host.step(goal - host.before_boot_us)
             relay.turn(0.0)
+            self._wind.blow()
             on_slice()
             pace.after_slice(self)
 

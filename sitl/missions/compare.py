@@ -121,6 +121,8 @@ def figures(kind: str, estimator: str = "ekf", seed: int = 0, autopilot: str = "
     frame, flights = FLIGHTS[kind]
     choice = choose(autopilot, kind)
     if choice is not None:
+        if estimator != "ekf":
+            raise OptionError(f"estimator {estimator!r}: autopilot {choice.name} has estimators of its own")
         return foreign_figures(choice, kind, seed)
     core = load_core(KINDS[kind])
     found: list[Figure] = []

@@ -13,11 +13,12 @@ from ..autopilot.copter.state import Autopilot
 from ..autopilot.copter.trim import is_flying, total_thrust
 from ..autopilot.copter.trim import trim as trim_firmware
 from ..autopilot.events import HIT_GROUND, emit
+from ..autopilot.terrain.ground import height_in_square
 from ..core.algebra import rotate
 from ..core.displacement import Displacement
 from ..core.kernels import inlined, law, unit
 from ..core.memory import record_at
-from ..core.vectors import Vec3
+from ..core.vectors import Vec2, Vec3
 from ..physics.native.copter import pieces
 from ..physics.native.copter.init import init
 from ..physics.native.copter.prepare import prepare
@@ -62,8 +63,19 @@ def fly(fleet: Sequence[Copter], index: int) -> None:
 @inlined
 def fly_after_touch(fleet: Sequence[Copter], index: int) -> None:
     """What follows a tick of physics."""
-    report_touch(fleet[index])
+    v = fleet[index]
+    report_touch(v)
     fly_tick(fleet, index, update)
+    if v.autopilot.terrain.shapes:
+        shape_ground(v)
+
+
+@law
+def shape_ground(v: Copter) -> None:
+    """The simulated ground is as high as the terrain's data says, beside where the vehicle was switched on."""
+    t, body = v.autopilot.terrain, v.physics.body
+    if t.is_known:
+        v.physics.downward.ground_d = t.start - height_in_square(t, Vec2(body.pos.x, body.pos.y))
 
 
 @inlined
@@ -139,9 +151,9 @@ def apply_sim_parameters(v: Copter) -> None:
     params, rotors = v.autopilot.params, v.physics.rotors
     rotors.telemetry = params.SIM.ESC_TELEM != 0
     rotors.rpm_armed, rotors.rpm_max = params.SIM.ESC_ARM_RPM, 60.0 * params.SIM.VIB_MOT_MAX
-    for k in range(len(rotors.efficiency)):
+    for k in range(len(rotors.share)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
-        rotors.efficiency[k] = params.SIM.ENGINE_MUL if fails else 1.0
+        rotors.share[k] = params.SIM.ENGINE_MUL if fails else 1.0
     rotors.stuck = int(params.SIM.ENGINE_STUCK)
     sim, shove, derived = params.SIM, v.physics.shove, v.physics.derived
     if derived.motor_lag != sim.ENGINE_LAG and derived.dt > 0.0:  # before power-on it is 0

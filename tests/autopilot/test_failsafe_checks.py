@@ -13,6 +13,7 @@ from sitl.autopilot.events import Events
 from sitl.autopilot.failsafe_checks import (
     BATTERY_MISSING,
     battery_fell_to,
+    battery_text,
     is_estimate_bad,
     is_gcs_lost,
     watch_monitor,
@@ -127,8 +128,9 @@ def test_a_monitor_that_fails_in_flight_is_told_once_and_keeps_what_it_measured(
         sensors.battery_voltage = 12.0 if tenth <= 20 else 11.0
         battery.monitor(state, sensors, params, 100_000 * tenth)
         watch_monitor(fs, state, True, events, 100_000 * tenth)
-        assert (events.count, fs.battery_missing) == ((1, True) if tenth > 70 else (0, False)), tenth
-    assert state.voltage == 12.0 and not state.healthy and events.a[0] == BATTERY_MISSING
+        assert (events.count, fs.battery_missing) == ((2, True) if tenth > 70 else (0, False)), tenth
+    assert state.voltage == 12.0 and not state.healthy and events.a[1] == BATTERY_MISSING
+    assert battery_text(int(events.code[0]), events.a[0], 3.0) == "Battery 1 is missing, last: 12.00V used 3 mAh"
 
 
 def compasses(second: Vec3, params: Compass) -> int:

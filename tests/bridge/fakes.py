@@ -33,7 +33,7 @@ class FakeVehicle:
 
     firmware: Firmware = COPTER
     record: Any = Copter
-    has_truth_in_record = True
+    has_truth_in_record = has_plain_ground = True
 
     def __init__(self) -> None:
         self.fleet = self.record.fleet(2)

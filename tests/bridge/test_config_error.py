@@ -25,7 +25,7 @@ def test_without_a_barometer_nothing_starts_until_it_is_mended(core: Core) -> No
     assert said.count("Config Error: Baro: unable to initialise driver") == 6
     client.command(RUN_CHECKS)
     said = texts(simulation, client, 0.1)
-    assert "PreArm: Barometer not healthy" in said
+    assert "PreArm: Baro: not healthy" in said
     ap = simulation.v.autopilot
     assert not ap.estimate.attitude_ok and not ap.estimate.origin_set
     name = b"SIM_BARO_COUNT"

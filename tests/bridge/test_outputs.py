@@ -112,6 +112,13 @@ def test_outputs_that_have_a_function_are_refused() -> None:
     assert servos(b) == []
 
 
+def test_there_is_no_such_output() -> None:
+    b = bench()
+    for number in (-40, -1, 0, 17, 32, 33, 1000):
+        for count in (0, 2):
+            assert b.command(REPEAT_SERVO, number, 1500, count, 1.0) == FAILED
+
+
 def test_missions_do_the_same() -> None:
     b = bench()
     b.bridge.carry_out(MissionItem(SET_RELAY, p1=1.0, p2=1.0))

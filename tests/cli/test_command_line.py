@@ -91,11 +91,11 @@ def test_a_bad_parameter_file_names_the_line(core: Core, tmp_path: Path) -> None
 
 
 def test_parameters_of_a_file_that_do_nothing_are_mentioned(core: Core, tmp_path: Path) -> None:
-    (tmp_path / "other.parm").write_text("WPNAV_SPEED 500\nTERRAIN_ENABLE 1\nEK9_ENABLE 1\n")
+    (tmp_path / "other.parm").write_text("WPNAV_SPEED 500\nTERRAIN_CACHE_SZ 1\nEK9_ENABLE 1\n")
     result = sitl(*RUN, "--duration", "1", "--params", "other.parm", folder=tmp_path)
     assert result.returncode == 0
     assert "1 parameters of the files are not in this firmware: EK9_ENABLE" in result.stderr
-    assert "1 parameters of the files have no effect here: TERRAIN_ENABLE" in result.stderr
+    assert "1 parameters of the files have no effect here: TERRAIN_CACHE_SZ" in result.stderr
 
 
 def test_a_taken_port_is_named(core: Core, tmp_path: Path) -> None:

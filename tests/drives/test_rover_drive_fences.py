@@ -12,7 +12,7 @@ import pytest
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.simulation import Core
-from tests.drives.rover_driver import GUIDED, HOLD, POSITION, RTL, SMART_RTL, Driver, Item
+from tests.drives.rover_driver import GUIDED, HOLD, LOITER, POSITION, RTL, SMART_RTL, Driver, Item
 
 CIRCLE, AREAS = 2, 4
 
@@ -33,6 +33,8 @@ def drive_north(p: Driver) -> float:
         (3, SMART_RTL, True),
         (4, SMART_RTL, True),
         (5, GUIDED, False),
+        (6, LOITER, True),
+        (99, GUIDED, True),
     ],
 )
 def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int, armed: bool) -> None:
@@ -41,8 +43,8 @@ def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int,
     ).armed_in(GUIDED)
     there = drive_north(p)
     assert (p.mode, p.ap.arming.armed) == (mode, armed)
-    assert (there > 50.0) if action == 0 else (there == pytest.approx(20.3, abs=0.7))
-    assert p.said("Manual recovery started") == (action in (1, 2, 3, 4))
+    assert (there > 50.0) if action in (0, 99) else (there == pytest.approx(20.3, abs=0.7))
+    assert p.said("Manual recovery started") == (action in (1, 2, 3, 4, 6))
     assert not p.said("Circle fence breached")  # rovers are silent about it
 
 

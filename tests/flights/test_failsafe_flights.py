@@ -112,10 +112,15 @@ def test_voltage_of_the_simulated_battery(core: Core) -> None:
     p.fly(9.0)
     assert (p.mode, p.ap.battery.voltage) == (GUIDED, pytest.approx(11.4))
     p.fly(2.0)
-    assert p.mode == RTL and p.said("Battery 1 is low") and p.ap.modes.failsafe.battery == 1
+    assert (
+        p.mode == RTL
+        and p.said("Battery 1 is low 11.40V used ")
+        and p.said("Battery Failsafe")
+        and p.ap.modes.failsafe.battery == 1
+    )
     p.set_parameter("SIM_BATT_VOLTAGE", 10.4)
     p.fly(11.0)
-    assert p.mode == LAND and p.said("Battery 1 is critical") and p.ap.modes.failsafe.battery == 2
+    assert p.mode == LAND and p.said("Battery 1 is critical 10.40V used ") and p.ap.modes.failsafe.battery == 2
     p.wait_disarmed(60.0)
     p.set_mode(GUIDED)
     assert p.ask(ARM, 1) == 4 and p.said("Battery 1 low voltage failsafe")
@@ -127,7 +132,7 @@ def test_a_battery_monitor_that_fails_in_flight(core: Core) -> None:
     p.fly(4.5)
     assert not p.said("Battery 1 is missing")
     p.fly(1.0)
-    assert p.said("Battery 1 is missing") and p.mode == GUIDED
+    assert p.said("Battery 1 is missing, last: 12.") and p.said("Battery Failsafe") and p.mode == GUIDED
     assert p.set_mode(LAND)
     p.wait_disarmed(60.0)
     p.set_mode(GUIDED)
@@ -166,7 +171,8 @@ def test_gps_lost(core: Core, frame: str, mode: int, then: int) -> None:
     p.set_parameter("SIM_GPS1_ENABLE", 0)
     p.sticks(12.0)
     assert p.mode == then
-    assert bool(p.said("EKF Failsafe")) == (then != mode), "said when something is done about it"
+    assert p.said("EKF variance") and p.said("EKF Failsafe")
+    assert bool(p.said("changed to LAND Mode")) == (then != mode)
     assert p.set_mode(LAND)
     p.wait_disarmed(60.0)
     p.let_go()

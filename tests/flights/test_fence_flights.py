@@ -94,11 +94,12 @@ def test_a_hundred_metres_beyond_it_lands_there(core: Core) -> None:
 @pytest.mark.parametrize("by_area", [True, False])
 def test_areas_to_stay_in_and_out_of(core: Core, by_area: bool) -> None:
     """A square around home; a circle to stay out of to the north is nearer, when it is there."""
-    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=AREAS).ready()
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_TYPE=AREAS).ready()
     items = square(p, c.FENCE_INCLUSION, 0.0, 0.0, 40.0)
     if not by_area:
         items += area(p, c.FENCE_CIRCLE_OUT, (35.0, 0.0), p1=10.0)
     p.upload_fence(items)
+    p.set_parameter("FENCE_ENABLE", 1)
     p.arm()
     p.take_off(10.0)
     assert fly_north(p) == pytest.approx(40.5 if by_area else 25.5, abs=1.0)
@@ -211,6 +212,33 @@ def test_no_other_mode_while_breached(core: Core) -> None:
     assert p.mode == RTL and not p.set_mode(LOITER)
     assert p.said("Mode change to LOITER failed: in fence recovery")
     assert p.fly(20.0, lambda: p.said("Fence breach cleared")) and p.set_mode(LOITER)
+
+
+def test_the_least_height_is_on_where_it_is_the_only_fence(core: Core) -> None:
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=LOWEST, FENCE_ALT_MIN=15.0).hover(25.0)
+    assert p.said("Min Alt fence enabled (auto enable)")
+    assert p.set_mode(LOITER)
+    p.hold(throttle=1200)
+    assert p.fly(25.0, lambda: p.mode == RTL) and p.said("Min Alt fence breached")
+    assert p.height == pytest.approx(15.0, abs=0.5)
+
+
+def test_the_margins_of_two_fences_are_told_as_they_are_reached(core: Core) -> None:
+    """Texts of a real ArduPilot on the same flight, but for tenths."""
+    params = {"FENCE_RADIUS": 30.0, "FENCE_MARGIN": 6.0, "FENCE_OPTIONS": 4.0}
+    p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE | AREAS, **params).ready()
+    p.upload_fence(square(p, c.FENCE_INCLUSION, 0.0, 0.0, 28.0))
+    p.hover()
+    assert p.set_mode(LOITER)
+    p.hold(pitch=1250)
+    assert p.fly(25.0, lambda: p.mode == RTL)
+    p.hold()
+    p.fly(15.0)
+    told = [text.text.partition(" in ")[0] for text in p.texts if "fence" in text.text and "recovery" not in text.text]
+    said = [text for text in told if "Indexed" not in text and "PreArm" not in text]
+    assert said[:3] == ["Polygon fence", "Circle and Polygon fences", "Polygon fence breached"]
+    assert said[-1] == "Polygon fence cleared margin breach" and "Circle fence cleared margin breach" in said
+    assert "Circle fence" not in said
 
 
 def test_the_margin_is_told(core: Core) -> None:

@@ -30,3 +30,35 @@ def test_six_rotors_fly_on_with_five(frame: str, lowest: float) -> None:
     assert min(heights[110:]) > 9.0 and pilot.armed
     told = [text.time - start for text in pilot.texts if "Potential Thrust Loss (1)" in text.text]
     assert len(told) == 1 and told[0] == pytest.approx(3.4, abs=0.5)
+
+
+def test_a_quadrotor_that_fell_is_disarmed() -> None:
+    """Motor 1 dies at 10 m in LOITER. ArduPilot stays armed on the ground for more than 70 s, its motors turning."""
+    pilot = Client(Simulation("ardupilot_quad"))
+    pilot.wait_ready()
+    pilot.set_mode("GUIDED")
+    pilot.arm()
+    pilot.take_off(10)
+    pilot.rc(roll=1500, pitch=1500, throttle=1500, yaw=1500)
+    pilot.set_mode("LOITER")
+    pilot.delay(3.0)
+    pilot.params["SIM_ENGINE_FAIL"] = 1
+    pilot.wait_disarmed(45.0)
+    assert -pilot.simulation.v.physics.body.pos.z < 0.5
+    assert any("Crash: Disarming" in text.text for text in pilot.texts)
+
+
+def test_a_fall_with_closed_throttle_is_no_crash() -> None:
+    """In STABILIZE from 100 m with a lean that it takes slowly: motors at their least, and it moves."""
+    pilot = Client(Simulation("ardupilot_quad"))
+    pilot.wait_ready()
+    pilot.set_mode("GUIDED")
+    pilot.arm()
+    pilot.take_off(100)
+    pilot.rc(roll=1500, pitch=1500, throttle=1500, yaw=1500)
+    pilot.set_mode("STABILIZE")
+    pilot.rc(roll=2000, pitch=1500, throttle=1000, yaw=1500)
+    for _ in range(30):
+        pilot.delay(0.1)
+        assert pilot.armed
+    assert -pilot.simulation.v.physics.body.pos.z > 20.0

@@ -13,11 +13,14 @@ import pytest
 
 from sitl.bridge.dialect import message
 from sitl.errors import LinkLostError, OptionError
+from sitl.foreign.choice import choose
+from sitl.foreign.process import AutopilotEndedError
+from sitl.foreign.session import ArduPilotSession
 from sitl.logs.tlog import read_tlog
 from sitl.missions import compare
 from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
-from sitl.missions.testing.setup import Defaults
+from sitl.missions.testing.setup import Defaults, Setup
 from sitl.missions.testing.vehicle import Copter
 from sitl.simulation import Simulation
 from tests.foreign.arducopter_stand_in import install
@@ -93,6 +96,42 @@ def test_a_script_is_run_on_the_clock_of_a_program(arducopter, tmp_path):
     assert process.returncode == 3, err
     slept, passed = map(float, line_with(iter(out.split("\n")), "slept").split()[1:])
     assert slept == pytest.approx(5.0, abs=0.1) and passed == pytest.approx(5.0, abs=0.5)
+
+
+class AsFastAsItGoes:
+    slice_us = 10_000
+
+    def after_slice(self, session):
+        pass
+
+
+@pytest.fixture
+def held(arducopter, copter_plant, tmp_path):
+    """A session in slices."""
+    choice, said = choose(f"ardupilot:{arducopter}", "copter"), []
+    session = ArduPilotSession(choice, copter_plant, is_relayed_by_slice=True, say=said.append, folder=tmp_path / "its")
+    session.said = said
+    yield session
+    session.close()
+
+
+@pytest.mark.slow
+def test_a_program_that_is_killed_ends_its_slices(held):
+    held.serve_slices(AsFastAsItGoes(), until_us=1_000_000)
+    held.process._signal(signal.SIGKILL)
+    with pytest.raises(AutopilotEndedError, match="ended by signal 9"):
+        held.serve_slices(AsFastAsItGoes())
+
+
+@pytest.mark.slow
+def test_a_program_that_asks_for_nothing_any_more_ends_its_slices(held, monkeypatch):
+    held.serve_slices(AsFastAsItGoes(), until_us=1_000_000)
+    held.process._signal(signal.SIGSTOP)
+    monkeypatch.setattr("sitl.foreign.session.LOST_S", 0.5)
+    monkeypatch.setattr("sitl.plants.physics_server.PATIENCE_S", 0.2)
+    with pytest.raises(LinkLostError, match=r"has not asked its physics in 0.5 s; it said: .*Ready"):
+        held.serve_slices(AsFastAsItGoes())
+    assert held.said[-1].startswith("the autopilot is silent: time stands at 1.")
 
 
 SCRIPT = """
@@ -201,6 +240,14 @@ def test_the_copters_mission_is_repeated_by_a_program(arducopter):
     assert compared
     for figure in compared:
         assert abs(figure.percent) < 20.0, figure
+
+
+def test_an_estimator_of_ours_is_refused_where_another_autopilot_flies(tmp_path):
+    other = f"ardupilot:{install(tmp_path)}"
+    with pytest.raises(OptionError, match=r"^estimator 'truth': autopilot ardupilot:.* has estimators of its own"):
+        Setup("erle_copter", estimator="truth", autopilot=other).build()
+    with pytest.raises(OptionError, match=r"^estimator 'truth'"):
+        compare.figures("copter", estimator="truth", autopilot=other)
 
 
 def test_px4_does_not_speak_the_scripts_commands(px4):

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -15,6 +17,7 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.client import Client
+from sitl.client.connection import connect
 from sitl.client.endpoint import Inbox
 from sitl.envs.mavlink.foreign import launch
 from sitl.errors import LinkLostError
@@ -24,7 +27,7 @@ from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults
 from sitl.plants.local import stand_alone
-from tests.foreign.test_foreign_runs import command
+from tests.foreign.test_foreign_runs import command, line_with
 
 FOLDER = os.environ.get("SITL_ARDUPILOT", "")
 PROGRAMS = {"copter": "arducopter", "rover": "ardurover"}
@@ -138,6 +141,80 @@ def test_an_environment_is_flown(name, kind, options):
     with pytest.raises(LinkLostError, match="ended by signal 9"):
         env.step(0)
     env.close()
+
+
+@pytest.fixture
+def running(tmp_path):
+    """``running(kind, *words)``: a client of ``sitl run``."""
+    with contextlib.ExitStack() as stack:
+
+        def make(kind: str, *words: str) -> Client:
+            words = "--speedup", "10", "--out", "none", "--tcp", "0", "--log-dir", str(tmp_path), *words
+            process = stack.enter_context(command("run", kind, "--autopilot", program(kind), *words, cwd=tmp_path))
+            port = line_with(process.stdout, "MAVLink on tcp:").rpartition(" ")[2]
+            vehicle = Client(connect(port, Inbox(), 60.0, warn=lambda text: None), name=kind)
+            stack.callback(vehicle.close)
+            return vehicle
+
+        yield make
+
+
+def test_a_copter_is_run_in_a_world_and_wind_is_set_in_flight(running):
+    copter = running("copter", "--world", "office_erlecopter")
+    copter.wait_ready()
+    copter.take_off(2.0)
+    copter.delay(2.0)
+    assert copter.message("DISTANCE_SENSOR").current_distance == pytest.approx(200, abs=40)
+    assert abs(copter.attitude.pitch) < 0.02
+    copter.params.update(SIM_WIND_SPD=6.0, SIM_WIND_DIR=math.degrees(copter.attitude.yaw))
+    copter.delay(6.0)
+    assert copter.attitude.pitch < -0.05
+    copter.params["SIM_WIND_SPD"] = 0.0
+    copter.delay(10.0)
+    assert abs(copter.attitude.pitch) < 0.03
+
+
+def test_a_rover_is_run_in_a_world(running):
+    rover = running("rover", "--world", "maze_erlerover")
+    rover.wait_ready()
+    rover.guided_and_armed()
+    began = rover.position
+    rover.set_velocity(0.6, 0.0)
+    rover.delay(3.0)
+    assert 0.9 < rover.position.north - began.north < 1.9
+
+
+TESTS = """
+import math
+
+def test_it_flies_in_wind_with_a_weak_motor(vehicle_factory):
+    copter = vehicle_factory("copter", world="office_erlecopter", wind=(4.0, 0.0))
+    copter.takeoff(2.0)
+    copter.delay(2.0)
+    assert math.hypot(copter.attitude.roll, copter.attitude.pitch) > 0.03
+    with copter.fail("motor", motor=1, thrust=0.9):
+        copter.delay(4.0)
+        assert copter.params["SIM_ENGINE_FAIL"] == 1
+        pulses = copter.message("SERVO_OUTPUT_RAW")
+        others = pulses.servo2_raw, pulses.servo3_raw, pulses.servo4_raw
+        assert pulses.servo1_raw > max(others) + 30
+    assert copter.height > 1.5
+
+def test_it_drives(vehicle_factory):
+    rover = vehicle_factory("rover", world="maze_erlerover")
+    rover.guided_and_armed()
+    rover.set_velocity(0.6, 0.0)
+    rover.delay(3.0)
+    assert rover.position.north > 0.9
+"""
+
+
+def test_pytest_flies_with_those_of_the_path(tmp_path):
+    (tmp_path / "test_it.py").write_text(TESTS)
+    paths = {"PATH": FOLDER + os.pathsep + os.environ["PATH"], "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    words = sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--sitl-autopilot", "ardupilot", "-n", "0"
+    made = subprocess.run(words, cwd=tmp_path, env={**os.environ, **paths}, capture_output=True, text=True, check=False)
+    assert made.returncode == 0 and "2 passed" in made.stdout, made.stdout[-3000:] + made.stderr[-1000:]
 
 
 @pytest.mark.parametrize("speedup", ["20", "max"])

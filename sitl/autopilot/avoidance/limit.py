@@ -16,7 +16,7 @@ from ..fence.checks import active
 from ..fence.shapes import place
 from ..fence.state import AREAS, CIRCLE
 from ..state import Autopilot, Vehicle
-from . import fences, obstacles, proximity, velocity
+from . import fences, objects, obstacles, proximity, velocity
 from .state import Avoidance
 from .velocity import Braking
 
@@ -45,7 +45,10 @@ def watch(v: Vehicle, too_low: bool) -> None:
     seen, p = ap.proximity, ap.params
     if seen.kind in proximity.LIDARS:
         if v.sensors.lidar_count > 0:
+            before = seen.scan
             proximity.look(seen, v.sensors, v.time_us, p.PRX.FILT, p.PRX1)
+            if seen.scan != before and objects.are_noted(ap):
+                objects.note_scan(ap, v.sensors, v.time_us)
         elif seen.kind == proximity.SIMULATED and ap.fence.shapes > 0 and ap.estimate.origin_set:
             place(ap.fence, ap.estimate)
             fences.look(seen, ap.fence, horizontal(ap.estimate.pos), ap.estimate.yaw, p.PRX1)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The record of avoidance."""
+"""The records of avoidance."""
 
 from __future__ import annotations
 
-from ...core.records import Record
+from ...core.records import Floats, Ints, Record, array
 from ...core.vectors import Vec2
 
 
@@ -17,3 +17,17 @@ class Avoidance(Record):
     vel: Vec2  # to what, NE [m/s]
     back_max: Vec2  # velocities that margins ask for, of one tick: the greatest and the least of each axis [m/s]
     back_min: Vec2
+
+
+OBJECTS = 32
+"""Objects that fit."""
+
+
+class Objects(Record):
+    """What was seen, and where (``avoidance.objects``)."""
+
+    north: Floats = array(OBJECTS, stored="f4")  # from the estimator's origin [m]
+    east: Floats = array(OBJECTS, stored="f4")
+    down: Floats = array(OBJECTS, stored="f4")
+    radius: Floats = array(OBJECTS, stored="f4")  # [m]
+    until_ms: Ints = array(OBJECTS, stored="i4")  # it counts until then [ms]

@@ -9,7 +9,7 @@ from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, refuse
 from ..events import ARMED, emit
 from ..fence.checks import switch_on_arming
 from ..state import Arming
-from .arming_checks import CALIBRATED, MANDATORY, arm_checks, check, stick_checks
+from .arming_checks import CALIBRATED, MANDATORY, TEXTS, arm_checks, check, stick_checks
 from .control.motors import ARMING_DELAY_US
 from .modes import ground, simple
 from .modes.state import Modes
@@ -116,4 +116,4 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
 
 def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
     """Status texts of failed checks, each after ``prefix``."""
-    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix)
+    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix, TEXTS)

@@ -46,7 +46,15 @@ from .modes.state import Modes
 from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
 from .parameters import Parameters
 from .state import Vehicle
+from .terrain import has_range
 
+TERRAIN_OFF, TERRAIN_WAITS, RTL_TERRAIN_OFF = 1 << 20, 1 << 21, 1 << 22
+"""Bits that are other checks of rovers."""
+TEXTS = {
+    TERRAIN_OFF: "terrain disabled",
+    TERRAIN_WAITS: "waiting for terrain data",
+    RTL_TERRAIN_OFF: "RTL_ALT_TYPE is above-terrain but no terrain data",
+}
 MANDATORY = NEED_POSITION | NEED_ALTITUDE
 """What forcing does not skip."""
 CALIBRATED = radio_checks.STICK_NAMES
@@ -87,7 +95,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
-    failed = sensor_checks(v.time_us, v.sensors, ap.estimate.attitude_ok, p)
+    failed = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
     failed |= calibration_checks(ap.calibrated.state, p.ARMING)
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3
@@ -106,6 +114,8 @@ def check(v: Vehicle) -> int:
         failed |= EMERGENCY_STOP
     if ap.arming.parachute_released:
         failed |= PARACHUTE_RELEASED
+    if ap.modes.mission_over_ground or p.RTL.ALT_TYPE > 0.0:
+        failed |= terrain_check(v)
     fence = p.FENCE
     if (
         fence_arming.needs_position(ap.fence, fence)
@@ -116,6 +126,16 @@ def check(v: Vehicle) -> int:
     limits = Vec3(fence.ALT_MAX, fence.ALT_MIN, fence.AUTOENABLE)
     failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, fence, limits) << FENCE_SHIFT
     return failed if ap.control.motors.count > 0 else failed | FRAME
+
+
+@law
+def terrain_check(v: Vehicle) -> int:
+    """Failed check of the heights of the ground, where a mission or RTL needs them."""
+    if has_range(v):
+        return 0
+    if v.autopilot.params.TERRAIN.ENABLE <= 0.0:
+        return TERRAIN_OFF if v.autopilot.modes.mission_over_ground else RTL_TERRAIN_OFF
+    return TERRAIN_WAITS if v.autopilot.terrain.pending > 0 else 0
 
 
 @law

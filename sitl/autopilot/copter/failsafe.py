@@ -5,12 +5,16 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from .. import failsafe_checks
-from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION
-from ..events import FAILSAFE, emit
+from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION, BY_TERRAIN_FAILSAFE
+from ..estimation.status import GPS_GLITCHING
+from ..events import FAILSAFE, TERRAIN_DID, emit
 from ..failsafe_checks import (
     EKF,
     GCS,
+    GLITCH,
     RADIO,
+    TERRAIN,
+    VARIANCE,
     VIBRATION,
     battery_fell_to,
     is_estimate_bad,
@@ -26,8 +30,12 @@ from ..modes import (
     REASON_EKF_FAILSAFE,
     REASON_GCS_FAILSAFE,
     REASON_RADIO_FAILSAFE,
+    REASON_TERRAIN_FAILSAFE,
 )
 from ..state import Arming, Failsafe
+from ..terrain.ground import is_long_missing
+from ..terrain.state import FAILSAFE as GROUND_MISSING
+from ..terrain.state import RTL_BEGINS_ANEW
 from .control import vibration
 from .failsafe_actions import (
     CONTINUE_LANDING,
@@ -45,11 +53,12 @@ from .failsafe_actions import (
     land_with_pause,
     radio_action,
 )
-from .modes import ground, set_mode
+from .modes import ground, rtl, set_mode
 from .modes.alt_hold import ALT_HOLD
 from .modes.auto import AUTO
 from .modes.guided import GUIDED
 from .modes.land import LAND
+from .modes.rtl import RTL
 from .modes.state import Modes
 from .modes.table import is_autonomous, is_landing, requires_position
 from .parameters.safety import Battery
@@ -81,6 +90,10 @@ _ENDINGS = {
     PILOT_GOES_ON: "Continuing Pilot Control",
 }
 
+EKF_LANDS, EKF_HOLDS = 2, 3
+"""What follows a bad estimate, besides 1: nothing."""
+_BY_ESTIMATE = {EKF_LANDS: "LAND", EKF_HOLDS: "ALT_HOLD"}
+
 RADIO_FRAMES = 3
 """Bad frames in a row that set the radio failsafe; as many good ones, not needing to be in a row, clear it."""
 EKF_COUNT = 10
@@ -89,6 +102,8 @@ EKF_COUNT = 10
 
 def text(which: int, how: int) -> str | None:
     """Status text of a FAILSAFE event, None when there is none."""
+    if which == EKF and how in _BY_ESTIMATE:
+        return f"EKF Failsafe: changed to {_BY_ESTIMATE[how]} Mode"
     if how == BATTERY_LANDS:
         return "Radio + Battery Failsafe - Continuing Landing"
     said = failsafe_checks.text(which, how != 0)
@@ -198,20 +213,17 @@ def watch_battery(v: Vehicle) -> None:
     """Ten times a second: act on a battery that has become low or critical."""
     ap, p = v.autopilot, v.autopilot.params
     level = battery_fell_to(ap.modes.failsafe, ap.battery, ap.arming.armed, v.time_us, p.BATT)
-    report_battery(ap.events, v.time_us, level)
+    report_battery(ap.events, v.time_us, level, ap.battery)
     watch_monitor(ap.modes.failsafe, ap.battery, ap.arming.armed, ap.events, v.time_us)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
         act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
 
 
-EKF_ACTED = 2
-"""``failsafe.ekf``: the estimate is bad and the mode was ended for it (1: bad, but the mode needs no position)."""
-
-
 @law
 def watch_estimate(v: Vehicle) -> None:
     """Ten times a second: a bad estimate for a second ends modes that need a position (FS_EKF_ACTION)."""
+    watch_glitch(v)
     ap = v.autopilot
     fs, p = ap.modes.failsafe, ap.params.FS
     before = fs.ekf
@@ -221,10 +233,21 @@ def watch_estimate(v: Vehicle) -> None:
         fs.ekf = 0
         return
     count_estimate(fs, bad)
-    if before == 0 and fs.ekf != 0 and ends_for_estimate(ap.modes.number, int(p.EKF_ACTION)):
-        act_on_estimate(v)
-    elif before == EKF_ACTED and fs.ekf == 0:
+    if before == 0 and fs.ekf != 0:
+        report(ap.events, v.time_us, VARIANCE, True)
+        emit(ap.events, v.time_us, FAILSAFE, float(EKF), float(act_on_estimate(v)))
+    elif before != 0 and fs.ekf == 0:
         report(ap.events, v.time_us, EKF, False)
+
+
+@law
+def watch_glitch(v: Vehicle) -> None:
+    """Tell of fixes that are not believed."""
+    ap = v.autopilot
+    glitch = ap.estimate.status_flags & GPS_GLITCHING != 0
+    if glitch != ap.modes.failsafe.glitch:
+        ap.modes.failsafe.glitch = glitch
+        report(ap.events, v.time_us, GLITCH, glitch)
 
 
 @law
@@ -247,17 +270,20 @@ def ends_for_estimate(mode: int, action: int) -> bool:
 
 
 @law
-def act_on_estimate(v: Vehicle) -> None:
-    """End the mode for the bad estimate."""
+def act_on_estimate(v: Vehicle) -> int:
+    """End the mode for the bad estimate, if it needs a good one; EKF_LANDS, EKF_HOLDS or 1."""
     ap = v.autopilot
-    ap.modes.failsafe.ekf = EKF_ACTED
-    report(ap.events, v.time_us, EKF, True)
+    action = int(ap.params.FS.EKF_ACTION)
+    if not ends_for_estimate(ap.modes.number, action):
+        return 1
+    follows = 1
     if ap.modes.number != LAND:
-        to_alt_hold = int(ap.params.FS.EKF_ACTION) == 2
-        if to_alt_hold and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
-            return
+        if action == 2 and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
+            return EKF_HOLDS
         land_with_pause(v, REASON_EKF_FAILSAFE)
+        follows = EKF_LANDS
     ap.modes.land.with_position = False
+    return follows
 
 
 @law
@@ -268,6 +294,25 @@ def watch_vibration(v: Vehicle) -> None:
     change = vibration.watch(ap.control.vibration, ap.estimate, watched, v.time_us)
     if change != vibration.NOTHING:
         report(ap.events, v.time_us, VIBRATION, change == vibration.BEGINS)
+
+
+@law
+def watch_terrain(v: Vehicle) -> None:
+    """Ten times a second: the height of the ground is needed and has been missing for too long."""
+    ap = v.autopilot
+    t, modes = ap.terrain, ap.modes
+    if t.missed_us == 0 or not is_long_missing(t, v.time_us):
+        return
+    t.missed_us = 0
+    emit(ap.events, v.time_us, TERRAIN_DID, float(GROUND_MISSING), 0.0)
+    report(ap.events, v.time_us, TERRAIN, True)
+    if is_idle(modes, ap.arming.landed):
+        ground.disarm(v, BY_TERRAIN_FAILSAFE)
+    elif modes.number == RTL:
+        emit(ap.events, v.time_us, TERRAIN_DID, float(RTL_BEGINS_ANEW), 0.0)
+        rtl.prepare(v, False)
+    elif set_mode.request(v, RTL, REASON_TERRAIN_FAILSAFE) != ACCEPTED:
+        land_with_pause(v, REASON_TERRAIN_FAILSAFE)
 
 
 def terminate(v: Vehicle) -> None:

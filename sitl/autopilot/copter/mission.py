@@ -8,13 +8,14 @@ import math
 from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
-from ..mission.item import MissionItem
+from ..mission.item import TERRAIN_FRAMES, MissionItem
 from ..mission.notes import INFO, Note, Text
 from ..mission.place import down, point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
+from ..terrain.ground import lose_ground
 from .modes import auto, auto_yaw
 from .modes.auto import AUTO, AUTO_RTL
 from .modes.state import GuidedState
@@ -22,6 +23,7 @@ from .navigation import waypoint
 from .navigation.planner import PLANNER, Following
 from .navigation.state import CopterNav
 from .state import Autopilot, Vehicle
+from .terrain import ground_below, is_flat
 
 EDGE = 3.0
 """A vehicle this near to the circle starts it where it is [m]."""
@@ -98,11 +100,12 @@ class CopterCommands(Commands[Vehicle]):
             kind = kinds.PASSED_OVER  # it would end guided flight, which has ended
         if nav.condition_kind != kinds.CONDITION_YAW:  # a turn asked for on the way to this command goes on
             auto.choose_heading(ap.modes.auto_yaw, kind, ap.params.WP, ap.control.attitude, ap.estimate)
+        _choose_heights(v, item, kind)
         here, _ = PLANNER.origin_of_next(ap, time_us)
         if item.command == commands.NAV_SPLINE_WAYPOINT:
-            PLANNER.begin_spline(ap, time_us, point(ap, item, here))
+            PLANNER.begin_spline(ap, time_us, _end_of_leg(ap, item, here))
         elif kind in (*LEGS, kinds.LOITER_TO_ALT):
-            PLANNER.begin(ap, time_us, point(ap, item, here))
+            PLANNER.begin(ap, time_us, _end_of_leg(ap, item, here))
         elif kind == kinds.DELAY:
             PLANNER.begin(ap, time_us, here)
         elif kind == kinds.LOITER_TURNS:
@@ -111,7 +114,7 @@ class CopterCommands(Commands[Vehicle]):
             PLANNER.begin(ap, time_us, point(ap, item, here).replace(z=here.z))  # at the present height
         else:
             _end_path(nav)
-            nav.target = here.replace(z=_take_off_to(ap, item)) if kind == kinds.TAKEOFF else here
+            nav.target = here.replace(z=_take_off_to(v, item)) if kind == kinds.TAKEOFF else here
         command.give(nav, kind, seq)
         nav.circle_running = False
         nav.has_place = not item.no_place
@@ -132,6 +135,10 @@ class CopterCommands(Commands[Vehicle]):
         nav = ap.modes.nav
         if nav.command_kind != kinds.WAYPOINT or nav.delay > 0.0:
             return
+        if item is not None and _is_over_ground(v, item) != nav.over_ground:
+            item = None
+        if after is not None and _is_over_ground(v, after) != nav.over_ground:
+            after = None
         following = _following(ap, item, after)
         if nav.spline.active:
             PLANNER.aim_spline(ap, following)
@@ -194,17 +201,44 @@ def _following(ap: Autopilot, item: MissionItem | None, after: MissionItem | Non
     """What the command under way goes over into without a stop."""
     if item is None or KINDS[item.command] not in LEGS:
         return Following()
-    place = point(ap, item, end(ap.modes.nav.current))
+    place = _end_of_leg(ap, item, end(ap.modes.nav.current))
     is_spline = item.command == commands.NAV_SPLINE_WAYPOINT
     if after is None or KINDS[after.command] not in LEGS or whole_seconds(item) > 0.0:
         return Following(place, is_spline)
-    return Following(place, is_spline, point(ap, after, place), after.command == commands.NAV_SPLINE_WAYPOINT)
+    return Following(place, is_spline, _end_of_leg(ap, after, place), after.command == commands.NAV_SPLINE_WAYPOINT)
 
 
-def _take_off_to(ap: Autopilot, item: MissionItem) -> float:
+def _is_over_ground(v: Vehicle, item: MissionItem) -> bool:
+    """Whether the way to an item is above the ground, which is no plain."""
+    return item.frame in TERRAIN_FRAMES and not is_flat(v)
+
+
+def _choose_heights(v: Vehicle, item: MissionItem, kind: int) -> None:
+    """Count heights from the origin, or from the ground. A ground of which nothing is known is a failsafe at once."""
+    if kind in (kinds.DELAY, kinds.PASSED_OVER):
+        return
+    if kind not in (*LEGS, kinds.LOITER_TURNS) or not _is_over_ground(v, item):
+        PLANNER.count_from(v.autopilot, None)
+        return
+    ground = ground_below(v)
+    PLANNER.count_from(v.autopilot, ground)
+    if not ground.is_known:
+        lose_ground(v.autopilot.terrain, v.time_us)
+
+
+def _end_of_leg(ap: Autopilot, item: MissionItem, default: Vec3) -> Vec3:
+    """As ``point``, with the height as the path under way counts it."""
+    place = point(ap, item, default)
+    return place.replace(z=-item.z) if ap.modes.nav.over_ground and item.z != 0.0 else place
+
+
+def _take_off_to(v: Vehicle, item: MissionItem) -> float:
     """Down coordinate of a take-off's end [m]: never below the vehicle, from the ground at least a metre up."""
+    ap = v.autopilot
     least = LEAST_CLIMB if ap.arming.landed else 0.0
-    return min(down(ap, item), ap.estimate.pos.z - least)
+    ground = ground_below(v)
+    to = ground.d - item.z if _is_over_ground(v, item) and ground.is_known else down(ap, item)
+    return min(to, ap.estimate.pos.z - least)
 
 
 def set_roi(v: Vehicle, item: MissionItem) -> None:
@@ -230,7 +264,7 @@ def _look_ahead(ap: Autopilot) -> None:
 def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:
     """The leg to the nearest point of the circle, none when it is near."""
     nav = ap.modes.nav
-    centre = point(ap, item, here)
+    centre = _end_of_leg(ap, item, here)
     radius = item.p3 if item.p3 != 0.0 else 0.01 * ap.params.CIRCLE.RADIUS
     radius = min(max(radius, -WIDEST), WIDEST)
     n, e = ap.estimate.pos.x - centre.x, ap.estimate.pos.y - centre.y

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from .. import state as shared
+from ..terrain.state import Terrain
 from .control.state import Control
 from .modes.state import Modes
 from .parameters import Parameters
@@ -17,6 +18,7 @@ class Autopilot(shared.Autopilot):
     params: Parameters
     modes: Modes
     control: Control
+    terrain: Terrain
 
 
 class Vehicle(shared.Vehicle, Protocol):

@@ -82,6 +82,8 @@ def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Senso
     ekf.gps_used_before = True
     ekf.gps_pos_fused_us = ekf.now_us
     ekf.gps_vel_fused_us = ekf.now_us
+    ekf.gps_passed_us = ekf.now_us
+    ekf.gps_glitch = False
     events.emit(log, ekf.now_us, events.EKF_USES_GPS, float(ekf.imu), 0.0)
 
 

@@ -10,7 +10,7 @@ from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..params.estimator import Ekf3
 from ..state import Estimate, Sensors
-from . import noise
+from . import doubt, noise
 from .covariance import clear
 from .fusion import NIS_BAROMETER, correct, gate_ratio, innovate_position
 from .history import shift
@@ -20,6 +20,8 @@ FUSE_SAMPLES = 5
 """Samples averaged into one measurement (10 Hz from 50 Hz)."""
 TIMEOUT_US = 5_000_000
 """After this long without an accepted height the filter takes the barometer's."""
+TIMEOUT_WITH_GPS_US = 10_000_000
+"""Likewise, while the receiver's velocity down is there to carry the height."""
 _TEMPERATURE_BY_LAPSE = 44330.769  # [m]: 288.15 K / 0.0065 K/m
 _EXPONENT = 0.190263  # R L / g
 
@@ -76,17 +78,24 @@ def fuse(ekf: Ekf, estimate: Estimate, params: Ekf3) -> bool:
     variance = sigma * sigma / ekf.baro_n
     age = 1e-6 * (ekf.now_us - ekf.baro_us_sum / ekf.baro_n)
     _empty(ekf)
-    innovation = innovate_position(ekf, 2, age, down - (ekf.pos.z - age * ekf.vel.z), variance)
+    residual, nominal = down - (ekf.pos.z - age * ekf.vel.z), params.ALT_M_NSE
+    innovation = innovate_position(ekf, 2, age, residual, variance)
+    if doubt.is_odd(ekf, innovation, variance):
+        doubt.begin(ekf)
+    if doubt.is_doubting(ekf):
+        variance, nominal = nominal * nominal, 0.0
+        innovation = innovate_position(ekf, 2, age, residual, variance)
     estimate.innovation_pos_d = -innovation.value
     ekf.innovation_pos = with_down(horizontal(ekf.innovation_pos), innovation.value)
     squared = innovation.value * innovation.value
-    ratio = gate_ratio(squared, innovation.variance, params.ALT_M_NSE, params.HGT_I_GATE)
+    ratio = gate_ratio(squared, innovation.variance, nominal, params.HGT_I_GATE)
     estimate.variance_hgt = math.sqrt(ratio)
     if ratio < 1.0:
         correct(ekf, innovation, NIS_BAROMETER)
         ekf.baro_fused_us = ekf.now_us
         return True
-    if ekf.now_us - ekf.baro_fused_us > TIMEOUT_US:
+    with_gps = ekf.gps_in_use and ekf.now_us - ekf.gps_vel_fused_us < TIMEOUT_US
+    if ekf.now_us - ekf.baro_fused_us > (TIMEOUT_WITH_GPS_US if with_gps else TIMEOUT_US):
         reset_height(ekf, estimate, down, variance)
         ekf.baro_fused_us = ekf.now_us
     return False

@@ -72,6 +72,9 @@ def predict(ekf: Ekf, params: Ekf3) -> None:
             _advance_column(P, turn, dv, dt, j)
     gyro, acc = noise.GYRO * params.GYRO_P_NSE, noise.ACC * params.ACC_P_NSE
     gyro_bias, acc_bias = noise.GYRO_BIAS * params.GBIAS_P_NSE, noise.ACC_BIAS * params.ABIAS_P_NSE
+    if ekf.doubt_us != 0:
+        gyro, acc = noise.DOUBTED_GYRO * params.GYRO_P_NSE, noise.DOUBTED_ACC * params.ACC_P_NSE
+        acc_bias = noise.DOUBTED_ACC_BIAS * params.ABIAS_P_NSE
     mag_bias = noise.MAG_BIAS * params.MAGB_P_NSE
     for k in range(3):
         P[THETA + k, THETA + k] += gyro * gyro * dt

@@ -20,7 +20,7 @@ from ..events import Events
 from ..params.estimator import Ekf3
 from ..params.parameters import Parameters
 from ..state import Estimate, Sensors
-from . import noise
+from . import doubt, noise
 from .aiding import Origin, fix_ne, place_origin, reset_to_fix, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
 from .history import past_at
@@ -46,11 +46,13 @@ LEARNED_US = 37_000_000
 """After this long the bias is taken as known: where the horizontal field is weak the variance stays higher, and
 ArduPilot uses GPS 41.5 s after boot at every latitude."""
 POSITION_TIMEOUT_US = 7_000_000
-"""After this long without a fused position it is no longer trusted."""
+"""After this long without a fused position and velocity the position is no longer trusted."""
 STOP_TIMEOUT_US = 15_000_000
 """After this long the filter holds its position instead of dead reckoning."""
 GLITCH_TIMEOUT_US = 10_000_000
 """After this long of fixes beyond the gates the filter follows them."""
+GLITCH_BEGINS_US, GLITCH_ENDS_US = 1_000_000, 10_000_000
+"""So long fixes must be beyond the gates, and within them again."""
 SILENCE_US = 2_000_000
 """Fixes further apart than this are not in a row."""
 
@@ -130,16 +132,24 @@ def may_start(ekf: Ekf, origin_set: bool) -> bool:
 @law
 def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3) -> float:
     """Fuse measured minus past velocity [m/s]; the ratio to the gate: it is not fused from 1 on."""
-    sigma_ne, sigma_d = noise.GPS_VELOCITY_NE * params.VELNE_M_NSE, noise.GPS_VELOCITY_D * params.VELD_M_NSE
-    ne, d = sigma_ne * sigma_ne, sigma_d * sigma_d
+    n, v = params.VELNE_M_NSE, params.VELD_M_NSE
+    sigma_ne, sigma_d = noise.GPS_VELOCITY_NE * n, noise.GPS_VELOCITY_D * v
+    ne, d, nominal = sigma_ne * sigma_ne, sigma_d * sigma_d, math.sqrt(2.0 * n * n + v * v)
     north = innovate_state(ekf, VEL, residual.x, ne)
     east = innovate_state(ekf, VEL + 1, residual.y, ne)
     down = innovate_state(ekf, VEL + 2, residual.z, d)
+    if doubt.is_odd(ekf, north, ne) or doubt.is_odd(ekf, east, ne) or doubt.is_odd(ekf, down, d):
+        doubt.begin(ekf)
+    if doubt.is_doubting(ekf):
+        n = max(n, noise.DOUBTED_SPEED)
+        ne, d, nominal = n * n, v * v, 0.0
+        north = innovate_state(ekf, VEL, residual.x, ne)
+        east = innovate_state(ekf, VEL + 1, residual.y, ne)
+        down = innovate_state(ekf, VEL + 2, residual.z, d)
     squares = north.value * north.value + east.value * east.value + down.value * down.value
     variances = north.variance + east.variance + down.variance
     ekf.innovation_vel = Vec3(north.value, east.value, down.value)
-    n, v = params.VELNE_M_NSE, params.VELD_M_NSE
-    ratio = gate_ratio(squares, variances, math.sqrt(2.0 * n * n + v * v), params.VEL_I_GATE)
+    ratio = gate_ratio(squares, variances, nominal, params.VEL_I_GATE)
     if not ratio >= 1.0:
         correct(ekf, innovate_state(ekf, VEL, residual.x, ne), NIS_GPS_VELOCITY)
         correct(ekf, innovate_state(ekf, VEL + 1, residual.y, ne), NIS_GPS_VELOCITY)
@@ -152,18 +162,44 @@ def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3) -> float:
 def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
     """Fuse measured minus past position [m] of ``age`` [s]; the ratio to the gate: it is not fused from 1 on."""
     sigma = noise.GPS_POSITION * params.POSNE_M_NSE
-    variance = sigma * sigma
+    variance, nominal = sigma * sigma, math.sqrt(2.0) * params.POSNE_M_NSE
     north = innovate_position(ekf, 0, age, residual.x, variance)
     east = innovate_position(ekf, 1, age, residual.y, variance)
+    if doubt.is_odd(ekf, north, variance) or doubt.is_odd(ekf, east, variance):
+        doubt.begin(ekf)
+    if doubt.is_doubting(ekf):
+        variance, nominal = params.POSNE_M_NSE * params.POSNE_M_NSE, 0.0
+        north = innovate_position(ekf, 0, age, residual.x, variance)
+        east = innovate_position(ekf, 1, age, residual.y, variance)
     squares = north.value * north.value + east.value * east.value
     ekf.innovation_pos = Vec3(north.value, east.value, ekf.innovation_pos.z)
-    nominal = math.sqrt(2.0) * params.POSNE_M_NSE
     ratio = gate_ratio(squares, north.variance + east.variance, nominal, params.POS_I_GATE)
     if not ratio >= 1.0:
         correct(ekf, innovate_position(ekf, 0, age, residual.x, variance), NIS_GPS_POSITION)
         correct(ekf, innovate_position(ekf, 1, age, residual.y, variance), NIS_GPS_POSITION)
         ekf.gps_pos_fused_us = ekf.now_us
     return ratio
+
+
+@law
+def watch_gates(ekf: Ekf, passed: bool) -> None:
+    """Note a fix that ``passed`` the gates or not: a glitch begins after a second of those that do not."""
+    if passed:
+        ekf.gps_passed_us = ekf.now_us
+    else:
+        ekf.gps_failed_us = ekf.now_us
+    if ekf.now_us - ekf.gps_passed_us > GLITCH_BEGINS_US:
+        ekf.gps_glitch = True
+    elif ekf.now_us - ekf.gps_failed_us > GLITCH_ENDS_US:
+        ekf.gps_glitch = False
+
+
+@law
+def is_position_fresh(ekf: Ekf) -> bool:
+    """Whether the position is known: also for a time without fixes, and for longer while their velocities are fused."""
+    by_velocity = ekf.now_us - ekf.gps_vel_fused_us < SILENCE_US
+    limit = GLITCH_TIMEOUT_US + SILENCE_US if by_velocity else POSITION_TIMEOUT_US
+    return ekf.now_us - ekf.gps_pos_fused_us < limit
 
 
 @law
@@ -177,11 +213,10 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_
     estimate.variance_vel = math.sqrt(velocity)
     position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
     estimate.variance_pos = math.sqrt(position)
-    ekf.gps_glitch = position >= 1.0
+    watch_gates(ekf, velocity < 1.0 and position < 1.0)
     if ekf.now_us - ekf.gps_pos_fused_us > GLITCH_TIMEOUT_US and ekf.gps_good_us != 0:
         reset_to_fix(ekf, estimate, sensors, age)
         ekf.gps_pos_fused_us = ekf.now_us
-        ekf.gps_glitch = False
     return not ((velocity >= 1.0 or not takes_velocity) and position >= 1.0)
 
 

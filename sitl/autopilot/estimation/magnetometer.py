@@ -118,6 +118,12 @@ def is_leaving_ground(ekf: Ekf, armed: bool) -> bool:
 
 
 @law
+def is_yaw_confirmed(ekf: Ekf, estimate: Estimate) -> bool:
+    """Whether velocities of GPS speak for the yaw: with a wrong one, accelerations would contradict them."""
+    return ekf.gps_in_use and not ekf.gps_glitch and estimate.variance_vel < 1.0
+
+
+@law
 def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: bool) -> bool:
     """Align or fuse yaw when there are enough samples; whether something was fused."""
     count = ekf.mag_n
@@ -154,7 +160,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
         correct(ekf, innovation, NIS_MAGNETOMETER)
         ekf.mag_fused_us = ekf.now_us
         return True
-    if leaving or ekf.now_us - ekf.mag_fused_us > TIMEOUT_US:
+    if leaving or (ekf.now_us - ekf.mag_fused_us > TIMEOUT_US and not (armed and is_yaw_confirmed(ekf, estimate))):
         _realign(ekf, estimate, residual, variance)
         return True
     return False

@@ -5,6 +5,9 @@ ArduPilot's defaults are set for vibrating frames and poor sensors, far above wh
 Here each parameter keeps its name and default, and a fixed factor turns it into the standard deviation or
 noise density with which the innovations of the default sensors agree with their covariances. Doubling a
 parameter doubles the noise.
+
+A sensor that contradicts the filter by far has failed, or the filter has: then the parameters count as they
+stand, as in ArduPilot (doubt.py).
 """
 
 from __future__ import annotations
@@ -33,6 +36,18 @@ MAG = 0.06
 """EK3_MAG_M_NSE to standard deviation of one sample [gauss]: 0.003 by default."""
 YAW = 0.002
 """EK3_YAW_M_NSE to standard deviation of one yaw besides the noise of the samples [rad]: 0.001 by default."""
+
+# While the filter is in doubt (doubt.py)
+DOUBTED_GYRO = 0.11
+"""EK3_GYRO_P_NSE to noise density: a step of ArduPilot's, 12 ms, has the parameter's noise, and sqrt(12 ms) is 0.11."""
+DOUBTED_ACC = 0.11
+"""EK3_ACC_P_NSE likewise."""
+DOUBTED_ACC_BIAS = 0.11
+"""EK3_ABIAS_P_NSE likewise."""
+DOUBTED_POSITION = 0.18  # [m], what becomes of position and velocity with such noise, when it began long ago
+DOUBTED_VELOCITY = 0.07  # [m/s]
+DOUBTED_SPEED = 0.8
+"""Of horizontal velocities, in place of a smaller EK3_VELNE_M_NSE [m/s]: positions count for more than velocities."""
 
 # The state at the start, standard deviations.
 INITIAL_TILT = 0.1  # [rad]

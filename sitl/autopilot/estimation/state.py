@@ -34,6 +34,8 @@ class Ekf(Record):
     acc_bias: Vec3  # [m/s^2]
     mag_bias: Vec3  # [gauss]
     P: Floats = array(N, N)  # covariance of the error state
+    blames_imu: bool  # two IMUs differ: measurements that cannot be are not the sensors' fault
+    doubt_us: int  # last measurement that cannot be (doubt.py); 0: none lately
     biases_mirrored: bool  # P's rows and columns of the biases are the same numbers, to the last bit
     dx: Floats = array(N)  # error found by the fusions of this step, not yet put into the nominal state
     h: Floats = array(N)  # measurement row, scratch of one fusion
@@ -100,7 +102,9 @@ class Ekf(Record):
     gps_alt_filter: float  # mean altitude while on the ground [m]
     gps_in_use: bool  # positions on the globe are fused: of GPS, or of another system in its place (external.py)
     gps_used_before: bool
-    gps_glitch: bool  # last fix was beyond the gates
+    gps_glitch: bool  # fixes have been beyond the gates for a second, and within for less than ten since
+    gps_passed_us: int  # last fix within the gates
+    gps_failed_us: int  # last fix beyond them
     gps_pos_fused_us: int
     gps_vel_fused_us: int
     hold_us: int  # last zero-velocity or held-position fusion

@@ -7,7 +7,7 @@ from ...core.kernels import law
 from ..state import Estimate
 from .alignment import CALIBRATE
 from .flow import FRESH_US, knows_height
-from .gps import POSITION_TIMEOUT_US
+from .gps import is_position_fresh
 from .state import Ekf
 
 ATTITUDE = 1
@@ -33,9 +33,9 @@ def flags(ekf: Ekf) -> int:
     if ekf.tilt_aligned:
         value |= ATTITUDE
     if ekf.gps_in_use:
-        value |= VELOCITY_HORIZ | POS_HORIZ_REL | PRED_POS_HORIZ_REL
-        if ekf.now_us - ekf.gps_pos_fused_us < POSITION_TIMEOUT_US:
-            value |= POS_HORIZ_ABS | PRED_POS_HORIZ_ABS
+        value |= VELOCITY_HORIZ
+        if is_position_fresh(ekf):
+            value |= POS_HORIZ_REL | PRED_POS_HORIZ_REL | POS_HORIZ_ABS | PRED_POS_HORIZ_ABS
         if ekf.gps_glitch:
             value |= GPS_GLITCHING
     elif ekf.relative:

@@ -17,6 +17,7 @@ from . import (
     barometer,
     compass,
     covariance,
+    doubt,
     external,
     flow,
     fusion,
@@ -108,6 +109,9 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     source = params.SRC[ekf.source_set]
     usual = sources.are_usual(source)
     covariance.predict(ekf, params)
+    ekf.blames_imu = ap.second_lane.runs != 0
+    if ekf.doubt_us != 0:
+        doubt.watch(ekf)
     alignment.begin_step(ekf)
     history.keep(ekf)
     fused = False

@@ -7,11 +7,13 @@ from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..params.fence import Fence
 from ..state import Estimate, HomeState
+from .checks import kinds
 from .state import AREAS, CIRCLE, MAX_ALT, MIN_ALT, FenceState
 from .texts import names
 
 READY = 0
 NONE_CHOSEN, NEEDS_POSITION, BAD_RADIUS, BAD_ALT_MAX, BAD_ALT_MIN, BAD_ORDER, BAD_MARGIN, BIG_MARGIN = range(16, 24)
+SMALL_CIRCLE = 24
 
 _TEXTS = {
     NONE_CHOSEN: "Fences enabled, but none selected",
@@ -22,6 +24,7 @@ _TEXTS = {
     BAD_ORDER: "FENCE_ALT_MAX < FENCE_ALT_MIN",
     BAD_MARGIN: "Invalid FENCE_MARGIN value",
     BIG_MARGIN: "FENCE_MARGIN too big",
+    SMALL_CIRCLE: "Circle FENCE_MARGIN is greater than FENCE_RADIUS",
 }
 _LOWEST = -100.0
 """Of FENCE_ALT_MIN [m]."""
@@ -47,7 +50,7 @@ def refusal(
     limits: Vec3,
 ) -> int:
     """READY, or the first reason why not; ``limits`` as of ``checks.check``."""
-    chosen, alt_max, alt_min, autoenable = int(params.TYPE), limits.x, limits.y, int(limits.z)
+    chosen, alt_max, alt_min, autoenable = kinds(fence, params), limits.x, limits.y, int(limits.z)
     if params.ENABLE != 0.0 and chosen == 0:
         return NONE_CHOSEN
     if (fence.on == 0 and autoenable == 0) or chosen == 0:
@@ -64,6 +67,8 @@ def refusal(
         return fence.breached
     if params.MARGIN < 0.0:
         return BAD_MARGIN
+    if chosen & CIRCLE != 0 and params.RADIUS < params.MARGIN:
+        return SMALL_CIRCLE
     if chosen & (MAX_ALT | MIN_ALT) == MAX_ALT | MIN_ALT:
         if alt_max < alt_min:
             return BAD_ORDER

@@ -173,21 +173,23 @@ def switch_floor(fence: FenceState, params: Fence, autoenable: int, events: Even
 
 @law
 def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, time_us: int) -> None:
-    """FENCE_OPTIONS 4: how far the fences are within whose margin the vehicle is, and that it has left it."""
+    """FENCE_OPTIONS 4: within the margin of which fences the vehicle is, breached ones, too, and how far the first of
+    them is; anew with each further fence, while not all of them are breached. And that it has left a margin."""
     if int(params.OPTIONS) & TELLS_MARGIN == 0:
         return
     left = before & ~fence.near
     if left != 0:
         emit(events, time_us, FENCE_NEAR, float(left), -1.0)
-    close = fence.near & ~fence.breached
-    if close == 0 or params.NTF_FREQ <= 0.0 or time_us - fence.told_us < 1e6 / params.NTF_FREQ:
+    if fence.near & ~fence.breached == 0 or params.NTF_FREQ <= 0.0:
+        return
+    if fence.near & ~before == 0 and time_us - fence.told_us < 1e6 / params.NTF_FREQ:
         return
     nearest = 1e9
     for k in range(FENCES):
-        if close >> k & 1 != 0:
+        if fence.near >> k & 1 != 0:
             nearest = min(nearest, -fence.over[k])
     fence.told_us = time_us
-    emit(events, time_us, FENCE_NEAR, float(close), nearest)
+    emit(events, time_us, FENCE_NEAR, float(fence.near), abs(nearest))
 
 
 @law
@@ -203,7 +205,7 @@ def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
     fence, params, events, autoenable = ap.fence, ap.params.FENCE, ap.events, int(limits.z)
     follow_parameters(fence, params, autoenable, events, time_us)
     fence.breached &= int(params.TYPE)
-    if fence.on == 0 and (autoenable == 0 or fence.floor != FLOOR_AUTO):
+    if fence.on == 0 and (fence.floor != FLOOR_AUTO or (params.ENABLE == 0.0 and autoenable == 0)):
         fence.breached = fence.near = 0
         return 0
     place(fence, ap.estimate)

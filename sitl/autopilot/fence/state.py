@@ -29,9 +29,9 @@ class FenceState(Record):
 
     shapes: int  # areas that are loaded
     corners: int  # corners of all of them, in their order
-    kind: Ints = array(SHAPES, stored="i4")  # STAY_IN, STAY_OUT, CIRCLE_IN, CIRCLE_OUT
-    first: Ints = array(SHAPES, stored="i4")  # the area's first corner; a circle's is its centre
-    count: Ints = array(SHAPES, stored="i4")  # of its corners; 1 for a circle
+    kind: Ints = array(SHAPES, stored="i2")  # STAY_IN, STAY_OUT, CIRCLE_IN, CIRCLE_OUT
+    first: Ints = array(SHAPES, stored="i2")  # the area's first corner; a circle's is its centre
+    count: Ints = array(SHAPES, stored="i2")  # of its corners; 1 for a circle
     radius: Floats = array(SHAPES, stored="f4")  # of a circle [m]
     north: Floats = array(CORNERS, stored="f4")  # of the point of reference [m]
     east: Floats = array(CORNERS, stored="f4")  # [m]
@@ -62,4 +62,4 @@ class RallyState(Record):
     lat: Ints = array(POINTS, stored="i4")  # [degE7]
     lon: Ints = array(POINTS, stored="i4")  # [degE7]
     alt: Ints = array(POINTS, stored="i4")  # [m]
-    is_amsl: Ints = array(POINTS, stored="i4")  # 1: heights count from mean sea level, 0: from home
+    is_amsl: Ints = array(POINTS, stored="u1")  # 1: heights count from mean sea level, 0: from home

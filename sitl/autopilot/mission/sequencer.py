@@ -38,7 +38,15 @@ from ..navigation.state import (
 from ..state import Vehicle
 from . import jumps, returning
 from .commands import Commands
-from .item import DO_LAND_START, DO_RETURN_PATH_START, NAV_TAKEOFF, NAV_VTOL_TAKEOFF, MissionItem
+from .item import (
+    COMMANDS,
+    DO_LAND_START,
+    DO_RETURN_PATH_START,
+    NAV_TAKEOFF,
+    NAV_VTOL_TAKEOFF,
+    TERRAIN_FRAMES,
+    MissionItem,
+)
 from .mission import Mission
 from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
 
@@ -88,6 +96,10 @@ class Sequencer:
         ap.modes.mission_takes_off = first is not None and first.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
         ap.modes.mission_lands = bool(returning.marks(mission, DO_LAND_START))
         ap.modes.mission_returns = returning.has_path(mission)
+        ap.modes.mission_over_ground = any(
+            item.frame in TERRAIN_FRAMES and item.command in COMMANDS and COMMANDS[item.command].has_place
+            for item in mission.items[1:]
+        )
 
     def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
         """Take a new mission. One under way goes on: with its present command, from the start if that has changed.

@@ -23,7 +23,7 @@ from ..fence.state import AREAS, FenceState
 from ..params.avoidance import PathPlanning
 from ..params.fence import Fence
 from .profile import clear, evaluate, finished, remaining, step
-from .state import DETOUR_REQUEST, GO_ON, LEG_REQUEST, Detour, Leg, Nav
+from .state import DETOUR_REQUEST, GO_ON, LEG_REQUEST, STRAIGHT, Detour, Leg, Nav
 
 DIJKSTRA = (2.0, 3.0)
 """OA_TYPE"""
@@ -47,6 +47,7 @@ def stop(nav: Nav) -> None:
     nav.request_pending = 0
     nav.active_us = 0
     nav.reached = False
+    nav.detour.bend = STRAIGHT
 
 
 @law

@@ -10,12 +10,12 @@ from typing import Generic, TypeVar
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
 from ...core.vectors import Vec3
 from ..avoidance.shortest_path import find_path
-from ..events import NO_WAY, emit
+from ..events import NO_WAY, WAY_LAID, emit
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .path import areas_of, set_place
 from .profile import clear, evaluate
-from .state import DETOUR, GO_ON, Leg
+from .state import DETOUR, ENDED, GO_ON, STRAIGHT, Leg
 
 A = TypeVar("A", bound=Autopilot)
 TOLD_US = 5_000_000
@@ -88,6 +88,7 @@ class Planner(ABC, Generic[A]):
         nav = ap.modes.nav
         detour = nav.detour
         detour.left = detour.blocked_us = 0
+        detour.bend = STRAIGHT
         detour.areas = areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
         if detour.areas == 0:
             self.begin_leg(ap, time_us, target)
@@ -107,13 +108,17 @@ class Planner(ABC, Generic[A]):
             set_place(detour, k, place)
         detour.left = len(places)
         self._go_to_next(ap, time_us)
+        if len(places) > 1:
+            emit(ap.events, time_us, WAY_LAID, 0.0, 0.0)
 
     def go_on(self, ap: A, time_us: int) -> None:
         """A place of a detour is reached: on to the next one. Where there was no way, or the areas are others than
         before, a way to the destination is laid anew."""
         nav = ap.modes.nav
         detour = nav.detour
-        is_old = detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
+        has_bent = detour.bend == ENDED
+        detour.bend = STRAIGHT if has_bent else detour.bend
+        is_old = has_bent or detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
         if is_old and not nav.reached and nav.current.segments > 0:
             target = vector_at(detour.places, 0) if detour.left > 0 else end(nav.current)
             self.begin(ap, time_us, target)

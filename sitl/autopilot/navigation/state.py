@@ -9,7 +9,7 @@ seconds as said.
 from __future__ import annotations
 
 from ...core.records import Floats, Ints, Record, array
-from ...core.vectors import Vec3
+from ...core.vectors import Vec2, Vec3
 
 # Kinds of navigation command (``command_kind``)
 NONE = 0
@@ -57,6 +57,8 @@ BY_PATH = 2
 SEGMENTS = 16
 DETOUR = 24
 """Places of a detour that there is room for."""
+STRAIGHT, BENT, ENDED = 0, 1, 2
+"""Whether BendyRuler steers; ``ENDED``: no longer, and the shell plans a leg to the destination."""
 GO_ON = 3
 """``request_pending``: a place of a detour is reached."""
 JUMPS = 100
@@ -91,10 +93,16 @@ class Detour(Record):
     """A way around fences: places behind the end of the leg under way (``navigation.detour``)."""
 
     left: int  # places that are still to come, the destination the last of them; 0: none
-    places: Floats = array(3 * DETOUR)  # the next one last, NED [m]
+    places: Floats = array(3 * DETOUR, stored="f4")  # the next one last, NED [m]
     areas: int  # the areas of the fence that it was laid around (``path.areas_of``)
     blocked_us: int  # there is no way: when that was found; 0 not
     told_us: int  # when it was last said
+    bend: int  # BendyRuler: STRAIGHT, BENT, ENDED (``avoidance.bendy_ruler``)
+    bent_target: Vec3  # what it steers for in place of the destination, NED [m]
+    bent_from: Vec2  # the destination when it last found a bearing, NE [m]
+    bearing: float  # that it found then [rad]; vertical: the slope, up positive
+    lookahead: float  # so far it looks now [m]
+    bent_us: int  # when it last looked
 
 
 class Nav(Record):
@@ -141,5 +149,5 @@ class Nav(Record):
     mission_resume: bool  # MISSION_SET_CURRENT was used: the next start goes on there in spite of MIS_RESTART
     mission_part: int  # OUTWARD, RETURN_PATH or LANDING: what the command under way belongs to
     mission_events: int  # events that the sequencer has seen
-    jump_item: Ints = array(JUMPS, stored="i4")  # DO_JUMP items run so far ...
+    jump_item: Ints = array(JUMPS, stored="u2")  # DO_JUMP items run so far ...
     jump_runs: Ints = array(JUMPS, stored="i4")  # ... and how often

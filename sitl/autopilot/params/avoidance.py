@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from .parameter import INT8, INT16, ParameterGroup, param
+from .parameter import INT8, INT16, ParameterGroup, group, param
 
 _LIDARS = "5, 8, 10, 16 the vehicle's lidar (10 without one: fences, as ArduPilot's simulator)"
 
@@ -32,11 +32,40 @@ class ProximitySensor(ParameterGroup):
     MAX: float = param(0.0, 0.0, 500.0, "m", "Readings above it are none; 0: as the sensor says")
 
 
-class PathPlanning(ParameterGroup):
-    """OA_: ways around fences, in modes that follow legs."""
+class BendyRuler(ParameterGroup):
+    """OA_BR_: how BendyRuler looks for a way."""
 
-    TYPE: float = param(0, 0, 7, "", "2, 3: the shortest way around areas of the fence (Dijkstra); else straight", INT8)
-    MARGIN_MAX: float = param(5.0, 0.1, 100.0, "m", "Distance that such ways keep from areas")
+    LOOKAHEAD: float = param(15.0, 1.0, 100.0, "m", "So far it looks, at most")
+    CONT_RATIO: float = param(1.5, 1.0, 2.0, "", "A great change of bearing must gain so much of margin; 0: nothing")
+    CONT_ANGLE: float = param(75, 0, 180, "deg", "A change of bearing greater than this is a great one", INT16)
+    TYPE: float = param(1, 1, 2, "", "1 around what is in the way, 2 over it (copter)", INT8)
+
+
+class ObjectDatabase(ParameterGroup):
+    """OA_DB_: the objects that BendyRuler keeps away from."""
+
+    SIZE: float = param(100, 0, 10000, "", "Objects that are remembered, no more than 32", INT16)
+    EXPIRE: float = param(10, 0, 127, "s", "So long after it was last seen an object counts; 0: for ever", INT16)
+    BEAM_WIDTH: float = param(5.0, 1.0, 10.0, "deg", "Width of the sensor's beam, which is an object's")
+    RADIUS_MIN: float = param(0.01, 0.0, 10.0, "m", "Least radius of an object")
+    DIST_MAX: float = param(0.0, 0.0, 10.0, "m", "What is further away is no object; 0: everything is")
+
+
+class PathPlanning(ParameterGroup):
+    """OA_: ways around fences and objects, in modes that follow legs."""
+
+    TYPE: float = param(
+        0,
+        0,
+        3,
+        "",
+        "0 straight, 1 BendyRuler, 2 the shortest way around areas (Dijkstra), 3 both",
+        INT8,
+    )
+    MARGIN_MAX: float = param(5.0, 0.1, 100.0, "m", "Distance that such ways keep from areas, and from objects")
+    OPTIONS: float = param(1, 0, 7, "", "1: after BendyRuler a leg begins where the vehicle is, else goes on", INT16)
+    BR: BendyRuler = group("BendyRuler")
+    DB: ObjectDatabase = group("Objects that are known to BendyRuler")
 
 
 class Avoid(ParameterGroup):

@@ -164,7 +164,7 @@ class Simulated(ParameterGroup):
     MAG_MOT: Axes = group("Field of the motors' current at the compasses [mGauss/A]")
     MAG_RND: float = param(0, 0, 1000, "mGauss", "Noise of the compasses; its standard deviation is 0.3 of this")
     ENGINE_FAIL: float = param(0, 0, 255, "", "Outputs that fail: 1 the first, 2 the second, 4 the third, ...", INT32)
-    ENGINE_MUL: float = param(0, 0, 1, "", "Share of their thrust or angle that failing outputs keep")
+    ENGINE_MUL: float = param(0, 0, 1, "", "Share of their pulse beyond its rest that failing outputs keep")
     ENGINE_STUCK: float = param(0, 0, 255, "", "Outputs that stay as they are: 1 the first, 2 the second, ...", INT32)
     ENGINE_LAG: float = param(0, 0, 10, "s", "Time constant of all motors; 0: the airframe's")
     SONAR_GLITCH: float = param(0, -1000, 1000, "m", "Added to the reading of the range-finder")

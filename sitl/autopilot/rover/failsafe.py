@@ -9,7 +9,8 @@ from __future__ import annotations
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
-from ..failsafe_checks import EKF, GCS, RADIO, is_estimate_bad, report
+from ..estimation.state import Ekf
+from ..failsafe_checks import EKF, GCS, RADIO, VARIANCE, is_estimate_bad, report
 from ..modes import ACCEPTED, REASON_EKF_FAILSAFE, REASON_FAILSAFE
 from ..state import Estimate, Failsafe
 from . import motor_test
@@ -26,8 +27,8 @@ from .modes.table import requires_position
 from .parameters.safety import Battery, Failsafes
 from .state import Vehicle
 
-CONTINUES, VARIANCE = 6, 7
-"""More kinds of FAILSAFE: AUTO goes on; the estimate is bad (said in all modes)."""
+CONTINUES = 6
+"""One more kind of FAILSAFE: AUTO goes on."""
 
 # Bits of ``modes.links``
 BIT_RADIO, BIT_GCS = 1, 2
@@ -47,7 +48,6 @@ NOTHING, DO_RTL, DO_HOLD, DO_SMART_RTL, DO_SMART_RTL_OR_HOLD, TERMINATE, DO_LOIT
 
 _TEXTS = {
     (CONTINUES, True): "Failsafe - Continuing Auto Mode",
-    (VARIANCE, True): "EKF variance",
     (EKF, True): "EKF failsafe",
     (EKF, False): "EKF failsafe cleared",
 }
@@ -139,16 +139,26 @@ def battery_action(level: int, params: Battery) -> int:
     return int(params.FS_CRT_ACT) if level == 2 else int(params.FS_LOW_ACT)
 
 
+GLITCH_US = 4_000_000
+"""A rover's position is not trusted after so long a glitch of the receiver."""
+
+
 @law
-def watch_estimate(modes: Modes, estimate: Estimate, armed: bool, params: Failsafes) -> int:
+def is_glitch_long(ekf: Ekf) -> bool:
+    """Whether fixes have not been believed for long."""
+    return ekf.gps_glitch and ekf.now_us - ekf.gps_pos_fused_us > GLITCH_US
+
+
+@law
+def watch_estimate(modes: Modes, estimate: Estimate, armed: bool, params: Failsafes, by_glitch: bool) -> int:
     """Ten times a second: EKF_FAILS, EKF_RECOVERS or EKF_SAME; a bad estimate counts when it lasts a second.
 
-    Only once the estimate has been good: a rover may drive without a position.
+    Only once the estimate has been good: a rover may drive without a position. ``by_glitch``: its position is bad.
     """
     fs = modes.failsafe
     if not estimate.origin_set:
         return EKF_SAME
-    bad = is_estimate_bad(fs, estimate, params.EKF_THRESH, 0.0)
+    bad = is_estimate_bad(fs, estimate, params.EKF_THRESH, 0.0) or by_glitch
     if params.EKF_THRESH <= 0.0 or not armed:
         fs.ekf_count = 0
         return clear_ekf(fs)
@@ -180,7 +190,7 @@ def clear_ekf(fs: Failsafe) -> int:
 def check_ekf(v: Vehicle) -> None:
     """Ten times a second: a bad estimate ends modes that need a good one (FS_EKF_ACTION)."""
     ap = v.autopilot
-    change = watch_estimate(ap.modes, ap.estimate, ap.arming.armed, ap.params.FS)
+    change = watch_estimate(ap.modes, ap.estimate, ap.arming.armed, ap.params.FS, is_glitch_long(ap.ekf))
     if change == EKF_RECOVERS:
         report(ap.events, v.time_us, EKF, False)
     elif change == EKF_FAILS:

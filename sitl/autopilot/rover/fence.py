@@ -11,12 +11,13 @@ from .arming import set_disarmed
 from .heights import HEIGHTS
 from .modes import set_mode
 from .modes.hold import HOLD
+from .modes.loiter import LOITER
 from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
 from .state import Vehicle
 
 # FENCE_ACTION; unknown numbers do nothing
-_NOTHING, _RTL, _HOLD, _SMART_RTL, _SMART_RTL_OR_HOLD, _TERMINATE = range(6)
+_NOTHING, _RTL, _HOLD, _SMART_RTL, _SMART_RTL_OR_HOLD, _TERMINATE, _LOITER = range(7)
 
 
 @law
@@ -37,7 +38,9 @@ def act(v: Vehicle, action: int) -> None:
     """Do what FENCE_ACTION says; what cannot be entered becomes the next best, HOLD at last."""
     if action == _TERMINATE:
         set_disarmed(v.autopilot.arming, v.autopilot.events, v.time_us, BY_FENCE)
-    if not _NOTHING < action < _TERMINATE:
+    if not _NOTHING < action <= _LOITER or action == _TERMINATE:
+        return
+    if action == _LOITER and set_mode.request(v, LOITER, REASON_FENCE_BREACHED) == ACCEPTED:
         return
     if action in (_SMART_RTL, _SMART_RTL_OR_HOLD):
         if set_mode.request(v, SMART_RTL, REASON_FENCE_BREACHED) == ACCEPTED:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from .. import events, smart_rtl_path
-from ..failsafe_checks import EKF
+from ..failsafe_checks import EKF, VARIANCE, battery_text
 from ..modes import NO_MISSION
 from . import failsafe
 from .modes import circle, dock
@@ -39,6 +39,9 @@ def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
         return [_PLAIN[code]]
     if code == events.MODE_REFUSED:
         return _refusal(int(a), int(b))
+    said_of_battery = battery_text(code, a, b)
+    if said_of_battery is not None:
+        return [(WARNING, said_of_battery)]
     if code == events.FAILSAFE:
         return _failsafe(int(a), bool(b))
     if code == events.PATH_LOST:
@@ -59,6 +62,6 @@ def _failsafe(which: int, on: bool) -> list[tuple[int, str]]:
     text = failsafe.text(which, on)
     if text is None:
         return []
-    if which in (EKF, failsafe.VARIANCE):
+    if which in (EKF, VARIANCE):
         return [(CRITICAL, text)]
     return [(WARNING if on else INFO, text)]

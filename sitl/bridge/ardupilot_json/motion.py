@@ -27,8 +27,13 @@ _LINE = (
     '\n{"timestamp":%r,"imu":{"gyro":[%r,%r,%r],"accel_body":[%r,%r,%r]},"position":[%r,%r,%r],'
     '"quaternion":[%r,%r,%r,%r],"velocity":[%r,%r,%r]'
 )
-_SHORT_LINE = "%r".join(part.replace("%r", "%.9g") for part in _LINE.split("%r", 1))
-"""The timestamp is whole, the others have as many digits as the numbers of 4 bytes that ArduPilot makes of them."""
+_TIME, _FELT, _PLACE = (
+    '\n{"timestamp":%r',
+    ',"imu":{"gyro":[%.9g,%.9g,%.9g],"accel_body":[%.9g,%.9g,%.9g]}',
+    ',"position":[%.9g,%.9g,%.9g],"quaternion":[%.9g,%.9g,%.9g,%.9g],"velocity":[%.9g,%.9g,%.9g]',
+)
+"""The same in parts. The timestamp is whole, the others have as many digits as the numbers of 4 bytes that ArduPilot
+makes of them."""
 
 
 class MotionError(SitlError, ValueError):
@@ -59,15 +64,29 @@ class Motion:
     """Pulses of a radio receiver's channels [us]."""
 
 
-def encode(motion: Sequence[float], extras: str = "", is_short: bool = False) -> bytes:
-    """A line.
+def encode(motion: Sequence[float], extras: str = "") -> bytes:
+    """A line, with all the digits that its numbers have.
 
     Args:
         motion: timestamp, gyro, accel, position, attitude (w x y z), velocity: 17 numbers.
         extras: more members, each with its comma before it (``extra``).
-        is_short: with nine digits a number, which is quicker to write and to read; else with all that it has.
     """
-    return ((_SHORT_LINE if is_short else _LINE) % tuple(motion) + extras + "}\n").encode()
+    return (_LINE % tuple(motion) + extras + "}\n").encode()
+
+
+def encode_parts(
+    times: Sequence[float], felt: tuple[float, ...], places: Sequence[tuple[float, ...]], extras: str = ""
+) -> list[bytes]:
+    """Lines with nine digits a number, which are quicker to write and to read, of times in which the same is felt.
+
+    Args:
+        times: timestamps.
+        felt: gyro, accel: 6 numbers.
+        places: position, attitude (w x y z), velocity at each time: 10 numbers.
+        extras: see ``encode``.
+    """
+    same, end = _FELT % felt, extras + "}\n"
+    return [(_TIME % time + same + _PLACE % place + end).encode() for time, place in zip(times, places, strict=True)]
 
 
 def extra(

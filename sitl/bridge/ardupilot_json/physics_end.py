@@ -22,8 +22,8 @@ The first one answers the frame that was stepped, the others answer the frames t
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from ...core.constants import TICK_HZ
 from .servos import COUNT_AT, COUNT_MASK, ServoError, Servos, decode, is_frame
@@ -48,8 +48,7 @@ class Asked(Enum):
     NOTHING = "nothing"
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
+class Request(NamedTuple):
     """A datagram, understood."""
 
     asked: Asked
@@ -100,13 +99,19 @@ class PhysicsEnd:
         self._received_at = self._answered_at = float("-inf")
         self._reported: set[str] = set()
 
-    def receive(self, datagram: bytes, peer: Hashable, now: float) -> Request:
-        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, if it is a step."""
+    def is_answered(self, datagram: bytes, peer: Hashable, now: float) -> bool:
+        """Whether a datagram is a frame whose line was sent before it: nothing is to be done."""
         if self._ahead and peer == self.peer and is_frame(datagram):
             number = self._ahead.pop(datagram[COUNT_AT], None)
             if number is not None:
                 self.count, self._received_at = number, now
-                return _AHEAD
+                return True
+        return False
+
+    def receive(self, datagram: bytes, peer: Hashable, now: float) -> Request:
+        """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, if it is a step."""
+        if self.is_answered(datagram, peer, now):
+            return _AHEAD
         try:
             servos = decode(datagram)
         except ServoError as error:

@@ -29,6 +29,7 @@ from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
 from ...autopilot.mission.notes import ParametersFound, Text
 from ...autopilot.navigation.state import RTL
+from ...autopilot.terrain.state import TEXTS as TERRAIN_TEXTS
 from ...core.vectors import Vec3
 from ..autopilot_api import Note, Vector
 from ..base_autopilot import BY_GROUND_STATION, CRITICAL, EMERGENCY, INFO, WARNING, BaseAutopilot
@@ -71,6 +72,8 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(WARNING, smart_rtl_path.lost_text(int(a)))]
         if code == events.NO_WAY_BACK:
             return [Text(WARNING, _INSTEAD[int(a)] if b else f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
+        if code == events.TERRAIN_DID:
+            return [Text(CRITICAL, TERRAIN_TEXTS[int(a)])]
         if code == events.CIRCLE_BEGINS:
             return [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")]
         if code == events.RETURN_ACTIVE:

@@ -40,7 +40,7 @@ PROFILE = Profile(
         12: (
             "EXTRA3",
             ("AHRS", "WIND", "DISTANCE_SENSOR", "RANGEFINDER", "OPTICAL_FLOW", "SYSTEM_TIME", "BATTERY_STATUS",
-             "EKF_STATUS_REPORT", "VIBRATION",
+             "EKF_STATUS_REPORT", "VIBRATION", "TERRAIN_REPORT",
              "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },

@@ -16,18 +16,20 @@ from ...autopilot.copter.modes.guided_setpoints import (
     set_attitude,
     set_pos_vel_accel,
     set_position,
+    set_position_over_ground,
     set_velocity,
     stop,
     takes_attitudes,
 )
+from ...autopilot.copter.terrain import is_flat
 from ...autopilot.mission.item import MissionItem
 from ...core.algebra import IDENTITY
 from ...core.kernels import law
 from ...core.scalars import finite
 from ...core.vectors import Vec3
 from ...vehicle.copter import Copter
-from ..places import local_place
-from ..services.command import GLOBAL_FRAMES
+from ..places import LocalPlace, local_place
+from ..services.command import FRAMES_TERRAIN, GLOBAL_FRAMES
 from ..services.follow import take_position
 from ..services.setpoints import (
     ATTITUDE_IGNORED,
@@ -74,8 +76,28 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int
         stop(v)
         return
     place = local_place(v.autopilot, m.lat_int, m.lon_int, m.alt, frame)
-    if place.is_known or not use_pos:
+    if use_pos and frame in FRAMES_TERRAIN and not is_flat(v):
+        follow_over_ground(v, m, place)
+    elif place.is_known or not use_pos:
         follow(v, global_target(m, place.pos), (m.type_mask & FORCE) != 0)
+
+
+@law
+def follow_over_ground(v: Copter, m: SetPositionTargetGlobalInt, place: LocalPlace) -> None:
+    """Fly to a place at a height above the ground; with a velocity that is nothing that can be flown."""
+    target = global_target(m, Vec3(place.pos.x, place.pos.y, -m.alt))
+    if target.use_vel or target.use_acc or not is_finite(target):
+        stop(v)
+    elif place.is_known:
+        set_position_over_ground(v, target.pos, yaw_of(target))
+
+
+@law
+def yaw_of(target: Target) -> YawSetpoint:
+    """The heading that a target asks for."""
+    if target.use_yaw or target.use_yaw_rate:
+        return YawSetpoint(target.use_yaw, target.yaw, target.use_yaw_rate, target.yaw_rate, target.relative_yaw)
+    return NO_YAW
 
 
 @law
@@ -83,9 +105,7 @@ def follow(v: Copter, target: Target, is_force: bool) -> None:
     """Fly what a target asks for; ``is_force``: its acceleration is a force, which is left alone."""
     if is_force and target.use_acc:
         return
-    yaw = NO_YAW
-    if target.use_yaw or target.use_yaw_rate:
-        yaw = YawSetpoint(target.use_yaw, target.yaw, target.use_yaw_rate, target.yaw_rate, target.relative_yaw)
+    yaw = yaw_of(target)
     if not is_finite(target):
         stop(v)
     elif target.use_vel and target.use_pos:

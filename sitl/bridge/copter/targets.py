@@ -9,6 +9,7 @@ from ...autopilot.copter.modes.auto import AUTO, is_guided
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
+from ...autopilot.copter.navigation.waypoint import from_origin
 from ...core.geodesy import add_offset
 from ...core.kernels import law
 from ...core.records import Floats
@@ -114,7 +115,7 @@ def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
     modes, estimate = v.autopilot.modes, v.autopilot.estimate
     if not estimate.origin_set or (modes.number != AUTO and modes.number != GUIDED):
         return False
-    to = modes.guided.pos if is_guided(modes) else modes.nav.target
+    to = from_origin(modes.nav, modes.guided.pos if is_guided(modes) else modes.nav.target)
     place = add_offset(estimate.origin_lat, estimate.origin_lon, to.x, to.y)
     m.time_boot_ms = boot_ms(v.time_us)
     m.lat_int = int32(place.lat)

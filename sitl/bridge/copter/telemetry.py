@@ -44,7 +44,7 @@ from ..telemetry.tuning import PITCH, ROLL, VERTICAL, YAW_LOOP, PidTuning, fill_
 from ..telemetry.units import uint8, uint16
 from ..wire.message import Message
 from ..wire.port import Port
-from . import targets
+from . import targets, terrain
 
 
 @law
@@ -254,5 +254,5 @@ def pid_tuning(m: PidTuning, v: Copter, port: Port) -> bool:
 
 MESSAGES = (
     heartbeat, sys_status, mission_current, rc_channels, vfr_hud, extended_sys_state, esc_telemetry_1_to_4,
-    esc_telemetry_5_to_8, rpm, wind, pid_tuning, *targets.MESSAGES,
+    esc_telemetry_5_to_8, rpm, wind, pid_tuning, *targets.MESSAGES, *terrain.MESSAGES,
 )  # fmt: skip

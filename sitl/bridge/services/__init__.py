@@ -25,6 +25,7 @@ from .signing import SigningService
 from .sprayer import SprayerService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
+from .terrain import TerrainService
 from .winch import WinchService
 
 ALL_SERVICES: tuple[type[Service], ...] = (
@@ -56,6 +57,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     CompassCalibrationService,
     SigningService,
     FaultService,
+    TerrainService,
 )
 """In the order in which they act when several are due at the same time."""
 _registered: list[type[Service]] = []

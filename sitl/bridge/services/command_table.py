@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...autopilot.aux_switch import LOW
-from ...autopilot.fence.checks import ALL, switch_by_user
+from ...autopilot.fence.checks import ALL, kinds, switch_by_user
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.shell import banner
@@ -393,6 +393,8 @@ def enable_fence(bridge: Bridge, channel: Channel, command: Command) -> int:
         return FAILED
     v = bridge.vehicle.v
     ap = v.autopilot
+    if command.p1 >= 1.0 and command.p2 > 0.0 and which & kinds(ap.fence, ap.params.FENCE) == 0:
+        return FAILED
     switch_by_user(ap.fence, int(command.p1) == 1, which, ap.params.FENCE, ap.events, v.time_us)
     return ACCEPTED
 

@@ -11,6 +11,7 @@ from typing import Any
 from ..channel import Channel
 from ..dialect import message
 from .service import Handler, Sender, Service
+from .terrain import TerrainService
 
 HOME, ORIGIN = message("HOME_POSITION").id, message("GPS_GLOBAL_ORIGIN").id
 H, E = "autopilot.home.", "autopilot.estimate.origin_"
@@ -38,6 +39,8 @@ class HomeService(Service):
     def tell_changes(self) -> None:
         """Send HOME_POSITION or GPS_GLOBAL_ORIGIN to everyone when they are other than last sent."""
         home, origin = self._home(), self._origin()
+        if (home, origin) != (self._sent_home, self._sent_origin):
+            self.bridge.get(TerrainService).look_up()
         for number, now, sent in ((ORIGIN, origin, self._sent_origin), (HOME, home, self._sent_home)):
             if now != sent and now[0]:
                 self.bridge.send_to_all(number)

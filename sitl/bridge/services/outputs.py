@@ -89,7 +89,8 @@ class OutputService(Service):
         return True
 
     def _pulse_of(self, number: int) -> int:
-        return int(self.bridge.vehicle.v.actuators.pwm[number - 1])
+        pulses = self.bridge.vehicle.v.actuators.pwm
+        return int(pulses[number - 1]) if 0 < number <= len(pulses) else 0  # no such output is refused later
 
     def set_relay(self, relay: int, state: float) -> bool:
         """Switch a relay, from 0, off (0), on (1) or over (any other); whether there is one."""

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...autopilot import rally
+from ...autopilot.events import FENCE_LOADED, RALLY_LOADED, emit
 from ...autopilot.fence import items as fence
 from ...autopilot.fence.state import CORNERS, POINTS
 from ...autopilot.mission.item import FENCE_RETURN_POINT, GLOBAL, RALLY_POINT, RELATIVE_FRAMES, MissionItem
@@ -54,6 +55,7 @@ def load_fence(vehicle: Any, items: tuple[MissionItem, ...], *, checked: bool = 
     if checked and not _on_card(vehicle) and fence.stored_bytes(items, shapes) > vehicle.firmware.fence_bytes:
         raise fence.FenceError("Fence exceeds storage size")
     fence.load(vehicle.v.autopilot.fence, shapes)
+    _note(vehicle.v, FENCE_LOADED, items)
 
 
 def count(items: tuple[MissionItem, ...]) -> int:
@@ -67,6 +69,13 @@ def count(items: tuple[MissionItem, ...]) -> int:
 def load_rally(vehicle: Any, items: tuple[MissionItem, ...]) -> None:
     """Put rally points into the record; RALLY_TOTAL says how many of them count."""
     rally.load(vehicle.v.autopilot.rally, [(i.x, i.y, int(i.z), i.frame not in _ABOVE_HOME) for i in items])
+    _note(vehicle.v, RALLY_LOADED, items)
+
+
+def _note(v: Any, code: int, items: tuple[MissionItem, ...]) -> None:
+    """An event for logs, but for an empty list."""
+    if items:
+        emit(v.autopilot.events, v.time_us, code, 0.0, 0.0)
 
 
 _ABOVE_HOME = (*RELATIVE_FRAMES, 10, 11)

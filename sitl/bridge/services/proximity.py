@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ...autopilot.avoidance import objects
 from ...autopilot.avoidance.proximity import (
     MAVLINK,
     SECTOR,
@@ -50,10 +51,13 @@ def obstacles(m: ObstacleDistance, v: Vehicle, sender: int) -> None:
     if seen.kind != MAVLINK or step == 0.0 or not finite(step + m.angle_offset):
         return
     begin_scan(seen, m.min_distance * 0.01, m.max_distance * 0.01, p.PRX1)
+    is_kept = objects.are_noted(v.autopilot)
     for k in range(m.distances.shape[0]):
         angle = m.angle_offset + k * step
         if abs(k * step) < 360.0:
             note_reading(seen, math.radians(angle), m.distances[k] * 0.01, p.PRX1)
+            if is_kept:
+                objects.note_reading(v.autopilot, math.radians(angle), m.distances[k] * 0.01, v.time_us)
     end_scan(seen, v.time_us, p.PRX.FILT)
 
 
@@ -62,6 +66,8 @@ def note_one(v: Vehicle, seen: Proximity, angle: float, distance: float) -> None
     """One reading [m] at an angle [rad]: what its sector sees."""
     p = v.autopilot.params
     note_reading(seen, angle, distance, p.PRX1)
+    if objects.are_noted(v.autopilot):
+        objects.note_reading(v.autopilot, angle, distance, v.time_us)
     end_sector(seen, sector_of(mounted(angle, p.PRX1)), v.time_us, p.PRX.FILT)
     seen.update_us = v.time_us
 

@@ -15,6 +15,7 @@ from ..dialect import message
 from ..wire.port import NEVER
 from .home import HomeService
 from .service import CRITICAL, INFO, WARNING, Service
+from .terrain import TerrainService
 
 TEXT_BYTES = 50
 KIND = message("STATUSTEXT")
@@ -142,6 +143,8 @@ class EventService(Service):
             self._say_source(int(a), b)
         if code == core.FENCE_BREACHED:
             self.bridge.send_to_all(FENCE_STATUS)
+        if code == core.TERRAIN_LEFT:
+            self.bridge.get(TerrainService).look_up()
         if code in (core.ARMED, core.DISARMED):
             self.bridge.get(PreArmService).find_due()
         if code == core.EKF_INITIALISED:

@@ -19,6 +19,7 @@ from .command import Command
 from .high_latency import HIGH_LATENCY2, HighLatencyService
 from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
+from .terrain import REPORT, TerrainService
 
 AVAILABLE_MODES = message("AVAILABLE_MODES")
 OF_PARTS = (132, 173, 246, 280, 281, 285, 301, 9005)
@@ -111,6 +112,8 @@ class StreamService(Service):
                 high_latency.set_interval(channel, interval_us)
         elif number in bridge.telemetry:
             set_interval(channel.port, number, interval_us, bridge.now_us, number in bridge.by_shell)
+            if number == REPORT.id:
+                bridge.get(TerrainService).look()
 
     def _loop_rate(self) -> int:
         return max(int(self.bridge.parameter("SCHED_LOOP_RATE") or 400), 1)

@@ -19,7 +19,7 @@ from sitl.client.connection import ACCEPTED, Connection
 from sitl.client.endpoint import Endpoint, Inbox
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
-from sitl.foreign.choice import PX4, Choice
+from sitl.foreign.choice import PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
@@ -38,8 +38,6 @@ _ANSWER_US = 3_000_000
 _START_S = 60.0
 """Wall time that a program which was started has until its MAVLink is there [s]."""
 _HEARTBEAT_US = 30_000_000
-WORLD = ("SIM_WIND_", "SIM_ENGINE_")
-"""Beginnings of the SIM_ parameters that mean the physics around the autopilot's own sensors."""
 _TURNS = 16
 """Answers of the physics between two looks at MAVLink: the autopilot stands still when nobody reads."""
 
@@ -68,8 +66,8 @@ class Host(Protocol):
 
 
 class SimParameters(dict[str, float]):
-    """Parameters as the autopilot tells them; those of the world (SIM_WIND_SPD) act on the physics, too, which is not
-    the autopilot's.
+    """Parameters as the autopilot tells them; those of the wind act on the physics, too, which is not the
+    autopilot's.
 
     Args:
         plant: the physics.
@@ -81,7 +79,7 @@ class SimParameters(dict[str, float]):
 
     def __setitem__(self, name: str, value: float) -> None:
         super().__setitem__(name, value)
-        if name.startswith(WORLD):
+        if name.startswith(WIND):
             self._set(name, value)
 
 

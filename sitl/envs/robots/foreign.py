@@ -16,7 +16,7 @@ from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
-from ..mavlink.foreign import WORLD, Foreign, launch
+from ..mavlink.foreign import Foreign, launch
 from ..mavlink.preparation import REBOOT, is_simulator, reboot, refusal
 from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
@@ -120,8 +120,8 @@ class ForeignVehicles(Vehicles):
         try:
             start = (*pose[:3], math.degrees(pose[3]))
             params = dict(options.params or {})
-            world = {name: value for name, value in params.items() if name.startswith(WORLD)}
-            plant = stand_alone(replace(self.setup.scenario, frame=airframe, seed=seed, start=start, params=world))
+            scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
+            plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
             if rebooted is None:
                 found = launch(choice, plant, params, StepTelemetry(len(self.setup.angles)), options.patience)
                 try:

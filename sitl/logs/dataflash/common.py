@@ -117,6 +117,37 @@ EVENT_MESSAGES = (
     Message("CMD", COMMAND, bits=bits.COMMANDS),
     Message("MISE", COMMAND, bits=bits.COMMANDS),
     Message(
+        "FNCE",
+        (
+            Field("Tot", "B"), Field("Seq", "B"), Field("Type", "B"), Field("Lat", "L", "D", "G"),
+            Field("Lng", "L", "U", "G"), Field("Count", "B"), Field("Radius", "f", "m", "0"),
+        ),
+    ),
+    Message(
+        "RALY",
+        (
+            Field("Tot", "B"), Field("Seq", "B"), Field("Lat", "L", "D", "G"), Field("Lng", "L", "U", "G"),
+            Field("Alt", "h", "m", "0"), Field("Flags", "B"),
+        ),
+    ),
+    Message(
+        "OABR",
+        (
+            Field("Type", "B"), Field("Act", "B"), *(Field(name, "H", "d", "0") for name in ("DYaw", "Yaw", "DP")),
+            Field("RChg", "B"), Field("Mar", "f", "m", "0"),
+            Field("DLt", "L", "D", "G"), Field("DLg", "L", "U", "G"), Field("DAlt", "f", "m", "0"),
+            Field("OLt", "L", "D", "G"), Field("OLg", "L", "U", "G"), Field("OAlt", "f", "m", "0"),
+        ),
+    ),
+    Message(
+        "OADJ",
+        (
+            *(Field(name, "B") for name in ("State", "Err", "CurrPoint", "TotPoints")),
+            Field("DLat", "L", "D", "G"), Field("DLng", "L", "U", "G"),
+            Field("OALat", "L", "D", "G"), Field("OALng", "L", "U", "G"),
+        ),
+    ),
+    Message(
         "ORGN",
         (
             Field("Type", "B", "#"), Field("Lat", "L", "D", "G"), Field("Lng", "L", "U", "G"),

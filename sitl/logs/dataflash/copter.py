@@ -85,6 +85,38 @@ CONTROL = Message(
 )
 
 
+T = A + "terrain."
+
+
+def _ground(s: Any) -> Array:
+    """Height of the ground as TERRAIN_REPORT tells it [m]."""
+    return s(T + "home") + s(T + "difference") + s(T + "offset")
+
+
+def _over_ground(s: Any) -> Array:
+    """Height over the ground [m]."""
+    return s(A + "home.pos[2]") - s(E + "pos[2]") - s(T + "difference")
+
+
+TERRAIN = Message(
+    "TERR",
+    (
+        Field("Status", "B", source=2),
+        Field("Lat", "L", "D", "G", derived.latitude(E + "origin_", E + "pos")),
+        Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
+        Field("Spacing", "H", source=T + "spacing"),
+        Field("TerrH", "f", "m", "0", _ground),
+        Field("CHeight", "f", "m", "0", _over_ground),
+        Field("Pending", "H", source=T + "pending"),
+        Field("Loaded", "H", source=T + "loaded"),
+        Field("ROfs", "f", "m", "0", T + "offset"),
+    ),
+    1.0,
+    bits.GPS,
+    when=T + "was_known",
+)
+
+
 def _at_work(path: str) -> Any:
     return lambda s: s.raw(C + "tick") - s.raw(path + "last_tick") < _SHAPED_TICKS
 
@@ -132,6 +164,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         ),
         *pids,
         common.LANDING_TARGET,
+        TERRAIN,
         *common.FILTER,
         *((common.TRUTH,) if simulated else ()),
     )

@@ -15,7 +15,7 @@ from ...autopilot.mission.mission import Mission
 from ...autopilot.modes import shown
 from ...autopilot.params.table import Values
 from ..kind import logs_of
-from . import bits, formats
+from . import bits, formats, places
 from .common import EVENT_MESSAGES
 from .events import EDGES, HOME, ORIGIN, EventEncoder
 from .plan import Plan
@@ -127,7 +127,9 @@ class LogEncoder:
             at = k % EVENT_RING
             event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
             self.note(int(ring.time_us[at]), self.events.event, *event)
-            for name, numbers in self._kind.event_rows(self._vehicle.v, *event[:2]) if self._kind.event_rows else ():
+            rows = places.rows(self._vehicle.v, *event[:3])
+            rows += self._kind.event_rows(self._vehicle.v, *event[:2]) if self._kind.event_rows else []
+            for name, numbers in rows:
                 self.note(int(ring.time_us[at]), partial(self.events.pack, name), *numbers)
         self._seen = count
 
@@ -192,6 +194,7 @@ class LogEncoder:
             pack.text(time_us, f"Airframe: {v.airframe.name}"),
             pack.pack("MODE", time_us, shown(modes), shown(modes), int(modes.reason)),
             pack.mission(time_us, v.mission.items),
+            *(pack.pack(name, time_us, *numbers) for name, numbers in places.fence(v.v) + places.rally(v.v)),
         ]
         self._samples.turn(0)
         for kind, is_set, place in _PLACES:

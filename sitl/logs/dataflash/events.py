@@ -23,13 +23,14 @@ EV_SET_HOME, EV_NOT_LANDED, EV_ALT_RESET, EV_YAW_RESET = 25, 28, 60, 62
 EV_FENCE_ON, EV_FENCE_OFF = 41, 42
 _FENCES = {MAX_ALT: 76, CIRCLE: 78, MIN_ALT: 80, AREAS: 82}
 """Fence -> EV number when it is switched on; off: the next."""
-_RADIO, _BATTERY, _GCS, _FENCE, _MODE, _CRASH, _EKF, _THRUST = 5, 6, 8, 9, 10, 12, 17, 25
+_RADIO, _BATTERY, _GCS, _FENCE, _MODE, _CRASH, _EKF, _TERRAIN, _THRUST = 5, 6, 8, 9, 10, 12, 17, 23, 25
 _FAILSAFES = {
     failsafes.RADIO: _RADIO,
     failsafes.GCS: _GCS,
     failsafes.BATTERY_LOW: _BATTERY,
     failsafes.BATTERY_CRITICAL: _BATTERY,
     failsafes.EKF: _EKF,
+    failsafes.TERRAIN: _TERRAIN,
 }
 """Failsafe -> subsystem of ERR."""
 ORIGIN, HOME = 0, 1

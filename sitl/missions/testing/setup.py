@@ -12,7 +12,7 @@ from sitl import vehicles
 from sitl.autopilot.params import files
 from sitl.client.endpoint import Inbox
 from sitl.core.compile import Progress
-from sitl.envs.mavlink.foreign import WORLD, Foreign, launch
+from sitl.envs.mavlink.foreign import Foreign, launch
 from sitl.errors import OptionError
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import choose
@@ -62,11 +62,12 @@ class Setup:
         """The simulation at power-on, or another autopilot that has just been started on our physics."""
         choice = choose(self.autopilot, self.kind)
         if choice is not None:
+            if self.estimator != "ekf":
+                raise OptionError(f"estimator {self.estimator!r}: autopilot {choice.name} has estimators of its own")
             params = dict(self.params)
-            world = {name: value for name, value in params.items() if name.startswith(WORLD)}
             plant = stand_alone(
-                self.frame, home=self.home, seed=self.seed, params=world, world=self.world, start=self.start,
-                physics=self.physics,
+                self.frame, home=self.home, seed=self.seed, params=choice.for_physics(params), world=self.world,
+                start=self.start, physics=self.physics,
             )  # fmt: skip
             return launch(choice, plant, params, Inbox(), PATIENCE_S)
         simulation = Simulation(

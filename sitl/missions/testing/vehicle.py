@@ -61,7 +61,7 @@ class Faulty(Forking):
             instance: which one, from 1; 0: all.
             amount: how much; None: the usual amount.
             at, until: simulated seconds from now; None: it stays.
-            motor, thrust: of "motor": other names of instance and amount (the share of its thrust that is left).
+            motor, thrust: of "motor": other names of instance and amount (the share of its pulse that is left).
             speed, direction, turbulence: of "wind": 10 m/s, from 0 deg (north), 0 m/s when they are not given.
 
         Raises:

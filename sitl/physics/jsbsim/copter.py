@@ -27,7 +27,6 @@ class CopterModel(VehicleModel):
         p = vehicle.v.physics
         self._rotors, self._ground, self._battery, self._body = p.rotors, p.ground, p.battery, p.body
         self._commands = p.rotors.command
-        self._efficiency = p.rotors.efficiency
         self._write_power = model.writer(vehicle, "physics.rotors.power", 1)
 
     def frames(self, a: Any) -> int:
@@ -43,7 +42,6 @@ class CopterModel(VehicleModel):
         count = int(a.rotor_count)
         numbers = range(1, count + 1)
         self._command_to = [properties.writer(f"rotor/command{k}") for k in numbers]
-        self._health_to = [properties.writer(f"rotor/health{k}") for k in numbers]
         self._speed_to = [properties.writer(f"rotor/speed{k}") for k in numbers]
         self._voltage_to = properties.writer("battery/voltage")
         self._goes_to = properties.writer(GOES)
@@ -55,13 +53,11 @@ class CopterModel(VehicleModel):
         self._write_thrusts = model.writer(self.vehicle, "physics.rotors.thrust", count)
         self._upright = math.cos(float(a.tip_angle))
         self._hit_speed = float(a.hit_speed)
-        self._health: list[float] = []
 
     def starting(self) -> None:
         self._goes_to(0.0)
         for write, speed in zip(self._speed_to, self._rotors.speed.tolist(), strict=False):
             write(speed)
-        self._health = []
 
     def started(self) -> None:
         self._goes_to(1.0)
@@ -73,11 +69,6 @@ class CopterModel(VehicleModel):
             commands = [0.0] * len(commands)
         for write, command in zip(self._command_to, commands, strict=False):
             write(command)
-        health = self._efficiency.tolist()
-        if health != self._health:
-            self._health = health
-            for write, share in zip(self._health_to, health, strict=False):
-                write(share)
         self._voltage_to(self._battery.voltage)
 
     def outputs(self, down: float) -> None:

@@ -2,8 +2,8 @@
 """A multicopter as a JSBSim aircraft: rotors as a system, their and the air's forces as aerodynamics, four legs.
 
 The formulas are those of ``sitl.physics.native.copter`` (RotorS' model and the momentum model), evaluated by JSBSim
-with its own air. Inputs are properties ``rotor/command1`` .. [0 .. 1], ``rotor/health1`` .. [1] and
-``battery/voltage`` [V]; SI units throughout, but for the forces, which JSBSim takes in pounds.
+with its own air. Inputs are properties ``rotor/command1`` .. [0 .. 1] and ``battery/voltage`` [V];
+SI units throughout, but for the forces, which JSBSim takes in pounds.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ P, Q, R = "velocities/p-rad_sec", "velocities/q-rad_sec", "velocities/r-rad_sec"
 def document(a: Any, name: str, dt: float) -> str:
     """The aircraft of a multicopter's figures, for steps of dt [s]."""
     count = int(a.rotor_count)
-    inputs = [f"rotor/command{k}" for k in range(1, count + 1)] + [f"rotor/health{k}" for k in range(1, count + 1)]
+    inputs = [f"rotor/command{k}" for k in range(1, count + 1)]
     properties = "".join(f'<property value="0">{name}</property>' for name in [*inputs, "battery/voltage", GOES])
     system = f'<system name="rotors">{properties}<channel name="rotors">{_speeds(a, dt)}</channel></system>'
     return written(a, name, 2.0 * reach(a), legs(a), system + _aerodynamics(a, dt))
@@ -88,7 +88,7 @@ def _speeds(a: Any, dt: float) -> str:
             out += component(speed, total(speed, f"rotor/change{k}"))
         if not is_flow:
             factor = float(a.thrust_coefficient)
-            out += component(f"rotor/thrust{k}", product(speed, speed, f"rotor/health{k}", factor))
+            out += component(f"rotor/thrust{k}", product(speed, speed, factor))
     return out
 
 
@@ -164,7 +164,7 @@ def _momentum_hubs(a: Any) -> str:
         out += function(f"rotor/inflow{n}", greatest(product(f"rotor/hub-z{n}", -1.0), 0.0))
         outflow = product("rotor/fastest", "rotor/fastest", speed, total(1.0 - expo, product(speed, expo)))
         left = difference(outflow, product(f"rotor/inflow{n}", f"rotor/inflow{n}"))
-        out += function(thrust, product("air/half-density", left, f"rotor/health{n}", float(a.outflow_area)))
+        out += function(thrust, product("air/half-density", left, float(a.outflow_area)))
         out += function(drag, product("rotor/drag-factor", root(magnitude(thrust))))
         for axis, formula in zip("xy", _hub(a, k), strict=True):
             out += function(f"rotor/drag-{axis}{n}", product(drag, formula))

@@ -258,6 +258,7 @@ class Downward(Record):
     ranges: bool  # there is one that is not
     range_min: float  # [m]
     range_max: float
+    ground_d: float  # of the ground below the vehicle, down from the home ground point [m]
 
 
 class Place(Record):

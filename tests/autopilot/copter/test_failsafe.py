@@ -256,7 +256,11 @@ def test_estimator_lost_for_a_second(flying, mode, action, after):
         failsafe.watch_estimate(flying)
     assert ap.modes.number == mode
     failsafe.watch_estimate(flying)
-    assert (ap.modes.number, ap.modes.failsafe.ekf) == (after, 1 if after == mode else failsafe.EKF_ACTED)
+    assert (ap.modes.number, ap.modes.failsafe.ekf) == (after, 1)
+    ring, codes_of = ap.events, list(ap.events.code)
+    said = [failsafe.text(int(ring.a[k]), int(ring.b[k])) for k, code in enumerate(codes_of) if code == FAILSAFE]
+    follows = "" if after == mode else f": changed to {'LAND' if after == LAND else 'ALT_HOLD'} Mode"
+    assert said == ["EKF variance", f"EKF Failsafe{follows}"]
     if after == LAND:
         assert ap.modes.land.with_position == 0
 

@@ -175,3 +175,41 @@ def test_no_crash(flying, well):
     well(flying.autopilot)
     ticks(flying, 900, crash.check)
     assert flying.autopilot.arming.armed == 1
+
+
+def lie(v):
+    """Level on the ground with motors at their least, asked for a lean of 31 degrees."""
+    ap = v.autopilot
+    ap.control.motors.limit_throttle_lower = 1
+    ap.control.attitude.thrust_error_angle, ap.control.attitude.cos_lean = math.radians(31.0), 1.0
+    ap.estimate.vel = ap.estimate.rates = Vec3(0.0, 0.0, 0.0)
+    ap.modes.landing.acc = Vec3(0.0, 0.0, 0.0)
+    return v
+
+
+def test_five_seconds_of_lying_still_disarm(flying):
+    lie(flying)
+    ticks(flying, 1999, crash.check)
+    assert flying.autopilot.arming.armed == 1
+    ticks(flying, 1, crash.check)
+    assert flying.autopilot.arming.armed == 0
+    assert codes(flying)[0] == CRASH_DISARM
+    assert crash.text(20.0, 0.04) == "Crash: Disarming: at rest, AngErr=20"
+
+
+@pytest.mark.parametrize(
+    "moves",
+    (
+        lambda ap: setattr(ap.control.motors, "limit_throttle_lower", 0),
+        lambda ap: setattr(ap.control.attitude, "thrust_error_angle", 0.1),
+        lambda ap: setattr(ap.modes.landing, "acc", Vec3(0.0, 0.0, 0.6)),
+        lambda ap: setattr(ap.estimate, "vel", Vec3(0.0, 0.4, 0.0)),
+        lambda ap: setattr(ap.estimate, "rates", Vec3(0.0, 0.0, 0.1)),
+        lambda ap: setattr(ap.params, "FS_CRASH_CHECK", 0.0),
+    ),
+)
+def test_what_lifts_or_moves_does_not_lie_still(flying, moves):
+    lie(flying)
+    moves(flying.autopilot)
+    ticks(flying, 2100, crash.check)
+    assert flying.autopilot.arming.armed == 1

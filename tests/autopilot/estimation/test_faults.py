@@ -83,7 +83,8 @@ def test_a_gps_glitch_is_gated_then_followed(truth, tick) -> None:
     flight = sf.sense(truth, TAKE_OFF, 3)
     sf.play(flight, fleet, tick, spoil)
     assert abs(moved[88.0]) < 3.0 and flags[88.0] & status.GPS_GLITCHING
-    assert moved[95.0] == pytest.approx(55.0, abs=4.0) and not flags[95.0] & status.GPS_GLITCHING
+    assert moved[95.0] == pytest.approx(55.0, abs=4.0) and flags[95.0] & status.GPS_GLITCHING
+    assert not flags[102.0] & status.GPS_GLITCHING, "ten seconds later"
     assert fleet[0]["autopilot"]["estimate"]["reset_ne_count"] == 2
 
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sitl.autopilot.estimation.state import Ekf
 from sitl.autopilot.rover import failsafe, pilot
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
@@ -169,7 +170,7 @@ def test_a_bad_estimate_counts_after_a_second_and_only_once_it_has_been_good() -
 
     def watch(periods: int, good: bool) -> list[int]:
         estimate.position_ok = good
-        return [failsafe.watch_estimate(modes, estimate, True, params) for _ in range(periods)]
+        return [failsafe.watch_estimate(modes, estimate, True, params, False) for _ in range(periods)]
 
     same, fails, recovers = failsafe.EKF_SAME, failsafe.EKF_FAILS, failsafe.EKF_RECOVERS
     assert watch(30, False) == [same] * 30
@@ -177,4 +178,14 @@ def test_a_bad_estimate_counts_after_a_second_and_only_once_it_has_been_good() -
     assert watch(12, False) == [same] * 9 + [fails] + [same] * 2
     assert watch(12, True) == [same] * 9 + [recovers] + [same] * 2
     watch(10, False)
-    assert failsafe.watch_estimate(modes, estimate, False, params) == recovers
+    assert failsafe.watch_estimate(modes, estimate, False, params, False) == recovers
+
+
+def test_a_rover_trusts_no_position_after_four_seconds_of_a_glitch() -> None:
+    ekf = Ekf()
+    ekf.gps_glitch, ekf.gps_pos_fused_us = True, 10_000_000
+    for now, long in ((13.9, False), (14.1, True)):
+        ekf.now_us = round(now * 1e6)
+        assert failsafe.is_glitch_long(ekf) == long
+    ekf.gps_glitch = False
+    assert not failsafe.is_glitch_long(ekf)

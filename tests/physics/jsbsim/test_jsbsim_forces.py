@@ -35,13 +35,12 @@ def read(b: Any, *names: str) -> np.ndarray:
 
 
 def anyhow(b: Any, seed: int) -> None:
-    """Some motion, some wind, steady rotors of different speeds and health."""
+    """Some motion, some wind, steady rotors of different speeds."""
     rng, p = np.random.default_rng(seed), b.p
     is_flow = p.airframe.thrust_model == THRUST_MOMENTUM
     p.wind.steady = p.wind.vel = rng.normal(size=3) * 4.0
     p.rotors.command[:4] = rng.uniform(0.1, 0.9, 4)
     p.rotors.speed[:4] = p.rotors.command[:4] * (1.0 if is_flow else p.airframe.speed_max)
-    p.rotors.efficiency[:4] = rng.uniform(0.5, 1.0, 4)
     q = rng.normal(size=4)
     b.put(
         pos=rng.normal(size=3) * 20.0 - (0.0, 0.0, 200.0),

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,12 +15,24 @@ pytest.importorskip("jsbsim")
 pytestmark = pytest.mark.slow
 
 
+def aligned(ours: engines.Flown, native: engines.Flown) -> engines.Flown:
+    """``ours`` with its clock set so that both reach the first mission item at once: the end of a take-off is seen at a
+    threshold, one row (40 ms) sooner or later, which is 0.4 m on the way at 10 m/s."""
+    if not ours.reached:
+        return ours
+    early = native.reached[0][0] - ours.reached[0][0]
+    assert abs(early) < 0.041
+    rows = ours.rows.copy()
+    rows[:, 0] += early
+    return replace(ours, rows=rows)
+
+
 @pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad"])
 @pytest.mark.parametrize("script", [engines.copter_guided, engines.copter_mission])
 def test_copters_fly_as_on_native_physics(frame: str, script: engines.Script) -> None:
     """Boot, arm, take off, fly, land, disarm."""
     ours, native = (engines.fly(frame, script, physics) for physics in ("jsbsim", "native"))
-    d = engines.difference(ours, native)
+    d = engines.difference(aligned(ours, native), native)
     assert [item for _, item in ours.reached] == [item for _, item in native.reached]
     assert (d.path_rms, d.path_max) < (0.15, 0.5)
     assert d.lean_rms < 0.3

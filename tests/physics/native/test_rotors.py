@@ -110,9 +110,13 @@ def test_rotor_drag_opposes_the_air(rig):
     assert windy.x == approx(still.x, abs=1e-12)
 
 
-def test_motor_fault_takes_thrust(rig):
+def test_a_motor_fault_takes_its_share_of_the_pulse(rig):
+    """As ArduPilot's: at 1000 + share (pulse - 1000) us."""
     r = rig("erle_copter")
-    r.p.rotors.efficiency[2] = 0.5
-    spin(r, 0.6)
-    act(r.p)
-    assert r.p.rotors.thrust[2] == approx(0.5 * r.p.rotors.thrust[0])
+    r.p.rotors.share[2] = 0.5
+    r.command(0.6, 0.3, 0.6, 0.6)
+    r.move(4000)
+    assert r.p.rotors.speed[2] == approx(r.p.rotors.speed[1], rel=1e-9)
+    assert (
+        r.p.rotors.thrust[2] == approx(r.p.rotors.thrust[1], rel=1e-9) and r.p.rotors.thrust[2] < r.p.rotors.thrust[0]
+    )

@@ -95,7 +95,7 @@ def test_faults_given_at_the_start_and_after_a_reboot(core: Core) -> None:
     simulation = Simulation(core=core, params=faults)
     for _ in range(2):
         simulation.advance(12.0)
-        assert list(simulation.v.physics.rotors.efficiency[:4]) == [1.0, 0.5, 0.5, 1.0]
+        assert list(simulation.v.physics.rotors.share[:4]) == [1.0, 0.5, 0.5, 1.0]
         assert int(simulation.v.sensors.gps_count) == 0
         assert int(simulation.v.autopilot.rc.receiver_ok) == 0
         simulation.request_reboot()

@@ -29,6 +29,7 @@ ALREADY_FLYING = 5
 TOO_LOW = 6
 BEYOND_FENCE = 7
 NOT_ON_A_WAY = 8
+NO_GROUND = 9  # its height is above the ground, of which nothing is known
 
 LARGEST = 1e9
 """Metres, metres a second, radians beyond this are refused; what is on the globe is less."""

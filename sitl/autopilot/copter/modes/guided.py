@@ -18,7 +18,8 @@ from ...control.shaping import Motion, Motion2
 from ...events import GUIDED_TIMEOUT, Events, emit
 from ...modes import ACCEPTED
 from ...state import Arming, Estimate
-from .. import avoidance
+from ...terrain.ground import lose_ground
+from .. import avoidance, terrain
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from ..control.state import DT, Control
 from ..parameters import Parameters
@@ -115,7 +116,10 @@ def follow_setpoint(v: Vehicle, guided: GuidedState, stale: bool, control: Contr
     POSITION: fly to a point and stay; the speed limits keep a climbing path straight.
     """
     if guided.submode == POSITION:
-        position_ned.input_pos_ned(control.pos_ne, control.pos_d, guided.pos)
+        if v.autopilot.modes.nav.over_ground:
+            go_over_ground(v, guided.pos, control)
+        else:
+            position_ned.input_pos_ned(control.pos_ne, control.pos_d, guided.pos)
         return
     if stale:
         guided.vel = ZERO
@@ -135,6 +139,25 @@ def follow_setpoint(v: Vehicle, guided: GuidedState, stale: bool, control: Contr
     else:
         position.input_vel_accel_ne(control.pos_ne, avoidance.limit_velocity(v, horizontal(vel)), horizontal(acc))
         altitude.input_vel_accel_d(control.pos_d, -avoidance.limit_climb(v, -vel.z), acc.z)
+
+
+@law
+def go_over_ground(v: Vehicle, pos: Vec3, control: Control) -> None:
+    """Straight to a point above the ground as above a plain, which follows the ground; where nothing is known of it the
+    vehicle stops, and it is a failsafe at once."""
+    nav, path = v.autopilot.modes.nav, control.pos_d
+    path.pos_desired -= nav.ground_d
+    path.vel_desired -= nav.ground_vel
+    path.accel_desired -= nav.ground_acc
+    if nav.ground_lost:
+        ground.brake(control)
+        lose_ground(v.autopilot.terrain, v.time_us)
+    else:
+        position_ned.input_pos_ned(control.pos_ne, path, pos)
+    terrain.follow(v)
+    path.pos_desired += nav.ground_d
+    path.vel_desired += nav.ground_vel
+    path.accel_desired += nav.ground_acc
 
 
 @law

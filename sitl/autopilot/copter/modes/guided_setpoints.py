@@ -14,11 +14,13 @@ from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Quat, Vec3
 from ...fence.checks import allows
+from .. import terrain
 from ..control.state import AltitudeState
 from ..state import Autopilot, Vehicle
+from ..terrain import ground_below
 from . import auto_yaw, guided
 from .auto import is_guided
-from .commands import BEYOND_FENCE, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
+from .commands import BEYOND_FENCE, NO_GROUND, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
 from .guided import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
 from .state import GuidedState, Modes
 
@@ -74,6 +76,7 @@ def begin(v: Vehicle, submode: int) -> GuidedState:
     """Prepare for a set-point of this kind and note when it came."""
     ap = v.autopilot
     state = ap.modes.guided
+    ap.modes.nav.over_ground = False
     if state.submode != submode:
         guided.start_submode(state, submode, ap.control, ap.estimate, ap.params)
     state.paused = False
@@ -89,6 +92,26 @@ def set_position(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
         code = BEYOND_FENCE
     if code == OK:
         begin(v, POSITION).pos = pos
+        set_yaw(v.autopilot, yaw)
+    return code
+
+
+@law
+def set_position_over_ground(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
+    """Fly to a point and stay, its height above the ground: NE from the origin, -height [m]."""
+    nav, ground = v.autopilot.modes.nav, ground_below(v)
+    code = refusal(v.autopilot.modes, is_usable_vector(pos), yaw)
+    if code == OK and not ground.is_known:
+        code = NO_GROUND
+    if code == OK and is_beyond_fence(v.autopilot, Vec3(pos.x, pos.y, pos.z + ground.d)):
+        code = BEYOND_FENCE
+    if code == OK:
+        follows = nav.over_ground
+        begin(v, POSITION).pos = pos
+        if follows:
+            nav.over_ground = True
+        else:
+            terrain.begin(nav, ground)
         set_yaw(v.autopilot, yaw)
     return code
 

@@ -12,6 +12,7 @@ from ...arming_checks import BY_LANDING
 from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE, ask
 from ..parameters.flight import Pilot
 from ..state import Vehicle
+from ..terrain import height_over_ground
 from . import auto_yaw, descent, ground, precision_land
 from .alt_hold import ALT_HOLD
 from .loiter import LOITER
@@ -49,7 +50,7 @@ def run(v: Vehicle) -> None:
         ground.rest(ap.arming.armed, control, est, p)
         return
     control.motors.desired_spool = ground.UNLIMITED
-    height = ap.home.pos.z - est.pos.z
+    height = height_over_ground(v)
     if is_cancelled(modes.pilot, p.PILOT):
         ask(modes, LOITER if est.position_ok else ALT_HOLD, REASON_THROTTLE_LAND_ESCAPE)
     elif modes.land.with_position:

@@ -23,6 +23,7 @@ from ...state import Estimate
 from ..control import altitude, position, position_start
 from ..parameters import Parameters
 from ..state import Vehicle
+from ..terrain import height_over_ground
 from . import descent, ground
 from .state import LandState
 
@@ -58,7 +59,7 @@ def descend(v: Vehicle) -> None:
     """One tick of a landing with position control."""
     ap = v.autopilot
     modes, est, p = ap.modes, ap.estimate, ap.params
-    height = ap.home.pos.z - est.pos.z
+    height = height_over_ground(v)
     if p.PLND.ENABLED == 0.0:
         descent.descend(modes, height, ap.arming.landed_maybe, ap.control, est, p)
         return

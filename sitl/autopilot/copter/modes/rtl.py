@@ -12,17 +12,20 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import rally
 from ...control.shaping import Motion
-from ...events import Events
+from ...events import TERRAIN_DID, Events, emit
 from ...fence.state import MAX_ALT
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ...state import Estimate
+from ...terrain.state import RTL_WITHOUT
+from .. import terrain
 from ..control import altitude, position, position_start
 from ..control.state import Control
 from ..navigation import waypoint
 from ..parameters import Parameters
 from ..parameters.flight import Rtl
 from ..state import Vehicle
+from ..terrain import ground_below, is_flat
 from . import auto_yaw, descent, ground, land, precision_land
 from .mode import CopterMode, never_arms
 from .state import AutoYaw, Modes, RtlState
@@ -53,6 +56,12 @@ def start(v: Vehicle) -> int:
 @law
 def begin(v: Vehicle) -> None:
     """Prepare the way home from the present motion."""
+    prepare(v, v.autopilot.params.RTL.ALT_TYPE > 0.0)
+
+
+@law
+def prepare(v: Vehicle, over_ground: bool) -> None:
+    """The same; ``over_ground``: at a height above the ground, where its height is known."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     rtl, nav = modes.rtl, modes.nav
@@ -65,8 +74,11 @@ def begin(v: Vehicle) -> None:
     fence = Vec3(p.FENCE.ALT_MAX, p.FENCE.ALT_MIN, p.FENCE.MARGIN)
     target = rally.best(ap.rally, est, ap.home, ap.fence, p, fence)
     plan_heights(rtl, ap.home.pos, target, est.pos, p.RTL)
+    if over_ground:
+        plan_over_ground(v, target)
     if ap.fence.on & int(p.FENCE.TYPE) & MAX_ALT != 0:
-        keep_below(rtl, ap.home.pos.z - (fence.x - fence.z), est.pos.z)
+        zero = nav.ground_d if nav.over_ground else 0.0
+        keep_below(rtl, ap.home.pos.z - (fence.x - fence.z) - zero, est.pos.z - zero)
     rtl.state = CLIMB
     rtl.loiter_us = 0
     auto_yaw.set_mode(modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
@@ -85,6 +97,19 @@ def plan_heights(rtl: RtlState, home: Vec3, target: Vec3, pos: Vec3, p: Rtl) -> 
     rtl.home = horizontal(target)
     rtl.return_d = home.z - return_height(home.z - pos.z, home.z - target.z, math.hypot(away.x, away.y), p)
     rtl.descent_d = home.z - p.ALT_FINAL * 0.01
+
+
+@law
+def plan_over_ground(v: Vehicle, target: Vec3) -> None:
+    """Heights of the way back are above the ground below it (RTL_ALT_TYPE 1), where that is known."""
+    ap = v.autopilot
+    ground_now, away = ground_below(v), target - ap.estimate.pos
+    if not ground_now.is_known:
+        emit(ap.events, v.time_us, TERRAIN_DID, float(RTL_WITHOUT), 0.0)
+    elif not is_flat(v):
+        terrain.begin(ap.modes.nav, ground_now)
+        height, distance = ground_now.d - ap.estimate.pos.z, math.hypot(away.x, away.y)
+        ap.modes.rtl.return_d = -return_height(height, ap.home.pos.z - target.z, distance, ap.params.RTL)
 
 
 @law

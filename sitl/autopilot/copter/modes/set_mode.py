@@ -86,15 +86,16 @@ def change(v: Vehicle, number: int, reason: int) -> int:
     """Change to another mode than the present one, as ``request`` does."""
     ap = v.autopilot
     modes = ap.modes
-    pending = modes.nav.request_pending
+    pending, over_ground = modes.nav.request_pending, modes.nav.over_ground
     cause = refusal(number, modes, ap.arming, ap.estimate, ap.params)
     if ap.arming.armed and not ap.arming.landed and keeps_mode(ap.fence, modes.reason, ap.params.FENCE):
         cause = IN_FENCE_RECOVERY
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
+        modes.nav.over_ground = False
         cause = start(number, v)
     if cause != ACCEPTED:
-        modes.nav.request_pending = pending
+        modes.nav.request_pending, modes.nav.over_ground = pending, over_ground
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
     if modes.number == AUTOTUNE:

@@ -6,13 +6,14 @@ from __future__ import annotations
 from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home, optical_flow, visual_odometry
-from ...avoidance import proximity
+from ...avoidance import bendy_ruler, proximity
 from ...events import LEG_ENDING, emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
 from ...navigation.path import areas_of, watch_detour
 from ...navigation.state import DETOUR_REQUEST, GO_ON
 from ...radio import RC_TICKS
 from ...state import Arming
+from ...terrain.ground import watch_square
 from .. import (
     arming,
     avoidance,
@@ -23,6 +24,7 @@ from .. import (
     motor_test,
     pilot,
     takeoff_check,
+    terrain,
     thrust_loss,
     yaw_imbalance,
 )
@@ -30,6 +32,7 @@ from ..control.motors import learn_hover_throttle
 from ..control.state import DT, Control
 from ..state import Vehicle
 from . import ground, set_mode, simple, smart_rtl, switch, table
+from .auto import is_guided
 from .drift import DRIFT
 from .stabilize import STABILIZE
 from .state import Modes
@@ -114,18 +117,30 @@ def check_slowly(v: Vehicle) -> None:
     failsafe.watch_battery(v)
     failsafe.watch_estimate(v)
     failsafe.watch_vibration(v)
+    watch_terrain(v)
     arming.disarm_idle(v)
     takeoff_check.check(v)
     yaw_imbalance.check(v)
     avoidance.watch(v)
-    ap = v.autopilot
+    ap, nav = v.autopilot, v.autopilot.modes.nav
+    bendy_ruler.watch(ap, nav.ground_d if nav.over_ground else 0.0, v.time_us)
     watch_detour(ap.modes.nav, areas_of(ap.fence, ap.params.OA, ap.params.FENCE), ap.events, v.time_us)
+
+
+@law
+def watch_terrain(v: Vehicle) -> None:
+    """Ten times a second: the square of the grid of heights, and heights that are missing."""
+    ap = v.autopilot
+    watch_square(ap.terrain, ap.estimate.pos, ap.events, v.time_us)
+    failsafe.watch_terrain(v)
 
 
 @inlined
 def run_mode(v: Vehicle) -> None:
     """The mode's own tick, then the change that it may have asked for."""
     ap = v.autopilot
+    if ap.modes.nav.over_ground and not is_guided(ap.modes):
+        terrain.follow(v)
     table.run(ap.modes.number, v)
     if ap.modes.nav.request_pending == GO_ON:
         emit_and_return(ap.events, v.time_us, LEG_ENDING, DETOUR_REQUEST, 0.0)

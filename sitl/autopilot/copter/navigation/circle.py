@@ -18,7 +18,7 @@ from ..control.position import input_pos_vel_accel_ne
 from ..control.state import DT, Control
 from ..parameters import Parameters
 from .state import CopterNav
-from .waypoint import CM, speed_ne
+from .waypoint import CM, over_ground, speed_ne
 
 ANGULAR_ACCEL_MIN = math.radians(2.0)
 """[rad/s^2]"""
@@ -96,5 +96,5 @@ def run(nav: CopterNav, control: Control, est: Estimate, p: Parameters) -> float
         set_limits(nav, math.radians(p.CIRCLE.RATE), speed_ne(nav, p.WPNAV), CM * p.WPNAV.ACCEL)
     turns = advance(nav)
     follow(nav, control)
-    set_pos_vel_accel_d(control.pos_d, Motion(nav.pos.z, 0.0, 0.0))
+    set_pos_vel_accel_d(control.pos_d, over_ground(nav, Motion(nav.pos.z, 0.0, 0.0)))
     return turns

@@ -12,10 +12,12 @@ from ...navigation.leg import SHORTEST, Limits, axis_limits, bounded, plan, spee
 from ...navigation.planner import Planner, end
 from ...navigation.profile import clear
 from ...navigation.state import LOITER_TURNS, TAKEOFF, Leg
+from ...terrain.ground import Ground
 from ..control.altitude_start import stopping_point_d
 from ..control.position_start import stopping_point_ne
 from ..parameters import Parameters
 from ..state import Autopilot
+from ..terrain import begin
 from . import spline, spline_curve, waypoint
 from .spline_curve import SplineLimits
 from .state import Spline
@@ -94,7 +96,26 @@ class CopterPlanner(Planner[Autopilot]):
         """Where the controllers would bring it to rest, NED [m]."""
         control, est, p = ap.control, ap.estimate, ap.params
         waypoint.set_limits(control, ap.modes.nav, p)
-        return with_down(stopping_point_ne(control.pos_ne, est, p.PSC), stopping_point_d(control.pos_d, est, p.PSC))
+        down = stopping_point_d(control.pos_d, est, p.PSC)
+        if ap.modes.nav.over_ground:
+            down -= ap.modes.nav.ground_d
+        return with_down(stopping_point_ne(control.pos_ne, est, p.PSC), down)
+
+    def count_from(self, ap: Autopilot, ground: Ground | None) -> None:
+        """Heights of the path are above the ground from now on, or (None) from the origin; it stays where it is."""
+        nav = ap.modes.nav
+        if nav.over_ground == (ground is not None):
+            return
+        if ground is not None:
+            begin(nav, ground)
+        shift = nav.ground_d if ground is None else -nav.ground_d
+        for leg in (nav.previous, nav.current, nav.next):
+            leg.origin = leg.origin.replace(z=leg.origin.z + shift)
+        nav.target = nav.target.replace(z=nav.target.z + shift)
+        nav.pos = nav.pos.replace(z=nav.pos.z + shift)
+        nav.spline.origin = nav.spline.origin.replace(z=nav.spline.origin.z + shift)
+        nav.spline.end = nav.spline.end.replace(z=nav.spline.end.z + shift)
+        nav.over_ground = ground is not None
 
     def origin_of_next(self, ap: Autopilot, time_us: int) -> tuple[Vec3, bool]:
         """A circle under way is left from where the vehicle is; a take-off ends at its height."""

@@ -21,10 +21,12 @@ from ....core.scalars import constrain
 from ....core.vectors import Vec3
 from ...control.shaping import Motion, Motion2
 from ...navigation import path
+from ...navigation.state import STRAIGHT
 from ...state import Estimate
-from ..control.altitude import set_pos_vel_accel_d
+from ..control.altitude import input_vel_accel_d, set_pos_vel_accel_d
 from ..control.altitude_start import init_d_stopping_point, set_max_speed_accel_d
-from ..control.position import set_pos_vel_accel_ne
+from ..control.position import brake_ne, set_pos_vel_accel_ne
+from ..control.position_ned import input_pos_ned
 from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
 from ..control.state import DT, Control
 from ..parameters import Parameters
@@ -85,6 +87,7 @@ def start(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_u
 def stop(nav: CopterNav) -> None:
     """Forget all legs."""
     path.stop(nav)
+    nav.over_ground = False
     nav.spline.active = False
     nav.paused = False
 
@@ -98,11 +101,20 @@ def corner_accel(p: Legs) -> float:
 @law
 def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_us: int) -> bool:
     """One tick along the legs; whether the destination is reached (a corner: when the next leg takes over)."""
-    legs = p.WPNAV
+    legs, pos, vel = p.WPNAV, est.pos, est.vel
     if nav.request_pending != 0 or nav.current.segments < 1:
         return False
     nav.active_us = time_us
-    feasible = path.feasible_time_scale(nav, est.pos, est.vel, p.PSC.POSXY_P)
+    if nav.over_ground:
+        if nav.ground_lost:
+            brake_ne(control.pos_ne)
+            input_vel_accel_d(control.pos_d, 0.0, 0.0)
+            return False
+        pos, vel = Vec3(pos.x, pos.y, pos.z - nav.ground_d), Vec3(vel.x, vel.y, vel.z - nav.ground_vel)
+    if nav.detour.bend != STRAIGHT:
+        steer(nav, control)
+        return False
+    feasible = path.feasible_time_scale(nav, pos, vel, p.PSC.POSXY_P)
     path.scale_time(nav, feasible, CM * legs.ACCEL / max(legs.JERK, 0.1), DT)
     advance_pause(nav, legs, p.PSC.JERK_XY)
     step = nav.time_scale * nav.pause_scale * DT
@@ -114,16 +126,39 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate
     nav.vel = nav.vel * nav.pause_scale
     follow_target(control, nav, nav.vel.z, nav.acc.z)
-    if done and (nav.current.fast or is_near_end(nav, est.pos, CM * legs.RADIUS)):
+    if done and (nav.current.fast or is_near_end(nav, pos, CM * legs.RADIUS)):
         path.arrive(nav)
     return nav.reached
+
+
+@law
+def steer(nav: CopterNav, control: Control) -> None:
+    """One tick straight to BendyRuler's target."""
+    target = nav.detour.bent_target
+    nav.pos = Vec3(target.x, target.y, target.z - nav.ground_d) if nav.over_ground else target
+    nav.vel, nav.acc = ZERO, ZERO
+    input_pos_ned(control.pos_ne, control.pos_d, target)
 
 
 @law
 def follow_target(control: Control, nav: CopterNav, climb: float, climb_accel: float) -> None:
     """Hand the target to the controllers, which climb with it at ``climb`` [m/s], ``climb_accel`` [m/s^2]."""
     set_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(nav.pos), horizontal(nav.vel), horizontal(nav.acc)))
-    set_pos_vel_accel_d(control.pos_d, Motion(nav.pos.z, climb, climb_accel))
+    set_pos_vel_accel_d(control.pos_d, over_ground(nav, Motion(nav.pos.z, climb, climb_accel)))
+
+
+@law
+def over_ground(nav: CopterNav, path: Motion) -> Motion:
+    """The height of a path, down from the origin [m]: with that of the ground where it is above the ground."""
+    if not nav.over_ground:
+        return path
+    return Motion(path.pos + nav.ground_d, path.vel + nav.ground_vel, path.acc + nav.ground_acc)
+
+
+@law
+def from_origin(nav: CopterNav, place: Vec3) -> Vec3:
+    """A place on the way, NED from the origin [m]: its height may be above the ground."""
+    return Vec3(place.x, place.y, place.z + nav.ground_d) if nav.over_ground else place
 
 
 @law

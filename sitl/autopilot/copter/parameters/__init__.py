@@ -18,6 +18,7 @@ from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
+from ...terrain.grid import MEANINGS
 from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
 from .flight import (
@@ -41,6 +42,7 @@ from .flight import (
     ZigZag,
 )
 from .safety import Battery, Failsafes, Fence, Simulated
+from .terrain import TerrainData
 
 
 class Frame(ParameterGroup):
@@ -129,6 +131,7 @@ class Parameters(shared.Parameters):
     SRTL: SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
+    TERRAIN: TerrainData
     THR_DZ: float = param(
         100,
         0,
@@ -146,4 +149,9 @@ class Parameters(shared.Parameters):
 
 if not TYPE_CHECKING:
     Parameters = with_registered("copter", Parameters)
-TABLE = Table(Parameters, Path(__file__).with_name("ardupilot.csv"), shell_parameters.MEANINGS, shell_parameters.OWN)
+TABLE = Table(
+    Parameters,
+    Path(__file__).with_name("ardupilot.csv"),
+    {**shell_parameters.MEANINGS, **MEANINGS},
+    shell_parameters.OWN,
+)

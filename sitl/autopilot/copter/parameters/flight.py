@@ -119,6 +119,7 @@ class Rtl(ParameterGroup):
     )
     SPEED: float = param(0, 0, 2000, "cm/s", "Speed of the way home; 0 as WPNAV_SPEED", INT16)
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
+    ALT_TYPE: float = param(0, 0, 1, "", "Height of the way home: 0 above home, 1 above the ground", INT8)
 
 
 class SmartRtl(system.SmartRtl):
@@ -218,3 +219,4 @@ class Legs(ParameterGroup):
     ACCEL_Z: float = param(100.0, 50.0, 1000.0, "cm/s/s", "Vertical acceleration limit in missions")
     JERK: float = param(1.0, 0.1, 50.0, "m/s/s/s", "Jerk limit along legs")
     ACCEL_C: float = param(0.0, 0.0, 2000.0, "cm/s/s", "Acceleration in corners; 0: twice WPNAV_ACCEL")
+    RFND_USE: float = param(1, 0, 1, "", "1: heights above the ground are by a range-finder, where there is one", INT8)

@@ -9,7 +9,7 @@ from ....core.records import Records
 from ....core.vectors import Vec3
 from ... import aux_switch, battery, home, optical_flow, smart_rtl_path, visual_odometry
 from ...arming_checks import BY_RUDDER
-from ...avoidance import limit, proximity
+from ...avoidance import bendy_ruler, limit, proximity
 from ...events import LEG_ENDING, Events, emit_and_return
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
@@ -110,13 +110,14 @@ def check_slowly(v: Vehicle) -> None:
     fs.gcs = is_gcs_lost(fs, v.time_us, p.FS)
     failsafe.watch(v, failsafe.BIT_GCS, fs.gcs)
     level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
-    report_battery(ap.events, v.time_us, level)
+    report_battery(ap.events, v.time_us, level, ap.battery)
     watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)
     failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
     fence.watch(v)
     crash.check(v)
     limit.watch(v, False)
+    bendy_ruler.watch(ap, 0.0, v.time_us)
     watch_detour(ap.modes.nav, areas_of(ap.fence, p.OA, p.FENCE), ap.events, v.time_us)
 
 

@@ -30,6 +30,7 @@ from ....core.scalars import finite, wrap_pi
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
 from ...navigation import path
+from ...navigation.state import BENT, STRAIGHT
 from ...state import Estimate
 from ..control import position, speed
 from ..control.state import DT, Control, PositionState
@@ -186,7 +187,8 @@ def reached(nav: RoverNav) -> bool:
 @law
 def heading_to_destination(nav: RoverNav, pos: Vec3) -> float:
     """Heading that takes a vehicle at ``pos`` [m] to the destination [rad], nose or tail first."""
-    towards = path.bearing(nav, pos)
+    goal = nav.detour.bent_target if nav.detour.bend == BENT else nav.target
+    towards = math.atan2(goal.y - pos.y, goal.x - pos.x)
     return wrap_pi(towards + math.pi) if nav.drive.reversed else towards
 
 
@@ -263,7 +265,9 @@ def move_target(nav: RoverNav, control: Control, estimate: Estimate, params: Par
         position.init(c, estimate)
     if pivot.is_active(nav.drive, params):
         return
-    if nav.drive.shaped:
+    if nav.detour.bend != STRAIGHT:
+        position.input_pos(c, horizontal(nav.detour.bent_target))
+    elif nav.drive.shaped:
         position.input_pos(c, horizontal(nav.target))
         nav.reached = nav.reached or has_arrived(c, horizontal(nav.target), params.WP.RADIUS)
     else:

@@ -60,6 +60,6 @@ class Fence(fence.Fence):
         -128,
         127,
         "",
-        "Breached: 0 nothing, 1 RTL or HOLD, 2 HOLD, 3 SMART_RTL, RTL or HOLD, 4 SMART_RTL or HOLD",
+        "Breached: 0 nothing, 1 RTL or HOLD, 2 HOLD, 3 SMART_RTL, RTL, HOLD, 4 SMART_RTL or HOLD, 5 disarms, 6 LOITER",
         INT8,
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contact with flat ground at pos.z = 0.
+"""Contact with the ground, flat where the vehicle is: at pos.z = 0, or as high as terrain data says.
 
 A vehicle that touches stays where it is until its thrust exceeds its weight: Coulomb friction stops it, its
 legs level it. Touching with more lean than the airframe's tip angle tips it over: it lies as it fell,
@@ -30,17 +30,17 @@ def upright(q: Quat) -> float:
 
 
 @law
-def touch(body: Body, ground: Ground, legs: Legs, time_us: int) -> None:
-    """Called in the air after a substep: stop at the ground when it is reached."""
+def touch(body: Body, ground: Ground, ground_d: float, legs: Legs, time_us: int) -> None:
+    """Called in the air after a substep: stop at the ground at ``ground_d`` (down [m]) when it is reached."""
     pos, vel = body.pos, body.vel
-    if pos.z < 0.0 or vel.z < 0.0:
+    if pos.z < ground_d or vel.z < 0.0:
         return
     if vel.z > legs.hit_speed:
         ground.hit_count += 1
         ground.hit_speed = vel.z
         ground.hit_time_us = time_us
     ground.impulse += vel.z
-    body.pos, body.vel, body.rates = Vec3(pos.x, pos.y, 0.0), Vec3(vel.x, vel.y, 0.0), ZERO
+    body.pos, body.vel, body.rates = Vec3(pos.x, pos.y, ground_d), Vec3(vel.x, vel.y, 0.0), ZERO
     if upright(body.q) < math.cos(legs.tip_angle):
         ground.state = GROUND_LYING
     else:
@@ -74,13 +74,14 @@ def levelling_rates(q: Quat, time_constant: float) -> Vec3:
 
 
 @law
-def rest(body: Body, acc: Vec3, stands: bool, legs: Legs, dt: float) -> Vec3:
+def rest(body: Body, acc: Vec3, stands: bool, ground_d: float, legs: Legs, dt: float) -> Vec3:
     """One substep on the ground of a vehicle that stands, or lies.
 
     Args:
         body: adds the rates to its ``rates_mean``.
         acc: that its rotors and the air would give it [m/s^2], body frame, without gravity.
         stands: on its legs, which level it; otherwise its rotors do nothing.
+        ground_d: down of the ground [m].
         legs: that it has.
         dt: length of the substep [s].
 
@@ -90,7 +91,7 @@ def rest(body: Body, acc: Vec3, stands: bool, legs: Legs, dt: float) -> Vec3:
     q, before = body.q, body.vel
     vel = slide(before, rotate(q, acc) if stands else ZERO, legs.ground_friction, dt)
     n, e = body.pos.x + 0.5 * dt * (before.x + vel.x), body.pos.y + 0.5 * dt * (before.y + vel.y)
-    body.pos, body.vel = Vec3(n, e, 0.0), vel
+    body.pos, body.vel = Vec3(n, e, ground_d), vel
     body.rates = ZERO
     if stands:
         rates = levelling_rates(q, max(legs.leg_time_constant, dt))

@@ -21,7 +21,7 @@ def init(v: Vehicle[Physics], airframe: CopterAirframe, home: Home, seed: int) -
     """
     clear(v, airframe, seed)
     p = v.physics
-    p.rotors.efficiency[:] = 1.0
+    p.rotors.share[:] = 1.0
     p.ground.state = GROUND_STANDING
     prepare(p.airframe, p.derived)
     place(p, home)

@@ -39,7 +39,7 @@ def command(rotors: Rotors, controls: Floats, figures: Figures, derived: Derived
     for k in range(figures.rotor_count):
         if stuck != 0 and stuck >> k & 1:
             continue
-        c = (float(controls[k]) - figures.control_min) * derived.control_scale
+        c = (float(controls[k]) * rotors.share[k] - figures.control_min) * derived.control_scale
         if not c > 0.0:  # also for NaN
             c = 0.0
         elif c > 1.0:
@@ -97,7 +97,7 @@ def speed_squared_wrench(rotors: Rotors, figures: Figures, flow: Flow) -> Wrench
     momentum, shaft = 0.0, 0.0
     for k in range(figures.rotor_count):
         w, direction, at = rotors.speed[k], figures.rotor_direction[k], hub(figures, k)
-        thrust = figures.thrust_coefficient * w * w * rotors.efficiency[k]
+        thrust = figures.thrust_coefficient * w * w
         rotors.thrust[k] = thrust
         air = velocity_at(at, flow)
         drag_x = -figures.rotor_drag * w * air.x
@@ -129,7 +129,7 @@ def momentum_wrench(rotors: Rotors, figures: Figures, flow: Flow, air: Air, outf
         c, at = rotors.speed[k], hub(figures, k)
         hub_air = velocity_at(at, flow)
         inflow = max(-hub_air.z, 0.0)
-        thrust = half_flow * (outflow2 * c * (1.0 - expo + expo * c) - inflow * inflow) * rotors.efficiency[k]
+        thrust = half_flow * (outflow2 * c * (1.0 - expo + expo * c) - inflow * inflow)
         rotors.thrust[k] = thrust
         drag = k_drag * math.sqrt(abs(thrust))
         drag_x = -drag * hub_air.x

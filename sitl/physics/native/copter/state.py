@@ -31,7 +31,7 @@ class Rotors(Record):
     command: Floats = array(ROTORS_MAX)  # 0 .. 1
     speed: Floats = array(ROTORS_MAX)  # [rad/s]; THRUST_MOMENTUM: the lagged command 0 .. 1
     thrust: Floats = array(ROTORS_MAX)  # [N]
-    efficiency: Floats = array(ROTORS_MAX)  # share of the thrust left, 1 healthy: a motor fault
+    share: Floats = array(ROTORS_MAX)  # of their controls that is left (SIM_ENGINE_FAIL)
     stuck: int  # bits of those whose command stays (SIM_ENGINE_STUCK)
     telemetry: bool  # speed controllers tell speeds
     rpm_armed: float  # they tell so much at least while armed

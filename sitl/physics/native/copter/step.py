@@ -42,9 +42,9 @@ def substep(p: Physics, wrench: Wrench, time_us: int) -> Vec3:
     if stands and lifts_off(body.q, wrench.force, inverse_mass):
         ground.state = GROUND_AIRBORNE
     if ground.state != GROUND_AIRBORNE:
-        return rest(body, acc, stands, figures, dt)
+        return rest(body, acc, stands, p.downward.ground_d, figures, dt)
     fly(body, wrench, Inertia(figures.inertia, p.derived.inverse_inertia, inverse_mass), dt)
-    touch(body, ground, figures, time_us)
+    touch(body, ground, p.downward.ground_d, figures, time_us)
     return acc
 
 

@@ -90,7 +90,7 @@ def balance(p: Physics, wanted: Vec3) -> Trim:
     b.specific_force = rotate_inverse(b.q, wanted)
     full, holds = speed_at_full(p), True
     for rotor in range(figures.rotor_count):
-        holds = holds and rotors.speed[rotor] <= RESERVE * full
+        holds = holds and rotors.speed[rotor] <= RESERVE * rotors.share[rotor] * full
     return Trim(multiply(b.q, conjugate(before)), holds)
 
 
@@ -101,4 +101,5 @@ def command_speeds(p: Physics, controls: Floats) -> None:
     top = 1.0 if figures.thrust_model == THRUST_MOMENTUM else figures.speed_max
     for k in range(figures.rotor_count):
         rotors.command[k] = rotors.speed[k] / top
-        controls[k] = rotors.command[k] * (figures.control_max - figures.control_min) + figures.control_min
+        made = rotors.command[k] * (figures.control_max - figures.control_min) + figures.control_min
+        controls[k] = made / rotors.share[k] if rotors.share[k] > 0.0 else 0.0

@@ -29,10 +29,11 @@ RANGE_TICKS = 20
 
 
 @law
-def distance(body: Body, o: Obstacles) -> float:
-    """How far it is down the body's axis to the ground or to a solid near the vehicle [m]; inf: it looks up."""
+def distance(body: Body, o: Obstacles, ground_d: float) -> float:
+    """How far it is down the body's axis to the ground at ``ground_d`` (down [m]) or to a solid near the vehicle [m];
+    inf: it looks up."""
     down = rotate(body.q, Vec3(0.0, 0.0, 1.0))
-    found = to_floor(-body.pos.z, down.z)
+    found = to_floor(-(body.pos.z - ground_d), down.z)
     if o.present:
         for k in range(o.count):
             found = min(found, to_solid(o.rows, k, body.pos, down))
@@ -82,12 +83,12 @@ def sample(p: Physics, sensors: Sensors, rng: Rng, now: Clock) -> None:
     """Measure as it falls due."""
     down = p.downward
     if down.ranges and now.tick % RANGE_TICKS == 0:
-        away = distance(p.body, p.obstacles)
+        away = distance(p.body, p.obstacles, down.ground_d)
         sensors.rangefinder_range[0] = max(away, down.range_min) if away <= down.range_max else math.inf
         sensors.rangefinder_count += 1
     if down.flow_period > 0:
         if now.tick % down.flow_period == 0:
-            take(down, p.body, distance(p.body, p.obstacles), rng, now.tick)
+            take(down, p.body, distance(p.body, p.obstacles, down.ground_d), rng, now.tick)
         deliver(down, sensors, now.tick)
     else:
         down.flow_tail = down.flow_head

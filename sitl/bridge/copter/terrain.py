@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""TERRAIN_REPORT: how high the ground is below the copter."""
+
+from __future__ import annotations
+
+from ...autopilot.terrain.ground import by_grid
+from ...core.kernels import law
+from ...vehicle.copter import Copter
+from ..telemetry.motion import global_position
+from ..telemetry.units import uint16
+from ..wire.message import Message
+
+
+class TerrainReport(Message, name="TERRAIN_REPORT"):
+    lat: int
+    lon: int
+    spacing: int
+    terrain_height: float
+    current_height: float
+    pending: int
+    loaded: int
+
+
+@law
+def terrain_report(m: TerrainReport, v: Copter) -> bool:
+    """TERRAIN_REPORT: where the vehicle is, height of the ground [m above sea level] and of the vehicle over it, parts
+    of the grid that are missing and known; spacing 0: not known here, heights are by the last ground that was."""
+    ap = v.autopilot
+    t = ap.terrain
+    difference = ap.home.pos.z - by_grid(t, ap.estimate.pos, ap.home.pos.z).d
+    place = global_position(v)
+    m.lat, m.lon = place.lat, place.lon
+    m.spacing = uint16(float(t.spacing)) if t.is_known else 0
+    m.terrain_height = t.home + difference + t.offset
+    m.current_height = ap.home.pos.z - ap.estimate.pos.z - difference
+    m.pending, m.loaded = uint16(float(t.pending)), uint16(float(t.loaded))
+    return True
+
+
+MESSAGES = (terrain_report,)

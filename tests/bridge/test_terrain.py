@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who is asked for heights of the ground, for what, and how often."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sitl.autopilot.mission.item import NAV_WAYPOINT, MissionItem, home_item
+from sitl.autopilot.terrain.grid import PARTS, around, block_of
+from sitl.bridge.dialect import message
+from sitl.bridge.services.terrain import TerrainService
+from tests.bridge.fakes import HOME, Bench, FakeRover, mavlink
+
+REPORT, INTERVAL = message("TERRAIN_REPORT").id, 511
+ALL = (1 << PARTS) - 1
+
+
+class Ground(Bench):
+    """A vehicle that knows where it is, and asks."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.vehicle.locate()
+        self.command(INTERVAL, REPORT, 1e6)
+        self.terrain = self.vehicle.v.autopilot.terrain
+
+    def requests(self, seconds: float) -> list[Any]:
+        """What the first client is asked for meanwhile."""
+        self.run(seconds)
+        return list(self.client.receive("TERRAIN_REQUEST"))
+
+    def answer(self, request: Any, height: int = 600, parts: int = ALL) -> None:
+        """Tell the parts of a block."""
+        for bit in range(PARTS):
+            if (parts & request.mask) >> bit & 1:
+                place = request.lat, request.lon, request.grid_spacing
+                self.client.send(mavlink.MAVLink_terrain_data_message(*place, bit, [height] * 16))
+        self.bridge.receive()
+
+
+def test_a_block_is_asked_for_every_two_seconds_in_turn() -> None:
+    bench = Ground()
+    found = bench.requests(18.0)
+    assert [(m.lat, m.lon) for m in found] == list(around(HOME[0], HOME[1], 100.0))
+    assert {(m.grid_spacing, m.mask) for m in found} == {(100, ALL)}
+    again = bench.requests(4.0)
+    assert [(m.lat, m.lon) for m in again] == [(m.lat, m.lon) for m in found[:2]]
+    assert bench.terrain.pending == 9 * PARTS
+
+
+def test_what_is_known_is_not_asked_for_again() -> None:
+    bench = Ground()
+    first = bench.requests(2.0)[0]
+    bench.answer(first, parts=0b1111)
+    assert (bench.terrain.loaded, bench.terrain.pending) == (4, 9 * PARTS - 4)
+    (again,) = [m for m in bench.requests(18.0) if (m.lat, m.lon) == (first.lat, first.lon)]
+    assert again.mask == ALL & ~0b1111
+    bench.answer(again)
+    assert (first.lat, first.lon) not in [(m.lat, m.lon) for m in bench.requests(20.0)]
+    assert bench.terrain.is_known and bench.terrain.was_known
+    assert bench.terrain.home == 600.0
+
+
+def test_only_who_gets_reports_is_asked() -> None:
+    bench = Bench()
+    bench.vehicle.locate()
+    other = bench.connect()
+    bench.run(6.0)
+    assert not bench.client.receive("TERRAIN_REQUEST") and not bench.vehicle.v.autopilot.terrain.asked
+    bench.command(INTERVAL, REPORT, 1e6)
+    bench.run(6.0)
+    assert len(bench.client.receive("TERRAIN_REQUEST")) == 3
+    assert not other.receive("TERRAIN_REQUEST")
+    bench.command(INTERVAL, REPORT, -1)
+    bench.run(6.0)
+    assert not bench.client.receive("TERRAIN_REQUEST") and not bench.vehicle.v.autopilot.terrain.asked
+
+
+def test_parameters_say_whether_and_how_densely() -> None:
+    bench = Ground()
+    bench.answer(bench.requests(2.0)[0])
+    for name in ("TERRAIN_ENABLE", "TERRAIN_OPTIONS"):
+        before = bench.vehicle.parameters[name]
+        bench.client.send(mavlink.MAVLink_param_set_message(1, 1, name.encode(), 1.0 - before, 9))
+        assert not bench.requests(6.0) and not bench.terrain.asked
+        bench.client.send(mavlink.MAVLink_param_set_message(1, 1, name.encode(), before, 9))
+        assert bench.requests(2.0)
+    assert bench.terrain.loaded == PARTS
+    bench.client.send(mavlink.MAVLink_param_set_message(1, 1, b"TERRAIN_SPACING", 30.0, 9))
+    request = bench.requests(2.0)[-1]
+    assert (request.lat, request.lon, request.grid_spacing) == (*block_of(HOME[0], HOME[1], 30.0), 30)
+    assert bench.terrain.loaded == 0 and not bench.terrain.is_known
+    for spacing in (0.0, -5.0, 1e9):
+        bench.client.send(mavlink.MAVLink_param_set_message(1, 1, b"TERRAIN_SPACING", spacing, 9))
+        assert bench.requests(2.0)[-1].grid_spacing == min(max(spacing, 1.0), 10000.0)
+
+
+def test_the_way_of_the_mission_is_asked_for() -> None:
+    bench = Ground()
+    far = HOME[0] + 900_000, HOME[1]  # 10 km
+    bench.autopilot.items = (
+        home_item(HOME[0], HOME[1], 0.0),
+        MissionItem(NAV_WAYPOINT, x=HOME[0], y=HOME[1], z=10.0),
+        MissionItem(NAV_WAYPOINT, x=far[0], y=far[1], z=10.0),
+    )
+    blocks = {(m.lat, m.lon) for m in bench.requests(40.0)}
+    assert {block_of(HOME[0] + k * 100_000, HOME[1], 100.0) for k in range(10)} <= blocks
+
+
+def test_a_snapshot_goes_on_with_the_same_requests() -> None:
+    bench = Ground()
+    bench.answer(bench.requests(2.0)[0])
+    bench.requests(4.0)
+    service: TerrainService = bench.bridge.get(TerrainService)
+    state, record, time_us = service.snapshot(), bytes(bench.vehicle.v._bytes), bench.vehicle.time_us
+    first = [(m.lat, m.lon, m.mask) for m in bench.requests(10.0)]
+    bench.vehicle.v._bytes[:] = record
+    assert bench.vehicle.time_us == time_us
+    service.restore(state)
+    assert [(m.lat, m.lon, m.mask) for m in bench.requests(10.0)] == first
+
+
+def test_a_check_is_answered_though_nobody_is_asked() -> None:
+    bench = Bench()
+    for place in (HOME[:2], (0, 0), (1_000_000_000, 0), (-900_000_000, 1_800_000_000), (900_000_000, -1_800_000_000)):
+        (answer,) = bench.ask(mavlink.MAVLink_terrain_check_message(*place), "TERRAIN_REPORT")
+        assert (answer.lat, answer.lon, answer.spacing, answer.terrain_height) == (*place, 0, 0.0)
+
+
+def test_a_rover_asks_nobody() -> None:
+    bench = Bench(FakeRover())
+    bench.vehicle.locate()
+    bench.command(INTERVAL, REPORT, 1e6)
+    bench.client.send(mavlink.MAVLink_terrain_check_message(*HOME[:2]))
+    bench.run(6.0)
+    assert not bench.client.receive("TERRAIN_REQUEST", "TERRAIN_REPORT")
