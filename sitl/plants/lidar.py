@@ -40,6 +40,15 @@ class Scene(NamedTuple):
     """An engine's own way to cast rays (``sitl.physics.engine.Engine.cast``)."""
 
 
+class Company(NamedTuple):
+    """The vehicles that share a world, and which of them this is."""
+
+    movers: int
+    """Address of what they show (``sitl.physics.native.traffic.Mover``), which stays in place."""
+    count: int
+    number: int
+
+
 class Rays(NamedTuple):
     """A sensor's rays, and room to work in: the arrays of a ``Beams``."""
 
@@ -77,8 +86,6 @@ class Rangers:
         g = scene.geometry
         r.solids, r.grid, r.cells = (array.ctypes.data for array in (g.solids, g.grid, g.cells))
         r.solid_count, r.cell_count, r.floor = len(g.solids), len(g.cells), scene.floor
-        self._all = [r]
-        """Those with room of their own, too."""
         self._rays = rays_of(self._v)
         for number, arrays in enumerate(self._rays):
             if arrays is not None:
@@ -100,7 +107,6 @@ class Rangers:
         vehicles that another thread advances."""
         memory = self._memory.copy()
         copy, room = Ranging.of(memory, 0), []
-        self._all.append(copy)
         for number, arrays in enumerate(self._rays):
             if arrays is not None:
                 own = Rays(arrays.rays, np.empty_like(arrays.directions), np.empty_like(arrays.ranges))
@@ -111,15 +117,10 @@ class Rangers:
                 )
         return memory.ctypes.data, (self, memory, room)
 
-    def share(self, movers: int, count: int) -> None:
-        """Let the sensors meet other vehicles.
-
-        Args:
-            movers: address of what all vehicles show (``sitl.physics.native.traffic.Mover``), which stays in place.
-            count: how many there are, this one included.
-        """
-        for r in self._all:
-            r.movers, r.mover_count = movers, count
+    def share(self, company: Company) -> None:
+        """Let the sensors meet other vehicles."""
+        r = self._ranging
+        r.movers, r.mover_count, r.number = company
 
     @property
     def has_rangefinder(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple, Unpack
+from typing import Unpack
 
 from ..autopilot import boot
 from ..autopilot.params import files
@@ -20,18 +20,9 @@ from ..physics.native.ranging import list_near
 from ..scenario import Options, Scenario
 from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..vehicles import Airframe
-from .lidar import Rangers, Scene
+from .lidar import Company, Rangers, Scene
 from .plant import Plant, SimulatedVehicle
 from .surroundings import Surroundings
-
-
-class Company(NamedTuple):
-    """The vehicles that share a world, and which of them this is."""
-
-    movers: int
-    """Address of what they show (``sitl.physics.native.traffic.Mover``), which stays in place."""
-    count: int
-    number: int
 
 
 class LocalPlant(Plant):
@@ -123,13 +114,8 @@ class LocalPlant(Plant):
         """Share the world with other vehicles, now and after each power-on; native physics in a world."""
         assert self.rangers is not None
         self.company, p = company, self.vehicle.v.physics
-        self.rangers.share(company.movers, company.count)
-        p.obstacles.number, p.obstacles.present, p.wind.is_shared = company.number, True, True
-
-    def stand_at(self, surroundings: Surroundings, seed: int) -> None:
-        """Where the vehicle stands, and the seed of its noise, from the next power-on."""
-        self.surroundings, self.seed = surroundings, seed
-        self.home = (*self.home[:3], math.degrees(surroundings.heading))
+        self.rangers.share(company)
+        p.obstacles.present = p.wind.is_shared = True
 
     # ------------------------------------------------------------------ going on
 

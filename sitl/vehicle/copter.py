@@ -27,7 +27,7 @@ from ..physics.native.copter.step import step
 from ..physics.native.copter.trim import balance, command_speeds
 from ..physics.native.move import show_field
 from ..physics.native.records import GROUND_AIRBORNE
-from ..physics.native.traffic import MOVER_SIZE, Mover
+from ..physics.native.traffic import Mover
 from ..vehicles import CopterAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
@@ -134,15 +134,14 @@ def move(fleet: Sequence[Copter], index: int, count: int, orders: int, ranging: 
 
 
 @unit
-def meet(fleet: Sequence[Copter], index: int, last: int, movers: int, shows: int) -> None:
-    """Vehicles ``index`` .. ``last`` - 1 show themselves to those that share their world (``shows`` 1), or take over
-    what came of meeting them (0); ``movers``: address of the ``Mover`` of the first."""
-    for k in range(index, last):
-        m = record_at(Mover, movers + (k - index) * MOVER_SIZE)
-        if shows != 0:
-            show(fleet[k], m)
-        elif m.is_pushed:
-            take_push(fleet[k], m)
+def meet(fleet: Sequence[Copter], index: int, mover: int, shows: int) -> None:
+    """Show vehicle ``index`` to those that share its world (``shows`` 1), or take over what came of meeting them (0);
+    ``mover``: address of its ``Mover``."""
+    v, m = fleet[index], record_at(Mover, mover)
+    if shows != 0:
+        show(v, m)
+    elif m.is_pushed:
+        take_push(v, m)
 
 
 def apply_sim_parameters(v: Copter) -> None:

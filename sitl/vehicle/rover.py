@@ -26,7 +26,7 @@ from ..physics.native.rover.motion import hold_back
 from ..physics.native.rover.prepare import prepare
 from ..physics.native.rover.state import Physics
 from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
-from ..physics.native.traffic import MOVER_SIZE, Mover
+from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
@@ -100,16 +100,16 @@ def move(fleet: Sequence[Rover], index: int, count: int, orders: int, ranging: i
 
 
 @unit
-def meet(fleet: Sequence[Rover], index: int, last: int, movers: int, shows: int) -> None:
-    """Vehicles ``index`` .. ``last`` - 1 show themselves to those that share their world (``shows`` 1), or take over
-    what came of meeting them (0); ``movers``: address of the ``Mover`` of the first."""
-    for k in range(index, last):
-        m, p = record_at(Mover, movers + (k - index) * MOVER_SIZE), fleet[k].physics
-        if shows != 0:
-            show(fleet[k], m)
-        elif m.is_pushed:
-            take_push(fleet[k], m)
-            hold_back(p.body, p.obstacles, p.wheels, p.airframe.rear_axle)
+def meet(fleet: Sequence[Rover], index: int, mover: int, shows: int) -> None:
+    """Show vehicle ``index`` to those that share its world (``shows`` 1), or take over what came of meeting them (0);
+    ``mover``: address of its ``Mover``."""
+    v, m = fleet[index], record_at(Mover, mover)
+    if shows != 0:
+        show(v, m)
+    elif m.is_pushed:
+        take_push(v, m)
+        p = v.physics
+        hold_back(p.body, p.obstacles, p.wheels, p.airframe.rear_axle)
 
 
 def hold_outputs(p: Physics, sim: Simulated, controls: Floats) -> None:

@@ -60,6 +60,7 @@ class Ranging(Record):
     movers: int  # what all vehicles of the world show (``traffic.Mover``), shape (mover_count,)
     mover_count: int  # 0: the vehicle is alone
     # the vehicle's own
+    number: int  # of the vehicle, among those that share its world
     beams: Records[Beams] = repeat(Beams, SENSORS)
 
 
@@ -201,7 +202,7 @@ def cast(v: Vehicle[Physics], r: Ranging, number: int) -> None:
     scan_rays(solids_of(r), beams.origin, directions, figures.range_max, ranges)
     if r.mover_count > 0:
         origin = Vec3(beams.origin.x, beams.origin.y, beams.origin.z + r.floor)
-        others = Others(r.movers, r.mover_count, v.physics.obstacles.number, v.time_us)
+        others = Others(r.movers, r.mover_count, r.number, v.time_us)
         meet_rays(others, origin, directions, figures.range_max, ranges)
 
 

@@ -278,7 +278,6 @@ class Obstacles(Record):
     """The solids near the vehicle, and contact with them."""
 
     present: bool  # there is a world with solids, or with other vehicles
-    number: Int32  # of the vehicle, among those that share its world (``traffic``)
     count: int  # rows of the list
     north: float  # where it was gathered, as body.pos [m]
     east: float  # [m]
