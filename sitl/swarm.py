@@ -23,7 +23,7 @@ from .bridge.services.parameters import ParameterService
 from .core import rng
 from .core.compile import Progress
 from .core.constants import TICK_US
-from .core.record_reader import RecordReader
+from .core.record_reader import RecordReader, locate
 from .core.vectors import Vec3
 from .errors import OptionError
 from .physics.native.records import Wind
@@ -146,7 +146,7 @@ class Swarm:
         self._gusts = SharedWind.of(self._air, 0)
         rng.seed(self._gusts.rng, self.vehicles[0].seed)
         self._wind_at = [self._wind_bytes(vehicle) for vehicle in self.vehicles]
-        self._wind = bytes(self._wind_at[0])
+        self._set_wind_of(0)
         self._follows = [_reads_follow(vehicle) for vehicle in self.vehicles]
         self._radios = [InProcessLink("radio") for _ in range(n)]
         self._said, self._to_hear = [b""] * n, [b""] * n
@@ -169,8 +169,8 @@ class Swarm:
 
     @staticmethod
     def _wind_bytes(vehicle: Simulation) -> memoryview:
-        fields = vehicle.kind.record.fields
-        at = fields["physics"].offset + vehicle.kind.record.dtype["physics"].fields["wind"][1]
+        """Where its settings of the wind are in memory."""
+        at = locate(vehicle.fleet.dtype, "physics.wind.speed")[0]
         return memoryview(vehicle.fleet.view("u1"))[at : at + _WIND_BYTES]  # type: ignore[arg-type]
 
     def __len__(self) -> int:

@@ -45,7 +45,7 @@ class Company(NamedTuple):
 
     movers: int
     """Address of what they show (``sitl.physics.native.traffic.Mover``), which stays in place."""
-    count: int
+    total: int
     number: int
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles that share a world: what each shows to the others, what rays meet of them, and what happens when two collide.
+"""Vehicles that share a world: what each shows to the others, what rays meet of them, and what collisions do.
 
 All vehicles show themselves at the same time, once a ``SLICE_US``; in between the others know them by that and by the
 way that they were going. So nothing depends on the order in which vehicles are advanced. Those that may reach another
@@ -82,7 +82,7 @@ class Others(NamedTuple):
 
     movers: int
     """Address of the first ``Mover`` of all."""
-    count: int
+    total: int
     """How many there are."""
     own: int
     """Number of the vehicle itself."""
@@ -110,7 +110,7 @@ def meet_rays(others: Others, origin: Vec3, directions: Table, reach: float, ran
     """
     elapsed = 1e-6 * (others.time_us - record_at(Mover, others.movers + others.own * MOVER_SIZE).since_us)
     elapsed = min(max(elapsed, 0.0), _SLICE_S)
-    for number in range(others.count):
+    for number in range(others.total):
         m = record_at(Mover, others.movers + number * MOVER_SIZE)
         pos = m.pos + elapsed * m.vel
         away, far = pos - origin, reach + m.half_length + m.radius
