@@ -206,6 +206,22 @@ class Swarm:
             if end == goal:
                 return
 
+    @property
+    def heard(self) -> int:
+        """How often clients on links of the router have said something, so far."""
+        return self.router.heard
+
+    def wait(self, seconds: float) -> bool:
+        """Sleep until a client on one of these links says something, at most ``seconds`` of wall time."""
+        return self.router.wait(seconds)
+
+    def receive(self) -> None:
+        """Hear clients, and answer what needs no time."""
+        self.router.receive()
+        for vehicle in self.vehicles:
+            vehicle.bridge.receive()
+        self.router.flush()
+
     def _go(self, end: int) -> None:
         """Advance all within a slice; those that may touch each other tick by tick."""
         for k, data in enumerate(self._to_hear):
