@@ -277,3 +277,22 @@ def test_what_cannot_be_a_swarm_is_refused() -> None:
             Swarm("erle_copter", **options)  # type: ignore[arg-type]
     with pytest.raises(OptionError, match="a frame for each"):
         Swarm(["erle_copter"], 2)
+
+
+def test_a_copter_follows_another_one() -> None:
+    """FOLLOW takes the lead's GLOBAL_POSITION_INT, which comes by radio; without FOLL_ENABLE it does not."""
+    swarm = Swarm("erle_copter", 3, spacing=6.0, home=NORTH)
+    lead, behind, _ = clients_of(swarm)
+    behind.params.update({"FOLL_ENABLE": 1, "FOLL_SYSID": 1, "FOLL_OFS_X": -5, "FOLL_OFS_TYPE": 0, "FOLL_ALT_TYPE": 1})
+    for client in (lead, behind):
+        client.wait_ready()
+        client.take_off(5.0)
+    behind.set_mode("FOLLOW")
+    for east in (20.0, 40.0):
+        lead.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=1, type_mask=POSITION_ONLY, y=east, z=-5.0)
+        swarm.advance(15.0)
+    one, two, _ = positions(swarm)
+    assert one[1] > 35.0
+    assert two[0] - one[0] == pytest.approx(-5.0, abs=1.0) and two[1] - one[1] == pytest.approx(0.0, abs=1.0)
+    assert swarm[1].v.autopilot.modes.follow.sender == 1
+    assert swarm[2].v.autopilot.modes.follow.sender == 0
