@@ -52,6 +52,8 @@ class Swarm:
         self.hits: dict[int, str] = {}
         self.tracks: dict[int, list[tuple[float, float, float]]] = {system: [] for system in self.ids}
         """North, east [m] of the first vehicle's start, and height [m]."""
+        self.formations: list[tuple[str, list[Place]]] = []
+        """Where the vehicles were at the end of each move."""
         self.origin: Place | None = None
 
     def wait(self, seconds: float) -> None:
@@ -140,6 +142,7 @@ class Swarm:
             self.wait(STEP_S)
         self.wait(3.0)
         errors = [math.dist(self.place(system), goals[system]) for system in self.ids]
+        self.formations.append((what, [self.place(system) for system in self.ids]))
         print(f"{self.now:6.1f} s  {what}: within {max(errors):.2f} m", flush=True)
 
 

@@ -93,3 +93,9 @@ def test_mavsdk_swarm(fly: Fly) -> None:
 
 def test_pymavlink_swarm(fly: Fly) -> None:
     fly(SCRIPTS / "pymavlink_swarm.py", UDP, *SWARM)
+
+
+def test_two_copters_that_are_sent_into_each_other_collide(fly: Fly) -> None:
+    swarm = ("--count", "2", "--spacing", "6", "--estimator", "truth", "--home=-35.363262,149.165237,584,0")
+    said = fly(SCRIPTS / "pymavlink_collision.py", UDP, *swarm)
+    assert "ok: both were hit" in said
