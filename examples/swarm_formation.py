@@ -44,7 +44,7 @@ class Swarm:
         self.lockstep, self.ids = lockstep, range(1, count + 1)
         self.now = 0.0
         self.positions: dict[int, object] = {}
-        """The last GLOBAL_POSITION_INT of each."""
+        """The last GLOBAL_POSITION_INT of each that knows where it is."""
         self.located: set[int] = set()
         """Those that know where they are."""
         self.armed: set[int] = set()
@@ -83,7 +83,7 @@ class Swarm:
     def hear(self, message) -> None:
         """Note what a message says."""
         system, kind = message.get_srcSystem(), message.get_type()
-        if kind == "GLOBAL_POSITION_INT":
+        if kind == "GLOBAL_POSITION_INT" and system in self.located:
             self.positions[system] = message
         elif kind == "EKF_STATUS_REPORT" and message.flags & mavlink.EKF_POS_HORIZ_ABS:
             self.located.add(system)
@@ -181,7 +181,7 @@ def fly(swarm: Swarm) -> None:
     for name, rate_hz in (("GLOBAL_POSITION_INT", 5), ("EKF_STATUS_REPORT", 1)):
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
         swarm.command_all(f"{name} at {rate_hz} Hz", mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1e6 / rate_hz)
-    swarm.wait_until("all know where they are", lambda: len(swarm.located) == len(swarm.ids), READY_S)
+    swarm.wait_until("all know where they are", lambda: len(swarm.positions) == len(swarm.ids), READY_S)
     swarm.wait(5.0)
     swarm.command_all("GUIDED", mavlink.MAV_CMD_DO_SET_MODE, 1, GUIDED)
     swarm.command_all("armed", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
