@@ -29,7 +29,7 @@ HEARTBEAT_US = 1_000_000
 """Between two heartbeats of the client."""
 REPEAT_US = 500_000
 """Between two sendings of what a vehicle forgets soon (velocities, sticks), or has not answered."""
-ANSWER_S = 3.0
+ANSWER_S = 5.0
 """A command is answered within."""
 ASK_AGAIN_US = 1_000_000
 """Messages whose rates were not acknowledged are asked for again after this."""

@@ -174,9 +174,9 @@ def test_a_link_that_is_cut_ends_in_a_time_out(core: Core) -> None:
     )
     vehicle.delay(1)
     there.share = 1.0
-    with pytest.raises(WaitTimeoutError, match="waited 3 s for an answer to arming") as failure:
+    with pytest.raises(WaitTimeoutError, match="waited 5 s for an answer to arming") as failure:
         vehicle.arm()
     assert "mute at 4.0 s simulated" in str(failure.value)
-    with pytest.raises(WaitTimeoutError, match="waited 3 s for the value of RTL_ALT"):
+    with pytest.raises(WaitTimeoutError, match="waited 5 s for the value of RTL_ALT"):
         vehicle.params["RTL_ALT"]
     assert there.lost > 12

@@ -242,11 +242,10 @@ def height_on_leg(origin: Vec3, destination: Vec3, point: Vec3) -> float:
 
 
 @law
-def plan(ap: Autopilot, origin: Vec3, destination: Vec3, time_us: int) -> None:
+def plan(ap: Autopilot, origin: Vec3, destination: Vec3, upright: bool, time_us: int) -> None:
     """Look once, on the leg from an origin to a destination, and steer where that is needed."""
     nav, oa, est = ap.modes.nav, ap.params.OA, ap.estimate
     detour, way = nav.detour, destination - est.pos
-    upright = oa.BR.TYPE == 2.0
     reach = max(oa.BR.LOOKAHEAD, 1.0)
     detour.lookahead = constrain(detour.lookahead, 0.5 * reach, reach)
     distance = norm2(horizontal(way))
@@ -271,10 +270,11 @@ def plan(ap: Autopilot, origin: Vec3, destination: Vec3, time_us: int) -> None:
 
 
 @law
-def watch(ap: Autopilot, ground_d: float, time_us: int) -> None:
+def watch(ap: Autopilot, ground_d: float, upright: bool, time_us: int) -> None:
     """Ten times a second: on the way to a destination it looks once a second.
 
     ``ground_d``: how far down from the origin the heights of the leg count from [m].
+    ``upright``: it looks for ways over and under what is in the way (OA_BR_TYPE 2).
     """
     nav = ap.modes.nav
     detour = nav.detour
@@ -289,4 +289,4 @@ def watch(ap: Autopilot, ground_d: float, time_us: int) -> None:
     elif time_us - detour.bent_us >= PERIOD_US and nav.request_pending == 0 and not nav.reached:
         detour.bent_us = time_us
         above = Vec3(0.0, 0.0, ground_d)
-        plan(ap, nav.current.origin + above, nav.target + above, time_us)
+        plan(ap, nav.current.origin + above, nav.target + above, upright, time_us)

@@ -38,7 +38,6 @@ class BendyRuler(ParameterGroup):
     LOOKAHEAD: float = param(15.0, 1.0, 100.0, "m", "So far it looks, at most")
     CONT_RATIO: float = param(1.5, 1.0, 2.0, "", "A great change of bearing must gain so much of margin; 0: nothing")
     CONT_ANGLE: float = param(75, 0, 180, "deg", "A change of bearing greater than this is a great one", INT16)
-    TYPE: float = param(1, 1, 2, "", "1 around what is in the way, 2 over it (copter)", INT8)
 
 
 class ObjectDatabase(ParameterGroup):
@@ -66,6 +65,12 @@ class PathPlanning(ParameterGroup):
     OPTIONS: float = param(1, 0, 7, "", "1: after BendyRuler a leg begins where the vehicle is, else goes on", INT16)
     BR: BendyRuler = group("BendyRuler")
     DB: ObjectDatabase = group("Objects that are known to BendyRuler")
+
+
+class CopterPathPlanning(PathPlanning):
+    """OA_ of a copter."""
+
+    BR_TYPE: float = param(1, 1, 2, "", "BendyRuler: 1 around what is in the way, 2 over it", INT8)
 
 
 class Avoid(ParameterGroup):

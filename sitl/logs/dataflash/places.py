@@ -70,7 +70,8 @@ def _bearing(angle: float) -> int:
 def _ruler(v: Any, margin: float, how: int) -> tuple[float, ...]:
     ap = v.autopilot
     nav, here, home = ap.modes.nav, ap.estimate.pos, ap.home.pos.z
-    upright, target = ap.params.OA.BR.TYPE == 2.0, nav.detour.bent_target
+    upright = getattr(ap.params.OA, "BR_TYPE", 1.0) == 2.0  # a copter's
+    target = nav.detour.bent_target
     towards = math.atan2(nav.target.y - here.y, nav.target.x - here.x)
     slope = _bearing(math.atan2(here.z - target.z, math.hypot(target.x - here.x, target.y - here.y))) if upright else 0
     numbers = (2 if upright else 1, how & 1, _bearing(towards), _bearing(ap.estimate.yaw), slope, how >> 1, margin)

@@ -27,7 +27,7 @@ def pilot(*areas: Area, **values: float) -> Autopilot:
     ap = Autopilot()
     oa, params = ap.params.OA, ap.params.FENCE
     oa.TYPE, oa.MARGIN_MAX, params.TYPE, params.MARGIN = 1.0, 5.0, float(AREAS), 2.0
-    oa.BR.LOOKAHEAD, oa.BR.CONT_RATIO, oa.BR.CONT_ANGLE, oa.BR.TYPE = 15.0, 1.5, 75.0, 1.0
+    oa.BR.LOOKAHEAD, oa.BR.CONT_RATIO, oa.BR.CONT_ANGLE = 15.0, 1.5, 75.0
     oa.DB.SIZE, oa.DB.EXPIRE, oa.DB.BEAM_WIDTH, oa.DB.RADIUS_MIN = 100.0, 10.0, 5.0, 0.01
     for name, value in values.items():
         group, _, field = name.partition("_")
@@ -39,12 +39,14 @@ def pilot(*areas: Area, **values: float) -> Autopilot:
     return ap
 
 
-def look(ap: Autopilot, pos: tuple[float, float], vel: tuple[float, float], destination: Vec3) -> tuple[float, int]:
+def look(
+    ap: Autopilot, pos: tuple[float, float], vel: tuple[float, float], destination: Vec3, upright: bool = False
+) -> tuple[float, int]:
     """One look; the margin and how it steers."""
     ap.estimate.pos, ap.estimate.vel = Vec3(*pos, 0.0), Vec3(*vel, 0.0)
     ap.modes.nav.target = destination
     count = ap.events.count
-    bendy_ruler.plan(ap, ap.modes.nav.current.origin, destination, SECOND)
+    bendy_ruler.plan(ap, ap.modes.nav.current.origin, destination, upright, SECOND)
     found = [k for k in range(count, ap.events.count) if ap.events.code[k] == BENDY_RULER_LOOKED]
     return float(ap.events.a[found[0]]), int(ap.events.b[found[0]])
 
@@ -111,11 +113,11 @@ def test_the_end_of_a_bend_asks_for_a_leg() -> None:
 
 
 def test_over_an_object_when_that_is_asked_for() -> None:
-    ap = pilot(BR_TYPE=2.0)
+    ap = pilot()
     ap.params.FENCE.TYPE = 0.0
     ap.modes.nav.detour.lookahead = 15.0
     objects.note(ap.objects, Vec3(10.0, 0.0, 0.0), 10.0, ZERO, SECOND, ap.params.OA.DB)
-    assert look(ap, (0.0, 0.0), (3.0, 0.0), NORTH)[1] == 1
+    assert look(ap, (0.0, 0.0), (3.0, 0.0), NORTH, upright=True)[1] == 1
     assert ap.modes.nav.detour.bent_target.z == pytest.approx(-100.0)
 
 

@@ -123,7 +123,8 @@ def check_slowly(v: Vehicle) -> None:
     yaw_imbalance.check(v)
     avoidance.watch(v)
     ap, nav = v.autopilot, v.autopilot.modes.nav
-    bendy_ruler.watch(ap, nav.ground_d if nav.over_ground else 0.0, v.time_us)
+    ground_d = nav.ground_d if nav.over_ground else 0.0
+    bendy_ruler.watch(ap, ground_d, ap.params.OA.BR_TYPE == 2.0, v.time_us)
     watch_detour(ap.modes.nav, areas_of(ap.fence, ap.params.OA, ap.params.FENCE), ap.events, v.time_us)
 
 

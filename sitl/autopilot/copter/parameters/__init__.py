@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ....core.records import Floats, Records
 from ... import shell_parameters
 from ...params import parameters as shared
-from ...params.avoidance import PathPlanning, ProximitySensor
+from ...params.avoidance import CopterPathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
@@ -105,7 +105,7 @@ class Parameters(shared.Parameters):
     MAV1: StreamRates
     MIS: Mission
     MOT: Motors
-    OA: PathPlanning
+    OA: CopterPathPlanning
     PHLD: PosHold
     PILOT: Pilot
     PLND: PrecisionLanding

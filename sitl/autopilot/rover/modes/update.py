@@ -117,7 +117,7 @@ def check_slowly(v: Vehicle) -> None:
     fence.watch(v)
     crash.check(v)
     limit.watch(v, False)
-    bendy_ruler.watch(ap, 0.0, v.time_us)
+    bendy_ruler.watch(ap, 0.0, False, v.time_us)
     watch_detour(ap.modes.nav, areas_of(ap.fence, p.OA, p.FENCE), ap.events, v.time_us)
 
 
