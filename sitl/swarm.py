@@ -316,6 +316,12 @@ class Swarm:
         self._wind, self.time_us, self._near = snapshot.wind, snapshot.time_us, snapshot.near
         self._said, self._to_hear = list(snapshot.said), list(snapshot.to_hear)
 
+    def reseed(self, seed: int) -> None:
+        """Other noise of all sensors, and other gusts, from now on: as of a swarm of this seed."""
+        for k, vehicle in enumerate(self.vehicles):
+            vehicle.reseed(seed + k)
+        rng.seed(self._gusts.rng, seed)
+
     def close(self) -> None:
         """Close links, logs and physics."""
         self.router.close()
