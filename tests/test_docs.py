@@ -86,7 +86,7 @@ def test_the_example_of_fleets_runs(core: Core) -> None:
 
 
 def test_the_example_of_swarms_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
-    (example,) = blocks(ROOT / "docs/swarm.md", "python")
+    example, _ = blocks(ROOT / "docs/swarm.md", "python")
     exec(compile(example, "docs/swarm.md", "exec"), {})
     found = re.findall(r"vehicle (\d): north (.+) m, east (.+) m, (.+) m high", capsys.readouterr().out)
     assert [int(number) for number, *_ in found] == [1, 2, 3]

@@ -121,7 +121,7 @@ def test_what_cannot_be_is_refused() -> None:
 
 
 def test_the_example_of_the_page_runs() -> None:
-    (example,) = blocks(ROOT / "docs/swarm.md", "python pettingzoo")
+    _, example = blocks(ROOT / "docs/swarm.md", "python")
     scope: dict[str, Any] = {}
     exec(compile(example, "docs/swarm.md", "exec"), scope)
     assert not scope["env"].agents and set(scope["rewards"]) == set(scope["infos"]) != set()
