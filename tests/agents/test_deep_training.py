@@ -12,7 +12,6 @@ pytest.importorskip("torch", reason="deep agents need the extra 'rl'")
 from sitl.agents import algorithms, environments
 from sitl.agents.deep import checkpoint, training
 from sitl.agents.deep.checks import BEST, JITTER, SEED, Checks
-from sitl.agents.deep.policy import Network
 from sitl.agents.deep.settings import settings_of
 from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import evaluate, evaluate_run, moved_starts
@@ -110,8 +109,8 @@ def test_a_log_that_knows_more_than_the_model_is_cut_and_a_model_of_others_refus
 def test_the_network_that_plays_is_the_one_that_learnt(tmp_path, algorithm):
     run = new(tmp_path / "run", algorithm, steps=50)
     train(run)
-    model = training.policy(run).model
-    network, rng = Network(model), np.random.default_rng(0)
+    model, _ = checkpoint.load(training.model_of(run), algorithm)
+    network, rng = training.policy(run).network, np.random.default_rng(0)
     for row in rng.uniform(-2.0, 2.0, (50, *model.observation_space.shape)).astype(np.float32):
         expected, _ = model.predict(row, deterministic=True)
         assert network(row[None])[0] == pytest.approx(expected, abs=1e-5)
@@ -173,7 +172,7 @@ def test_the_best_network_is_kept_and_plays(tmp_path, monkeypatch):
     steps = [at for at, _ in seen]
     assert 3 <= len(steps) <= 4 and all(at // 150 == k for k, at in enumerate(steps[:-1], 1))
     assert checkpoint.score_of(run.path / BEST) == (5.0,) and weights(run, BEST) == seen[1][1] != weights(run)
-    played = training.policy(run).model.policy.state_dict()
+    played = checkpoint.load(training.model_of(run), run.config.algorithm)[0].policy.state_dict()
     assert {name: values.numpy().tobytes() for name, values in played.items()} == seen[1][1]
 
 
@@ -182,18 +181,19 @@ def test_a_score_is_what_an_evaluation_finds(tmp_path, options, by):
     run = new(tmp_path / "run", env_options=options, settings={"check_episodes": 4, "check_by": by})
     train(run)
     policy, checks = training.policy(run), checks_of(run, 1)
+    model, _ = checkpoint.load(training.model_of(run), run.config.algorithm)
     env = environments.make(run.config)
     poses = None if options else moved_starts(env, 4, SEED, JITTER)
     found = evaluate(env, policy, 4, SEED, poses)
     crashes = -sum(played.crashed for played in found.episodes)
     expected = (found.mean_reward,) if by == "reward" else (crashes, found.mean_reward)
-    assert checks.score(policy.model) == pytest.approx(expected) == checkpoint.score_of(run.path / BEST)
+    assert checks.score(model) == pytest.approx(expected) == checkpoint.score_of(run.path / BEST)
     seen = checks._begun(checks._made())
     for k in range(4):
         begin = {"pose": poses[k]} if poses else None
         assert np.array_equal(seen[k], env.reset(seed=environments.seed_of(SEED, k), options=begin)[0])
     assert not np.array_equal(seen[0], seen[1])
-    assert checks.score(policy.model) == pytest.approx(expected)
+    assert checks.score(model) == pytest.approx(expected)
     checks.close()
 
 

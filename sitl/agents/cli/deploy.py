@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import fields
-from pathlib import Path
 
 from sitl.envs.mavlink.guard import Guard
 
-from .. import learnt
+from .. import baselines, learnt
 from ..deploy import deploy, options_of
 from ..errors import check_names
 from .options import assignment, assignments, positive
@@ -26,7 +25,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "limits, and hands it back to its own modes at the end, on Ctrl-C, and when anything goes wrong.",
     )
     parser.add_argument(
-        "policy", type=Path, metavar="POLICY", help="folder of a run, or a file of `sitl export` (.npz)"
+        "policy",
+        type=baselines.find,
+        metavar="POLICY",
+        help="folder of a run, a file of `sitl export` (.npz), or the name of a shipped policy (docs/baselines.md)",
     )
     parser.add_argument(
         "--connection", required=True, metavar="URL",

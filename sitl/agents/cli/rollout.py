@@ -13,7 +13,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from .. import environments
+from .. import baselines, environments
 from ..errors import AgentError
 from ..evaluate import Played
 from ..policies import RANDOM, Named
@@ -35,7 +35,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "policy",
         metavar="POLICY",
-        help=f"folder of a run, file of a policy (.npz), MODULE:FUNCTION of observations, or {RANDOM}",
+        help=f"folder of a run, file of a policy (.npz), name of a shipped one (docs/baselines.md), MODULE:FUNCTION of "
+        f"observations, or {RANDOM}",
     )
     parser.add_argument("env", nargs="?", metavar="ENV", help="id of the environment (default: that of the run)")
     parser.add_argument("--episodes", type=positive, default=100, metavar="N", help="default 100")
@@ -85,8 +86,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _policy(text: str) -> Named:
-    """A folder, else what ``rollout`` understands."""
-    return Path(text) if text != RANDOM and (":" not in text or Path(text).is_dir()) else text
+    """A folder, a file, a policy that is shipped; else what ``rollout`` understands."""
+    return baselines.find(text) if text != RANDOM and (":" not in text or Path(text).is_dir()) else text
 
 
 def _write(path: Path, episodes: Sequence[Played], seed: int) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -194,13 +195,17 @@ def _learn(model: Any, steps: int, between: Any) -> None:
         model.learn(steps, Between(), log_interval=None, reset_num_timesteps=model.num_timesteps == 0)
 
 
+def model_of(folder: RunFolder) -> Path:
+    """File of the network that plays: the best one of the checks, or the last one where there were none."""
+    best = folder.path / BEST
+    return best if best.exists() else folder.path / checkpoint.MODEL
+
+
 def policy(folder: RunFolder) -> DeepPolicy:
     """See ``Algorithm``: the best network of the checks, or the last one where there were none."""
     config = folder.config
     figures = settings_of(config.algorithm, config.settings)
     torch(figures.threads)
-    best = folder.path / BEST
-    path = best if best.exists() else folder.path / checkpoint.MODEL
-    model, (observations, actions) = checkpoint.load(path, config.algorithm)
+    model, (observations, actions) = checkpoint.load(model_of(folder), config.algorithm)
     seen, moves = Features(observations, figures.sectors), Actions(actions, config.algorithm)
     return DeepPolicy(network_of(model), figures, seen, moves)
