@@ -15,12 +15,23 @@ if TYPE_CHECKING:
     from .fleet import Fleet
     from .move import Move
     from .simulation import Simulation
+    from .swarm import Swarm
     from .vehicles import names as vehicle_names
     from .worlds import names as world_names
 
 __version__ = "0.1.0"
 
-__all__ = ["Fleet", "LinkFaults", "Move", "Simulation", "SitlError", "__version__", "vehicle_names", "world_names"]
+__all__ = [
+    "Fleet",
+    "LinkFaults",
+    "Move",
+    "Simulation",
+    "SitlError",
+    "Swarm",
+    "__version__",
+    "vehicle_names",
+    "world_names",
+]
 
 _LAZY = {
     "Fleet": ("fleet", "Fleet"),
@@ -28,6 +39,7 @@ _LAZY = {
     "Move": ("move", "Move"),
     "Simulation": ("simulation", "Simulation"),
     "SitlError": ("errors", "SitlError"),
+    "Swarm": ("swarm", "Swarm"),
     "vehicle_names": ("vehicles", "names"),
     "world_names": ("worlds", "names"),
 }

@@ -443,6 +443,7 @@ class Simulation:
         self.plant.close()
 
     def _power_on(self) -> None:
+        self.firmware.give_back(self.v)
         boot.clear(self.v)
         self.plant.power_on()
         if shell_parameters.clears_mission(self.parameters):

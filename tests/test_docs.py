@@ -85,6 +85,15 @@ def test_the_example_of_fleets_runs(core: Core) -> None:
     assert places == pytest.approx([0.0, 20.0, 40.0, 60.0], abs=0.5)
 
 
+def test_the_example_of_swarms_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
+    example, _ = blocks(ROOT / "docs/swarm.md", "python")
+    exec(compile(example, "docs/swarm.md", "exec"), {})
+    found = re.findall(r"vehicle (\d): north (.+) m, east (.+) m, (.+) m high", capsys.readouterr().out)
+    assert [int(number) for number, *_ in found] == [1, 2, 3]
+    assert [float(height) for *_, height in found] == pytest.approx([4.0, 6.0, 0.0], abs=0.7)
+    assert float(found[1][1]) == pytest.approx(20.0, abs=1.5)
+
+
 def test_the_example_of_precision_landing_runs(core: Core, capsys: pytest.CaptureFixture[str]) -> None:
     (example,) = blocks(ROOT / "docs/precision-landing.md", "python")
     exec(compile(example, "docs/precision-landing.md", "exec"), {})

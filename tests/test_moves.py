@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 
 from sitl import vehicles
+from sitl.autopilot.copter.modes.autotune_gains import YAW
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.client import Client, Endpoint
 from sitl.core import rng
 from sitl.core.geodesy import offset_ne
+from sitl.core.vectors import Vec2
 from sitl.errors import OptionError
 from sitl.fleet import Fleet
 from sitl.move import Move
@@ -344,6 +346,25 @@ def test_it_hovers_as_one_that_took_off_so(hovering: Snapshot) -> None:
         leans.append(mean[1:])
     assert throttles[0] == pytest.approx(throttles[1], rel=0.01)
     np.testing.assert_allclose(leans[0], leans[1], atol=0.01)
+    fleet.close()
+
+
+def test_what_autotune_and_flowhold_hold_goes_along(hovering: Snapshot) -> None:
+    fleet = Fleet("erle_copter", 1)
+    fleet.put(0, hovering)
+    v = fleet.view(0)
+    t, hold, est = v.autopilot.modes.autotune, v.autopilot.modes.flowhold, v.autopilot.estimate
+    t.place, t.heading = Vec2(est.pos.x + 3.0, est.pos.y), est.yaw + 0.5
+    t.axis, t.backwards, t.start_angle = YAW, True, -est.yaw - 0.25
+    hold.against_wind = Vec2(0.1, 0.0)
+    angle = 1.5 - heading(v.physics.body.q)
+    fleet.move(0, Move(300.0, -200.0, heading=1.5))
+    c, s = math.cos(angle), math.sin(angle)
+    away = t.place.x - est.pos.x, t.place.y - est.pos.y
+    np.testing.assert_allclose(away, (3.0 * c, 3.0 * s), atol=1e-6)
+    assert math.remainder(t.heading - est.yaw - 0.5, math.tau) == pytest.approx(0.0, abs=1e-9)
+    assert math.remainder(t.start_angle + est.yaw + 0.25, math.tau) == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose((hold.against_wind.x, hold.against_wind.y), (0.1 * c, 0.1 * s), atol=1e-9)
     fleet.close()
 
 

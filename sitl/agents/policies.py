@@ -18,7 +18,8 @@ from .errors import AgentError
 RANDOM = "random"
 """Name of the policy that draws its actions."""
 Named = str | Path | Callable[[Any], Any]
-"""A policy: "random", "MODULE:FUNCTION", a function of observations that gives actions, or the folder of a run."""
+"""A policy: "random", "MODULE:FUNCTION", a function of observations that gives actions, the folder of a run, or the
+file of a policy (.npz)."""
 
 
 class Policies(Protocol):
@@ -85,12 +86,11 @@ def policies_of(policy: Named, env: gym.vector.VectorEnv[Any, Any, Any]) -> Poli
         AgentError: there is no such policy, or it is of other observations or actions.
     """
     if isinstance(policy, Path):
-        from . import algorithms
-        from .runs.folder import RunFolder
+        from . import learnt
 
-        learnt = algorithms.policy_of(RunFolder(policy))
-        learnt.check(env.single_observation_space, env.single_action_space)
-        return learnt.many(env.num_envs)
+        found = learnt.load(policy).policy
+        found.check(env.single_observation_space, env.single_action_space)
+        return found.many(env.num_envs)
     if policy == RANDOM:
         return OneEach([_Drawn(env.single_action_space) for _ in range(env.num_envs)])
     return _Called(function(policy) if isinstance(policy, str) else policy)

@@ -17,14 +17,13 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from . import environments
+from . import environments, learnt
 from .errors import AgentError
 from .evaluate import Evaluation, Played
 from .policies import Named, policies_of
 from .runs.backends import Workers
 from .runs.config import MAX_STEPS, RunConfig
 from .runs.files import make_folder, write_arrays
-from .runs.folder import RunFolder
 from .runs.local import SendProgress, Stopped
 
 ROBOTS = 64
@@ -68,7 +67,7 @@ def rollout(
     """Play episodes; the results are in their order.
 
     Args:
-        policy: folder of a run; "random"; a function that takes observations with a row a robot and returns actions,
+        policy: folder of a run, or the file (.npz) of a policy; "random"; a function that takes observations with
             a row a robot; or the name of one, "MODULE:FUNCTION". A function must remember nothing from call to call.
         env: id of the environment; None: that of the run.
         episodes: number of episodes.
@@ -108,7 +107,7 @@ def rollout(
 
 def _config(policy: Named, env: str | None, max_steps: int | None, options: Mapping[str, Any]) -> RunConfig:
     if isinstance(policy, Path):
-        run = RunFolder(policy).config
+        run = learnt.load(policy).config
         same = env in (None, run.env)
         return run.with_(
             env=env or run.env,

@@ -28,6 +28,8 @@ class Firmware:
     """What its missions may hold and how that is run."""
     aux_functions: Mapping[int, AuxFunction] = field(default_factory=dict)
     """What its switches can do, by number."""
+    give_back: Callable[[Any], None] = lambda v: None
+    """Before a boot, also one in the air: parameters that a mode has changed for a time are what they were before."""
     fence_bytes: int = 672
     """Room for fences in ArduPilot's storage,"""
     rally_bytes: int = 750

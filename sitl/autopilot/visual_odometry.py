@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from ..core.algebra import finite_vector
+from ..core.algebra import norm
 from ..core.kernels import law
 from ..core.records import Record
 from ..core.scalars import finite
@@ -17,6 +17,8 @@ MAVLINK = 1
 SILENT_US = 300_000
 """A system that says nothing for so long has failed."""
 UNKNOWN_QUALITY = 0
+FAR, FAST = 100_000.0, 500.0
+"""A position further from its origin [m] or a greater velocity [m/s] is nonsense."""
 MOST = 100.0
 """Greatest standard deviation that a message can tell [m, m/s]."""
 
@@ -79,11 +81,12 @@ def sigma_of(variance: float, least: float) -> float:
 
 @law
 def take_pose(seen: VisualOdometry, pos: Vec3, q: Quat, variance: float, time_us: int, p: Settings) -> None:
-    """Take a position NED [m], scaled by VISO_SCALE, and an attitude."""
-    if not finite_vector(pos):
+    """Take a position NED [m], scaled by VISO_SCALE, and an attitude; nonsense is passed over."""
+    pos = p.SCALE * pos
+    if not norm(pos) <= FAR:
         return
     pose = seen.pose
-    pose.pos, pose.q = p.SCALE * pos, q
+    pose.pos, pose.q = pos, q
     pose.sigma = sigma_of(variance, p.POS_M_NSE)
     pose.time_us = time_us
     pose.count += 1
@@ -91,8 +94,8 @@ def take_pose(seen: VisualOdometry, pos: Vec3, q: Quat, variance: float, time_us
 
 @law
 def take_velocity(seen: VisualOdometry, vel: Vec3, on_body: bool, variance: float, time_us: int, p: Settings) -> None:
-    """Take a velocity [m/s], NED or on the body."""
-    if not finite_vector(vel):
+    """Take a velocity [m/s], NED or on the body; nonsense is passed over."""
+    if not norm(vel) <= FAST:
         return
     velocity = seen.velocity
     velocity.vel, velocity.on_body = vel, on_body

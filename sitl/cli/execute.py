@@ -18,11 +18,13 @@ from ..foreign.choice import ARDUPILOT, Choice, choose
 from ..foreign.session import ArduPilotSession
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup
+from ..run.swarm import SwarmPacing, serve_swarm
 from ..simulation import OptionError, Simulation
+from ..swarm import Swarm
 from ..vehicle.kinds import DEFAULT, KINDS
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
-from . import foreign, recordings, run
+from . import foreign, recordings, run, swarm
 from .status import StatusLine
 
 DEFAULT_SPEEDUP = "20"
@@ -65,6 +67,8 @@ def execute(options: argparse.Namespace) -> int:
     choice = choose(options.autopilot, options.vehicle)
     if choice is not None:
         return _execute_foreign(options, choice, command)
+    if options.count > 1:
+        return _execute_swarm(options, command)
     simulation, tcp_port, _ = run.start(options)
     command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
@@ -75,6 +79,13 @@ def execute(options: argparse.Namespace) -> int:
     finally:
         status.close()
         simulation.close()
+
+
+def _execute_swarm(options: argparse.Namespace, command: list[str]) -> int:
+    """``execute`` with several vehicles in one world."""
+    with swarm.opened(options) as (vehicles, tcp_port, status):
+        command = [word.replace("{tcp}", str(tcp_port)) for word in command]
+        return run_script(vehicles, command, options.speedup, options.duration, status.refresh)
 
 
 def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[str]) -> int:
@@ -95,7 +106,7 @@ class ScriptPace:
         self._pacer = pacer
         self.slice_us = pacer.slice_us
 
-    def after_slice(self, simulation: Simulation | ArduPilotSession) -> None:
+    def after_slice(self, simulation: Simulation | Swarm | ArduPilotSession) -> None:
         """Advance the script's clock."""
         self._pacer.pace(simulation.time_us)
 
@@ -111,7 +122,7 @@ def can_warp() -> str:
 
 
 def run_script(
-    vehicle: Simulation | ArduPilotSession,
+    vehicle: Simulation | Swarm | ArduPilotSession,
     command: list[str],
     speedup: str,
     duration_s: float | None = None,
@@ -130,7 +141,7 @@ def run_script(
     factor = parse_speedup(speedup)
     until = vehicle.time_us + int(duration_s * 1e6) if duration_s else None
     reason = can_warp()
-    if reason and (factor != 1.0 or not isinstance(vehicle, Simulation)):
+    if reason and (factor != 1.0 or isinstance(vehicle, ArduPilotSession)):
         raise CannotBuild(reason)
     with contextlib.ExitStack() as stack:
         stack.enter_context(terminable())
@@ -147,6 +158,8 @@ def run_script(
 
         if isinstance(vehicle, Simulation):
             runner.serve(vehicle, pace or Pacing(1.0), until_us=until, running=running, on_slice=on_slice)
+        elif isinstance(vehicle, Swarm):
+            serve_swarm(vehicle, pace or SwarmPacing(1.0), until_us=until, running=running, on_slice=on_slice)
         elif pace is not None:
             vehicle.serve_slices(pace, until_us=until, running=running, on_slice=on_slice)
         if script.poll() is None:

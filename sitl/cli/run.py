@@ -13,9 +13,10 @@ from ..foreign.choice import choose
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup
 from ..run.standstill import serve_lockstep
+from ..run.swarm import SwarmPacing, serve_swarm, serve_swarm_lockstep
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
-from . import foreign, recordings
+from . import foreign, recordings, swarm
 from .link_options import add_link_options, link_faults
 from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
 from .status import StatusLine
@@ -63,6 +64,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no status line")
     recordings.add_recording_option(parser)
     add_vehicle_options(parser)
+    swarm.add_swarm_options(parser)
     add_link_options(parser)
 
 
@@ -106,6 +108,8 @@ def run(options: argparse.Namespace) -> int:
     if choice is not None:
         return foreign.fly(options, choice)
     speedup = parse_speedup(options.speedup)
+    if options.count > 1:
+        return run_swarm(options, speedup)
     simulation, _, _ = start(options)
     stopped: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
@@ -119,4 +123,16 @@ def run(options: argparse.Namespace) -> int:
     finally:
         status.close()
         simulation.close()
+    return 0
+
+
+def run_swarm(options: argparse.Namespace, speedup: float | None) -> int:
+    """The same with several vehicles in one world."""
+    stopped: list[int] = []
+    with swarm.opened(options) as (vehicles, _, status):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda n, _: stopped.append(n))
+        until_us = int(options.duration * 1e6) if options.duration else None
+        serve = serve_swarm_lockstep if options.lockstep else partial(serve_swarm, pace=SwarmPacing(speedup))
+        serve(vehicles, until_us=until_us, running=lambda: not stopped, on_slice=status.refresh)
     return 0

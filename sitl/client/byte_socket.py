@@ -6,14 +6,43 @@ from __future__ import annotations
 import contextlib
 import select
 import socket
+from typing import Protocol
 
 from ..errors import LinkLostError, OptionError
+from .serial_port import FORM, SerialPort
 
 FORMS = (
-    '"udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there) '
-    'or "tcp:HOST:PORT" (connect to one)'
+    '"udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there), '
+    f'"tcp:HOST:PORT" (connect to one) or {FORM}'
 )
 _BUFFER = 1 << 21
+
+
+class ByteStream(Protocol):
+    """The client's end of what carries bytes to a vehicle and back, as ``ByteSocket`` explains."""
+
+    name: str
+
+    def send(self, data: bytes) -> None: ...
+    def flush(self) -> bytes: ...
+    def write(self, data: bytes) -> None: ...
+    def wait(self, seconds: float) -> bool: ...
+    def receive(self) -> bytes: ...
+    def close(self) -> None: ...
+
+
+def open_stream(text: str) -> ByteStream:
+    """The stream that a connection is given by.
+
+    Args:
+        text: one of the forms.
+
+    Raises:
+        OptionError: it is none of them.
+        LinkLostError: it cannot be opened.
+        MissingExtra: a serial line needs what is not installed.
+    """
+    return SerialPort(text) if text.startswith("serial:") else ByteSocket(text)
 
 
 class ByteSocket:

@@ -13,7 +13,7 @@ from ..bridge.dialect import message
 from ..bridge.links.inprocess import InProcessLink
 from ..bridge.services.commands import GRANT, RESEED
 from ..errors import LinkLostError
-from .byte_socket import ByteSocket
+from .byte_socket import ByteStream, open_stream
 from .commands import arguments, command_number
 from .endpoint import Endpoint, Inbox
 
@@ -216,7 +216,7 @@ class Remote(Connection):
     """
 
     def __init__(
-        self, stream: ByteSocket, inbox: Inbox | None, patience: float, system: int = 255, component: int = 190
+        self, stream: ByteStream, inbox: Inbox | None, patience: float, system: int = 255, component: int = 190
     ) -> None:
         super().__init__(Endpoint(stream, system, component), inbox)
         self.stream = stream
@@ -287,7 +287,7 @@ class Lockstep(Remote):
     """
 
     def __init__(
-        self, stream: ByteSocket, inbox: Inbox | None, patience: float, time_ms: int, system: int = 255,
+        self, stream: ByteStream, inbox: Inbox | None, patience: float, time_ms: int, system: int = 255,
         component: int = 190,
     ) -> None:  # fmt: skip
         super().__init__(stream, inbox, patience, system, component)
@@ -366,7 +366,7 @@ def connect(
     It is only asked questions. One whose time cannot be held is used in real time, with a warning.
 
     Args:
-        text: a form of ``ByteSocket``.
+        text: a form of ``open_stream``.
         inbox: gets what comes back.
         patience: wall time [s] without a message after which the vehicle is lost.
         system, component: MAVLink ids of the client.
@@ -376,7 +376,7 @@ def connect(
         OptionError: no such form of connection.
         LinkLostError: nobody there.
     """
-    stream = ByteSocket(text)
+    stream = open_stream(text)
     probe = Remote(stream, inbox, patience, system, component)
     inbox, acks = probe.inbox, probe.inbox.acks
 

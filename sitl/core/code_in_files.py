@@ -28,7 +28,8 @@ def code_of_options(options: Mapping[str, Any]) -> list[str]:
             ("frame", isinstance(frame, str) and frame.endswith(".py")),
             ("autopilot", starts),
             ("autopilot_path", options.get("autopilot_path") is not None),
-            ("reset", options.get("reset", "simulator") != "simulator"),
+            ("reset", options.get("reset", "reboot") != "reboot"),
+            ("guard", options.get("guard") is not None),
         )
         if runs
     ]

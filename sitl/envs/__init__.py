@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gymnasium environments: ``import sitl.envs``, then ``gymnasium.make``. Nothing heavy is loaded before that.
 
-``sitl/Navigate-v0`` is any robot in any world; the others are the paper's, under its names ("...LIDAR-v0") and under
-those of the original code ("...Lidar-v0").
+``sitl/Navigate-v0`` is any robot in any world. The paper's have its names ("...LIDAR-v0") and those of the original
+code ("...Lidar-v0"). Those of ``ids.NEW`` have places to be at.
 """
 
 from __future__ import annotations
@@ -11,25 +11,13 @@ import gymnasium as gym
 
 from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
+from .ids import MAX_EPISODE_STEPS, NEW, PAPER, Listed
 from .options import EnvOptionError
 
 __all__ = [
-    "MAX_EPISODE_STEPS", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError", "NotReadyError", "register",
+    "MAX_EPISODE_STEPS", "NEW", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError", "NotReadyError",
+    "register",
 ]  # fmt: skip
-
-MAX_EPISODE_STEPS = 1500
-"""Number of steps after which an episode is truncated, as in the paper's experiments. ``gym.make(...,
-max_episode_steps=-1)`` sets no limit, as in the original environments."""
-
-PAPER = {
-    "GazeboCircuitTurtlebotLIDAR-v0": "circuit-turtlebot",
-    "GazeboCircuit2TurtlebotLIDAR-v0": "circuit2-turtlebot",
-    "GazeboMazeTurtlebotLIDAR-v0": "maze-turtlebot",
-    "GazeboRoundTurtlebotLIDAR-v0": "round-turtlebot",
-    "GazeboMazeErleRoverLIDAR-v0": "maze-erle-rover",
-    "GazeboOfficeErleCopterLIDAR-v0": "office-erle-copter",
-}
-"""The paper's environments -> their presets (``paper.PRESETS``)."""
 
 
 def register() -> None:
@@ -42,15 +30,19 @@ def register() -> None:
         vector_entry_point="sitl.envs.vector:NavigateVector",
         max_episode_steps=MAX_EPISODE_STEPS,
     )
-    for paper_id, preset in PAPER.items():
-        for name in (paper_id, paper_id.replace("LIDAR", "Lidar")):
-            gym.register(
-                name,
-                entry_point="sitl.envs.paper:PaperNavigate",
-                vector_entry_point="sitl.envs.paper:PaperNavigateVector",
-                max_episode_steps=MAX_EPISODE_STEPS,
-                kwargs={"preset": preset},
-            )
+    paper = {
+        name: Listed(preset, MAX_EPISODE_STEPS)
+        for paper_id, preset in PAPER.items()
+        for name in (paper_id, paper_id.replace("LIDAR", "Lidar"))
+    }
+    for name, (preset, steps) in (paper | NEW).items():
+        gym.register(
+            name,
+            entry_point="sitl.envs.presets:PresetNavigate",
+            vector_entry_point="sitl.envs.presets:PresetNavigateVector",
+            max_episode_steps=steps,
+            kwargs={"preset": preset},
+        )
 
 
 register()

@@ -40,8 +40,16 @@ POSITION = Setpoint("position", ("x [m]", "y [m]", "z [m]", "yaw [rad]"))
 """SET_POSITION_TARGET_LOCAL_NED, a place in the frame of world files."""
 ATTITUDE = Setpoint("attitude", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "climb or throttle [-1, 1]"))
 """SET_ATTITUDE_TARGET; roll to the right, pitch up, turn counter-clockwise."""
+ACCELERATION = Setpoint("acceleration", ("forward [m/s^2]", "left [m/s^2]", "up [m/s^2]", "turn [rad/s]"))
+"""SET_POSITION_TARGET_LOCAL_NED, accelerations along the body's heading; turn counter-clockwise."""
+THRUST = Setpoint("thrust", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "thrust [0, 1]"))
+"""SET_ATTITUDE_TARGET as ``ATTITUDE``, but with a thrust, a share of the greatest, in place of the climb rate."""
+RATES = Setpoint("rates", ("roll rate [rad/s]", "pitch rate [rad/s]", "turn [rad/s]", "thrust [0, 1]"))
+"""SET_ATTITUDE_TARGET with rates of the body alone (roll to the right, pitch up) and a thrust."""
 
-SETPOINTS = {kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE)}
+SETPOINTS = {
+    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES)
+}
 
 
 Floats = npt.NDArray[np.float64]
@@ -165,3 +173,24 @@ class Continuous:
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
         out[:, self.columns] = actions
+
+
+class Normalised(Continuous):
+    """A box of set-points whose actions are all within [-1, 1]: -1 is the low limit, 1 the high one.
+
+    Args:
+        box: the actions in their units.
+    """
+
+    def __init__(self, box: Continuous) -> None:
+        super().__init__(box.setpoint, box.space.low.tolist(), box.space.high.tolist(), box.columns)
+        low, high = box.space.low.astype(np.float64), box.space.high.astype(np.float64)
+        self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        self.limits = tuple(zip(self._low, self._high))
+        """(Low, high) of each number in the set-point's unit."""
+        self.space = gym.spaces.Box(-1.0, 1.0, (len(self.columns),), np.float32)
+        self._low, self._high = self.space.low.tolist(), self.space.high.tolist()
+
+    def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
+        """See ``Action``."""
+        out[:, self.columns] = self._middle + self._half * actions

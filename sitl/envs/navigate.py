@@ -9,7 +9,7 @@ import gymnasium as gym
 
 from sitl.worlds import World
 
-from .options import unknown
+from .options import EnvOptionError, unknown
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -48,6 +48,7 @@ class Navigate(gym.Env[Any, Any]):
         self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.info
         self._plain_info = type(session.task).info is Task.info and session.faults is None
+        self._over = getattr(session.robot, "over", None)
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 
     @property
@@ -86,7 +87,8 @@ class Navigate(gym.Env[Any, Any]):
         return self._observation(), {}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """See ``gymnasium.Env.step``; it is never truncated here (a ``TimeLimit`` does that).
+        """See ``gymnasium.Env.step``. It is truncated only when the agent is not in charge of a vehicle at a connection
+        any more: ``info["handed_over"]`` says why. (A ``TimeLimit`` truncates episodes, too.)
 
         Raises:
             InvalidAction: the action is not in the space.
@@ -100,16 +102,30 @@ class Navigate(gym.Env[Any, Any]):
         else:
             rows = self._info().items()
             info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in rows}
+        truncated = self._over is not None and bool(self._over[0])
+        if truncated:
+            info["handed_over"] = session.robot.why_over()  # type: ignore[attr-defined]
         if self._renderer is not None:
             self._renderer.note()
             self._show()
-        return self._observation(), float(session.rewards[0]), terminated, False, info
+        return self._observation(), float(session.rewards[0]), terminated, truncated, info
 
     def _observation(self) -> Any:
         rows = self._observe(self._session.robot)
         if self._is_dict:
             return {name: value[0] for name, value in rows.items()}
         return rows[0]
+
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``.
+
+        Raises:
+            EnvOptionError: the task has no goal that counts alone.
+        """
+        rule = getattr(self.task, "compute_reward", None)
+        if rule is None:
+            raise EnvOptionError(f"compute_reward: task {self.task!r} has no goal that counts alone")
+        return rule(achieved_goal, desired_goal, info)
 
     def snapshot(self) -> Snapshot:
         """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.
@@ -147,7 +163,7 @@ class Navigate(gym.Env[Any, Any]):
         self._session.robot.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        bound = ("_check", "_actions", "_advance", "_observe", "_info")
+        bound = ("_check", "_actions", "_advance", "_observe", "_info", "_over")
         return {name: value for name, value in vars(self).items() if name not in bound}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -10,10 +10,8 @@ from collections.abc import Callable
 from typing import Any
 
 from .actions import DRIVE, Discrete
-from .navigate import Navigate
 from .observations import Digits
 from .tasks import paper
-from .vector import NavigateVector
 
 
 def turtlebot(world: str, speed: float = 0.3, turning_speed: float = 0.05, reward: float = 5.0) -> dict[str, Any]:
@@ -57,18 +55,4 @@ PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
     "maze-erle-rover": lambda: autopilot("erle_rover", "maze_erlerover"),
     "office-erle-copter": lambda: autopilot("erle_copter", "office_erlecopter"),
 }
-"""Options of ``Navigate`` by the preset's name; ``sitl.envs.PAPER`` says which environment has which."""
-
-
-class PaperNavigate(Navigate):
-    """One of the paper's environments; every option of ``Navigate`` can still be replaced."""
-
-    def __init__(self, preset: str, **options: Any) -> None:
-        super().__init__(**{**PRESETS[preset](), **options})
-
-
-class PaperNavigateVector(NavigateVector):
-    """Many of one of the paper's environments."""
-
-    def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
-        super().__init__(num_envs, **{**PRESETS[preset](), **options})
+"""Options of ``Navigate`` by the preset's name; ``sitl.envs.ids.PAPER`` says which environment has which."""

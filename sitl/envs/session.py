@@ -19,18 +19,20 @@ from sitl.worlds import World, WorldError
 
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
+from .arena import normalised
 from .faults import EpisodeFaults, Faults
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
 from .options import COMMON, EnvOptionError, unknown
+from .parts import Part, observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import LateRobot, PreparedRobot, Robot
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
-FORMS = ("discrete", "continuous")
+FORMS = ("discrete", "continuous", "normalised")
 RESET_OPTIONS = ("pose", "reset_mask")
 """Options of ``reset``; the second one only in vector environments."""
 MAX_STEP_S = 3600.0
@@ -51,6 +53,8 @@ class Snapshot:
     """Whether the next step of a vector environment starts another episode."""
     late: Late | None = None
     """Pending commands; None: there is no latency."""
+    action: Any = None
+    """The episode's last action; None: there was none."""
     fault: tuple[int, float] | None = None
     """Number and time of the episode's fault; None: there are no faults."""
 
@@ -63,8 +67,10 @@ class NavigateOptions:
         robot: name (``robots.ROBOTS``) or class.
         world: name (``sitl.worlds.names()``), .toml file or World.
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
-        observation: name (``observations.OBSERVATIONS``) or Observation.
-        action: "discrete", "continuous", a table (name of an action -> numbers of its set-point), or an Action.
+        observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
+            "scan+velocity": a dict), or Observation.
+        action: "discrete", "continuous" (in units), "normalised" (within [-1, 1]), a table (name of an action ->
+            numbers of its set-point), or an Action.
         setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
         step_time: simulated time of a step [s], exact; None: the robot's default.
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
@@ -85,7 +91,7 @@ class NavigateOptions:
     robot: str | Callable[..., Robot] = "turtlebot"
     world: str | Path | World = "circuit2"
     task: str | Task = "wander"
-    observation: str | Observation = "scan"
+    observation: str | Sequence[str | Part] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
     setpoint: str | None = None
     step_time: float | None = None
@@ -130,13 +136,17 @@ class Session:
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")
-        self.observation: Observation = _named("observation", options.observation, OBSERVATIONS, "observe")
+        self.observation: Observation = observation_of(options.observation, OBSERVATIONS) or _named(
+            "observation", options.observation, OBSERVATIONS, "observe"
+        )
         if not isinstance(self.action.space, gym.spaces.Discrete) and any(
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
         self.actions = self.action.room(count)
         """Actions of the next ``advance``, a row a robot, as ``action.check`` returns them."""
+        self.acted = np.zeros(count, np.bool_)
+        """Whether each robot's episode has had an action, shape (count,)."""
         self.commands = np.zeros((count, self.action.setpoint.width))
         self.rewards = np.zeros(count)
         self.terminated = np.zeros(count, np.bool_)
@@ -146,6 +156,9 @@ class Session:
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
             watch(self.task)
+        prepare = getattr(self.observation, "prepare", None)
+        if prepare is not None:
+            prepare(self)
         self.observation_space = self.observation.space(self.robot)
 
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
@@ -161,7 +174,7 @@ class Session:
         if isinstance(action, str):
             if action not in FORMS:
                 raise unknown("action", action, FORMS)
-            return robot.action(action, usual)
+            return normalised(robot, usual) if action == "normalised" else robot.action(action, usual)
         if isinstance(action, type) or not hasattr(action, "commands"):
             raise EnvOptionError(f"action {action!r} is neither a name ({', '.join(FORMS)}) nor a table nor an Action")
         if action.setpoint.name not in kinds:
@@ -197,6 +210,7 @@ class Session:
         for option in options or ():
             if option not in RESET_OPTIONS:
                 raise unknown("reset: option", option, RESET_OPTIONS[:1])
+        self.acted[index] = False
         pose = self.starts.draw(rng)
         if options and options.get("pose") is not None:
             pose = self.starts.pose(options["pose"])
@@ -217,6 +231,7 @@ class Session:
     def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Advance these robots (None: all) by one step; fills ``rewards`` and ``terminated``, shapes (count,)."""
         self.action.commands(self.actions, self.commands)
+        self.acted[... if rows is None else rows] = True
         if self.latency is None:
             self.robot.apply(self.action.setpoint, self.commands)
             self.robot.advance(self.seconds, rows)
@@ -239,8 +254,9 @@ class Session:
         late = None if self.latency is None else self.latency.memory(index)
         fault = None if self.faults is None else self.faults.memory(index)
         return Snapshot(
-            self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault
-        )
+            self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault,
+            action=np.copy(self.actions[index]) if self.acted[index] else None,
+        )  # fmt: skip
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
         """Restore one robot and its random generator.
@@ -260,6 +276,9 @@ class Session:
             self.latency.recall(index, snapshot.late)
         if self.faults is not None and snapshot.fault is not None:
             self.faults.recall(index, snapshot.fault)
+        self.acted[index] = snapshot.action is not None
+        if snapshot.action is not None:
+            self.actions[index] = snapshot.action
         rng.bit_generator.state = dict(snapshot.rng)
 
 

@@ -66,11 +66,13 @@ class ReachableCells:
 
     Args:
         robot: robot whose world, start pose and volume are used.
+        crash_range: a reading below it is a crash [m]; None: the robot's.
     """
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: Robot, crash_range: float | None = None) -> None:
         self._world, self._volume = robot.world, robot.volume
-        self.margin = _MARGIN + max(robot.crash_range - robot.volume.radius, 0.0)
+        crash_range = robot.crash_range if crash_range is None else crash_range
+        self.margin = _MARGIN + max(crash_range - robot.volume.radius, 0.0)
         """Free distance around the robot [m]."""
         start = robot.world.start(robot.name)
         self.z = start.position[2]

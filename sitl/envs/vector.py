@@ -79,6 +79,7 @@ class NavigateVector(OfSubEnvironments):
         self.seeds = [None] * num_envs
         self._steps = np.zeros(num_envs, np.int64)
         self._ended, self._all = np.zeros(num_envs, np.bool_), np.ones(num_envs, np.bool_)
+        self._over: Flags | None = getattr(session.robot, "over", None)
         self._renderers = [Renderer(session.robot, session.task, i) for i in range(num_envs)] if render_mode else []
 
     @property
@@ -175,6 +176,8 @@ class NavigateVector(OfSubEnvironments):
             self._steps[ended], rewards[ended], terminated[ended] = 0, 0.0, False
         limit = self.max_episode_steps
         truncated = np.zeros(self.num_envs, np.bool_) if limit is None else self._steps >= limit
+        if self._over is not None:
+            truncated |= self._over
         moved = ~ended if again else self._all
         if self._renderers:
             for index in np.flatnonzero(moved).tolist():

@@ -40,6 +40,15 @@ class Scene(NamedTuple):
     """An engine's own way to cast rays (``sitl.physics.engine.Engine.cast``)."""
 
 
+class Company(NamedTuple):
+    """The vehicles that share a world, and which of them this is."""
+
+    movers: int
+    """Address of what they show (``sitl.physics.native.traffic.Mover``), which stays in place."""
+    total: int
+    number: int
+
+
 class Rays(NamedTuple):
     """A sensor's rays, and room to work in: the arrays of a ``Beams``."""
 
@@ -107,6 +116,11 @@ class Rangers:
                     own.ranges.ctypes.data,
                 )
         return memory.ctypes.data, (self, memory, room)
+
+    def share(self, company: Company) -> None:
+        """Let the sensors meet other vehicles."""
+        r = self._ranging
+        r.movers, r.mover_count, r.number = company
 
     @property
     def has_rangefinder(self) -> bool:

@@ -20,7 +20,7 @@ from ..physics.native.ranging import list_near
 from ..scenario import Options, Scenario
 from ..vehicle.core_entry import Core, bind_unit, load_core
 from ..vehicles import Airframe
-from .lidar import Rangers, Scene
+from .lidar import Company, Rangers, Scene
 from .plant import Plant, SimulatedVehicle
 from .surroundings import Surroundings
 
@@ -54,6 +54,7 @@ class LocalPlant(Plant):
         if self.surroundings is not None:
             self.home = (*self.home[:3], math.degrees(self.surroundings.heading))
         self.rangers: Rangers | None = None
+        self.company: Company | None = None
         self.core = core
         self.progress = progress
         self.engine: Engine | None = None
@@ -101,11 +102,20 @@ class LocalPlant(Plant):
             v.physics.downward.in_world = self.rangers.has_rangefinder
             vehicle.kind.apply_sim_parameters(v)
             self.ranging = self.rangers.address
+            if self.company is not None:
+                self.join(self.company)
             if self.engine is None:
                 self._list_near = self._unit(list_near)
                 self._list_near(self.ranging)
             self.measure()
             self._note_due()
+
+    def join(self, company: Company) -> None:
+        """Share the world with other vehicles, now and after each power-on; native physics in a world."""
+        assert self.rangers is not None
+        self.company, p = company, self.vehicle.v.physics
+        self.rangers.share(company)
+        p.obstacles.present = p.wind.is_shared = True
 
     # ------------------------------------------------------------------ going on
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from ..core.constants import TICK_US
 from ..errors import SitlError
@@ -43,6 +43,23 @@ def parse_speedup(text: str) -> float | None:
     return value
 
 
+class Listener(Protocol):
+    """What hears clients; a bridge does."""
+
+    @property
+    def heard(self) -> int:
+        """How often clients have said something, so far."""
+        ...
+
+    def wait(self, seconds: float) -> bool:
+        """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""
+        ...
+
+    def receive(self) -> None:
+        """Read all links and act on every frame."""
+        ...
+
+
 class Pacing:
     """Holds simulated time at ``speedup`` times the wall clock, or lets it go (None).
 
@@ -71,11 +88,15 @@ class Pacing:
 
     def after_slice(self, simulation: Simulation) -> None:
         """Wait until the next slice is due, and answer clients meanwhile: none of them can hurry the clock."""
+        self.listen(simulation.bridge)
+
+    def listen(self, listener: Listener) -> None:
+        """The same for what hears clients."""
         wait = self.wait_s()
-        self._fit_slice(simulation.bridge.heard)
+        self._fit_slice(listener.heard)
         while wait > 0.0:
-            if simulation.bridge.wait(wait):
-                simulation.bridge.receive()
+            if listener.wait(wait):
+                listener.receive()
             wait = self._due - self._clock()
 
     def _fit_slice(self, heard: int) -> None:

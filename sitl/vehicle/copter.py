@@ -28,12 +28,14 @@ from ..physics.native.copter.step import step
 from ..physics.native.copter.trim import balance, command_speeds
 from ..physics.native.move import show_field
 from ..physics.native.records import GROUND_AIRBORNE, IMUS
+from ..physics.native.traffic import Mover
 from ..vehicles import CopterAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
 from .move import DONE, IN_SOLID, NO_HOVER, ORDER_SIZE, MoveOrder, displace, is_calm, look_around
 from .record import Vehicle
+from .traffic import show, take_push
 
 QUADROTOR, HEXAROTOR, OCTOROTOR = 2, 13, 14
 OTHER_MULTIROTORS = (HEXAROTOR, OCTOROTOR, 15, 29, 35)
@@ -132,6 +134,17 @@ def move(fleet: Sequence[Copter], index: int, count: int, orders: int, ranging: 
         order.result = obey(fleet[order.vehicle], order, ranging)
 
 
+@unit
+def meet(fleet: Sequence[Copter], index: int, mover: int, shows: int) -> None:
+    """Show vehicle ``index`` to those that share its world (``shows`` 1), or take over what came of meeting them (0);
+    ``mover``: address of its ``Mover``."""
+    v, m = fleet[index], record_at(Mover, mover)
+    if shows != 0:
+        show(v, m)
+    elif m.is_pushed:
+        take_push(v, m)
+
+
 def apply_sim_parameters(v: Copter) -> None:
     """SIM_ parameters of all kinds, those of a copter's motors, and its shove."""
     sim_parameters.apply(v)
@@ -189,6 +202,7 @@ COPTER = Kind(
     fly=fly,
     step=step,
     move=move,
+    meet=meet,
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=apply_sim_parameters,

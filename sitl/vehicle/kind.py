@@ -43,6 +43,9 @@ class Kind:
     move: Callable[[Any, int, int, int, int], None] | None = None
     """Unit ``move(fleet, index, count, orders, ranging)``: puts vehicles elsewhere (``sitl.vehicle.move``); None: they
     cannot be."""
+    meet: Callable[[Any, int, int, int], None] | None = None
+    """Unit ``meet(fleet, index, mover, shows)``: a vehicle shows itself to those that share its world, or takes over
+    what came of meeting them (``sitl.vehicle.traffic``); None: it cannot share one."""
     pieces: Any
     """Module of the units ``begin``, ``load`` and ``sense``: a tick without the motion (``sitl.physics.engine``); None:
     only native physics simulates it."""

@@ -22,15 +22,18 @@ from ..physics.native.move import show_field
 from ..physics.native.rover import pieces
 from ..physics.native.rover.drive import commanded
 from ..physics.native.rover.init import init
+from ..physics.native.rover.motion import hold_back
 from ..physics.native.rover.prepare import prepare
 from ..physics.native.rover.state import Physics
 from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
+from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
 from .move import DONE, IN_SOLID, ORDER_SIZE, MoveOrder, displace, look_around
 from .record import Vehicle
+from .traffic import show, take_push
 
 GROUND_ROVER, BOAT = 10, 11
 """MAV_TYPE"""
@@ -96,6 +99,19 @@ def move(fleet: Sequence[Rover], index: int, count: int, orders: int, ranging: i
         order.result = obey(fleet[order.vehicle], order, ranging)
 
 
+@unit
+def meet(fleet: Sequence[Rover], index: int, mover: int, shows: int) -> None:
+    """Show vehicle ``index`` to those that share its world (``shows`` 1), or take over what came of meeting them (0);
+    ``mover``: address of its ``Mover``."""
+    v, m = fleet[index], record_at(Mover, mover)
+    if shows != 0:
+        show(v, m)
+    elif m.is_pushed:
+        take_push(v, m)
+        p = v.physics
+        hold_back(p.body, p.obstacles, p.wheels, p.airframe.rear_axle)
+
+
 def hold_outputs(p: Physics, sim: Simulated, controls: Floats) -> None:
     """Outputs of steering and motors that fail or are stuck, from now on."""
     wheels, fails, stuck = p.wheels, int(sim.ENGINE_FAIL), int(sim.ENGINE_STUCK)
@@ -140,6 +156,7 @@ ROVER = Kind(
     fly=fly,
     step=step,
     move=move,
+    meet=meet,
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=apply_sim_parameters,

@@ -6,6 +6,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+from .generated import GENERATORS, generate, is_generated
 from .geometry import Geometry
 from .loader import read
 from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
@@ -36,6 +37,7 @@ _NAMES = (
     "circuit2c",
     "circuit3",
     "circle",
+    "open",
 )
 """The six of the paper, then those of gym-gazebo that were not in it."""
 
@@ -46,8 +48,8 @@ def names() -> tuple[str, ...]:
 
 
 def load(name: str | Path | World) -> World:
-    """A world by its name (hyphens and underscores are the same), or by the path of a .toml file; a world is returned
-    as it is.
+    """A world by its name (hyphens and underscores are the same), one that is made ("forest:seed=3,difficulty=0.8"; see
+    ``generated``), or by the path of a .toml file; a world is returned as it is.
 
     Raises:
         WorldError: no world of that name (the message lists those there are), or the file cannot be used.
@@ -59,9 +61,17 @@ def load(name: str | Path | World) -> World:
     if isinstance(name, Path) or name.endswith(".toml"):
         return read(Path(name))
     known = name.strip().lower().replace("-", "_")
+    if is_generated(name):
+        return _generated(name)
     if known not in _NAMES:
-        raise WorldError(f"world {name!r} is not known; it is one of {', '.join(_NAMES)}, or a .toml file")
+        made = ", ".join(f'"{kind}:seed=1"' for kind in GENERATORS)
+        raise WorldError(f"world {name!r} is not known; it is one of {', '.join(_NAMES)}, {made}, or a .toml file")
     return _shipped(known)
+
+
+@cache
+def _generated(text: str) -> World:
+    return generate(text)
 
 
 @cache

@@ -23,7 +23,8 @@ NAMED = [
     ({"autopilot": "ardupilot:./theirs"}, r"autopilot = 'ardupilot:\./theirs'"),
     ({"autopilot": "px4"}, "autopilot = 'px4'"),
     ({"autopilot_path": "./theirs"}, r"autopilot_path = '\./theirs'"),
-    ({"connection": "tcp:127.0.0.1:1", "reset": "reboot"}, "reset = 'reboot'"),
+    ({"connection": "tcp:127.0.0.1:1", "reset": "force"}, "reset = 'force'"),
+    ({"connection": "tcp:127.0.0.1:1", "guard": False}, "guard = False"),
 ]
 
 

@@ -46,9 +46,9 @@ def test_a_place_and_heading(bench: Bench, law: Any, kind: type, more: dict[str,
     law(m, v, SENDER)
     assert seen.pose.count == 1 and tuple(seen.pose.pos) == (2.0, 4.0, -6.0)
     assert seen.pose.q.z == pytest.approx(math.sin(0.25), abs=1e-6) and seen.pose.sigma == pytest.approx(0.2)
-    m.x = math.nan
-    law(m, v, SENDER)
-    assert seen.pose.count == 1, "no number"
+    for m.x in (math.nan, math.inf, 1e30, -60_000.0):
+        law(m, v, SENDER)
+        assert seen.pose.count == 1, "no number, or further off than 100 km"
 
 
 def test_variances_and_resets(bench: Bench) -> None:
@@ -70,6 +70,8 @@ def test_velocities(bench: Bench) -> None:
     seen.kind = 1
     o.vision_speed(told(o.VisionSpeed, x=1.0, y=2.0, z=-3.0), v, SENDER)
     assert tuple(seen.velocity.vel) == (1.0, 2.0, -3.0) and not seen.velocity.on_body
+    o.vision_speed(told(o.VisionSpeed, x=1e5), v, SENDER)
+    assert seen.velocity.count == 1
     m = told(o.VisionDelta, time_delta_usec=500_000, position_delta=[0.5, 0.0, -1.0], confidence=90.0)
     o.vision_delta(m, v, SENDER)
     assert tuple(seen.velocity.vel) == (1.0, 0.0, -2.0) and seen.velocity.on_body and seen.quality == 90

@@ -124,10 +124,10 @@ def test_a_mission_releases_it(core: Core) -> None:
 
 def flying(b: Fitted) -> dict[str, Any]:
     """Lets the fake autopilot be in the air at 50 m."""
-    answers: dict[str, Any] = {"landed": False, "error": 0.0, "height": 50.0, "released": []}
+    answers: dict[str, Any] = {"landed": False, "error": 0.0, "height": 50.0, "sinks": 0.0, "released": []}
     b.autopilot.is_landed = lambda: answers["landed"]  # type: ignore[attr-defined]
     b.autopilot.height = lambda: answers["height"]  # type: ignore[attr-defined]
-    b.autopilot.sink_rate = lambda: 0.0  # type: ignore[attr-defined]
+    b.autopilot.sink_rate = lambda: answers["sinks"]  # type: ignore[attr-defined]
     b.autopilot.lean_error = lambda: answers["error"]  # type: ignore[attr-defined]
     b.autopilot.release_parachute = answers["released"].append  # type: ignore[attr-defined]
     return answers
@@ -156,11 +156,38 @@ def test_one_that_a_client_enables_is_there_at_once() -> None:
     b.run(3.0)
     b.bridge.get(ParameterService).set("CHUTE_ENABLED", 1.0)
     b.run(0.15)
-    answers["height"] = 40.0
+    answers["sinks"] = 10.0
     b.run(0.5)
     assert answers["released"] == []
     b.run(2.0)
     assert answers["released"] == [True]
+
+
+@pytest.mark.parametrize(("begins", "ends", "released"), [(11.0, 5.0, [True]), (9.0, 5.0, [])])
+def test_out_of_control_counts_when_it_begins_high_enough(begins: float, ends: float, released: list[bool]) -> None:
+    """CHUTE_ALT_MIN 10; the real one, out of control from 30 m on with 27, releases at 23.6 m."""
+    b = bench(**CHUTE)
+    answers = flying(b)
+    b.autopilot.armed = lambda: True  # type: ignore[method-assign]
+    answers.update(height=begins, sinks=10.0, error=1.0)
+    b.run(0.25)
+    answers["height"] = ends
+    b.run(2.0)
+    assert answers["released"] == released
+
+
+def test_sinking_too_fast_counts_when_it_is_still_high_enough(core: Core) -> None:
+    """As with the real one: from 30 m with 27 it is not released, with 22 it is, at 23.7 m."""
+    p = packed(core, 30.0, CHUTE_CRT_SINK=2.0, CHUTE_ALT_MIN=27.0)
+    assert p.set_mode(STABILIZE)
+    p.hold(throttle=1000)
+    assert not p.fly(2.0, lambda: not turns(p)) and p.height < 22.0
+
+
+def test_out_of_control_it_may_end_low(core: Core) -> None:
+    p = packed(core, 30.0, CHUTE_ALT_MIN=27.0)
+    p.set_parameter("SIM_ENGINE_FAIL", 9)
+    assert p.fly(4.0, lambda: not turns(p)) and p.height < 26.0
 
 
 def test_relay_held_open_with_the_motors_on() -> None:

@@ -176,7 +176,7 @@ def test_a_link_that_is_cut_ends_in_a_time_out(core: Core) -> None:
     there.share = 1.0
     with pytest.raises(WaitTimeoutError, match="waited 5 s for an answer to arming") as failure:
         vehicle.arm()
-    assert "mute at 4.0 s simulated" in str(failure.value)
+    assert "mute at 6.0 s simulated" in str(failure.value)
     with pytest.raises(WaitTimeoutError, match="waited 5 s for the value of RTL_ALT"):
         vehicle.params["RTL_ALT"]
     assert there.lost > 12

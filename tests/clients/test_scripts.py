@@ -81,3 +81,21 @@ def test_dronekit_attitudes(fly: Fly) -> None:
 def test_mavproxy(fly: Fly, vehicle: str) -> None:
     script = {"copter": "mavproxy_session.py", "rover": "mavproxy_rover.py"}[vehicle]
     fly(SCRIPTS / script, UDP, vehicle=vehicle)
+
+
+SWARM = ("--count", "3", "--spacing", "6")
+
+
+def test_mavsdk_swarm(fly: Fly) -> None:
+    pytest.importorskip("mavsdk.asyncio", reason="MAVSDK 4 is not installed")
+    fly(SCRIPTS / "mavsdk_swarm.py", MAVSDK, *SWARM)
+
+
+def test_pymavlink_swarm(fly: Fly) -> None:
+    fly(SCRIPTS / "pymavlink_swarm.py", UDP, *SWARM)
+
+
+def test_two_copters_that_are_sent_into_each_other_collide(fly: Fly) -> None:
+    swarm = ("--count", "2", "--spacing", "6", "--estimator", "truth", "--home=-35.363262,149.165237,584,0")
+    said = fly(SCRIPTS / "pymavlink_collision.py", UDP, *swarm)
+    assert "ok: both were hit" in said

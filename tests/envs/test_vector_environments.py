@@ -50,7 +50,7 @@ def test_vector_equals_singles(name, options):
 
 def test_it_is_what_make_vec_gives():
     vector = gym.make_vec(CIRCUIT2, num_envs=3)
-    assert type(vector.unwrapped).__name__ == "PaperNavigateVector"
+    assert type(vector.unwrapped).__name__ == "PresetNavigateVector"
     assert vector.metadata["autoreset_mode"] == gym.vector.AutoresetMode.NEXT_STEP
     assert vector.unwrapped.max_episode_steps == 1500
 

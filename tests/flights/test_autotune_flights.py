@@ -15,7 +15,7 @@ from sitl.simulation import Core
 from tests.flights.aviator import ALT_HOLD, CIRCLE, GUIDED, LOITER, POSHOLD, STABILIZE, Aviator
 from tests.logs.dataflash.conftest import read_log
 
-AUTOTUNE, TEST_GAINS = 15, 180
+AUTOTUNE, TEST_GAINS, EMERGENCY_STOP = 15, 180, 31
 LOW, HIGH = 0, 2
 NAMES = ("ATC_RAT_RLL_P", "ATC_RAT_RLL_I", "ATC_RAT_RLL_D", "ATC_ANG_RLL_P", "ATC_ACCEL_R_MAX", "ATC_RAT_RLL_FLTT")
 
@@ -47,6 +47,15 @@ def tune(p: Aviator, seconds: float) -> float:
     assert p.fly(seconds, lambda: p.said("AutoTune: Success") or p.said("Determination Failed"))
     assert p.said("AutoTune: Success"), said(p)
     return p.now - begin
+
+
+def twitching(core: Core) -> tuple[Aviator, dict[str, float]]:
+    """In a twitch, and the gains from before."""
+    p = hovering(core)
+    before = gains(p)
+    assert p.set_mode(AUTOTUNE)
+    assert p.fly(20.0, lambda: p.ap.modes.autotune.twitching) and gains(p) != before
+    return p, before
 
 
 def land(p: Aviator) -> None:
@@ -129,7 +138,9 @@ def test_a_detuned_vehicle_follows_better_afterwards_and_keeps_what_it_did_not_t
     p = hovering(core, ALT_HOLD, ATC_RAT_RLL_P=0.05, ATC_RAT_RLL_I=0.05, ATC_RAT_RLL_D=0.001, AUTOTUNE_MIN_D=0.0002)
     before = lag(p)
     p.sticks(3.0)
-    tune(p, 200.0)
+    assert p.set_mode(AUTOTUNE)
+    p.set_parameter("AUTOTUNE_AXES", 0)  # after it has begun with roll
+    assert p.fly(200.0, lambda: p.said("AutoTune: Success")), said(p)
     land(p)
     assert said(p)[-1] == "Saved gains for Roll "
     assert pytest.approx(0.152, rel=0.15) == p.ap.params.ATC_RAT_RLL_P  # 0.151, 0.153
@@ -164,6 +175,48 @@ def test_left_before_its_end_nothing_stays_and_it_goes_on_when_entered_again(cor
     p.fly(3.0)
     land(p)
     assert gains(p) == before and "Saved" not in said(p)[-1]
+
+
+def test_a_boot_in_a_twitch_gives_the_gains_back(core: Core) -> None:
+    p, before = twitching(core)
+    assert p.ask(246, 1, 0, 0, 0, 0, 20190226) == 0
+    p.fly(1.0)
+    assert not p.ap.arming.armed and gains(p) == before
+
+
+def test_gains_that_a_client_sets_after_it_was_left_stay(core: Core) -> None:
+    p, before = twitching(core)
+    assert p.set_mode(LOITER) and gains(p) == before
+    p.set_parameter("ATC_RAT_RLL_P", 0.11)
+    changed = gains(p)
+    assert p.set_mode(AUTOTUNE)
+    p.fly(3.0)
+    assert p.set_mode(LOITER) and gains(p) == changed, "entered again"
+    p.set_parameter("ATC_RAT_RLL_P", 0.12)
+    changed = gains(p)
+    land(p)
+    assert gains(p) == changed, "disarmed"
+
+
+def test_disarmed_in_the_air_it_keeps_nothing(core: Core) -> None:
+    p = hovering(core)
+    before = gains(p)
+    tune(p, 150.0)
+    assert p.set_mode(LOITER) and p.set_mode(AUTOTUNE) and gains(p) != before
+    assert p.ask(400, 0, 21196) == 0
+    p.fly(0.2)
+    assert not p.ap.arming.armed and gains(p) == before and "Saved" not in said(p)[-1]
+
+
+def test_motors_that_stop_end_a_twitch(core: Core) -> None:
+    p, before = twitching(core)
+    assert p.ask(218, EMERGENCY_STOP, HIGH) == 0
+    p.fly(0.1)
+    assert gains(p) == before and not p.said("AutoTune: pilot overrides active")
+    assert p.ask(218, EMERGENCY_STOP, LOW) == 0
+    p.fly(0.3)
+    assert gains(p) == before
+    assert p.fly(20.0, lambda: gains(p) != before and p.ap.modes.autotune.twitching), "it goes on"
 
 
 @pytest.mark.parametrize("stick", ["roll", "yaw", "throttle"])

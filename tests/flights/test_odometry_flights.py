@@ -22,19 +22,21 @@ class Flight:
 
     Args:
         boot: time before it is given an origin [s].
+        origin: whether it is given one.
         params: besides those of the helper.
     """
 
-    def __init__(self, boot: float = 26.0, **params: float) -> None:
+    def __init__(self, boot: float = 26.0, origin: bool = True, **params: float) -> None:
         self.simulation = Simulation("erle_copter", params={**PARAMETERS, **params})
         self.client = Client(self.simulation)
         self.v: Any = self.simulation.v
         self.odometry = Odometry(self.client, position_noise=0.02, velocity_noise=0.02).start()
         self.client.delay(boot)
         place = self.v.physics.place
-        self.client.send(
-            "SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=place.lat, longitude=place.lon, altitude=584_000
-        )
+        if origin:
+            self.client.send(
+                "SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=place.lat, longitude=place.lon, altitude=584_000
+            )
         self.client.delay(1.0)
 
     def hover(self) -> Flight:
@@ -116,6 +118,40 @@ def test_what_is_far_off_is_left_out() -> None:
     flight.odometry.offset = Vec3(0.0, 0.0, 0.0)
     flight.client.delay(1.0)
     assert flight.v.autopilot.estimate.variance_pos < 0.3
+
+
+@pytest.mark.parametrize("resets", [0, 1])
+def test_a_place_beyond_all_sense_is_passed_over(resets: int) -> None:
+    flight = Flight().hover()
+    flight.client.delay(5.0)
+    before = flight.true
+    flight.odometry.offset = Vec3(1e30, 0.0, 0.0)
+    flight.odometry.resets += resets
+    flight.client.delay(0.3)
+    flight.odometry.offset = Vec3(0.0, 0.0, 0.0)
+    flight.client.delay(2.0)
+    assert flight.v.autopilot.ekf.resets == 0 and flight.flags & POS_HORIZ_ABS
+    assert math.dist(flight.true, before) < 0.3 and math.dist(flight.true, flight.believed) < 0.3
+
+
+@pytest.mark.parametrize("gps_first", [True, False])
+def test_from_odometry_to_gps_without_an_origin(gps_first: bool) -> None:
+    """GPS sets the origin, and its place is taken from there; until then the last place holds."""
+    gps = {"EK3_SRC2_POSXY": 3, "EK3_SRC2_VELXY": 3, "EK3_SRC2_POSZ": 1, "EK3_SRC2_VELZ": 3, "EK3_SRC2_YAW": 1}
+    flight = Flight(50.0, False, **gps, EK3_SRC1_POSZ=1, GPS1_TYPE=1, SIM_GPS1_ENABLE=0)
+    client, enable = flight.client, "SIM_GPS1_ENABLE"
+    assert flight.flags & POS_HORIZ_ABS and not flight.v.autopilot.estimate.origin_set
+    if gps_first:
+        client.params[enable] = 1
+    client.command(42007, 2)
+    if not gps_first:
+        client.delay(4.0)
+        client.params[enable] = 1
+    for _ in range(40):
+        client.delay(0.5)
+        assert math.dist(flight.believed, flight.true) < 2.0
+    assert flight.v.autopilot.estimate.origin_set and flight.flags & POS_HORIZ_ABS
+    assert flight.said("EKF3 IMU0 is using GPS")
 
 
 def test_heading_without_a_compass() -> None:

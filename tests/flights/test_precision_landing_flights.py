@@ -276,6 +276,17 @@ def test_targets_of_other_frames_or_of_unknown_distance_are_not_taken(
     assert [text for _, _, text in p.texts].count("Plnd: Frame not supported") == (frame != BODY_FRD)
 
 
+@pytest.mark.parametrize(("distance", "angle"), [(1e30, 0.5), (2000.0, 0.5), (0.0, 1.5707)])
+def test_a_target_beyond_all_sense_is_passed_over(core: Core, distance: float, angle: float) -> None:
+    p = Aviator(core, "ardupilot_quad", PLND_ENABLED=1, PLND_TYPE=1, PLND_STRICT=0, RNGFND1_TYPE=100).hover(8.0)
+    here = p.pos[:2]
+    assert p.set_mode(LAND)
+    for _ in range(100):
+        p.send("LANDING_TARGET", frame=BODY_FRD, distance=distance, angle_x=angle)
+        p.fly(0.05)
+    assert not p.said("Target Found") and aside(p, here) < 0.5
+
+
 def test_a_companion_computer_is_not_heard_without_its_type(core: Core) -> None:
     p = pilot(core).hover(8.0)
     for _ in range(10):
@@ -286,7 +297,7 @@ def test_a_companion_computer_is_not_heard_without_its_type(core: Core) -> None:
 
 def test_a_beacon_without_a_place_is_told(core: Core) -> None:
     p = pilot(core, SIM_PLD_ENABLE=1).ready()
-    assert [text for _, _, text in p.texts].count("Set SIM_PLD_LAT, SIM_PLD_LAT and SIM_PLD_ALT") == 1
+    assert [text for _, _, text in p.texts].count("Set SIM_PLD_LAT, SIM_PLD_LON and SIM_PLD_ALT") == 1
     assert p.message("SYS_STATUS").onboard_control_sensors_present & 0x80
     assert not p.message("SYS_STATUS").onboard_control_sensors_health & 0x80
 
@@ -321,3 +332,16 @@ def test_loiter_holds_over_the_target_while_a_switch_lets_it(core: Core) -> None
     p.hold()
     p.fly(8.0)
     assert aside(p, place) > 2.0
+
+
+def test_loiter_that_loses_its_sensor_stays(core: Core) -> None:
+    p = pilot(core).hover(8.0)
+    place = beacon(p, 4.0, 0.0)
+    p.hold()
+    assert p.set_mode(LOITER) and p.ask(218, 39, 2) == 0
+    p.fly(3.0)
+    assert p.ap.modes.loiter.on_target
+    p.set_parameter("PLND_ENABLED", 0)
+    p.fly(20.0)
+    assert not p.ap.modes.loiter.on_target and not p.ap.landing_target.acquired
+    assert aside(p, place) < 5.0 and np.hypot(*p.vel[:2]) < 0.2

@@ -153,6 +153,45 @@ def test_a_compass_that_shows_another_field_is_left(core: Core) -> None:
     assert p.ap.estimate.variance_mag < 0.5
 
 
+def test_on_the_ground_a_compass_that_shows_another_field_is_left_for_good(core: Core) -> None:
+    p = Aviator(core, "ardupilot_quad").ready()
+    fail(p, MAG1_OFS_X=600.0, MAG1_OFS_Y=600.0)
+    p.fly(50.0)
+    assert [text for _, _, text in p.texts if "IMU0 switching to compass" in text] == [
+        "EKF3 IMU0 switching to compass 1"
+    ]
+    fail(p, MAG1_OFS_X=0.0, MAG1_OFS_Y=0.0)
+    p.fly(12.0)
+    assert p.ap.ekf.compass == 0
+
+
+@pytest.mark.parametrize(
+    ("sources", "error", "heeded"),  # the real one's velocity_variance: 0.12 to 0.6 where it is heeded, else 0.01 or 0
+    [
+        ({"VELZ": 3}, "Z", True), ({"VELZ": 0}, "Z", False), ({"VELZ": 0}, "X", True),
+        ({"VELXY": 0}, "X", False), ({"VELXY": 0}, "Z", False),
+    ],
+)  # fmt: skip
+def test_velocities_of_gps_count_as_far_as_they_are_a_source(
+    core: Core, sources: dict[str, float], error: str, heeded: bool
+) -> None:
+    p = Aviator(core, "ardupilot_quad", **{f"EK3_SRC1_{name}": value for name, value in sources.items()}).ready()
+    fail(p, **{f"GPS1_VERR_{error}": 3.0})
+    p.fly(3.0)
+    assert (p.ap.estimate.variance_vel > 0.1) == heeded
+    if not heeded:
+        assert p.ap.estimate.variance_vel < 0.05 and np.linalg.norm(p.ap.estimate.vel) < 0.1
+
+
+def test_without_a_source_of_the_heading_there_is_none(core: Core) -> None:
+    """As with the real one: tilt is aligned, yaw is not, and GPS is not used."""
+    p = Aviator(core, "ardupilot_quad", EK3_SRC1_YAW=0)
+    p.fly(55.0)
+    assert p.said("EKF3 IMU0 tilt alignment complete") and p.said("EKF3 IMU0 origin set") is not None
+    assert not p.said("yaw alignment complete") and not p.said("is using GPS")
+    assert abs(p.ap.estimate.yaw) < 0.1 and not p.ap.estimate.position_ok
+
+
 def test_a_landed_copter_goes_back_to_its_first_compass(core: Core) -> None:
     p = loiter(core)
     fail(p, MAG1_FAIL=1)

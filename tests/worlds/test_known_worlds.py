@@ -149,10 +149,10 @@ def test_a_lidar_that_tilts_sees_the_floor() -> None:
 
 
 def test_names_are_the_files_and_load_at_any_spelling() -> None:
-    assert set(worlds.names()) == {path.stem for path in worlds._DATA.glob("*.toml")} == set(KNOWN)
+    assert set(worlds.names()) == {path.stem for path in worlds._DATA.glob("*.toml")} == {*KNOWN, "open"}
     for name in worlds.names():
         assert worlds.load(name).name == name
-        assert worlds.load(name).description and worlds.load(name).source
+        assert worlds.load(name).description and (worlds.load(name).source or name == "open")
     assert worlds.load("Office-ErleCopter") is worlds.load("office_erlecopter")
     assert worlds.load(worlds.load("maze")) is worlds.load("maze")
     with pytest.raises(worlds.WorldError, match=r"world 'mars' is not known; it is one of circuit, circuit2, .*\.toml"):

@@ -33,7 +33,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "the number of workers.",
     )
     parser.add_argument(
-        "policy", metavar="POLICY", help=f"folder of a run, MODULE:FUNCTION of observations, or {RANDOM}"
+        "policy",
+        metavar="POLICY",
+        help=f"folder of a run, file of a policy (.npz), MODULE:FUNCTION of observations, or {RANDOM}",
     )
     parser.add_argument("env", nargs="?", metavar="ENV", help="id of the environment (default: that of the run)")
     parser.add_argument("--episodes", type=positive, default=100, metavar="N", help="default 100")

@@ -15,18 +15,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 
 from ..errors import AgentError
 from ..runs.files import write_bytes
 from . import models, plain
 from .library import torch
+from .spaces import Spaces, described, space_of
 
 MODEL = "model.zip"
 _ABOUT, _STATE, _ARRAYS, _MEMORY = "about.json", "state.json", "state.npz", "memory.npz"
 _TENSORS, _SUFFIX = "tensors.pth", ".weights.pth"
-Spaces = tuple[gym.Space[Any], gym.Space[Any]]
 Score = tuple[float, ...]
 """How good a model is, the most important figure first; greater is better."""
 _REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
@@ -129,10 +128,10 @@ def load(path: Path, algorithm: str) -> tuple[Any, Spaces]:
     try:
         with _opened(path) as archive:
             about = json.loads(archive.read(_ABOUT))
-            seen, actions = _space(about["features"]), _space(about["moves"])
+            seen, actions = space_of(about["features"]), space_of(about["moves"])
             model = models.empty(algorithm, about["net_arch"], seen, actions)
             _read_weights(archive, model)
-            return model, (_space(about["observations"]), _space(about["actions"]))
+            return model, (space_of(about["observations"]), space_of(about["actions"]))
     except _BROKEN as error:
         raise AgentError(f"{path} is no model of {algorithm}: {error}") from None
 
@@ -165,9 +164,9 @@ def _opened(path: Path) -> zipfile.ZipFile:
 
 def _write_weights(archive: zipfile.ZipFile, model: Any, spaces: Spaces, more: Mapping[str, Any]) -> None:
     about = {
-        "net_arch": model.policy_kwargs["net_arch"], "features": _described(model.observation_space),
-        "moves": _described(model.action_space), "observations": _described(spaces[0]),
-        "actions": _described(spaces[1]), **more,
+        "net_arch": model.policy_kwargs["net_arch"], "features": described(model.observation_space),
+        "moves": described(model.action_space), "observations": described(spaces[0]),
+        "actions": described(spaces[1]), **more,
     }  # fmt: skip
     archive.writestr(_ABOUT, json.dumps(about))
     for name, values in model.get_parameters().items():
@@ -199,38 +198,6 @@ def _loaded(archive: zipfile.ZipFile, name: str) -> Any:
         return torch().load(io.BytesIO(archive.read(name)), map_location="cpu", weights_only=True)
     except UnpicklingError as error:
         raise ValueError(f"{name} holds more than weights: {str(error).splitlines()[0]}") from None
-
-
-# ---------------------------------------------------------------------- spaces
-
-
-def _described(space: gym.Space[Any]) -> dict[str, Any]:
-    """A space as JSON has it."""
-    if isinstance(space, gym.spaces.Box):
-        limits = {"low": space.low.tolist(), "high": space.high.tolist()}
-        return {"kind": "box", **limits, "shape": list(space.shape), "dtype": str(space.dtype)}
-    if isinstance(space, gym.spaces.Discrete):
-        return {"kind": "discrete", "n": int(space.n), "start": int(space.start)}
-    if isinstance(space, gym.spaces.MultiDiscrete):
-        return {"kind": "multi", "n": space.nvec.tolist()}
-    if isinstance(space, gym.spaces.Dict):
-        return {"kind": "dict", "spaces": [[name, _described(part)] for name, part in space.items()]}
-    raise AgentError(f"a model that sees {space} cannot be kept")
-
-
-def _space(data: Mapping[str, Any]) -> gym.Space[Any]:
-    kind = data["kind"]
-    if kind == "box":
-        dtype: Any = np.dtype(data["dtype"])
-        low, high = (np.array(data[name], dtype).reshape(data["shape"]) for name in ("low", "high"))
-        return gym.spaces.Box(low, high, dtype=dtype)
-    if kind == "discrete":
-        return gym.spaces.Discrete(data["n"], start=data["start"])
-    if kind == "multi":
-        return gym.spaces.MultiDiscrete(data["n"])
-    if kind == "dict":
-        return gym.spaces.Dict([(name, _space(part)) for name, part in data["spaces"]])
-    raise ValueError(f"a space of the kind {kind!r}")
 
 
 # ---------------------------------------------------------------------- all the rest

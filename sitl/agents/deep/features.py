@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Observations as rows of numbers of about 0 .. 1, which networks learn from."""
+"""Observations as rows of numbers of the order of 1, which networks learn from."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ class Features:
     - a scan: of each sector the nearest reading r as log(1 + r) / log(1 + range), so that a decimetre counts more near
       a wall than far from it; a lidar with other readings over the same field gives the same sectors;
     - digits: as a share of the greatest;
+    - numbers of either sign: sign(x) log(1 + |x|), which tells centimetres near 0 and does not grow far from it
+      (Hafner et al., "Mastering Diverse Domains through World Models", arXiv:2301.04104);
     - the way to a goal: distance, cosine and sine of the bearing; a pose: x, y, z, cosine and sine of the yaw.
 
     Args:
@@ -35,7 +37,7 @@ class Features:
     """
 
     def __init__(self, space: gym.Space[Any], sectors: int) -> None:
-        self._sectors = sectors
+        self.space, self._sectors = space, sectors
         self._parts: list[tuple[str | None, Callable[[Any], Rows]]] = []
         if isinstance(space, gym.spaces.Dict):
             for name, part in space.spaces.items():
@@ -55,11 +57,15 @@ class Features:
         if isinstance(space, gym.spaces.MultiDiscrete):
             highest = np.maximum(space.nvec - 1, 1).astype(np.float32)
             return lambda digits: np.asarray(digits, np.float32) / highest
+        if isinstance(space, gym.spaces.Box) and len(space.shape) == 1 and bool(np.any(space.low < 0.0)):
+            return _either_sign
         if isinstance(space, gym.spaces.Box) and len(space.shape) == 1 and bool(np.all(np.isfinite(space.high))):
             scale = np.float32(1.0 / math.log1p(float(space.high.max())))
             sectors = self._sectors
             return lambda scan: np.log1p(nearest(np.asarray(scan, np.float32), sectors)) * scale
-        raise AgentError(f"observation {name!r} = {space} cannot be learnt from; scans, digits, goals and poses can")
+        raise AgentError(
+            f"observation {name!r} = {space} cannot be learnt from; rows of numbers, scans, digits, goals and poses can"
+        )
 
     def __call__(self, observations: Any) -> Rows:
         """Features, shape (count, width), of observations with a row a robot."""
@@ -74,6 +80,12 @@ def nearest(scans: Rows, sectors: int) -> Rows:
         return scans
     edges = (np.arange(sectors) * readings) // sectors
     out: Rows = np.minimum.reduceat(scans, edges, axis=1)
+    return out
+
+
+def _either_sign(numbers: Any) -> Rows:
+    rows = np.asarray(numbers, np.float32)
+    out: Rows = np.sign(rows) * np.log1p(np.abs(rows))
     return out
 
 

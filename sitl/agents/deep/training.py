@@ -24,6 +24,7 @@ from .actions import Actions
 from .checks import BEST, Checks
 from .features import Features
 from .library import LIBRARIES, require, stable_baselines3, torch
+from .network import network_of
 from .policy import DeepPolicy
 from .settings import Settings, as_dict, settings_of
 
@@ -201,4 +202,5 @@ def policy(folder: RunFolder) -> DeepPolicy:
     best = folder.path / BEST
     path = best if best.exists() else folder.path / checkpoint.MODEL
     model, (observations, actions) = checkpoint.load(path, config.algorithm)
-    return DeepPolicy(model, figures, Features(observations, figures.sectors), Actions(actions, config.algorithm))
+    seen, moves = Features(observations, figures.sectors), Actions(actions, config.algorithm)
+    return DeepPolicy(network_of(model), figures, seen, moves)

@@ -14,6 +14,7 @@ from .control.frames import load_frame
 from .control.update import init as init_control
 from .control.update import update as control
 from .mission import COMMANDS
+from .modes.autotune_gains import give_back
 from .modes.table import NAMES
 from .modes.update import init as init_modes
 from .modes.update import update as decide
@@ -27,7 +28,7 @@ def update(fleet: Records[Vehicle], index: int) -> None:
     estimate(fleet, index)
     decide(fleet, index)
     control(fleet, index)
-    if fleet[index].autopilot.params.PLND.ENABLED != 0.0:
+    if fleet[index].autopilot.params.PLND.ENABLED != 0.0 or fleet[index].autopilot.landing_target.running:
         landing_target.estimate(fleet[index], DOWN)
 
 
@@ -38,4 +39,6 @@ def power_on(v: Vehicle) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("copter", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS, fence_bytes=560, rally_bytes=690)
+FIRMWARE = Firmware(
+    "copter", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS, give_back, fence_bytes=560, rally_bytes=690
+)

@@ -17,7 +17,8 @@ from ...core.displacement import (
 from ...core.kernels import law
 from ..move import add_to_target, move_autopilot, move_path
 from .control.state import AltitudeState, AttitudeState, PositionState
-from .modes.state import GuidedState, LoiterState, Modes
+from .modes.autotune_gains import YAW
+from .modes.state import AutotuneState, GuidedState, LoiterState, Modes
 from .navigation.state import CopterNav
 from .state import Autopilot
 
@@ -61,6 +62,14 @@ def move_loiter(state: LoiterState, d: Displacement) -> None:
 
 
 @law
+def move_autotune(t: AutotuneState, d: Displacement) -> None:
+    """The place and heading that AUTOTUNE holds, and the heading from which a twitch in yaw began."""
+    t.place, t.heading = moved_ne(d, t.place), turned_heading(d, t.heading)
+    if t.axis >= YAW:
+        t.start_angle += -d.angle if t.backwards else d.angle
+
+
+@law
 def move_circle(nav: CopterNav, d: Displacement) -> None:
     """A circle under way."""
     nav.circle_centre = moved(d, nav.circle_centre)
@@ -79,6 +88,8 @@ def move_modes(m: Modes, d: Displacement) -> None:
     move_guided(m.guided, d)
     move_loiter(m.loiter, d)
     m.poshold.wind = turned_ne(d, m.poshold.wind)
+    m.flowhold.against_wind = turned_ne(d, m.flowhold.against_wind)
+    move_autotune(m.autotune, d)
     m.flip.level = turned_attitude(d, m.flip.level)
     simple = m.simple
     simple.heading = turned_heading(d, simple.heading)

@@ -77,11 +77,11 @@ def reset_to_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, age: float) -> 
 def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Sensors, age: float) -> None:
     """From holding the position to GPS, whose fix is ``age`` [s] old."""
     reset_to_fix(ekf, estimate, sensors, age)
-    ekf.gps_in_use = True
+    ekf.absolute = True
     ekf.relative = False
     ekf.gps_used_before = True
-    ekf.gps_pos_fused_us = ekf.now_us
-    ekf.gps_vel_fused_us = ekf.now_us
+    ekf.pos_fused_us = ekf.now_us
+    ekf.vel_fused_us = ekf.now_us
     ekf.gps_passed_us = ekf.now_us
     ekf.gps_glitch = False
     events.emit(log, ekf.now_us, events.EKF_USES_GPS, float(ekf.imu), 0.0)
@@ -90,7 +90,7 @@ def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Senso
 @law
 def stop_using(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
     """From GPS to holding the position."""
-    ekf.gps_in_use = False
+    ekf.absolute = False
     ekf.hold_pos = horizontal(ekf.pos)
     estimate.variance_pos = 0.0
     estimate.variance_vel = 0.0

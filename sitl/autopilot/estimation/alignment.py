@@ -105,7 +105,7 @@ def initialise(ekf: Ekf) -> None:
     ekf.init_us = ekf.now_us
     ekf.tilt_aligned = False
     ekf.yaw_aligned = False
-    ekf.gps_in_use = False
+    ekf.absolute = False
     ekf.relative = False
     ekf.baro_fused_us = ekf.now_us
     ekf.mag_fused_us = ekf.now_us

@@ -94,7 +94,7 @@ def fuse(ekf: Ekf, estimate: Estimate, params: Ekf3) -> bool:
         correct(ekf, innovation, NIS_BAROMETER)
         ekf.baro_fused_us = ekf.now_us
         return True
-    with_gps = ekf.gps_in_use and ekf.now_us - ekf.gps_vel_fused_us < TIMEOUT_US
+    with_gps = ekf.absolute and ekf.now_us - ekf.vel_fused_us < TIMEOUT_US
     if ekf.now_us - ekf.baro_fused_us > (TIMEOUT_WITH_GPS_US if with_gps else TIMEOUT_US):
         reset_height(ekf, estimate, down, variance)
         ekf.baro_fused_us = ekf.now_us

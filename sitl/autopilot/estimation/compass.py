@@ -53,11 +53,12 @@ def take(ekf: Ekf, log: events.Events, compass: int, both: bool) -> None:
 
 @law
 def watch(ekf: Ekf, log: events.Events, sensors: Sensors, params: Parameters, armed: bool, both: bool) -> None:
-    """Each filter step: leave a compass that fails, and go back to the first one on the ground."""
+    """Each filter step: leave a compass that fails; go back to the first one on the ground when both show the same."""
     if (ekf.yaw_aligned and ekf.now_us - ekf.mag_fused_us > TIMEOUT_US) or not is_used(ekf.compass, params.COMPASS):
         other = better(ekf, sensors, params)
         if other >= 0:
             take(ekf, log, other, both)
     elif ekf.compass != 0 and not armed and is_used(0, params.COMPASS) and is_heard(0, sensors, ekf.now_us):
-        if ekf.now_us - ekf.mag_changed_us > TIMEOUT_US:
+        own, first = field_of(ekf.compass, sensors, params), field_of(0, sensors, params)
+        if ekf.now_us - ekf.mag_changed_us > TIMEOUT_US and not differs(first, own):
             take(ekf, log, 0, both)

@@ -56,9 +56,9 @@ def velocity_of(ekf: Ekf, seen: VisualOdometry) -> Vec3:
 def begin(ekf: Ekf, estimate: Estimate, log: events.Events, seen: VisualOdometry, source: Sources, age: float) -> None:
     """From holding the position, or a relative one, to the position told, ``age`` [s] old."""
     jump_to(ekf, estimate, seen, source, age)
-    ekf.gps_in_use, ekf.relative = True, False
-    ekf.gps_pos_fused_us = ekf.now_us
-    ekf.gps_vel_fused_us = ekf.now_us
+    ekf.absolute, ekf.relative = True, False
+    ekf.pos_fused_us = ekf.now_us
+    ekf.vel_fused_us = ekf.now_us
     events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), BY_OTHERS)
 
 
@@ -90,7 +90,7 @@ def fuse_pose(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, params: Ekf3, 
         return False
     correct(ekf, innovate_position(ekf, 0, age, residual.x, variance), NO_NIS)
     correct(ekf, innovate_position(ekf, 1, age, residual.y, variance), NO_NIS)
-    ekf.gps_pos_fused_us = ekf.now_us
+    ekf.pos_fused_us = ekf.now_us
     return True
 
 
@@ -121,7 +121,7 @@ def fuse_velocity(
     correct(ekf, innovate_state(ekf, VEL + 1, residual.y, variance), NO_NIS)
     if vertical:
         correct(ekf, innovate_state(ekf, VEL + 2, residual.z, variance), NO_NIS)
-    ekf.gps_vel_fused_us = ekf.now_us
+    ekf.vel_fused_us = ekf.now_us
     ekf.relative_us = ekf.now_us
     return True
 
@@ -164,15 +164,15 @@ def take_pose(
     if source.POSXY != EXTERNAL or not ekf.yaw_aligned:
         return source.YAW == EXTERNAL
     age = 1e-6 * (ekf.now_us - when_us)
-    if not ekf.gps_in_use:
+    if not ekf.absolute:
         begin(ekf, estimate, log, seen, source, age)
     elif seen.resets != ekf.pose_resets:
         jump_to(ekf, estimate, seen, source, age)
-        ekf.gps_pos_fused_us = ekf.now_us
+        ekf.pos_fused_us = ekf.now_us
     elif not fuse_pose(ekf, estimate, seen, params, when_us, source.POSZ == EXTERNAL):
-        if ekf.now_us - ekf.gps_pos_fused_us > flow.STOP_US:
+        if ekf.now_us - ekf.pos_fused_us > flow.STOP_US:
             jump_to(ekf, estimate, seen, source, age)
-            ekf.gps_pos_fused_us = ekf.now_us
+            ekf.pos_fused_us = ekf.now_us
     return True
 
 
@@ -183,7 +183,7 @@ def take_velocity(
     """Look at a new velocity; whether something was fused. Without positions it makes a relative one."""
     if not ekf.yaw_aligned:
         return False
-    if not (ekf.gps_in_use or ekf.relative):
+    if not (ekf.absolute or ekf.relative):
         if source.POSXY == EXTERNAL:
             return False
         vel = velocity_of(ekf, seen)

@@ -121,7 +121,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, flow: OpticalFlow, pa
     if flow.quality == 0 or not norm2(flow.rate) < params.MAX_FLOW or not (ekf.yaw_aligned and knows_height(ekf)):
         return False
     shown = flow.rate - flow.body
-    if not (ekf.relative or ekf.gps_in_use):
+    if not (ekf.relative or ekf.absolute):
         begin(ekf, estimate, log, shown)
         return False
     return fuse_rates(ekf, estimate, shown, flow.time_us - int(1000.0 * params.FLOW_DELAY), params)

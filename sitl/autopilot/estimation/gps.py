@@ -19,8 +19,9 @@ from ...core.vectors import Vec2, Vec3
 from ..events import Events
 from ..params.estimator import Ekf3
 from ..params.parameters import Parameters
+from ..params.without_gps import Sources
 from ..state import Estimate, Sensors
-from . import doubt, noise
+from . import doubt, noise, sources
 from .aiding import Origin, fix_ne, place_origin, reset_to_fix, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
 from .history import past_at
@@ -123,22 +124,25 @@ def has_held(ekf: Ekf) -> bool:
 
 
 @law
-def may_start(ekf: Ekf, origin_set: bool) -> bool:
+def may_start(ekf: Ekf) -> bool:
     """Whether GPS may be used: the first time after long checks, after a loss with a few good fixes."""
     again = ekf.gps_used_before and ekf.gps_good_us != 0 and ekf.gps_fixes >= RETURN_FIXES
-    return (has_held(ekf) or again) and origin_set and ekf.bias_learned and ekf.yaw_aligned
+    return (has_held(ekf) or again) and ekf.bias_learned and ekf.yaw_aligned
 
 
 @law
-def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3) -> float:
-    """Fuse measured minus past velocity [m/s]; the ratio to the gate: it is not fused from 1 on."""
+def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3, vertical: bool) -> float:
+    """Fuse measured minus past velocity [m/s], with its ``vertical`` part or without.
+
+    Returns the ratio to the gate: it is not fused from 1 on.
+    """
     n, v = params.VELNE_M_NSE, params.VELD_M_NSE
     sigma_ne, sigma_d = noise.GPS_VELOCITY_NE * n, noise.GPS_VELOCITY_D * v
-    ne, d, nominal = sigma_ne * sigma_ne, sigma_d * sigma_d, math.sqrt(2.0 * n * n + v * v)
+    ne, d, nominal = sigma_ne * sigma_ne, sigma_d * sigma_d, math.sqrt(2.0 * n * n + (v * v if vertical else 0.0))
     north = innovate_state(ekf, VEL, residual.x, ne)
     east = innovate_state(ekf, VEL + 1, residual.y, ne)
     down = innovate_state(ekf, VEL + 2, residual.z, d)
-    if doubt.is_odd(ekf, north, ne) or doubt.is_odd(ekf, east, ne) or doubt.is_odd(ekf, down, d):
+    if doubt.is_odd(ekf, north, ne) or doubt.is_odd(ekf, east, ne) or (vertical and doubt.is_odd(ekf, down, d)):
         doubt.begin(ekf)
     if doubt.is_doubting(ekf):
         n = max(n, noise.DOUBTED_SPEED)
@@ -146,15 +150,19 @@ def fuse_velocity(ekf: Ekf, residual: Vec3, params: Ekf3) -> float:
         north = innovate_state(ekf, VEL, residual.x, ne)
         east = innovate_state(ekf, VEL + 1, residual.y, ne)
         down = innovate_state(ekf, VEL + 2, residual.z, d)
-    squares = north.value * north.value + east.value * east.value + down.value * down.value
-    variances = north.variance + east.variance + down.variance
-    ekf.innovation_vel = Vec3(north.value, east.value, down.value)
+    squares = north.value * north.value + east.value * east.value
+    variances = north.variance + east.variance
+    if vertical:
+        squares += down.value * down.value
+        variances += down.variance
+    ekf.innovation_vel = Vec3(north.value, east.value, down.value if vertical else 0.0)
     ratio = gate_ratio(squares, variances, nominal, params.VEL_I_GATE)
     if not ratio >= 1.0:
         correct(ekf, innovate_state(ekf, VEL, residual.x, ne), NIS_GPS_VELOCITY)
         correct(ekf, innovate_state(ekf, VEL + 1, residual.y, ne), NIS_GPS_VELOCITY)
-        correct(ekf, innovate_state(ekf, VEL + 2, residual.z, d), NIS_GPS_VELOCITY)
-        ekf.gps_vel_fused_us = ekf.now_us
+        if vertical:
+            correct(ekf, innovate_state(ekf, VEL + 2, residual.z, d), NIS_GPS_VELOCITY)
+        ekf.vel_fused_us = ekf.now_us
     return ratio
 
 
@@ -177,7 +185,7 @@ def fuse_position(ekf: Ekf, residual: Vec2, age: float, params: Ekf3) -> float:
     if not ratio >= 1.0:
         correct(ekf, innovate_position(ekf, 0, age, residual.x, variance), NIS_GPS_POSITION)
         correct(ekf, innovate_position(ekf, 1, age, residual.y, variance), NIS_GPS_POSITION)
-        ekf.gps_pos_fused_us = ekf.now_us
+        ekf.pos_fused_us = ekf.now_us
     return ratio
 
 
@@ -197,26 +205,30 @@ def watch_gates(ekf: Ekf, passed: bool) -> None:
 @law
 def is_position_fresh(ekf: Ekf) -> bool:
     """Whether the position is known: also for a time without fixes, and for longer while their velocities are fused."""
-    by_velocity = ekf.now_us - ekf.gps_vel_fused_us < SILENCE_US
+    by_velocity = ekf.now_us - ekf.vel_fused_us < SILENCE_US
     limit = GLITCH_TIMEOUT_US + SILENCE_US if by_velocity else POSITION_TIMEOUT_US
-    return ekf.now_us - ekf.gps_pos_fused_us < limit
+    return ekf.now_us - ekf.pos_fused_us < limit
 
 
 @law
-def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_us: int, takes_velocity: bool) -> bool:
-    """Fuse velocity, if it is taken, and position of a fix taken at ``when_us``; whether one passed its gate."""
+def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_us: int, source: Sources) -> bool:
+    """Fuse the velocity, as far as it is a source, and position of a fix taken at ``when_us``.
+
+    Whether one passed its gate. As with ArduPilot the vertical velocity counts only where the horizontal one does.
+    """
+    takes_velocity = source.VELXY == sources.GPS
     age = 1e-6 * (ekf.now_us - when_us)
     past = past_at(ekf, when_us)
     residual = 0.01 * sensors.gps_vel - past.vel
     estimate.innovation_vel_d = -residual.z
-    velocity = fuse_velocity(ekf, residual, params) if takes_velocity else 0.0
+    velocity = fuse_velocity(ekf, residual, params, source.VELZ == sources.GPS) if takes_velocity else 0.0
     estimate.variance_vel = math.sqrt(velocity)
     position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
     estimate.variance_pos = math.sqrt(position)
     watch_gates(ekf, velocity < 1.0 and position < 1.0)
-    if ekf.now_us - ekf.gps_pos_fused_us > GLITCH_TIMEOUT_US and ekf.gps_good_us != 0:
+    if ekf.now_us - ekf.pos_fused_us > GLITCH_TIMEOUT_US and ekf.gps_good_us != 0:
         reset_to_fix(ekf, estimate, sensors, age)
-        ekf.gps_pos_fused_us = ekf.now_us
+        ekf.pos_fused_us = ekf.now_us
     return not ((velocity >= 1.0 or not takes_velocity) and position >= 1.0)
 
 
@@ -233,17 +245,12 @@ def fuse(
     log: Events,
     params: Parameters,
     sensors: Sensors,
-    is_source: bool,
-    takes_velocity: bool,
+    source: Sources,
 ) -> bool:
-    """Look at the GPS message; whether something was fused.
-
-    Args:
-        ekf, estimate, log, params, sensors: of the vehicle.
-        is_source: it is a source of the position; else it gives no more than the origin.
-        takes_velocity: of the velocity, too.
-    """
-    if ekf.gps_in_use and ekf.now_us - max(ekf.gps_pos_fused_us, ekf.gps_vel_fused_us) > STOP_TIMEOUT_US:
+    """Look at the GPS message; whether something was fused. Where it is no source of the position it gives no more
+    than the origin."""
+    is_source = source.POSXY == sources.GPS
+    if ekf.absolute and ekf.now_us - max(ekf.pos_fused_us, ekf.vel_fused_us) > STOP_TIMEOUT_US:
         stop_using(ekf, estimate, log)
     if not ekf.gps_new:
         return False
@@ -254,12 +261,14 @@ def fuse(
         learn_field(ekf, estimate, sensors.gps_lat, sensors.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
         place_origin(ekf, estimate, log, Origin(sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter))
+        if is_source:
+            ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)
     when_us = ekf.gps_arrival_us - delay_us(params.GPS1_DELAY_MS)
-    if not is_source:
+    if not is_source or not estimate.origin_set:
         return False
-    if ekf.gps_in_use:
-        return fuse_fix(ekf, estimate, sensors, params.EK3, when_us, takes_velocity)
-    if may_start(ekf, estimate.origin_set):
+    if ekf.absolute:
+        return fuse_fix(ekf, estimate, sensors, params.EK3, when_us, source)
+    if may_start(ekf):
         start_using(ekf, estimate, log, sensors, 1e-6 * (ekf.now_us - when_us))
     return False

@@ -81,7 +81,7 @@ def learn_field(ekf: Ekf, estimate: Estimate, lat_e7: int, lon_e7: int) -> None:
     before = ekf.declination
     ekf.declination = math.atan2(ekf.earth_field.y, ekf.earth_field.x)
     ekf.field_known = True
-    if ekf.yaw_aligned and not ekf.yaw_by_others:
+    if ekf.yaw_aligned and not ekf.without_compass:
         turn(ekf, estimate, ekf.declination - before)
 
 
@@ -120,7 +120,7 @@ def is_leaving_ground(ekf: Ekf, armed: bool) -> bool:
 @law
 def is_yaw_confirmed(ekf: Ekf, estimate: Estimate) -> bool:
     """Whether velocities of GPS speak for the yaw: with a wrong one, accelerations would contradict them."""
-    return ekf.gps_in_use and not ekf.gps_glitch and estimate.variance_vel < 1.0
+    return ekf.absolute and not ekf.gps_glitch and estimate.variance_vel < 1.0
 
 
 @law

@@ -100,20 +100,21 @@ class Ekf(Record):
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
     gps_alt_filter: float  # mean altitude while on the ground [m]
-    gps_in_use: bool  # positions on the globe are fused: of GPS, or of another system in its place (external.py)
     gps_used_before: bool
     gps_glitch: bool  # fixes have been beyond the gates for a second, and within for less than ten since
     gps_passed_us: int  # last fix within the gates
     gps_failed_us: int  # last fix beyond them
-    gps_pos_fused_us: int
-    gps_vel_fused_us: int
+    # aiding
+    absolute: bool  # positions are fused: of GPS, or of another system in its place (external.py)
+    pos_fused_us: int  # a position last was
+    vel_fused_us: int  # and a velocity
     hold_us: int  # last zero-velocity or held-position fusion
     hold_pos: Vec2  # NE position held [m]
     # aiding without GPS (sources.py, flow.py)
     source_set: int  # of EK3_SRC1, 2, 3: 0 .. 2
     relative: bool  # velocity comes from optical flow or another system: the position is relative to where that began
     relative_us: int  # when something of theirs was last fused
-    yaw_by_others: bool  # the heading comes from another system, not from the compass
+    without_compass: bool  # the heading comes from another system, or from gyros alone
     pose_seen: int  # last pose and velocity of another system (external.py)
     velocity_seen: int
     pose_resets: int  # its reset counter, as far as the filter has followed

@@ -32,7 +32,7 @@ def flags(ekf: Ekf) -> int:
     value = VELOCITY_VERT | POS_VERT_ABS
     if ekf.tilt_aligned:
         value |= ATTITUDE
-    if ekf.gps_in_use:
+    if ekf.absolute:
         value |= VELOCITY_HORIZ
         if is_position_fresh(ekf):
             value |= POS_HORIZ_REL | PRED_POS_HORIZ_REL | POS_HORIZ_ABS | PRED_POS_HORIZ_ABS

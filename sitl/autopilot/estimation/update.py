@@ -72,14 +72,14 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         ekf.ground_d = ekf.pos.z
         ekf.yaw_in_flight = False
     if not alignment.is_healthy(ekf):
-        if ekf.gps_in_use:
+        if ekf.absolute:
             events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, float(ekf.imu), 0.0)
         alignment.restart(ekf)
 
 
 @law
-def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate, by_gps: bool) -> bool:
-    """Sources other than GPS and compass; ``by_gps``: the position comes from GPS. Whether something was fused."""
+def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate) -> bool:
+    """Sources other than GPS and compass. Whether something was fused."""
     ap = v.autopilot
     source = ap.params.EK3.SRC[ekf.source_set]
     flow.read_range(ekf, v.sensors)
@@ -88,8 +88,8 @@ def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate, by_gps: bool) -> bool:
         fused = flow.fuse(ekf, estimate, ap.events, ap.flow, ap.params.EK3)
     if ap.odometry.kind != 0:
         fused |= external.fuse(ekf, estimate, ap.events, ap.odometry, source, ap.params.EK3, ap.params.VISO)
-    if ekf.gps_in_use and not by_gps and source.POSXY != sources.EXTERNAL:
-        ekf.gps_in_use = False
+    if ekf.absolute and source.POSXY != sources.GPS and source.POSXY != sources.EXTERNAL:
+        ekf.absolute = False
         ekf.relative, ekf.relative_us = True, ekf.now_us
         if source.VELXY == sources.FLOW:
             events.emit(ap.events, ekf.now_us, events.EKF_USES, float(ekf.imu), flow.BY_FLOW)
@@ -115,22 +115,20 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     alignment.begin_step(ekf)
     history.keep(ekf)
     fused = False
-    if usual or not (source.POSZ == sources.EXTERNAL and ekf.gps_in_use):
+    if usual or not (source.POSZ == sources.EXTERNAL and ekf.absolute):
         fused |= barometer.fuse(ekf, estimate, params)
     else:
         barometer.leave_out(ekf)
-    ekf.yaw_by_others = not usual and source.YAW == sources.EXTERNAL
-    if not ekf.yaw_by_others:
+    ekf.without_compass = not usual and (source.YAW == sources.EXTERNAL or source.YAW == sources.NONE)
+    if not ekf.without_compass:
         compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
         fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
     else:
         magnetometer.clear_samples(ekf)
-    by_gps = usual or source.POSXY == sources.GPS
-    takes_velocity = usual or source.VELXY == sources.GPS
-    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, by_gps, takes_velocity)
+    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, source)
     if not usual or ekf.relative:
-        fused |= fuse_others(v, ekf, estimate, by_gps)
-    if not (ekf.gps_in_use or (ekf.relative and armed)):
+        fused |= fuse_others(v, ekf, estimate)
+    if not (ekf.absolute or (ekf.relative and armed)):
         fused |= hold(ekf, armed, params.NOAID_M_NSE)
     if fused:
         fusion.inject(ekf, params.ACC_BIAS_LIM)

@@ -147,8 +147,11 @@ def status(t: LandingTarget, est: Estimate, height: float, time_us: int, p: Prec
 
 @law
 def estimate(v: Vehicle, orientation: int) -> None:
-    """One tick of a vehicle with PLND_ENABLED. ``orientation``: where its sensor looks."""
+    """One tick; without PLND_ENABLED no target is known. ``orientation``: where the sensor looks."""
     ap, est = v.autopilot, v.autopilot.estimate
+    if ap.params.PLND.ENABLED == 0.0:
+        forget(ap.landing_target)
+        return
     height = height_over_ground(v.sensors, est.q)
     update(ap.landing_target, est, height, ap.events, v.time_us, ap.params.PLND, orientation)
 
@@ -196,6 +199,7 @@ def distance(t: LandingTarget) -> float:
 
 @law
 def forget(t: LandingTarget) -> None:
-    """The vehicle is put elsewhere."""
+    """Nothing is known of a target: the vehicle is put elsewhere, or looks for none."""
     t.running = t.acquired = False
+    t.used_us = t.line_us
     t.lost_us, t.status = 0, NEVER_SEEN

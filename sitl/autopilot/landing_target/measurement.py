@@ -25,6 +25,9 @@ from ..state import Estimate
 from .orientation import axis, mounted
 from .state import BODY, LEVEL_SENSOR, LandingTarget
 
+FAR = 1000.0
+"""A target further off [m] is seen by no sensor."""
+
 
 @law
 def take(t: LandingTarget, line: Vec3, frame: int, distance: float, time_us: int) -> None:
@@ -73,5 +76,7 @@ def measure(t: LandingTarget, est: Estimate, height: float, p: PrecisionLanding,
     distance = t.distance
     if distance <= 0.0:
         distance = max(height - abs(dot(sensor, middle)), 0.0) / ahead
+    if distance > FAR:
+        return False
     t.place = distance * line + sensor
     return True

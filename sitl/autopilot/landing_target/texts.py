@@ -24,7 +24,7 @@ TEXTS = {
     SAID_RETRY: (_INFO, "PrecLand: Retrying"),
     SAID_RETRIED: (_INFO, "PrecLand: Retry Completed"),
     SAID_FAILSAFE: (_INFO, "PrecLand: Failsafe Measures"),
-    SAID_NO_BEACON: (_INFO, "Set SIM_PLD_LAT, SIM_PLD_LAT and SIM_PLD_ALT"),
+    SAID_NO_BEACON: (_INFO, "Set SIM_PLD_LAT, SIM_PLD_LON and SIM_PLD_ALT"),
     SAID_NO_FRAME: (_INFO, "Plnd: Frame not supported"),
 }
 """What LANDING_TARGET_DID says -> MAV_SEVERITY and text."""

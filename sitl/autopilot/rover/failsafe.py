@@ -146,7 +146,7 @@ GLITCH_US = 4_000_000
 @law
 def is_glitch_long(ekf: Ekf) -> bool:
     """Whether fixes have not been believed for long."""
-    return ekf.gps_glitch and ekf.now_us - ekf.gps_pos_fused_us > GLITCH_US
+    return ekf.gps_glitch and ekf.now_us - ekf.pos_fused_us > GLITCH_US
 
 
 @law

@@ -29,7 +29,7 @@ def update(fleet: Records[Vehicle], index: int) -> None:
     if fleet[index].tick % PERIOD_TICKS == 0:
         decide(fleet, index)
         control(fleet, index)
-    if fleet[index].autopilot.params.PLND.ENABLED != 0.0:
+    if fleet[index].autopilot.params.PLND.ENABLED != 0.0 or fleet[index].autopilot.landing_target.running:
         landing_target.estimate(fleet[index], int(fleet[index].autopilot.params.PLND.ORIENT))
 
 

@@ -9,7 +9,7 @@ from ...autopilot.events import LANDING_TARGET_DID, emit
 from ...autopilot.landing_target.measurement import take
 from ...autopilot.landing_target.state import LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
 from ...core.kernels import law
-from ...core.scalars import finite
+from ...core.scalars import PI, finite
 from ...core.vectors import Vec3
 from ...vehicle.landing_beacon import BY_MESSAGE
 from ...vehicle.record import Vehicle
@@ -17,6 +17,8 @@ from ..wire.message import Message
 
 BODY_FRD, LOCAL_FRD = 12, 20
 """MAV_FRAME"""
+_SIDEWAYS = 0.5 * PI
+"""The angle of what is not before the sensor [rad]."""
 
 
 class LandingTargetMessage(Message, name="LANDING_TARGET"):
@@ -46,7 +48,7 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
         return
     line = Vec3(m.x, m.y, m.z)
     if m.position_valid == 0:
-        if not finite(m.angle_x + m.angle_y):
+        if not (abs(m.angle_x) < _SIDEWAYS and abs(m.angle_y) < _SIDEWAYS):
             return
         line = Vec3(-math.tan(m.angle_y), math.tan(m.angle_x), 1.0)
     if finite(line.x + line.y + line.z + m.distance):

@@ -3,6 +3,7 @@
 
 Its output moves; the physics has no canopy, so that the vehicle falls on. Released in the air only, above
 CHUTE_ALT_MIN, and only once: then the motors are stopped, and the vehicle cannot be armed until it boots again.
+Out of control it falls; as with ArduPilot that counts when it begins above CHUTE_ALT_MIN, however low it ends.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ class State(NamedTuple):
     """End of the stage."""
     lost: int = 0
     """Tenths of a second out of control."""
-    lost_height: float = 0.0
-    """Height above home where that began [m]."""
+    fallen: float = 0.0
+    """How far it has sunk since that began [m]."""
     sinks_us: int = 0
     """Since when it sinks faster than CHUTE_CRT_SINK; 0: it does not."""
 
@@ -175,12 +176,13 @@ class ParachuteService(PayloadService):
             sinks_us = sinks_us or now_us
         else:
             sinks_us = 0
-        lost, height = self._state.lost, pilot.height()
-        lost_height = self._state.lost_height if lost else height
-        lost = lost + 1 if pilot.lean_error() > LEAN_ERROR_MAX else max(lost - 1, 0)
-        if lost > 1 and height >= lost_height:
-            lost = 0  # it does not fall
-        self._state = self._state._replace(lost=lost, lost_height=lost_height, sinks_us=sinks_us)
-        falls = lost * EVERY_US >= FALLS_US or (sinks_us and now_us - sinks_us >= FALLS_US)
-        if falls and not self._is_low():
+        lost = self._state.lost
+        fallen = self._state.fallen + pilot.sink_rate() * EVERY_US * 1e-6 if lost else 0.0
+        out_of_control = pilot.lean_error() > LEAN_ERROR_MAX and (lost > 0 or not self._is_low())
+        lost = lost + 1 if out_of_control else max(lost - 1, 0)
+        if lost > 1 and fallen <= 0.0:
+            lost = 0
+        self._state = self._state._replace(lost=lost, fallen=fallen, sinks_us=sinks_us)
+        sinks = sinks_us and now_us - sinks_us >= FALLS_US and not self._is_low()
+        if lost * EVERY_US >= FALLS_US or sinks:
             self._release()

@@ -26,11 +26,14 @@ from sitl.core.records import Floats, Ints, Record, Records
 from sitl.core.vectors import Euler, Vec3
 from sitl.worlds.shapes import from_heading, from_ned, to_heading, to_ned
 
+from ..robots.truth import STATE
 from .setpoints import (
+    ACCELERATION_ONLY,
     ATTITUDE_AND_RATES,
     BODY_OFFSET_NED,
     LOCAL_NED,
     PLACE_ONLY,
+    RATES_ONLY,
     TURN_AND_SPEED,
     VELOCITY_ONLY,
     YAWS_IGNORED,
@@ -39,7 +42,7 @@ from .telemetry import ARMED, HIT, PART, SCAN_NAME
 
 GROUND_STATION, COMPONENT = 255, 190
 """MAVLink ids of the environment."""
-RC, VELOCITY, POSITION, ATTITUDE, ROVER_POSITION, ROVER_ATTITUDE = range(6)
+RC, VELOCITY, POSITION, ATTITUDE, ROVER_POSITION, ROVER_ATTITUDE, ACCELERATION, THRUST, RATES = range(9)
 """Sorts of set-points."""
 _HIT = np.frombuffer(HIT, np.uint8).astype(np.int64)
 _SCAN = np.frombuffer(SCAN_NAME, np.uint8).astype(np.int64)
@@ -61,7 +64,7 @@ class Override(Message, name="RC_CHANNELS_OVERRIDE"):
 
 
 class LocalTarget(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
-    """Position [m], velocity [m/s], yaw [rad], yaw rate [rad/s]."""
+    """Position [m], velocity [m/s], acceleration [m/s^2], yaw [rad], yaw rate [rad/s]."""
 
     target_system: int
     coordinate_frame: int
@@ -72,16 +75,21 @@ class LocalTarget(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
     vx: float
     vy: float
     vz: float
+    afx: float
+    afy: float
+    afz: float
     yaw: float
     yaw_rate: float
 
 
 class AttitudeTarget(Message, name="SET_ATTITUDE_TARGET"):
-    """Attitude (body to NED), turn rate [rad/s], thrust."""
+    """Attitude (body to NED), rates of the body [rad/s], thrust."""
 
     target_system: int
     type_mask: int
     q: Floats
+    body_roll_rate: float
+    body_pitch_rate: float
     body_yaw_rate: float
     thrust: float
 
@@ -123,7 +131,8 @@ class RobotArrays(NamedTuple):
     scan: NarrowTable
     """Readings of the last whole scan [m], from right to left, shape (count, readings)."""
     state: Table
-    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; shape (count, 8)."""
+    """x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; roll to the right, pitch up [rad], and their
+    rates [rad/s]; shape (count, STATE)."""
     collided: IntLine
     """1 for each robot that touched something during the last step, shape (count,)."""
     time: Line
@@ -136,7 +145,7 @@ def robot_arrays(count: int, readings: int) -> RobotArrays:
     """For ``count`` robots at rest, of which nothing is known."""
     scan = np.full((count, readings), np.inf, np.float32)
     numbers = np.zeros((2, count), np.int64)
-    return RobotArrays(scan, np.zeros((count, 8)), numbers[0], np.zeros(count), numbers[1])
+    return RobotArrays(scan, np.zeros((count, STATE)), numbers[0], np.zeros(count), numbers[1])
 
 
 # ---------------------------------------------------------------------- set-points
@@ -183,6 +192,30 @@ def position(m: LocalTarget, commands: Table, i: int, system: int, origin: Vec3,
 
 
 @law
+def acceleration(m: LocalTarget, commands: Table, i: int, system: int) -> None:
+    """Accelerations along the body's heading: forward, left, up [m/s^2]; turn rate [rad/s]."""
+    m.target_system = system
+    m.coordinate_frame = BODY_OFFSET_NED
+    m.type_mask = ACCELERATION_ONLY
+    m.afx = commands[i, 0]
+    m.afy = -commands[i, 1]
+    m.afz = -commands[i, 2]
+    m.yaw_rate = -commands[i, 3]
+
+
+@law
+def rates(m: AttitudeTarget, commands: Table, i: int, system: int) -> None:
+    """Rates of the body: roll, pitch, turn [rad/s]; thrust 0 .. 1."""
+    m.target_system = system
+    m.type_mask = RATES_ONLY
+    m.q[0] = 1.0
+    m.body_roll_rate = commands[i, 0]
+    m.body_pitch_rate = commands[i, 1]
+    m.body_yaw_rate = -commands[i, 2]
+    m.thrust = commands[i, 3]
+
+
+@law
 def attitude(m: AttitudeTarget, commands: Table, i: int, system: int, heading: float) -> None:
     """Roll, pitch [rad], turn rate [rad/s], climb -1 .. 1; ``heading`` [rad] of the vehicle."""
     q = quat_from_euler(Euler(commands[i, 0], commands[i, 1], heading))
@@ -218,9 +251,16 @@ def write_setpoint(sort: int, commands: Table, i: int, end: ClientEnd, origin: V
         mask = PLACE_ONLY if sort == POSITION else PLACE_ONLY | YAWS_IGNORED
         position(record_at(LocalTarget, payload), commands, i, end.system, origin, mask)
         return LOCAL
+    if sort == ACCELERATION:
+        acceleration(record_at(LocalTarget, payload), commands, i, end.system)
+        return LOCAL
     m = record_at(AttitudeTarget, payload)
-    if sort == ATTITUDE:
+    if sort in (ATTITUDE, THRUST):
         attitude(m, commands, i, end.system, end.euler.yaw)
+        if sort == THRUST:
+            m.thrust = commands[i, 3]
+    elif sort == RATES:
+        rates(m, commands, i, end.system)
     else:
         rover_attitude(m, commands, i, end.system)
     return TARGET
@@ -399,6 +439,8 @@ def show_robots(
         state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
         state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c
         state[i, 6], state[i, 7] = -v.z, -end.rates.z
+        state[i, 8], state[i, 9] = end.euler.roll, end.euler.pitch
+        state[i, 10], state[i, 11] = end.rates.x, end.rates.y
         robots.collided[i] = 1 if end.hits > 0 else 0
         end.hits = 0
         robots.time[i] = 1e-6 * (origins.before_boot_us[i] + origins.since_boot_us[i] - robots.began_us[i])

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from sitl.bridge.hil.protocol import BASE_PORT
-from sitl.client.byte_socket import ByteSocket
+from sitl.client.byte_socket import ByteStream, open_stream
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Connection
 from sitl.client.endpoint import Endpoint, Inbox
@@ -89,7 +89,7 @@ class Foreign(Connection):
     Args:
         host: serves the plant.
         plant: physics and world.
-        connection: form of ``ByteSocket``: where the autopilot's MAVLink is.
+        connection: form of ``open_stream``: where the autopilot's MAVLink is.
         process: the autopilot, when it was started for this.
         inbox: gets what it says; one of an environment's steps also gets the physics' scans and touches.
         patience: wall time without a sign of life after which it is lost [s].
@@ -114,7 +114,7 @@ class Foreign(Connection):
         self._use(plant)
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
-        self.stream: ByteSocket | None = None
+        self.stream: ByteStream | None = None
         try:
             self._connect()
             self.find()
@@ -150,7 +150,7 @@ class Foreign(Connection):
         until = time.monotonic() + (self.patience if self.process is None else max(self.patience, _START_S))
         while True:
             try:
-                self.stream = ByteSocket(self._connection)
+                self.stream = open_stream(self._connection)
             except LinkLostError:
                 self._check()
                 if time.monotonic() >= until:

@@ -18,7 +18,7 @@ from typing import Any
 from sitl.client.connection import ACCEPTED, PROOF, Connection
 from sitl.errors import NotASimulatorError, NotReadyError
 
-from .telemetry import ATTITUDE, ORIGIN, POSITION, SCAN, SECTORS
+from .telemetry import ATTITUDE, GLOBAL, ORIGIN, POSITION, SCAN, SECTORS
 
 FORCE = 21196
 """Second parameter of arming: even in the air."""
@@ -100,6 +100,30 @@ def set_mode(link: Connection, number: int) -> None:
         raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_last_texts(link)}")
 
 
+def set_bit(link: Connection, name: str, bit: int, may_change: bool) -> None:
+    """See to it that a bit of a parameter is set.
+
+    Args:
+        link: to the vehicle.
+        name: of the parameter.
+        bit: its value.
+        may_change: whether the vehicle is ours to change; else it must be so already.
+
+    Raises:
+        NotReadyError: it is not, and cannot be set.
+    """
+    value = link.parameter(name)
+    if value is not None and int(value) & bit:
+        return
+    if may_change and value is not None:
+        wanted = float(int(value) | bit)
+        target = {"target_system": link.inbox.system, "target_component": 1}
+        link.endpoint.send("PARAM_SET", param_id=name.encode(), param_value=wanted, param_type=_REAL_4, **target)
+        if link.parameter(name) == wanted:
+            return
+    raise NotReadyError(f"{link.name}: {name} is {value}; these set-points need its bit {bit}: set it on the vehicle")
+
+
 def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callable[[], None]) -> None:
     """Everything from power-on until the vehicle stands armed in GUIDED, or hovers there.
 
@@ -143,6 +167,47 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
 
 
+def join(link: Connection, guided: int, flies: bool, seconds: float) -> None:
+    """Wait until somebody has brought the vehicle to where an episode can begin: armed, in GUIDED, almost at rest, a
+    copter in the air. It is told nothing but what it is to send.
+
+    Raises:
+        NotReadyError: it is not there in time; the message says what is missing.
+    """
+    inbox = link.inbox
+    set_intervals(link, INTERVAL_US)
+    link.command("REQUEST_MESSAGE", ORIGIN.id)
+
+    def missing() -> str:
+        speed = math.sqrt(sum(v * v for v in inbox.position[4:7]))
+        if math.isnan(inbox.position[1]) or inbox.origin is None:
+            return "it has no position"
+        if not inbox.armed:
+            return "it is disarmed"
+        if inbox.mode != guided:
+            return f"it is in mode {inbox.mode}, not in GUIDED ({guided})"
+        if flies and height_above_home(link) < AIRBORNE:
+            return "it is on the ground"
+        return f"it moves with {speed:.1f} m/s" if speed > AT_REST else ""
+
+    for _ in range(max(round(seconds / 0.1), 1)):
+        link.pause(_TENTH)
+        if not missing():
+            return
+    raise NotReadyError(f"{link.name}: no episode can begin within {seconds:g} s: {missing()}; {_last_texts(link)}")
+
+
+AIRBORNE, AT_REST = 0.5, 0.5
+"""Least height above home [m] and greatest speed [m/s] at which an episode begins on a vehicle that flies already."""
+
+
+def height_above_home(link: Connection) -> float:
+    """[m]; nan when the vehicle does not tell it."""
+    link.inbox.height = math.nan
+    link.command("REQUEST_MESSAGE", GLOBAL.id)
+    return float(link.inbox.height)
+
+
 def until(
     link: Connection,
     done: Callable[[], bool],
@@ -168,9 +233,10 @@ def _last_texts(link: Connection) -> str:
     return "it said: " + "; ".join(link.inbox.last_texts[-4:]) if link.inbox.last_texts else "it said nothing"
 
 
-SIMULATOR, REBOOT = "simulator", "reboot"
-RESETS = (SIMULATOR, REBOOT)
-"""Values of the option ``reset``: reset only what proves to be a simulator; reboot whatever answers."""
+REBOOT, BY_FORCE, NONE, RETURN = "reboot", "force", "none", "return"
+RESETS = (REBOOT, BY_FORCE, NONE, RETURN)
+"""Values of the option ``reset``: reboot only what proves to be a simulator; reboot whatever answers; wait until the
+vehicle is where an episode can begin; fly or drive back to where the first one began."""
 
 
 def is_simulator(link: Connection) -> bool:
@@ -186,5 +252,6 @@ def refusal(link: Connection) -> NotASimulatorError:
         f"connection {link.name}: the vehicle (system {inbox.system}, {mode}) does not prove to be a simulator: it "
         f"does not give its parameter {PROOF}. It was only asked questions. A reset would disarm it by force and "
         "reboot it, in the air, too: that is done to simulators only (sitl run, ArduPilot's SITL). For a vehicle that "
-        f'may be treated so, whatever it is: reset="{REBOOT}" when the environment is made'
+        f'may be treated so, whatever it is: reset="{BY_FORCE}" when the environment is made. One that flies is taken '
+        f'over where it is with reset="{NONE}" or "{RETURN}"'
     )

@@ -31,6 +31,8 @@ OVERRIDE, LOCAL, TARGET = (
 )
 VELOCITY_ONLY = POSITION_IGNORED | ACCELERATION_IGNORED | YAW_IGNORED
 PLACE_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
+ACCELERATION_ONLY = POSITION_IGNORED | VELOCITY_IGNORED | YAW_IGNORED
+RATES_ONLY = ATTITUDE_IGNORED
 ATTITUDE_AND_RATES = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED
 TURN_AND_SPEED = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | ATTITUDE_IGNORED
 
@@ -79,6 +81,33 @@ def attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     )
 
 
+def acceleration(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
+    """SET_POSITION_TARGET_LOCAL_NED: accelerations along the body's heading [m/s^2], turn rate [rad/s]."""
+    forward, left, up, turn = row
+    motion = {"afx": forward, "afy": -left, "afz": -up, "yaw_rate": -turn}
+    return LOCAL, LOCAL.payload(
+        target_system=inbox.system, coordinate_frame=BODY_OFFSET_NED, type_mask=ACCELERATION_ONLY, **motion
+    )
+
+
+def thrust(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
+    """SET_ATTITUDE_TARGET: roll, pitch [rad], turn rate [rad/s], thrust 0 .. 1."""
+    roll, pitch, turn, share = row
+    q = quat_from_euler(Euler(roll, pitch, inbox.attitude[3]))
+    return TARGET, TARGET.payload(
+        target_system=inbox.system, type_mask=ATTITUDE_AND_RATES, q=q, body_yaw_rate=-turn, thrust=share
+    )
+
+
+def rates(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
+    """SET_ATTITUDE_TARGET: rates of the body [rad/s], thrust 0 .. 1."""
+    roll, pitch, turn, share = row
+    return TARGET, TARGET.payload(
+        target_system=inbox.system, type_mask=RATES_ONLY, q=(1.0, 0.0, 0.0, 0.0), body_roll_rate=roll,
+        body_pitch_rate=pitch, body_yaw_rate=-turn, thrust=share,
+    )  # fmt: skip
+
+
 def rover_attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: turn rate [rad/s], throttle -1 .. 1, a share of WP_SPEED."""
     return TARGET, TARGET.payload(
@@ -86,6 +115,10 @@ def rover_attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[
     )
 
 
-COPTER: dict[str, Encode] = {"rc": override, "velocity": velocity, "position": position, "attitude": attitude}
-ROVER: dict[str, Encode] = {**COPTER, "position": rover_position, "attitude": rover_attitude}
+COMMON: dict[str, Encode] = {"rc": override, "velocity": velocity}
+COPTER: dict[str, Encode] = {
+    **COMMON, "position": position, "attitude": attitude, "acceleration": acceleration, "thrust": thrust,
+    "rates": rates,
+}  # fmt: skip
+ROVER: dict[str, Encode] = {**COMMON, "position": rover_position, "attitude": rover_attitude}
 """Kind of set-point -> its message."""

@@ -16,7 +16,7 @@ from sitl.client.endpoint import AUTOPILOT, HEARTBEAT, TEXT, Inbox
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
-ORIGIN = message("GPS_GLOBAL_ORIGIN")
+ORIGIN, GLOBAL = message("GPS_GLOBAL_ORIGIN"), message("GLOBAL_POSITION_INT")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
@@ -58,6 +58,8 @@ class StepTelemetry(Inbox):
         self.mode, self.armed = -1, False
         self.origin: tuple[int, int, int] | None = None
         """Latitude, longitude [degE7], altitude [mm] of local positions."""
+        self.height = math.nan
+        """Above home [m]."""
         self.scans_by_mavlink = True
         """Whether scans and touches come by MAVLink; else the connection reads them off the physics."""
         self.longest_interval_us = 1 << 62
@@ -121,6 +123,8 @@ class StepTelemetry(Inbox):
             self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & ARMED)
         elif kind is SECTORS:
             self._sectors(fields)
+        elif kind is GLOBAL:
+            self.height = 0.001 * fields.relative_alt
         elif kind is ORIGIN:
             self.origin = (fields.latitude, fields.longitude, fields.altitude)
         elif kind is TEXT and fields.text.startswith(HIT):

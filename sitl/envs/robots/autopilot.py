@@ -32,9 +32,11 @@ from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import Action, Setpoint
 from ..mavlink.compiled import robot_arrays
-from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_intervals, set_mode
+from ..mavlink.guard import Watch
+from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
 from ..options import COMMON, EnvOptionError, unknown
-from .foreign import ForeignVehicles, SocketVehicles
+from .at_connection import SocketVehicles
+from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
@@ -102,8 +104,9 @@ class AutopilotRobot:
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         arrays: Any = robot_arrays(count, readings)
-        self.scan, self._state, self.collided, self.time, self._began_us = arrays
-        self.pose, self.velocity = self._state[:, :4], self._state[:, 4:]
+        self.scan, self.state, self.collided, self.time, self._began_us = arrays
+        self.pose, self.velocity = self.state[:, :4], self.state[:, 4:8]
+        self._truth = np.zeros_like(self.state)
         setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
@@ -114,6 +117,8 @@ class AutopilotRobot:
             else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
+        self.over = np.zeros(count, np.bool_)
+        """Whether an agent is not in charge of its vehicle any more: the episode is truncated."""
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
         self._base_along = float(airframe.value("base_along"))
         self._states = [NOT_STARTED] * count
@@ -139,7 +144,7 @@ class AutopilotRobot:
         except LinkLostError:
             self.close()
             raise
-        self.collided[index] = 0
+        self.collided[index], self.over[index] = 0, False
         self._read(index)
 
     def check_failure(self, failure: Failure) -> None:
@@ -206,7 +211,13 @@ class AutopilotRobot:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
         if link is None:
             raise LinkLostError(f"{self._vehicles.where} is not open; reset() opens it")
-        inbox = link.inbox
+        inbox, row = link.inbox, self._commands[index].tolist()
+        watch = self._vehicles.watch
+        if watch is not None and not self._allows(index, watch, row):
+            link.run(us)
+            self._read(index)
+            watch.stepped()
+            return
         interval_us = min(math.gcd(ALIGN_US, us), inbox.longest_interval_us)
         if now.setpoint != setpoint.name or now.interval_us != interval_us:
             now = self._change(link, now, setpoint.name, interval_us)
@@ -217,7 +228,9 @@ class AutopilotRobot:
                 raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
             link.run(wait_us)
         if wait_us < us:
-            kind, payload = self.kind.encode[setpoint.name](self._commands[index].tolist(), inbox, now.origin)
+            if watch is not None:
+                row = watch.limited(setpoint, row, self.pose[index].tolist(), 1e-3 * inbox.time_ms)
+            kind, payload = self.kind.encode[setpoint.name](row, inbox, now.origin)
             link.endpoint.send_payload(kind, payload)
             link.run(us - wait_us)
         if link.is_exact:
@@ -229,12 +242,32 @@ class AutopilotRobot:
                 raise LinkLostError(f"{link.name}: the vehicle's telemetry is not of this step: has it been rebooted?")
         self.collided[index] = inbox.hits > hits
         self._read(index)
+        if watch is not None:
+            watch.stepped()
+
+    @property
+    def watch(self) -> Watch | None:
+        """The guard at work between an agent and a vehicle at a connection; None: there is none."""
+        return self._vehicles.watch
+
+    def _allows(self, index: int, watch: Watch, row: list[float]) -> bool:
+        """Whether the agent may go on; else the vehicle is somebody else's, or has been handed over."""
+        vehicles = self._vehicles
+        assert isinstance(vehicles, SocketVehicles)
+        if watch.in_charge:
+            why = vehicles.taken() or watch.doubt(self.pose[index].tolist(), row)
+            if why:
+                vehicles.hand_over(why)
+        self.over[index] = not watch.in_charge
+        return watch.in_charge
 
     def _change(self, link: Connection, now: EpisodeState, setpoint: str, interval_us: int) -> EpisodeState:
         """Set the mode and the telemetry intervals that the set-point needs; before the first step of an episode."""
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
+            if setpoint in self.kind.parameters:
+                set_bit(link, *self.kind.parameters[setpoint], may_change=self._vehicles.simulates)
             set_mode(link, self.kind.modes[setpoint])
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 
@@ -252,14 +285,29 @@ class AutopilotRobot:
         c, s = math.cos(heading), math.sin(heading)
         origin = now.origin
         x, y, z = from_ned(origin[0] + n + self._base_along * c, origin[1] + e + self._base_along * s, origin[2] + d)
-        self._state[index] = (
-            x, y, z, from_heading(heading), vn * c + ve * s, vn * s - ve * c, -vd, -inbox.attitude[6]
+        self.state[index] = (
+            x, y, z, from_heading(heading), vn * c + ve * s, vn * s - ve * c, -vd, -inbox.attitude[6],
+            *inbox.attitude[1:3], *inbox.attitude[4:6],
         )  # fmt: skip
         self.scan[index] = inbox.scan[: self.scan.shape[1]]
         self.time[index] = 1e-6 * (self._vehicles.time_us(index) - now.began_us)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """See ``Robot``; ``reset`` has already read the scan."""
+
+    def why_over(self) -> str:
+        """Why the agent is not in charge of its vehicle any more."""
+        watch = self._vehicles.watch
+        return watch.reason if watch is not None else ""
+
+    def true_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``; the array is written anew by each call."""
+        self._vehicles.true_states(self._base_along, self._truth)
+        return self._truth
+
+    def judged_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``."""
+        return self.true_state() if self._vehicles.simulates else self.state
 
     def use_threads(self, threads: int) -> None:
         """Let so many threads advance the vehicles, before their first reset; without effect on vehicles that have

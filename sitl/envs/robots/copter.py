@@ -9,13 +9,19 @@ from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.core.constants import TICK_S
 
-from ..actions import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
+from ..actions import ACCELERATION, ATTITUDE, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
 from ..mavlink import px4, setpoints
 from .kind import FAR, RobotKind, pulses
 
+THRUST_IS_THRUST = 8
+"""Bit of GUID_OPTIONS: the thrust of SET_ATTITUDE_TARGET is a thrust."""
 _ARDUPILOT = RobotKind(
-    setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
-    modes={"rc": ALT_HOLD, "velocity": GUIDED, "position": GUIDED, "attitude": GUIDED},
+    setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES),
+    modes={
+        "rc": ALT_HOLD,
+        **dict.fromkeys(("velocity", "position", "attitude", "acceleration", "thrust", "rates"), GUIDED),
+    },
+    parameters={"thrust": ("GUID_OPTIONS", THRUST_IS_THRUST), "rates": ("GUID_OPTIONS", THRUST_IS_THRUST)},
     guided=GUIDED,
     encode=setpoints.COPTER,
     tick=TICK_S,
@@ -37,6 +43,16 @@ _ARDUPILOT = RobotKind(
         "velocity": ((-1.0, -1.0, -0.5, -1.0), (1.0, 1.0, 0.5, 1.0), (0, 1, 2, 3)),
         "position": ((-FAR, -FAR, 0.5, -3.2), (FAR, FAR, 100.0, 3.2), (0, 1, 2, 3)),
         "attitude": ((-0.2, -0.2, -1.0, -1.0), (0.2, 0.2, 1.0, 1.0), (0, 1, 2, 3)),
+        "acceleration": ((-2.0, -2.0, -1.0, -1.0), (2.0, 2.0, 1.0, 1.0), (0, 1, 2, 3)),
+        "thrust": ((-0.2, -0.2, -1.0, 0.0), (0.2, 0.2, 1.0, 1.0), (0, 1, 2, 3)),
+        "rates": ((-2.0, -2.0, -2.0, 0.0), (2.0, 2.0, 2.0, 1.0), (0, 1, 2, 3)),
+    },
+    agile={
+        "velocity": ((-5.0, -5.0, -2.0, -1.5), (5.0, 5.0, 2.0, 1.5), (0, 1, 2, 3)),
+        "attitude": ((-0.5, -0.5, -1.5, -1.0), (0.5, 0.5, 1.5, 1.0), (0, 1, 2, 3)),
+        "acceleration": ((-4.0, -4.0, -2.0, -1.5), (4.0, 4.0, 2.0, 1.5), (0, 1, 2, 3)),
+        "thrust": ((-0.5, -0.5, -1.5, 0.0), (0.5, 0.5, 1.5, 1.0), (0, 1, 2, 3)),
+        "rates": ((-4.0, -4.0, -3.0, 0.0), (4.0, 4.0, 3.0, 1.0), (0, 1, 2, 3)),
     },
     takes_off=True,
     feels_wind=True,
@@ -44,6 +60,7 @@ _ARDUPILOT = RobotKind(
 _PX4 = replace(
     _ARDUPILOT,
     setpoints=(VELOCITY, POSITION),
+    parameters={},
     modes={"velocity": px4.OFFBOARD, "position": px4.OFFBOARD},
     guided=px4.OFFBOARD,
     encode=px4.COPTER,

@@ -24,11 +24,14 @@ from sitl.turtlebots.native import full_pose
 from sitl.vehicle.faults import Failure
 
 from ..mavlink.compiled import (
+    ACCELERATION,
     ATTITUDE,
     POSITION,
+    RATES,
     RC,
     ROVER_ATTITUDE,
     ROVER_POSITION,
+    THRUST,
     VELOCITY,
     ClientEnd,
     Origins,
@@ -37,19 +40,31 @@ from ..mavlink.compiled import (
     send_all,
     show_all,
 )
-from ..mavlink.preparation import set_intervals, set_mode
-from ..mavlink.setpoints import Encode, override, position, rover_attitude, rover_position, velocity
+from ..mavlink.preparation import set_bit, set_intervals, set_mode
+from ..mavlink.setpoints import (
+    Encode,
+    acceleration,
+    override,
+    position,
+    rates,
+    rover_attitude,
+    rover_position,
+    thrust,
+    velocity,
+)
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART, StepTelemetry
 from ..options import EnvOptionError
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
+from .truth import true_states
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
     override: RC, velocity: VELOCITY, position: POSITION, copter_attitude: ATTITUDE,
-    rover_position: ROVER_POSITION, rover_attitude: ROVER_ATTITUDE,
+    rover_position: ROVER_POSITION, rover_attitude: ROVER_ATTITUDE, acceleration: ACCELERATION, thrust: THRUST,
+    rates: RATES,
 }  # fmt: skip
 """What makes a set-point's message -> its number in the core."""
 Rows = npt.NDArray[np.int64]
@@ -110,6 +125,7 @@ class FleetVehicles(InProcessVehicles):
         origins: Any = Origins(self._origins, *fleet.clocks)
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
         self._ranges = fleet.records["sensors"]["lidar_ranges"]
+        self._bodies = fleet.records["physics"]["body"]
 
     # ------------------------------------------------------------------ episodes
 
@@ -197,6 +213,8 @@ class FleetVehicles(InProcessVehicles):
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
+            if setpoint in self.setup.kind.parameters:
+                set_bit(link, *self.setup.kind.parameters[setpoint], may_change=True)
             set_mode(link, self.setup.kind.modes[setpoint])
         return simulation.snapshot()
 
@@ -278,6 +296,9 @@ class FleetVehicles(InProcessVehicles):
     def view(self, index: int) -> Any:
         """See ``Vehicles``; no copy."""
         return self.fleet.view(index)
+
+    def true_states(self, ahead: float, out: Floats) -> None:
+        true_states(self._bodies, ahead, out)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         return None

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
@@ -35,21 +35,26 @@ class RobotKind:
     """Range below which a reading is a crash, as in the paper [m]."""
     discrete: Mapping[str, Rows]
     continuous: Mapping[str, Limits]
+    agile: Mapping[str, Limits]
+    """Limits of "normalised" actions where they are not those of ``continuous``."""
     takes_off: bool
     """An episode begins in the air."""
     feels_wind: bool
     """Wind is among the figures that may be changed."""
+    parameters: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    """Kind of set-point -> parameter and the bit of it that the vehicle must have."""
     with_px4: RobotKind | None = None
     """The same when PX4 controls it; None: environments do not drive it then."""
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The default actions of a form, "discrete" or "continuous", for a kind of set-point."""
+        """The default actions of a form, "discrete", "continuous" or "agile", for a kind of set-point."""
         if form == "discrete":
             if setpoint.name not in self.discrete:
                 allowed = ", ".join(self.discrete)
                 raise EnvOptionError(f"no discrete actions for setpoint {setpoint.name!r}; there are for {allowed}")
             return Discrete(setpoint, self.discrete[setpoint.name])
-        return Continuous(setpoint, *self.continuous[setpoint.name])
+        limits = self.agile if form == "agile" else {}
+        return Continuous(setpoint, *limits.get(setpoint.name, self.continuous[setpoint.name]))
 
 
 def robot_kind(name: str) -> RobotKind:

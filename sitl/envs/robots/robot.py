@@ -81,7 +81,8 @@ class Robot(Protocol):
         """Simulated time since the reset [s], shape (count,)."""
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """The default actions of a form, "discrete" or "continuous", for a kind of set-point."""
+        """The default actions of a form, "discrete", "continuous", or "agile" (with the limits that "normalised" has),
+        for a kind of set-point."""
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """Put one robot at a pose, ready to move; call ``look`` or ``advance`` next. Deterministic in its arguments."""

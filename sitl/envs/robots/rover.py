@@ -35,6 +35,7 @@ ROBOT = RobotKind(
         "position": ((-FAR, -FAR), (FAR, FAR), (0, 1)),
         "attitude": ((-0.6, -1.0), (0.6, 1.0), (2, 3)),
     },
+    agile={},
     takes_off=False,
     feels_wind=False,
 )

@@ -91,14 +91,27 @@ class Turtlebot:
         return np.stack([b["speed"], np.zeros(self.count), np.zeros(self.count), 0.0 - b["yaw_rate"]], axis=1)
 
     @property
+    def state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``: it knows where it is."""
+        return np.concatenate([self.pose, self.velocity, np.zeros((self.count, 4))], axis=1)
+
+    def true_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``."""
+        return self.state
+
+    def judged_state(self) -> Floats:
+        """See ``sitl.envs.senses.SensingRobot``."""
+        return self.state
+
+    @property
     def time(self) -> Floats:
         """See ``Robot``."""
         out: Floats = 1e-6 * self._robots.fleet["time_us"]
         return out
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
-        """Discrete: the paper's forward, left and right. Continuous: 0 .. 0.3 m/s, +-0.3 rad/s."""
-        if form == "continuous":
+        """Discrete: the paper's forward, left and right. Else: 0 .. 0.3 m/s, +-0.3 rad/s."""
+        if form != "discrete":
             return Continuous(DRIVE, (0.0, -0.3), (0.3, 0.3))
         return Discrete(DRIVE, {"forward": (0.3, 0.0), "left": (0.05, 0.3), "right": (0.05, -0.3)})
 

@@ -21,10 +21,12 @@ from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
 from ..mavlink import px4, setpoints
-from ..mavlink.preparation import INTERVAL_US, SIMULATOR, prepare
+from ..mavlink.guard import Guard, Watch
+from ..mavlink.preparation import INTERVAL_US, REBOOT, prepare
 from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
+from .truth import true_states
 
 INPROCESS = "inprocess"
 _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
@@ -72,8 +74,13 @@ class AutopilotOptions:
             "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started or rebooted for
             each episode, and has no snapshots.
         autopilot_path: path of the program, when ``autopilot`` does not give it.
-        reset: what a vehicle that runs elsewhere must be for ``reset()`` to disarm it by force and reboot it: one that
-            proves to be a simulator ("simulator"), or whatever answers ("reboot"); see ``envs.mavlink.simulator``.
+        reset: what ``reset()`` does to a vehicle that runs elsewhere: "reboot": it is disarmed by force and rebooted,
+            if it proves to be a simulator; "force": the same, whatever it is; "none": ``reset()`` waits until it is
+            armed, in GUIDED, at rest, and in the air if it flies; "return": the same, and it goes back to where the
+            first episode began. See ``envs.mavlink.preparation``.
+        wait: how long "none" and "return" wait [s].
+        guard: limits of the agent on a vehicle that runs elsewhere: a ``guard.Guard``, or a dict of its arguments;
+            False: none. None: ``Guard()``, but for what proves to be a simulator.
         threads: that advance vehicles in process on native physics; their number changes no bit of the result.
         begin: how vehicles in process on native physics come to the start of an episode: "move" (one vehicle boots and
             takes off at the environment's start pose, once, and is moved to others, with other figures), or "boot" (it
@@ -90,7 +97,9 @@ class AutopilotOptions:
     physics: str = NATIVE
     autopilot: str = OURS
     autopilot_path: str | Path | None = None
-    reset: str = SIMULATOR
+    reset: str = REBOOT
+    wait: float = 60.0
+    guard: Guard | Mapping[str, Any] | bool | None = None
     threads: int = 1
     begin: str = "move"
 
@@ -150,6 +159,8 @@ class Vehicles(ABC):
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, float]] = [{} for _ in range(count)]
         """Changed figures of each vehicle: name -> value, in the figure's unit."""
+        self.watch: Watch | None = None
+        """The guard of a vehicle that runs elsewhere."""
         self.base: Pose | None = None
         """Where a vehicle is prepared that is moved to other starts; None: at the world's start pose."""
 
@@ -205,6 +216,17 @@ class Vehicles(ABC):
             EnvOptionError: the vehicle is in another process.
         """
         return self.simulation(index).v
+
+    def true_states(self, ahead: float, out: Floats) -> None:
+        """Write where the vehicles really are: see ``truth.write_truth``.
+
+        Raises:
+            EnvOptionError: a vehicle is in another process.
+        """
+        for index in range(self.setup.count):
+            simulation = self.simulation(index)
+            body = simulation.fleet[simulation.index : simulation.index + 1]["physics"]["body"]
+            true_states(body, ahead, out[index : index + 1])
 
     def fail(self, index: int, failure: Failure) -> None:
         """Let something fail in one vehicle; times count from the beginning of its next step."""

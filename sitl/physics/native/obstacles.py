@@ -109,6 +109,12 @@ def stand(body: Body, into: float) -> None:
     if speed > grip:
         left = 1.0 - grip / speed
     body.vel = Vec3(left * vel.x, left * vel.y, vel.z)
+    stop_turning(body)
+
+
+@law
+def stop_turning(body: Body) -> None:
+    """What feet do to a rotation in a tick."""
     body.rates *= 1.0 - _RELEASE
 
 

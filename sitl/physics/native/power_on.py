@@ -24,7 +24,8 @@ Home = tuple[float, float, float, float]
 DEFAULT_HOME: Home = (-35.363262, 149.165237, 584.0, 353.0)
 """Canberra model aircraft club, ArduPilot's default SITL location."""
 WIND_SETTINGS = (
-    "speed", "direction", "turbulence", "time_constant", "is_shaped", "profile", "full_height", "gain", "elevation"
+    "speed", "direction", "turbulence", "time_constant", "is_shaped", "is_shared", "profile", "full_height", "gain",
+    "elevation",
 )  # fmt: skip
 
 

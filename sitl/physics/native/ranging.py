@@ -27,6 +27,7 @@ from ...worlds.planar import publish_readings
 from ...worlds.raycast import scan_rays, turn_rays
 from .obstacles import list_solids
 from .records import Body, Physics, RangeFault, Vehicle
+from .traffic import Others, meet_rays
 
 LIDAR, RANGEFINDER = 0, 1
 """Numbers of the sensors."""
@@ -56,7 +57,10 @@ class Ranging(Record):
     cells: int  # shape (cell_count,)
     cell_count: int
     floor: float  # height of the floor in the world's frame [m]
+    movers: int  # what all vehicles of the world show (``traffic.Mover``), shape (mover_count,)
+    mover_count: int  # 0: the vehicle is alone
     # the vehicle's own
+    number: int  # of the vehicle, among those that share its world
     beams: Records[Beams] = repeat(Beams, SENSORS)
 
 
@@ -196,6 +200,10 @@ def cast(v: Vehicle[Physics], r: Ranging, number: int) -> None:
     aim(v.physics.body, figures.at, r.floor, beams)
     directions, ranges = table_at(beams.directions, 3, beams.count), floats_at(beams.ranges, beams.count)
     scan_rays(solids_of(r), beams.origin, directions, figures.range_max, ranges)
+    if r.mover_count > 0:
+        origin = Vec3(beams.origin.x, beams.origin.y, beams.origin.z + r.floor)
+        others = Others(r.movers, r.mover_count, r.number, v.time_us)
+        meet_rays(others, origin, directions, figures.range_max, ranges)
 
 
 @unit

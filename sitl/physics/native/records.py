@@ -93,6 +93,7 @@ class Wind(Record):
     turbulence: float  # standard deviation of each axis [m/s] (SIM_WIND_TURB)
     time_constant: float  # correlation time of turbulence and lag of changes [s] (SIM_WIND_TC)
     is_shaped: bool  # it depends on the height, or blows upwards
+    is_shared: bool  # gusts come from outside: they are those of all vehicles of a world
     profile: Int32  # how it depends (SIM_WIND_T)
     full_height: Float32  # above home [m] (SIM_WIND_T_ALT)
     gain: Float32  # of a linear profile [1/s] (SIM_WIND_T_COEF)
@@ -103,7 +104,7 @@ class Wind(Record):
 
 
 GPS_RING = 8
-"""Fixes under way to the reader: delay times rate must stay below this."""
+"""Fixes under way to the reader; while there are so many, no more are taken (SIM_GPS1_LAG_MS)."""
 
 
 class Fix(Record):
@@ -276,7 +277,7 @@ OBSTACLES_MAX = 24
 class Obstacles(Record):
     """The solids near the vehicle, and contact with them."""
 
-    present: bool  # there is a world with solids
+    present: bool  # there is a world with solids, or with other vehicles
     count: int  # rows of the list
     north: float  # where it was gathered, as body.pos [m]
     east: float  # [m]

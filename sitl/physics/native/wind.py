@@ -48,18 +48,29 @@ def aim(w: Wind, height: float) -> Vec3:
 
 
 @law
-def blow(w: Wind, rng: Rng, height: float) -> None:
-    """Step the wind at a height above home [m] by ``PERIOD_S``; draws random numbers only with turbulence."""
-    k = 1.0
-    if w.time_constant > PERIOD_S:
-        k = PERIOD_S / w.time_constant
-    steady, goal = w.steady, aim(w, height)
-    w.steady = Vec3(
-        steady.x + k * (goal.x - steady.x), steady.y + k * (goal.y - steady.y), steady.z + k * (goal.z - steady.z)
-    )
+def stir(w: Wind, rng: Rng, k: float) -> None:
+    """Step the gusts, of which they lose a share ``k``."""
     if w.turbulence > 0.0:
         left = 1.0 - k
         w.gust = left * w.gust + w.turbulence * math.sqrt(1.0 - left * left) * normal_vector(rng)
     else:
         w.gust = ZERO
+
+
+@law
+def share_of_period(w: Wind) -> float:
+    """Share of the way to what it is going to be that the wind goes in ``PERIOD_S``."""
+    return PERIOD_S / w.time_constant if w.time_constant > PERIOD_S else 1.0
+
+
+@law
+def blow(w: Wind, rng: Rng, height: float) -> None:
+    """Step the wind at a height above home [m] by ``PERIOD_S``; draws random numbers only with turbulence."""
+    k = share_of_period(w)
+    steady, goal = w.steady, aim(w, height)
+    w.steady = Vec3(
+        steady.x + k * (goal.x - steady.x), steady.y + k * (goal.y - steady.y), steady.z + k * (goal.z - steady.z)
+    )
+    if not w.is_shared:
+        stir(w, rng, k)
     w.vel = w.steady + w.gust

@@ -183,7 +183,7 @@ def test_a_bad_estimate_counts_after_a_second_and_only_once_it_has_been_good() -
 
 def test_a_rover_trusts_no_position_after_four_seconds_of_a_glitch() -> None:
     ekf = Ekf()
-    ekf.gps_glitch, ekf.gps_pos_fused_us = True, 10_000_000
+    ekf.gps_glitch, ekf.pos_fused_us = True, 10_000_000
     for now, long in ((13.9, False), (14.1, True)):
         ekf.now_us = round(now * 1e6)
         assert failsafe.is_glitch_long(ekf) == long

@@ -93,6 +93,23 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
     assert np.diff(arrivals).tolist() == [80] * (len(arrivals) - 1)
 
 
+def test_a_late_receiver_takes_no_more_fixes_than_can_be_on_their_way(rig):
+    """Ten a second, each a second old: eight of them arrive, and later ones as well."""
+    r = rig(gps_rate=10.0, gps_fix_time=0.01, gps_start=0.1)
+    p, s = r.p, r.v.sensors
+    p.sensors.gps_fault.is_on, p.sensors.gps_fault.delay = True, 400
+    arrivals = []
+    for tick in range(1, 2001):
+        p.body.pos = p.body.pos.replace(x=0.0025 * tick * 10.0)  # 10 m/s north
+        before = int(s.gps_count)
+        gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
+        if s.gps_count != before:
+            arrivals.append(tick)
+            north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
+            assert north == approx(0.0025 * (tick - 400) * 10.0, abs=0.006)
+    assert 26 <= len(arrivals) <= 36 and np.diff(arrivals).max() <= 160
+
+
 def test_gps_has_no_fix_at_first(rig):
     r = rig("erle_copter", gps_start=0.0025, gps_fix_time=1.0)
     p, s = r.p, r.v.sensors

@@ -2,8 +2,9 @@
 """AUTOTUNE: twitches about one axis after the other, and finds the gains that answer best (AUTOTUNE_*).
 
 Entered in flight. The sticks interrupt it, and fly it with the gains from before; between twitches it leans back to its
-place. Landed with the gains found, or while it tries them, it keeps them; left before, it does not. A switch (180) or
-entering it again tries them. What a twitch is, is in ``autotune_twitch``; what it tells, in ``autotune_rules``.
+place. Disarmed on the ground with the gains found, or while it tries them, it keeps them; left before, or disarmed in
+the air, it does not. A switch (180) or entering it again tries them. What a twitch is, is in ``autotune_twitch``; what
+it tells, in ``autotune_rules``.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from .. import pilot
 from ..control import attitude
 from ..control.throttle_mix import lean_limit
 from ..state import Vehicle
-from . import alt_hold
+from . import alt_hold, ground
 from . import autotune_gains as gains
 from . import autotune_rules as rules
 from . import autotune_twitch as twitches
 from .alt_hold import ALT_HOLD
-from .autotune_gains import FOUND, PITCH, ROLL, TUNING, YAW, YAW_D
+from .autotune_gains import FOUND, PAUSED, PITCH, ROLL, TUNING, YAW, YAW_D
 from .loiter import LOITER
 from .mode import CopterMode, never_arms
 from .poshold import POSHOLD
@@ -114,7 +115,7 @@ def start(v: Vehicle) -> int:
     by_hand = from_mode in (STABILIZE, ALT_HOLD, LOITER, POSHOLD)
     if not by_hand or not flies:
         return INIT_FAILED
-    is_new = t.phase != TUNING and not gains.has_found(t)
+    is_new = t.phase != PAUSED and not gains.has_found(t)
     if is_new and next_axis(int(ap.params.AUTOTUNE.AXES), 0) == gains.AXES:
         return INIT_FAILED
     alt_hold.start_vertical(modes.takeoff, ap.control, ap.estimate, ap.params)
@@ -128,6 +129,8 @@ def start(v: Vehicle) -> int:
     if is_new:
         begin(v)
     else:
+        t.phase = TUNING
+        gains.remember(v)
         level_first(v)
     return ACCEPTED
 
@@ -145,8 +148,8 @@ def begin(v: Vehicle) -> None:
     ap = v.autopilot
     t, p = ap.modes.autotune, ap.params
     t.phase = TUNING
+    gains.remember(v)
     for axis in range(YAW_D):
-        gains.read(p.ATC, axis, gains.before(t, axis))
         gains.read(p.ATC, axis, gains.found(t, axis))
     t.done = 0
     t.backwards = True
@@ -194,15 +197,19 @@ def level_first(v: Vehicle) -> None:
 
 
 @law
-def is_overridden(v: Vehicle, climb: float) -> bool:
-    """Whether the sticks fly (``climb``: of the throttle's [m/s]); when they have rested for a while it goes on."""
+def is_overridden(v: Vehicle, climb: float, flies: bool) -> bool:
+    """Whether the sticks fly (``climb``: of the throttle's [m/s]), or nothing does (not ``flies``): gains from before.
+
+    When that has been over for a while it goes on.
+    """
     t, sticks = v.autopilot.modes.autotune, v.autopilot.modes.pilot
     leans = sticks.roll != 0.0 or sticks.pitch != 0.0
     if leans:
         t.place = horizontal(v.autopilot.estimate.pos)
     if t.phase != TUNING:
         return False
-    if leans or sticks.yaw != 0.0 or climb != 0.0:
+    by_sticks = leans or sticks.yaw != 0.0 or climb != 0.0
+    if by_sticks or not flies:
         if t.overridden_us == 0:
             gains.restore(v)
             t.warned_us = -_WARN_US
@@ -211,7 +218,7 @@ def is_overridden(v: Vehicle, climb: float) -> bool:
         t.overridden_us = 0
         t.heading = v.autopilot.estimate.yaw
         level_first(v)
-    if t.overridden_us != 0 and v.time_us - t.warned_us >= _WARN_US:
+    if (by_sticks or flies) and t.overridden_us != 0 and v.time_us - t.warned_us >= _WARN_US:
         t.warned_us = v.time_us
         gains.tell(v, gains.OVERRIDDEN, 0.0)
     return t.overridden_us != 0
@@ -241,8 +248,9 @@ def run(v: Vehicle) -> None:
     alt_hold.set_limits(control.pos_d, p)
     climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
     doing = alt_hold.decide(ap.arming, modes.takeoff, control.motors, climb)
-    by_sticks = is_overridden(v, climb)
-    if doing == alt_hold.FLYING and modes.autotune.phase == TUNING and not by_sticks:
+    flies = doing == alt_hold.FLYING and control.motors.spool_state == ground.IS_UNLIMITED
+    overridden = is_overridden(v, climb, flies)
+    if flies and modes.autotune.phase == TUNING and not overridden:
         tune(v)
     else:
         if doing in (alt_hold.STOPPED, alt_hold.LANDED_IDLE):
@@ -308,7 +316,7 @@ def fail(v: Vehicle, why: int) -> None:
 
 @law
 def conclude(v: Vehicle) -> None:
-    """The tick after a twitch: another gain, and another step or axis when the answers were right."""
+    """The tick after a twitch: another gain, and another step or axis when enough of them succeeded."""
     t = v.autopilot.modes.autotune
     if t.came_to == rules.NO_ROOM:
         fail(v, rules.NO_ROOM)

@@ -21,6 +21,7 @@ FOUND = 2  # gains were found; the parameters still hold those from before
 TRIED = 3  # the parameters hold those found
 RETURNED = 4  # the parameters hold those from before again
 FAILED = 5
+PAUSED = 6  # the mode was left before its end; the parameters hold those from before
 
 # What it tells (AUTOTUNE_DID)
 STARTED, STOPPED, PROGRESS, COMPLETE, SUCCESS, FAILURE, OVERRIDDEN, TRIES, SAVED, RESTORED, INCOMPLETE, D_LIMIT = range(
@@ -93,6 +94,14 @@ def write(p: Attitude, axis: int, g: AxisGains, integral: float, target_hz: floa
 
 
 @law
+def remember(v: Vehicle) -> None:
+    """The gains from before are those that the parameters hold now."""
+    t = v.autopilot.modes.autotune
+    for axis in range(YAW_D):
+        read(v.autopilot.params.ATC, axis, before(t, axis))
+
+
+@law
 def restore(v: Vehicle) -> None:
     """The parameters hold the gains from before."""
     t, p = v.autopilot.modes.autotune, v.autopilot.params.ATC
@@ -141,6 +150,8 @@ def try_gains(v: Vehicle, on: bool) -> None:
     if not has_found(t):
         tell(v, INCOMPLETE, 0.0)
     elif on:
+        if t.phase != TRIED:
+            remember(v)
         use(v)
         t.phase = TRIED
         tell(v, TRIES, float(t.done))
@@ -156,19 +167,29 @@ def leave(v: Vehicle) -> None:
     t = v.autopilot.modes.autotune
     if t.phase == IDLE:
         return
-    restore(v)
-    if has_found(t):
+    give_back(v)
+    if t.phase == TUNING:
+        t.phase = PAUSED
+    elif has_found(t):
         t.phase = RETURNED
     tell(v, STOPPED, 0.0)
 
 
 @law
-def settle(v: Vehicle) -> None:
-    """At disarming: gains found and not given back stay, others are forgotten."""
+def give_back(v: Vehicle) -> None:
+    """Gains that AUTOTUNE put into the parameters are taken out of them; those that a client set later stay."""
     t = v.autopilot.modes.autotune
-    if t.phase == FOUND or t.phase == TRIED:
+    if t.phase == TUNING or t.phase == TRIED:
+        restore(v)
+
+
+@law
+def settle(v: Vehicle, landed: bool) -> None:
+    """At disarming: gains found and not given back stay if the vehicle has ``landed``; others are forgotten."""
+    t = v.autopilot.modes.autotune
+    if landed and (t.phase == FOUND or t.phase == TRIED):
         use(v)
         tell(v, SAVED, float(t.done))
-    elif t.phase != IDLE:
-        restore(v)
+    else:
+        give_back(v)
     t.phase = IDLE

@@ -2,8 +2,8 @@
 """What AUTOTUNE makes of its twitches: when one is over, which gain changes, when a step is done.
 
 A twitch asks for a rate (or an angle) at once. Its greatest rate, and how far that bounces back, tell whether the gains
-are too high: a bounce of more than AUTOTUNE_AGGR of it is one. Each step changes gains by 5 % a twitch until the
-answer was right four times: D up until it bounces, D down until it does not, P up until the rate is passed, then the
+are too high: a bounce of more than AUTOTUNE_AGGR of it is one. Each step changes a gain by 5 % a twitch until four
+twitches have succeeded: D up until it bounces, D down until it does not, P up until the rate is passed, then the
 angle's P down until the angle is not passed, and up until it is. For yaw the filter of the error (FLTE) may stand
 in for D. The numbers were found from the ATUN and ATDE messages of a real ArduPilot.
 """
@@ -24,7 +24,7 @@ GOES_ON, MEASURED, TOO_LARGE, NO_ROOM = 0, 1, 2, 3
 CHANGED, D_AT_LIMIT, NO_D, NO_P = 0, 1, 2, 3
 
 ENOUGH = 4
-"""So many right answers end a step."""
+"""So many twitches that succeed end a step."""
 RISEN = 0.632
 """Part of the goal that must be reached in a third of the time that a twitch takes at most."""
 _STEP = 0.05
@@ -85,33 +85,33 @@ def judge_angle(t: AutotuneState, goal: float, aggr: float) -> int:
 
 
 @law
-def right(t: AutotuneState) -> None:
-    """The answer was right; the next one only counts when it is, too."""
+def succeed(t: AutotuneState) -> None:
+    """Count a success; a failure of the next twitch is not believed."""
     t.ignore_next = True
     t.count += 1
 
 
 @law
-def right_unless_ignored(t: AutotuneState) -> None:
-    """The answer was right; one that follows a wrong one is not believed at once."""
+def succeed_unless_ignored(t: AutotuneState) -> None:
+    """Count a success, unless it follows a failure: that one is not believed."""
     if not t.ignore_next:
         t.count += 1
     t.ignore_next = False
 
 
 @law
-def wrong(t: AutotuneState) -> None:
-    """The answer was wrong."""
+def fail(t: AutotuneState) -> None:
+    """Count a failure."""
     t.count = max(t.count - 1, 0)
 
 
 @law
-def wrong_unless_ignored(t: AutotuneState) -> bool:
-    """The answer was wrong; whether it counts: one that follows a right one is not believed at once."""
+def fail_unless_ignored(t: AutotuneState) -> bool:
+    """Count a failure, unless it follows a success: that one is not believed. Whether it counts."""
     if t.ignore_next:
         t.ignore_next = False
         return False
-    wrong(t)
+    fail(t)
     return True
 
 
@@ -161,8 +161,8 @@ def bounces(t: AutotuneState, aggr: float) -> bool:
 def raise_d(t: AutotuneState, g: AxisGains, most: float, aggr: float) -> int:
     """RATE_D_UP: more until it bounces."""
     if bounces(t, aggr):
-        right(t)
-    elif wrong_unless_ignored(t):
+        succeed(t)
+    elif fail_unless_ignored(t):
         d = get_d(t, g) * (1.0 + 2.0 * _STEP)
         set_d(t, g, min(d, most))
         if d >= most:
@@ -174,10 +174,10 @@ def raise_d(t: AutotuneState, g: AxisGains, most: float, aggr: float) -> int:
 def lower_d(t: AutotuneState, g: AxisGains, least: float, aggr: float) -> int:
     """RATE_D_DOWN: less until it does not bounce; at its least the step is done."""
     if not bounces(t, aggr):
-        right_unless_ignored(t)
+        succeed_unless_ignored(t)
         return CHANGED
     t.ignore_next = True
-    wrong(t)
+    fail(t)
     d = get_d(t, g) * (1.0 - _STEP)
     set_d(t, g, max(d, least))
     if d > least:
@@ -190,11 +190,11 @@ def lower_d(t: AutotuneState, g: AxisGains, least: float, aggr: float) -> int:
 def raise_p(t: AutotuneState, g: AxisGains, least: float, aggr: float) -> int:
     """RATE_P_UP: P until the target is passed; a bounce just below it takes from both gains."""
     if t.rate_max > t.target * (1.0 + 0.5 * aggr):
-        right(t)
+        succeed(t)
         return CHANGED
     d = get_d(t, g)
     if bounces(t, aggr) and (1.0 - _MARGIN) * t.target < t.rate_max < t.target and d > least:
-        wrong(t)
+        fail(t)
         d -= _STEP * d
         set_d(t, g, max(d, least))
         g.rate_p = max(g.rate_p - _STEP * g.rate_p, _P_MIN)
@@ -202,7 +202,7 @@ def raise_p(t: AutotuneState, g: AxisGains, least: float, aggr: float) -> int:
         if g.rate_p <= _P_MIN:
             return NO_P
         return NO_D if d <= least and t.axis != YAW else CHANGED
-    if wrong_unless_ignored(t):
+    if fail_unless_ignored(t):
         g.rate_p = min(g.rate_p + _STEP * g.rate_p, _P_MAX)
         if g.rate_p >= _P_MAX:
             t.count = ENOUGH
@@ -213,10 +213,10 @@ def raise_p(t: AutotuneState, g: AxisGains, least: float, aggr: float) -> int:
 def lower_angle_p(t: AutotuneState, g: AxisGains, aggr: float) -> None:
     """ANGLE_P_DOWN: less until the target is not passed."""
     if t.angle_max < t.target * (1.0 + 0.5 * aggr):
-        right_unless_ignored(t)
+        succeed_unless_ignored(t)
         return
     t.ignore_next = True
-    wrong(t)
+    fail(t)
     g.angle_p = max(g.angle_p - _STEP * g.angle_p, _ANGLE_P_MIN)
     if g.angle_p <= _ANGLE_P_MIN:
         t.count = ENOUGH
@@ -227,8 +227,8 @@ def raise_angle_p(t: AutotuneState, g: AxisGains, aggr: float) -> None:
     """ANGLE_P_UP: more until the target is passed, by enough or so that it turns back."""
     turns_back = t.angle_max > t.target and t.rate_min < -aggr * t.rate_max
     if t.angle_max > t.target * (1.0 + 0.5 * aggr) or turns_back:
-        right(t)
-    elif wrong_unless_ignored(t):
+        succeed(t)
+    elif fail_unless_ignored(t):
         g.angle_p = min(g.angle_p + _STEP * g.angle_p, _ANGLE_P_MAX)
         if g.angle_p >= _ANGLE_P_MAX:
             t.count = ENOUGH

@@ -45,6 +45,7 @@ def disarm(v: Vehicle, method: int) -> None:
     ap = v.autopilot
     if not ap.arming.armed:
         return
+    landed = ap.arming.landed
     ap.arming.armed = False
     ap.arming.auto_armed = False
     set_landed(ap.arming, True)
@@ -54,7 +55,7 @@ def disarm(v: Vehicle, method: int) -> None:
     ap.modes.auto.started = False
     ap.control.motors.desired_spool = SHUT_DOWN
     switch_on_disarming(ap.fence, int(ap.params.FENCE.AUTOENABLE), ap.events, v.time_us)
-    autotune_gains.settle(v)
+    autotune_gains.settle(v, landed)
     emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
 
 

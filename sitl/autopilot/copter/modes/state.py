@@ -187,7 +187,7 @@ class AutotuneState(Record):
     axis: int  # ROLL, PITCH, YAW, YAW_D
     step: int  # autotune_rules.py
     done: int  # bits of the axes that are tuned
-    count: int  # right answers
+    count: int  # twitches of the step that succeeded, less those that failed
     ignore_next: bool
     backwards: bool  # the twitch turns to the other side
     twitching: bool  # else it levels

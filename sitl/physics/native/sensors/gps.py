@@ -117,8 +117,10 @@ def spoil(fix: Fix, fault: GpsFault, time: float) -> None:
 
 @law
 def take(p: Physics, tick: int, rng: Rng) -> None:
-    """Take a fix of the true position and send it on its way."""
+    """Take a fix of the true position and send it on its way; while GPS_RING fixes are on their way it takes none."""
     s, d, fault = p.sensors, p.derived, p.sensors.gps_fault
+    if s.gps_head - s.gps_tail >= GPS_RING:
+        return
     if fault.is_on and fault.loss > 0.0 and uniform(rng) < fault.loss:
         return
     found = measure(s, p.body, p.airframe, d, rng)

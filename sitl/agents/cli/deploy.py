@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl deploy``: a learnt policy on a vehicle at a connection, with limits and a hand-over."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import fields
+from pathlib import Path
+
+from sitl.envs.mavlink.guard import Guard
+
+from .. import learnt
+from ..deploy import deploy, options_of
+from ..errors import check_names
+from .options import assignment, assignments, positive
+
+RESETS = ("none", "return", "reboot", "force")
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser(
+        "deploy",
+        help="let a policy act on a vehicle at a connection, within limits",
+        description="Takes over a vehicle that stands or hovers in GUIDED, lets a policy act on it within a fence and "
+        "limits, and hands it back to its own modes at the end, on Ctrl-C, and when anything goes wrong.",
+    )
+    parser.add_argument(
+        "policy", type=Path, metavar="POLICY", help="folder of a run, or a file of `sitl export` (.npz)"
+    )
+    parser.add_argument(
+        "--connection", required=True, metavar="URL",
+        help="of the vehicle: udp:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD",
+    )  # fmt: skip
+    parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="default 1")
+    parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: as it was learnt)")
+    parser.add_argument(
+        "--reset", choices=RESETS, default=RESETS[0],
+        help="what is done to the vehicle before each episode: nothing but to wait (default), fly back in GUIDED, "
+        "reboot what proves to be a simulator, or reboot whatever it is",
+    )  # fmt: skip
+    parser.add_argument(
+        "--wait", type=float, default=60.0, metavar="S", help="for a vehicle that is ready [s] (default 60)"
+    )
+    parser.add_argument(
+        "--guard", type=assignment, action="append", metavar="NAME=VALUE",
+        help=f"a limit: {', '.join(field.name for field in fields(Guard))}",
+    )  # fmt: skip
+    parser.add_argument(
+        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+    )
+    parser.set_defaults(function=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command."""
+    guard = assignments(options.guard)
+    check_names(guard, [field.name for field in fields(Guard)], "guard {!r}")
+    policy, given = learnt.load(options.policy), assignments(options.option)
+    left_out = options_of(policy, given)[1]
+    if left_out:
+        print(f"left out, since a simulator alone has them: {', '.join(left_out)}")
+    done = deploy(
+        policy, options.connection, episodes=options.episodes, max_steps=options.max_steps, reset=options.reset,
+        guard=guard, wait=options.wait, options=given,
+    )  # fmt: skip
+    for deed in done.deeds:
+        print(f"{deed.time:.3f} s: {deed.what}{': ' if deed.why else ''}{deed.why}")
+    print("\n".join(done.sentences(policy.step_time)))
+    return 1 if done.handed_over else 0

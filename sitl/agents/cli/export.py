@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl export``: what a run has learnt as one small file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .. import learnt
+from ..runs import folder as folders
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser(
+        "export",
+        help="write what a run has learnt as one small file, .npz or .onnx",
+        description="Writes a network without what it was trained with: .npz plays here and by NumPy alone, .onnx "
+        "in other programs.",
+    )
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run; of several, the first is written")
+    parser.add_argument("file", type=Path, metavar="FILE", help=".npz or .onnx")
+    parser.set_defaults(function=export)
+
+
+def export(options: argparse.Namespace) -> int:
+    """Run the command."""
+    learnt.save(folders.find(options.run)[0], options.file)
+    print(f"{options.file}: {options.file.stat().st_size:,} bytes")
+    return 0

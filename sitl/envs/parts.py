@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Observations made of parts, by name: each part is some numbers of a robot, and any parts go together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from .actions import Discrete, Normalised
+from .observations import Digits, Observation
+from .options import EnvOptionError, unknown
+from .robots.robot import Robot
+from .senses import FAR, SENSES, TRUE, SensingRobot
+
+Narrow = npt.NDArray[np.float32]
+
+
+class Surroundings(Protocol):
+    """What parts look at besides the robot: see ``sitl.envs.session.Session``."""
+
+    robot: Robot
+    task: Any
+    action: Any
+    actions: npt.NDArray[Any]
+    acted: npt.NDArray[np.bool_]
+
+
+class Part(Protocol):
+    """Some numbers of each robot."""
+
+    @property
+    def columns(self) -> Sequence[str]:
+        """Name and unit of each; valid after ``prepare``."""
+
+    @property
+    def low(self) -> Sequence[float]:
+        """Least value of each; what is beyond is clipped."""
+
+    @property
+    def high(self) -> Sequence[float]:
+        """Greatest value of each."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """Called once, before the first episode, when the task is prepared.
+
+        Raises:
+            EnvOptionError: this robot or task has no such part.
+        """
+
+    def write(self, out: Narrow) -> None:
+        """Write the numbers of now, a row a robot, shape (count, columns)."""
+
+
+class State:
+    """Columns of the robot's state: "pose", "velocity", "attitude", "rates", and with "true_" as they really are."""
+
+    def __init__(self, name: str) -> None:
+        self._is_true = name.startswith(TRUE)
+        self._sense = sense = SENSES[name.removeprefix(TRUE)]
+        self.columns, self.high = sense.columns, sense.bounds
+        self.low = [-bound for bound in sense.bounds]
+        self._slice = slice(sense.first, sense.first + len(sense.columns))
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        if not isinstance(session.robot, SensingRobot):
+            raise EnvOptionError(f"observation: robot {session.robot.name!r} has no {self.columns[0]!r}")
+        self._robot = session.robot
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        state = self._robot.true_state() if self._is_true else self._robot.state
+        out[:] = state[:, self._slice]
+
+
+class Height:
+    """Height above the world's floor [m], as the robot believes."""
+
+    columns = ("height [m]",)
+    low, high = (-FAR,), (FAR,)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        self._robot = session.robot
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        out[:, 0] = self._robot.pose[:, 2] - self._robot.world.floor_z
+
+
+class Readings:
+    """All readings of the lidar [m], from right to left; its range where nothing is in range."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        self._robot = robot = session.robot
+        self.columns = tuple(f"range at {math.degrees(angle):.1f} deg [m]" for angle in robot.angles)
+        self.low, self.high = [0.0] * len(self.columns), [robot.range_max] * len(self.columns)
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        out[:] = self._robot.scan
+
+
+class DigitReadings:
+    """The paper's digits (``observations.Digits``) as real numbers."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        self._robot, self._digits = session.robot, Digits()
+        space: Any = self._digits.space(session.robot)
+        self.high = (space.nvec - 1).tolist()
+        self.low, self.columns = [0.0] * len(self.high), tuple(f"digit {k} [m]" for k in range(len(self.high)))
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        out[:] = self._digits.observe(self._robot)
+
+
+class LastAction:
+    """The agent's last action; zeros before the first one of an episode. Of a table: one number for each row."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        self._session, space = session, session.action.space
+        self._rows = len(session.action.names) if isinstance(session.action, Discrete) else 0
+        if self._rows:
+            self.columns = tuple(f"was {name!r}" for name in session.action.names)
+            self.low, self.high = [0.0] * self._rows, [1.0] * self._rows
+        else:
+            self.low, self.high = space.low.tolist(), space.high.tolist()
+            columns, share = session.action.setpoint.columns, isinstance(session.action, Normalised)
+            names = [
+                columns[c].partition(" [")[0] + " [-1, 1]" if share else columns[c] for c in session.action.columns
+            ]
+            self.columns = tuple(f"last {name}" for name in names)
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        actions = self._session.actions
+        out[:] = np.eye(self._rows, dtype=np.float32)[actions] if self._rows else actions
+        out[~self._session.acted] = 0.0
+
+
+WAY = ("ahead [m]", "to the left [m]", "above [m]")
+
+
+class Path:
+    """Ways to the next ``count`` places of the task: forward, left, up [m] of the robot's heading, one after another.
+
+    "goal" is the way to the next one alone.
+    """
+
+    def __init__(self, count: int = 3) -> None:
+        self.count = count
+        self.columns = tuple(f"place {k + 1} {name}" for k in range(count) for name in WAY)
+        self.high = (3.0 * FAR,) * (3 * count)
+        self.low = (-3.0 * FAR,) * (3 * count)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        if not hasattr(session.task, "ways"):
+            raise EnvOptionError(f'observation "goal", "path": task {session.task!r} has no places')
+        self._task = session.task
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        out[:] = self._task.ways(self.count).reshape(out.shape)
+
+
+PARTS: dict[str, Callable[[], Part]] = {
+    **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
+    "height": Height,
+    "scan": Readings,
+    "digits": DigitReadings,
+    "last_action": LastAction,
+    "goal": lambda: Path(1),
+    "path": Path,
+}
+"""By name."""
+
+
+class Parts:
+    """One box of float32: the numbers of all parts, one after another.
+
+    Args:
+        parts: names (``PARTS``) or parts.
+
+    Raises:
+        EnvOptionError: no such part.
+    """
+
+    def __init__(self, parts: Sequence[str | Part]) -> None:
+        if not parts:
+            raise EnvOptionError(f"observation {list(parts)!r} has no parts; there are {', '.join(PARTS)}")
+        self.names = tuple(part if isinstance(part, str) else type(part).__name__ for part in parts)
+        self._parts: list[Part] = [_part(part) for part in parts]
+
+    def prepare(self, session: Surroundings) -> None:
+        """Called once, when robot, action and task are there."""
+        for part in self._parts:
+            part.prepare(session)
+        self.columns = tuple(column for part in self._parts for column in part.columns)
+        """Name and unit of each number."""
+        ends = np.cumsum([0, *(len(part.columns) for part in self._parts)]).tolist()
+        self.slices = {name: slice(a, b) for name, a, b in zip(self.names, ends, ends[1:])}
+        """Where the numbers of each part are."""
+        self._low = np.array([bound for part in self._parts for bound in part.low], np.float32)
+        self._high = np.array([bound for part in self._parts for bound in part.high], np.float32)
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        return gym.spaces.Box(self._low, self._high, dtype=np.float32)
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        out = np.empty((robot.count, len(self.columns)), np.float32)
+        for part, where in zip(self._parts, self.slices.values()):
+            part.write(out[:, where])
+        return np.clip(out, self._low, self._high, out=out)
+
+
+class NamedParts(Parts):
+    """The same as a dict: an array of float32 for each part, by its name."""
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        boxes: dict[str, gym.Space[Any]] = {
+            name: gym.spaces.Box(self._low[at], self._high[at], dtype=np.float32) for name, at in self.slices.items()
+        }
+        return gym.spaces.Dict(boxes)
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        numbers = super().observe(robot)
+        return {name: numbers[:, where].copy() for name, where in self.slices.items()}
+
+
+class GoalConditioned(Parts):
+    """The same for goal-conditioned learning: a dict of "observation", "achieved_goal" (x, y, z of the robot [m]) and
+    "desired_goal" (of its target), as Gymnasium-Robotics has it; ``compute_reward`` of the environment tells what they
+    are worth. The task needs a target, and the parts should not tell it."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Parts``."""
+        super().prepare(session)
+        if not hasattr(session.task, "compute_reward"):
+            raise EnvOptionError(f"observation: task {session.task!r} has no goal that counts alone")
+        self._task, self._robot = session.task, session.robot
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        place = gym.spaces.Box(-FAR, FAR, (3,), np.float32)
+        return gym.spaces.Dict({"observation": super().space(robot), "achieved_goal": place, "desired_goal": place})
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        return {
+            "observation": super().observe(robot),
+            "achieved_goal": self._task.achieved().astype(np.float32),
+            "desired_goal": self._task.targets.astype(np.float32),
+        }
+
+
+def _part(part: str | Part) -> Part:
+    if isinstance(part, str):
+        if part not in PARTS:
+            raise unknown("observation: part", part, PARTS)
+        return PARTS[part]()
+    if isinstance(part, type) or not hasattr(part, "write"):
+        raise EnvOptionError(f"observation: {part!r} is neither a part's name ({', '.join(PARTS)}) nor a part")
+    return part
+
+
+def observation_of(option: Any, known: Any) -> Observation | None:
+    """Parts that an option names: a list or tuple gives one box, a text "scan+velocity" a dict; None: neither."""
+    if isinstance(option, list | tuple):
+        return Parts(option)
+    if isinstance(option, str) and option not in known and all(name in PARTS for name in option.split("+")):
+        return NamedParts(option.split("+"))
+    return None

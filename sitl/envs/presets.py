@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Environments as data: the options of each id."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from . import paper
+from .ids import NEW
+from .navigate import Navigate
+from .parts import GoalConditioned
+from .targets.gates import Gate, Gates
+from .targets.hold import Hold
+from .targets.landing import Land
+from .targets.moving import Follow, Trajectory
+from .targets.waypoints import Waypoints
+from .tasks import Task
+from .vector import NavigateVector
+
+SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
+ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
+AMONG = (*SEEN, "scan")
+DRIVEN = ("goal", "velocity", "last_action")
+DRIVEN_ON_A_WAY = ("path", "velocity", "last_action")
+COPTER_MOVES = {
+    "stay": (0.0, 0.0, 0.0, 0.0),
+    "forward": (1.5, 0.0, 0.0, 0.0),
+    "back": (-1.5, 0.0, 0.0, 0.0),
+    "left": (0.0, 1.5, 0.0, 0.0),
+    "right": (0.0, -1.5, 0.0, 0.0),
+    "up": (0.0, 0.0, 0.7, 0.0),
+    "down": (0.0, 0.0, -0.7, 0.0),
+}
+ROVER_MOVES = {
+    "forward": (1.2, 0.0, 0.0, 0.0),
+    "left": (0.8, 0.0, 0.0, 0.6),
+    "right": (0.8, 0.0, 0.0, -0.6),
+    "back": (-0.6, 0.0, 0.0, 0.0),
+}
+"""Velocities: forward, left, up [m/s], turn [rad/s]."""
+TRACK = [
+    Gate(10.0 + 8.0 * math.cos(angle), 12.0 * math.sin(angle), 2.5 + math.sin(2.0 * angle), angle + math.pi / 2)
+    for angle in (math.radians(-120.0 + 60.0 * k) for k in range(6))
+]
+"""An oval of six gates, counter-clockwise."""
+
+
+def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[str, Any]:
+    return {
+        "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
+        "observation": list(parts), "action": "normalised", "setpoint": "velocity", **options,
+    }  # fmt: skip
+
+
+def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[str, Any]:
+    return {
+        "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
+        "action": "normalised", "setpoint": "velocity", **options,
+    }  # fmt: skip
+
+
+def _among(**others: Any) -> Task:
+    """One place among solids; touching one is a crash."""
+    return Waypoints(1, reachable=True, apart=8.0, crash_reward=-20.0, **others)
+
+
+WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
+_CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
+    "copter-hover": lambda: _copter(Hold(), randomise=WIND),
+    "copter-reach-goal": lambda: _copter(
+        Hold((5.0, 2.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *SEEN[1:]))
+    ),
+    "rover-reach-goal": lambda: _rover(
+        Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *DRIVEN[1:]))
+    ),
+    "copter-waypoint": lambda: _copter(Waypoints(1)),
+    "copter-course": lambda: _copter(Waypoints(5), ON_A_WAY),
+    "copter-gates": lambda: _copter(Gates(TRACK), ON_A_WAY),
+    "copter-trajectory": lambda: _copter(Trajectory("eight", speed=(1.0, 3.0)), ON_A_WAY),
+    "copter-follow": lambda: _copter(Follow(), ON_A_WAY),
+    "copter-land": lambda: _copter(Land()),
+    "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_WAY),
+    "copter-forest": lambda: _copter(_among(), AMONG, world="forest:seed=1", take_off=1.5),
+    "copter-rooms": lambda: _copter(_among(), AMONG, world="rooms:seed=1", take_off=1.5),
+    "rover-waypoint": lambda: _rover(Waypoints(1)),
+    "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
+    "rover-labyrinth": lambda: _rover(
+        _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60,scale=3"
+    ),
+}
+
+
+def _discrete(preset: str) -> Callable[[], dict[str, Any]]:
+    moves: Mapping[str, tuple[float, ...]] = COPTER_MOVES if preset.startswith("copter") else ROVER_MOVES
+    return lambda: {**_CONTINUOUS[preset](), "action": moves}
+
+
+PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
+    **paper.PRESETS,
+    **_CONTINUOUS,
+    **{f"{preset}discrete": _discrete(preset) for preset in _CONTINUOUS},
+}
+"""Options of ``Navigate`` by the preset's name; ``sitl.envs.ids`` says which environment has which."""
+assert all(listed.preset in PRESETS for listed in NEW.values())
+
+
+class PresetNavigate(Navigate):
+    """An environment of a preset; every option of ``Navigate`` can still be replaced."""
+
+    def __init__(self, preset: str, **options: Any) -> None:
+        super().__init__(**{**PRESETS[preset](), **options})
+
+
+class PresetNavigateVector(NavigateVector):
+    """Many of an environment of a preset."""
+
+    def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
+        super().__init__(num_envs, **{**PRESETS[preset](), **options})

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where robots really are: what no sensor tells and no MAVLink message carries."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.core.algebra import euler_of
+from sitl.core.array_kernels import Kernel, Layout, Table
+from sitl.core.kernels import law
+from sitl.core.records import FloatRows
+from sitl.core.vectors import Quat
+from sitl.worlds.shapes import from_heading, from_ned
+
+FieldTable = Annotated[FloatRows, Layout("f8", 2, "A")]
+"""Floats, shape (m, n), a vector field of every record of a fleet."""
+STATE = 12
+"""Columns of a state: see ``RobotArrays.state``."""
+
+
+@law
+def write_truth(pos: FieldTable, vel: FieldTable, q: FieldTable, rates: FieldTable, ahead: float, out: Table) -> None:
+    """Write the true states of bodies in the frames of environments.
+
+    Args:
+        pos: NED in the world [m], shape (count, 3).
+        vel: NED [m/s], shape (count, 3).
+        q: body to NED, shape (count, 4).
+        rates: of the bodies, FRD [rad/s], shape (count, 3).
+        ahead: how far the robot's base lies ahead of the body's origin [m].
+        out: x, y, z [m], yaw [rad]; forward, left, up [m/s], turn rate [rad/s]; roll to the right, pitch up [rad],
+            their rates [rad/s]; shape (count, 12).
+    """
+    for i in range(out.shape[0]):
+        angles = euler_of(Quat(q[i, 0], q[i, 1], q[i, 2], q[i, 3]))
+        c, s = math.cos(angles.yaw), math.sin(angles.yaw)
+        x, y, z = from_ned(pos[i, 0] + ahead * c, pos[i, 1] + ahead * s, pos[i, 2])
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = x, y, z, from_heading(angles.yaw)
+        out[i, 4], out[i, 5] = vel[i, 0] * c + vel[i, 1] * s, vel[i, 0] * s - vel[i, 1] * c
+        out[i, 6], out[i, 7] = 0.0 - vel[i, 2], 0.0 - rates[i, 2]
+        out[i, 8], out[i, 9] = angles.roll, angles.pitch
+        out[i, 10], out[i, 11] = rates[i, 0], rates[i, 1]
+
+
+_write = Kernel(write_truth)
+
+
+def true_states(bodies: Any, ahead: float, out: npt.NDArray[np.float64]) -> None:
+    """Write the true states of bodies (``sitl.physics.native.records.Body``, an array) into ``out``, shape (count, 12):
+    see ``write_truth``."""
+    _write(bodies["pos"], bodies["vel"], bodies["q"], bodies["rates"], ahead, out)

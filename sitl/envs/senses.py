@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a robot says of itself, by name: columns of its state, as telemetry tells it or as it really is."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, Protocol, runtime_checkable
+
+from .robots.robot import Floats
+
+FASTEST, FASTEST_TURN = 50.0, 40.0
+"""Bounds of velocities [m/s] and of rates of turn [rad/s]; what is beyond is clipped."""
+FAR = 10_000.0
+"""Bound of coordinates [m]: that of world files."""
+
+
+class Sense(NamedTuple):
+    """Columns of a robot's state."""
+
+    columns: tuple[str, ...]
+    """Name and unit of each number."""
+    bounds: tuple[float, ...]
+    """Each number is within +- its bound."""
+    first: int
+    """Column of the state where they begin."""
+
+
+_POSE = Sense(("x [m]", "y [m]", "z [m]", "yaw [rad]"), (FAR, FAR, FAR, math.pi), 0)
+_VELOCITY = Sense(
+    ("forward [m/s]", "left [m/s]", "up [m/s]", "turn [rad/s]"), (FASTEST, FASTEST, FASTEST, FASTEST_TURN), 4
+)
+_ATTITUDE = Sense(("roll [rad]", "pitch [rad]"), (math.pi, math.pi), 8)
+_RATES = Sense(("roll rate [rad/s]", "pitch rate [rad/s]"), (FASTEST_TURN, FASTEST_TURN), 10)
+SENSES = {"pose": _POSE, "velocity": _VELOCITY, "attitude": _ATTITUDE, "rates": _RATES}
+"""By name; "true_..." is the same of where the robot really is."""
+TRUE = "true_"
+
+
+@runtime_checkable
+class SensingRobot(Protocol):
+    """A robot with a state of 12 numbers: x, y, z [m], yaw [rad] in the world's frame; forward, left, up [m/s], turn
+    [rad/s]; roll to the right, pitch up [rad], their rates [rad/s]."""
+
+    @property
+    def state(self) -> Floats:
+        """As telemetry tells it, shape (count, 12)."""
+
+    def true_state(self) -> Floats:
+        """As it really is, shape (count, 12).
+
+        Raises:
+            EnvOptionError: nobody knows, of a vehicle in another process.
+        """
+
+    def judged_state(self) -> Floats:
+        """What tasks judge by, shape (count, 12): as it really is; where nobody knows, as telemetry tells it."""

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Vehicles of a swarm as agents of PettingZoo's parallel interface.
+
+Actions are velocities by MAVLink, SET_POSITION_TARGET_LOCAL_NED in GUIDED; observations are what the vehicles'
+telemetry says, and where their goals are. Rewards and ends are judged by where they really are.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from ...client.endpoint import Endpoint
+from ...client.session import RATES_HZ
+from ...client.swarm import clients_of
+from ...errors import MissingExtra
+from ...swarm import Swarm, SwarmSnapshot
+from ..options import EnvOptionError
+from .tasks import HEIGHT, TASKS, Floats, Scene, Task
+
+try:
+    from pettingzoo import ParallelEnv
+except ImportError:
+    raise MissingExtra("sitl.envs.swarm needs PettingZoo: pip install 'gym-sitl[pettingzoo]'") from None
+
+Narrow = npt.NDArray[np.float32]
+VELOCITY_ONLY = {True: 0x5C7, False: 0xDC7}
+"""Type masks: what flies keeps its heading, a rover turns to where it is to go."""
+TELEMETRY, TELEMETRY_HZ = "GLOBAL_POSITION_INT", 20
+FASTEST = {True: (3.0, 3.0, 1.5), False: (2.0, 2.0)}
+"""North, east and, of what flies, up [m/s] of an action of 1."""
+FAR, SPEEDY = 100.0, 20.0
+"""Bounds of observations [m], [m/s]; what is beyond is clipped."""
+HIT = -10.0
+"""Reward of a hit, which ends the episode of those that were hit."""
+
+
+class SwarmEnv(ParallelEnv):
+    """Vehicles in one world with a task.
+
+    An agent's action is a velocity north, east and, of a copter, up, each -1 .. 1 of its fastest. It observes, as
+    float32: its own velocity north, east, down [m/s]; its goal from where it is [m]; and of each other vehicle, in
+    their order, where it is from there [m], and its velocity against its own [m/s].
+
+    Args:
+        task: "formation", "crossing", "pursuit", "escort", or a ``Task``.
+        count: number of vehicles; None: the task's own.
+        step: simulated time of a step [s], whole ticks of 2.5 ms.
+        steps: after which episodes are truncated.
+        options: as of ``sitl.Swarm``: params (wind), world, home ....
+
+    Raises:
+        EnvOptionError: there is no such task, or a number cannot be.
+    """
+
+    def __init__(
+        self,
+        task: str | Task = "formation",
+        count: int | None = None,
+        *,
+        step: float = 0.2,
+        steps: int = 200,
+        **options: Any,
+    ) -> None:
+        if isinstance(task, str):
+            if task not in TASKS:
+                raise EnvOptionError(f"task {task!r} is none of {', '.join(TASKS)}")
+            if count is not None and not (isinstance(count, int) and 2 <= count <= 250):
+                raise EnvOptionError(f"count = {count!r}; a whole number from 2 to 250 is needed")
+            task = TASKS[task]() if count is None else TASKS[task](count)
+        assert not isinstance(task, str)
+        if not (step > 0.0 and round(step * 400) == step * 400):
+            raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
+        self.task, self.step_us, self.steps = task, round(step * 1e6), steps
+        self.metadata = {"name": "sitl_swarm_v0", "render_modes": [], "is_parallelizable": True}
+        self.render_mode = None
+        self.swarm = Swarm(list(task.frames), spacing=task.spacing, **options)
+        """The vehicles; agents are named after their kinds, in this order."""
+        kinds = [vehicle.kind for vehicle in self.swarm.vehicles]
+        self.possible_agents = [f"{kind.name}_{k}" for k, kind in enumerate(kinds)]
+        self.agents: list[str] = []
+        self._flies = [kind.flies for kind in kinds]
+        self._number = {agent: k for k, agent in enumerate(self.possible_agents)}
+        n = len(kinds)
+        high = np.array([SPEEDY] * 3 + [FAR] * 3 + ([FAR] * 3 + [SPEEDY] * 3) * (n - 1), np.float32)
+        self._observation_space = gym.spaces.Box(-high, high)
+        self._ready: SwarmSnapshot | None = None
+        self._rng = np.random.default_rng()
+
+    @functools.cache  # noqa: B019 - the interface wants the same object each time
+    def observation_space(self, agent: str) -> gym.spaces.Box:
+        """Of an agent."""
+        return gym.spaces.Box(self._observation_space.low, self._observation_space.high)
+
+    @functools.cache  # noqa: B019
+    def action_space(self, agent: str) -> gym.spaces.Box:
+        """Of an agent."""
+        return gym.spaces.Box(-1.0, 1.0, (len(FASTEST[self._flies[self._number[agent]]]),))
+
+    # ------------------------------------------------------------------ episodes
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Narrow], dict[str, dict[str, Any]]]:
+        """Begin an episode: copters hover at 5 m over their starts, rovers stand on theirs, all in GUIDED.
+
+        Args:
+            seed: of all that is drawn from now on: noise, gusts, goals; None: they go on.
+            options: not used.
+        """
+        if seed is not None:
+            self._rng = np.random.default_rng(seed)
+        if self._ready is None:
+            self._ready = self._prepared()
+        self.swarm.restore(self._ready)
+        noise = int(self._rng.integers(1 << 31))
+        self.swarm.reseed(noise)
+        for endpoint in self._ends:
+            endpoint.link.receive()
+            endpoint.sequence = 0
+        self.agents = list(self.possible_agents)
+        self._count, self._hits = 0, self._hit_counts()
+        self.swarm.advance_to(self.swarm.time_us + self.step_us)
+        self._listen()
+        self.task.begin(self._true_places(), self._rng)
+        goals = self.task.goals(self._true_places(), 0.0)
+        return self._observe(goals), {agent: {} for agent in self.agents}
+
+    def _prepared(self) -> SwarmSnapshot:
+        """All of them ready to be flown."""
+        clients = clients_of(self.swarm)
+        for flies, client in zip(self._flies, clients, strict=True):
+            client.wait_ready()
+            if flies:
+                client.take_off(HEIGHT)
+            else:
+                client.set_mode("GUIDED")
+                client.arm()
+        self._ends: list[Endpoint] = [client.connection.endpoint for client in clients]
+        self._told: Floats = np.zeros((len(clients), 6))
+        for client in clients:
+            for name in RATES_HZ:
+                client.set_rate(name, TELEMETRY_HZ if name == TELEMETRY else 1)
+        self.swarm.advance(5.0)
+        return self.swarm.snapshot()
+
+    def step(
+        self, actions: dict[str, Narrow]
+    ) -> tuple[dict[str, Narrow], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
+        """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives."""
+        acting = self.agents
+        before = self._true_places()
+        for agent, k in self._number.items():
+            self._send(k, actions[agent] if agent in acting else np.zeros(3, np.float32))
+        self.swarm.advance_to(self.swarm.time_us + self.step_us)
+        self._listen()
+        self._count += 1
+        places = self._true_places()
+        goals = self.task.goals(places, 1e-6 * self.step_us * self._count)
+        scene = Scene(places, before, goals)
+        rewards, is_success = self.task.rewards(scene), self.task.is_success(scene)
+        over, hits = self.task.is_over(scene), self._hit_counts()
+        was_hit = hits > self._hits
+        self._hits = hits
+        too_long = self._count >= self.steps
+        observations = self._observe(goals)
+        numbers = {agent: self._number[agent] for agent in acting}
+        terminations = {agent: bool(over or was_hit[k]) for agent, k in numbers.items()}
+        truncations = dict.fromkeys(acting, too_long)
+        self.agents = [agent for agent in acting if not (terminations[agent] or too_long)]
+        return (
+            {agent: observations[agent] for agent in acting},
+            {agent: float(rewards[k] + HIT * was_hit[k]) for agent, k in numbers.items()},
+            terminations,
+            truncations,
+            {
+                agent: {"is_success": bool(is_success[k]), "was_hit": bool(was_hit[k]), "true_place": places[k].copy()}
+                for agent, k in numbers.items()
+            },
+        )
+
+    # ------------------------------------------------------------------ the vehicles
+
+    def _send(self, k: int, action: Narrow) -> None:
+        scale = FASTEST[self._flies[k]]
+        north, east, *up = (float(np.clip(a, -1.0, 1.0)) * most for a, most in zip(action, scale))
+        velocity = {"vx": north, "vy": east, "vz": -up[0] if up else 0.0}
+        fields = {"target_system": k + 1, "coordinate_frame": 1, "type_mask": VELOCITY_ONLY[self._flies[k]], **velocity}
+        self._ends[k].send("SET_POSITION_TARGET_LOCAL_NED", **fields)
+
+    def _listen(self) -> None:
+        """Note what the vehicles' telemetry says: north, east, down of the world's origin [m], velocities [m/s]."""
+        lat0, lon0, alt0, _ = self.swarm[0].home
+        metres = 111_318.845
+        for k, endpoint in enumerate(self._ends):
+            for name, m in endpoint.receive():
+                if name == TELEMETRY:
+                    north = (m.lat * 1e-7 - lat0) * metres
+                    east = (m.lon * 1e-7 - lon0) * metres * math.cos(math.radians(lat0))
+                    self._told[k] = north, east, alt0 - m.alt * 1e-3, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01
+
+    def _true_places(self) -> Floats:
+        return np.array([tuple(vehicle.v.physics.body.pos) for vehicle in self.swarm.vehicles])
+
+    def _hit_counts(self) -> npt.NDArray[np.int64]:
+        return np.array([vehicle.v.physics.obstacles.hit_count for vehicle in self.swarm.vehicles])
+
+    def _observe(self, goals: Floats) -> dict[str, Narrow]:
+        told = self._told
+        found = {}
+        for agent, k in self._number.items():
+            others = np.delete(told - told[k], k, axis=0).ravel()
+            row = np.concatenate((told[k, 3:], goals[k] - told[k, :3], others)).astype(np.float32)
+            space = self._observation_space
+            found[agent] = np.clip(row, space.low, space.high)
+        return found
+
+    def render(self) -> None:
+        """There is nothing to see."""
+
+    def close(self) -> None:
+        """Let go of the vehicles."""
+        self.swarm.close()

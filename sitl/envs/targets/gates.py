@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pass gates one after another, in their direction: a race."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.core.array_kernels import Flags, IntLine, Kernel, Table
+from sitl.core.kernels import law
+
+from ..options import EnvOptionError
+from ..rewards import Floats, Step
+from ..robots.robot import Robot
+from ..senses import SensingRobot
+from .places import PlacesTask
+
+
+class Gate(NamedTuple):
+    """An upright rectangle that is passed in the direction of its yaw."""
+
+    x: float
+    y: float
+    z: float
+    """Of its middle, in the world's frame [m]."""
+    yaw: float
+    """[rad]"""
+    width: float = 2.0
+    height: float = 2.0
+    """[m]"""
+
+
+@law
+def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Flags) -> None:
+    """Which robots have passed their gate in its direction during a step.
+
+    Args:
+        before, now: x, y, z of each robot at the step's ends [m], shape (count, 3).
+        gates: rows of ``Gate``, shape (gates, 6).
+        at: number of each robot's gate, shape (count,).
+        passed: written, shape (count,).
+    """
+    for i in range(at.shape[0]):
+        row = at[i] % gates.shape[0]
+        c, s = math.cos(gates[row, 3]), math.sin(gates[row, 3])
+        x, y = before[i, 0] - gates[row, 0], before[i, 1] - gates[row, 1]
+        u, v = now[i, 0] - gates[row, 0], now[i, 1] - gates[row, 1]
+        a, b = x * c + y * s, u * c + v * s
+        passed[i] = False
+        if a < 0.0 <= b:
+            share = a / (a - b)
+            aside = (y * c - x * s) + share * ((v * c - u * s) - (y * c - x * s))
+            above = before[i, 2] + share * (now[i, 2] - before[i, 2]) - gates[row, 2]
+            passed[i] = abs(aside) <= 0.5 * gates[row, 4] and abs(above) <= 0.5 * gates[row, 5]
+
+
+_cross = Kernel(cross_gates)
+
+
+class Gates(PlacesTask):
+    """Fly or drive through gates, round after round.
+
+    Gates are seen: "goal" and "path" are the true ways to their middles, and where the robot really is counts.
+    ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time [s], 0 before it. The last
+    round ends the episode, and is success. Who passes beside a gate has to come back and pass it.
+
+    Args:
+        gates: in their order.
+        laps: rounds.
+        progress: reward for each metre nearer to the middle of the next gate.
+        gate_reward: of each gate passed.
+        each_second: reward of each second.
+        others: further arguments of ``PlacesTask``.
+    """
+
+    def __init__(
+        self,
+        gates: Sequence[Gate | Sequence[float]],
+        laps: int = 1,
+        progress: float = 1.0,
+        gate_reward: float = 5.0,
+        each_second: float = -0.5,
+        **others: Any,
+    ) -> None:
+        super().__init__(**others)
+        try:
+            self._gates = np.array([tuple(Gate(*gate)) for gate in gates], np.float64)
+        except (TypeError, ValueError):
+            self._gates = np.full((0, 6), np.nan)
+        if not len(self._gates) or not np.isfinite(self._gates).all() or not (self._gates[:, 4:] > 0.0).all():
+            raise EnvOptionError(f"Gates(gates={gates!r}); it must be (x, y, z, yaw[, width, height]), one at least")
+        if not 1 <= laps <= 100:
+            raise EnvOptionError(f"Gates(laps={laps}); it must be 1 .. 100")
+        self._fixed = self._gates[:, :3]
+        self.laps, self.progress, self.gate_reward, self.each_second = laps, progress, gate_reward, each_second
+
+    @property
+    def gates(self) -> list[Gate]:
+        """In their order."""
+        return [Gate(*gate) for gate in self._gates.tolist()]
+
+    @property
+    def per_robot(self) -> int:
+        """See ``PlacesTask``: gates of all rounds."""
+        return self.laps * len(self._gates)
+
+    def prepare(self, robot: Robot) -> None:
+        """See ``Task``."""
+        if not isinstance(robot, SensingRobot):
+            raise EnvOptionError(f"task: robot {robot.name!r} does not say where it is")
+        super().prepare(robot)
+        self._sensing: SensingRobot = robot
+        self._before, self._now = np.zeros((robot.count, 3)), np.zeros((robot.count, 3))
+        self._passed = np.zeros(robot.count, np.bool_)
+        self._lap = np.zeros((robot.count, 2))
+        """When each robot's round began, and how long its last one took [s]."""
+
+    def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
+        """See ``Task``."""
+        self.places[index] = np.tile(self._gates[:, :3], (self.laps, 1))
+        self.at[index], self.success[index], self._lap[index] = 0, False, 0.0
+        self._before[index] = self._sensing.judged_state()[index, :3]
+
+    def ways(self, count: int) -> Floats:
+        """See ``PlacesTask``: by where the robot really is."""
+        return self.ways_from(self._sensing.judged_state()[:, :4], count)
+
+    def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        targets = self.targets
+        self._now[:] = self._sensing.judged_state()[:, :3]
+        _cross(self._before, self._now, self._gates, self.at, self._passed)
+        nearer = np.sqrt(((targets - self._before) ** 2).sum(axis=1)) - np.sqrt(
+            ((targets - self._now) ** 2).sum(axis=1)
+        )
+        rewards += self.progress * nearer + self.gate_reward * self._passed + self.each_second * step.seconds
+        self._before[:] = self._now
+        self.at += self._passed
+        done = self._passed & (self.at % len(self._gates) == 0)
+        self._lap[done] = np.stack([step.robot.time, step.robot.time - self._lap[:, 0]], axis=1)[done]
+        self.success = self.at == self.per_robot
+        terminated |= self.success
+
+    def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
+        """See ``Task``."""
+        return {**super().info(step), "passed": self.at.copy(), "lap_time": self._lap[:, 1].copy()}
+
+    def memory(self, index: int) -> Any:
+        """See ``Task``."""
+        return *super().memory(index), self._before[index].copy(), self._lap[index].copy()
+
+    def recall(self, index: int, memory: Any) -> None:
+        """See ``Task``."""
+        super().recall(index, memory)
+        self._before[index], self._lap[index] = memory[3:5]

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Be at a place and stay there: hover, or hold a position in wind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..options import EnvOptionError
+from ..rewards import Floats, Step
+from ..robots.robot import Robot
+from .places import PlacesTask
+
+
+class Hold(PlacesTask):
+    """Go to a place near the start and hold it.
+
+    Each step pays ``step_time * (1 - distance / scale)``, at least 0, and takes ``effort * step_time`` times the mean
+    of the squared actions. ``info["is_success"]``: the robot has been within ``radius`` for the last ``hold`` seconds.
+
+    Args:
+        offset: places are drawn so far from the start, horizontally and vertically [m].
+        radius: distance that counts as being there [m].
+        hold: how long to be there [s].
+        scale: distance beyond which nothing is paid [m].
+        effort: what squared actions cost a second.
+        is_sparse: a step pays what ``compute_reward`` says instead.
+        others: further arguments of ``PlacesTask``.
+    """
+
+    per_robot = 1
+
+    def __init__(
+        self,
+        offset: tuple[float, float] = (3.0, 1.0),
+        radius: float = 0.5,
+        hold: float = 5.0,
+        scale: float = 4.0,
+        effort: float = 0.05,
+        is_sparse: bool = False,
+        **others: Any,
+    ) -> None:
+        super().__init__(**others)
+        for name, value in {"radius": radius, "hold": hold, "scale": scale}.items():
+            if not value > 0.0:
+                raise EnvOptionError(f"Hold({name}={value}); it must be above 0")
+        self.offset, self.radius, self.hold, self.scale, self.effort = offset, radius, hold, scale, effort
+        self.is_sparse = is_sparse
+
+    def prepare(self, robot: Robot) -> None:
+        """See ``Task``."""
+        super().prepare(robot)
+        self.since = np.zeros(robot.count)
+        """How long each robot has been at its place [s], shape (count,)."""
+
+    def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
+        """See ``Task``."""
+        wide, high = self.offset
+        place = robot.pose[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
+        self.places[index, 0] = np.clip(place, self.arena.low, self.arena.high)
+        self.at[index], self.since[index], self.success[index] = 0, 0.0, False
+
+    def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        way = self.places[:, 0] - step.pose[:, :3]
+        distance = np.sqrt((way * way).sum(axis=1))
+        if self.is_sparse:
+            rewards += self.compute_reward(self.achieved(), self.targets, None)
+        else:
+            self._pay(step, rewards, distance)
+        self.since = np.where(distance < self.radius, self.since + step.seconds, 0.0)
+        self.success = self.since >= self.hold - 1e-9
+
+    def _pay(self, step: Step, rewards: Floats, distance: Floats) -> None:
+        rewards += step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        if self.effort and step.actions.ndim == 2:
+            rewards -= self.effort * step.seconds * (step.actions * step.actions).mean(axis=1)
+
+    def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
+        """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3)."""
+        way = np.asarray(achieved, np.float64) - np.asarray(desired, np.float64)
+        out: Floats = np.where(np.sqrt((way * way).sum(axis=-1)) < self.radius, 0.0, -1.0)
+        return out
+
+    def memory(self, index: int) -> Any:
+        """See ``Task``."""
+        return *super().memory(index), float(self.since[index])
+
+    def recall(self, index: int, memory: Any) -> None:
+        """See ``Task``."""
+        super().recall(index, memory)
+        self.since[index] = memory[3]

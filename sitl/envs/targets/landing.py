@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Land on a pad, which may move."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..options import EnvOptionError
+from ..rewards import Floats, Step
+from ..robots.robot import Robot
+from ..senses import SensingRobot
+from .moving import MovingTask
+
+SLOW, GENTLE = 0.5, 1.0
+"""Greatest horizontal speed relative to the pad, and speed of sinking, of a landing that is success [m/s]."""
+DOWN = 0.12
+"""The robot has touched down when its base is so little above the floor [m]."""
+
+
+class Land(MovingTask):
+    """Come down on a pad on the floor, gently.
+
+    The pad is a beacon that the robot sees: "goal" and "path" are the true way to it, and the landing is judged by
+    where the robot really is. Each step pays what it has come nearer [m] times ``progress``; touching the floor ends
+    the episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking
+    slower than 1 m/s; else with ``crash_reward``.
+
+    Args:
+        offset: the pad is drawn so far from the start, horizontally [m].
+        pad: its radius [m].
+        speed: of the pad, in a direction that is drawn; it turns round every 10 s [m/s].
+        progress: reward for each metre nearer.
+        each_second: reward of each second.
+        success_reward: of a landing on the pad.
+        others: further arguments of ``MovingTask``.
+    """
+
+    def __init__(
+        self,
+        offset: float = 5.0,
+        pad: float = 0.5,
+        speed: float = 0.0,
+        progress: float = 1.0,
+        each_second: float = -0.2,
+        success_reward: float = 20.0,
+        **others: Any,
+    ) -> None:
+        super().__init__(**{"lost": 30.0, **others})
+        if not (offset >= 0.0 and pad > 0.0 and speed >= 0.0):
+            raise EnvOptionError(f"Land(offset={offset}, pad={pad}, speed={speed}); none below 0, pad above 0")
+        self.offset, self.pad, self.speed = offset, pad, speed
+        self.progress, self.each_second, self.success_reward = progress, each_second, success_reward
+
+    def prepare(self, robot: Robot) -> None:
+        """See ``Task``."""
+        if not isinstance(robot, SensingRobot):
+            raise EnvOptionError(f"task: robot {robot.name!r} cannot land")
+        super().prepare(robot)
+        if not self.flies:
+            raise EnvOptionError(f"task: robot {robot.name!r} does not fly, so it cannot land")
+        self._sensing: SensingRobot = robot
+        self._limits = self._limits._replace(low=(*self._limits.low[:2], -math.inf))
+        self._velocity = np.zeros((robot.count, 3))
+        """Of each robot's pad at first [m/s]."""
+        self._distance, self._sinking = np.zeros(robot.count), np.zeros(robot.count)
+
+    def _draw(self, index: int, rng: np.random.Generator) -> None:
+        way, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
+        self.centre[index, :2] += way
+        self.centre[index, 2] = self._robot.world.floor_z
+        self._velocity[index, :2] = self.speed * math.cos(heading), self.speed * math.sin(heading)
+
+    def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
+        """See ``Task``."""
+        super().start(index, robot, rng)
+        way = self.centre[index] - self._sensing.judged_state()[index, :3]
+        self._distance[index], self._sinking[index] = np.sqrt((way * way).sum()), 0.0
+
+    def along(self, time: Floats) -> Floats:
+        """See ``MovingTask``: 10 s there, 10 s back."""
+        there = 10.0 - np.abs(time % 20.0 - 10.0)
+        out: Floats = self.centre[:, None] + there[..., None] * self._velocity[:, None]
+        return out
+
+    def ways(self, count: int) -> Floats:
+        """See ``PlacesTask``: by where the robot really is."""
+        return self.ways_from(self._sensing.judged_state()[:, :4], count)
+
+    def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        time, state = step.robot.time, self._sensing.judged_state()
+        self.places[:, 0] = pad = self.along(time[:, None])[:, 0]
+        way = pad - state[:, :3]
+        distance = np.sqrt((way * way).sum(axis=1))
+        rewards += self.progress * (self._distance - distance) + self.each_second * step.seconds
+        self._distance = distance
+        down = (state[:, 2] - step.robot.world.floor_z < DOWN) & ~terminated
+        turned = np.where(time % 20.0 < 10.0, 1.0, -1.0)[:, None]
+        c, s = np.cos(state[:, 3]), np.sin(state[:, 3])
+        east = np.stack([state[:, 4] * c - state[:, 5] * s, state[:, 4] * s + state[:, 5] * c], axis=1)
+        slip = np.hypot(*(east - turned * self._velocity[:, :2]).T)
+        on = np.hypot(way[:, 0], way[:, 1]) < self.pad
+        self.success = down & on & (slip < SLOW) & (self._sinking < GENTLE)
+        rewards[self.success] += self.success_reward
+        rewards[down & ~self.success] += self.crash_reward
+        terminated |= down
+        self._sinking = 0.0 - state[:, 6]
+
+    def memory(self, index: int) -> Any:
+        """See ``Task``."""
+        mine = self._velocity[index].copy(), float(self._distance[index]), float(self._sinking[index])
+        return *super().memory(index), mine
+
+    def recall(self, index: int, memory: Any) -> None:
+        """See ``Task``."""
+        super().recall(index, memory)
+        self._velocity[index], self._distance[index], self._sinking[index] = memory[5]

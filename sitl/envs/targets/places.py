@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What tasks with places have in common: the places of an episode, the ways to them, and the arena it stays in."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sitl.core.array_kernels import IntLine, Kernel, Table
+from sitl.core.kernels import law
+
+from ..arena import REACH, Arena, arena_of, flies
+from ..options import EnvOptionError
+from ..rewards import Floats, Step
+from ..robots.robot import Robot
+from ..tasks import Task
+
+BEYOND = 5.0
+"""An episode ends so far outside of the arena [m]."""
+
+
+@law
+def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, out: Table) -> None:
+    """Write the ways from each robot to its next places; after the last place comes the last again.
+
+    Args:
+        pose: x, y, z [m], yaw [rad], shape (count, 4).
+        places: x, y, z [m] of all robots' places, one robot after another, shape (count * per_robot, 3).
+        at: number of each robot's present place, shape (count,).
+        per_robot: places of a robot.
+        out: forward, left, up [m] of each robot's heading, shape (count, 3 * k).
+    """
+    for i in range(out.shape[0]):
+        c, s = math.cos(pose[i, 3]), math.sin(pose[i, 3])
+        for k in range(out.shape[1] // 3):
+            row = i * per_robot + min(at[i] + k, per_robot - 1)
+            x, y = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1]
+            out[i, 3 * k] = x * c + y * s
+            out[i, 3 * k + 1] = y * c - x * s
+            out[i, 3 * k + 2] = places[row, 2] - pose[i, 2]
+
+
+_ways = Kernel(write_ways)
+
+
+class PlacesTask(Task):
+    """Base of tasks with places; subclasses draw them and judge steps.
+
+    Args:
+        arena: box that places are drawn in; None: that of the world and ``reach`` round the start.
+        reach: see ``arena_of`` [m].
+        crash_reward, out_reward: of a step that ends in a crash, or outside of the arena, besides its terms.
+        others: further arguments of ``Task``.
+    """
+
+    def __init__(
+        self, arena: Arena | None = None, reach: float = REACH, crash_reward: float = -10.0, out_reward: float = -10.0,
+        **others: Any,
+    ) -> None:  # fmt: skip
+        super().__init__(**{"rewards": (), "crash_range": 0.0, **others}, crash_reward=crash_reward)
+        self._given, self._reach, self.out_reward = arena, reach, out_reward
+        self._fixed: Floats | None = None
+        """Places that are the same in every episode [m]; the arena holds them. None: they are drawn."""
+
+    def prepare(self, robot: Robot) -> None:
+        """See ``Task``."""
+        super().prepare(robot)
+        count = robot.count
+        self.arena = self._given or arena_of(robot, self._reach)
+        if self._fixed is not None and self._given is None:
+            self.arena = self.arena.around(self._fixed[:, :3])
+        self.flies = flies(robot)
+        self._limits = self.arena.grown(BEYOND)
+        self.places = np.zeros((count, self.per_robot, 3))
+        """x, y, z of each robot's places [m], shape (count, per_robot, 3)."""
+        self.at = np.zeros(count, np.int64)
+        """Number of each robot's present place, shape (count,)."""
+        self.success = np.zeros(count, np.bool_)
+        """Whether each robot has done the task, shape (count,)."""
+        self._robot = robot
+
+    @property
+    @abstractmethod
+    def per_robot(self) -> int:
+        """Places of an episode."""
+
+    @property
+    def targets(self) -> Floats:
+        """x, y, z of each robot's present place [m], shape (count, 3)."""
+        out: Floats = self.places[np.arange(len(self.at)), np.minimum(self.at, self.per_robot - 1)]
+        return out
+
+    def achieved(self) -> Floats:
+        """x, y, z of each robot, as the task judges them [m], shape (count, 3)."""
+        return self._robot.pose[:, :3]
+
+    def ways(self, count: int) -> Floats:
+        """Ways to the next ``count`` places: forward, left, up [m] of the robot's heading, shape (robots, count, 3)."""
+        return self.ways_from(self._robot.pose, count)
+
+    def ways_from(self, pose: Floats, count: int) -> Floats:
+        """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
+        out = np.empty((len(self.at), 3 * count))
+        _ways(np.ascontiguousarray(pose), self.places.reshape(-1, 3), self.at, self.per_robot, out)
+        return out.reshape(len(out), count, 3)
+
+    def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        """See ``Task``."""
+        super().judge(step, rewards, terminated)
+        crashed = terminated.copy()
+        self._judge(step, rewards, terminated)
+        rewards[crashed] = self.crash_reward
+        low, high = self._limits
+        outside = ((step.pose[:, :3] < low) | (step.pose[:, :3] > high)).any(axis=1) & ~terminated
+        rewards[outside] += self.out_reward
+        terminated |= outside
+        step.crashed, step.reached = crashed, self.success & ~crashed
+
+    @abstractmethod
+    def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        """Add to the rewards, and mark episodes that the task ends, in place."""
+
+    def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
+        """See ``Task``."""
+        return {**super().info(step), "is_success": step.reached.copy()}
+
+    def memory(self, index: int) -> Any:
+        """See ``Task``."""
+        return self.places[index].copy(), int(self.at[index]), bool(self.success[index])
+
+    def recall(self, index: int, memory: Any) -> None:
+        """See ``Task``."""
+        if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != self.places[index].shape:
+            raise EnvOptionError("snapshot cannot be restored: it is of another task")
+        self.places[index], self.at[index], self.success[index] = memory[:3]

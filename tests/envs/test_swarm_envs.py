@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Environments of several agents keep PettingZoo's rules, repeat, and are what their tasks say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pettingzoo", reason="PettingZoo is not installed")
+
+from pettingzoo.test import parallel_api_test
+
+from sitl.envs.options import EnvOptionError
+from sitl.envs.swarm.parallel import HIT, SwarmEnv
+from sitl.envs.swarm.tasks import TASKS, Crossing, Escort, Formation, Scene
+from tests.test_docs import ROOT, blocks
+
+GUST = {"SIM_WIND_SPD": 2.0, "SIM_WIND_TURB": 1.0}
+
+
+@pytest.fixture(scope="module", params=TASKS)
+def env(request: Any) -> Iterator[SwarmEnv]:
+    made = SwarmEnv(request.param, steps=30, params=GUST)
+    yield made
+    made.close()
+
+
+def to_goals(env: SwarmEnv, observations: dict[str, Any]) -> dict[str, Any]:
+    """Towards each agent's goal, slower near it."""
+    found = {}
+    for agent in env.agents:
+        size = env.action_space(agent).shape[0]
+        north, east, down = 0.6 * observations[agent][3:6] - 0.5 * observations[agent][:3]
+        found[agent] = np.clip(np.array([north / 3.0, east / 3.0, -down / 1.5][:size], np.float32), -1.0, 1.0)
+    return found
+
+
+def flown(env: SwarmEnv, seed: int, steps: int = 8) -> list[Any]:
+    observations, _ = env.reset(seed=seed)
+    seen: list[Any] = [observations]
+    for _ in range(steps):
+        observations, *rest = env.step(to_goals(env, observations))
+        seen.append((observations, *rest))
+        if not env.agents:
+            break
+    return seen
+
+
+def equal(a: Any, b: Any) -> bool:
+    """Whether nested results are the same, bit for bit."""
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(equal(a[key], b[key]) for key in a)
+    if isinstance(a, list | tuple):
+        return len(a) == len(b) and all(map(equal, a, b))
+    return bool(np.array_equal(a, b))
+
+
+def test_the_rules_of_the_interface_are_kept(env: SwarmEnv) -> None:
+    parallel_api_test(env, num_cycles=60)
+
+
+def test_the_same_seed_gives_the_same_episode(env: SwarmEnv) -> None:
+    first, other = flown(env, 1), flown(env, 2)
+    assert equal(flown(env, 1), first)
+    assert not equal(other, first)
+
+
+def test_agents_are_named_after_their_kinds(env: SwarmEnv) -> None:
+    env.reset(seed=0)
+    kinds = [agent.partition("_")[0] for agent in env.agents]
+    assert kinds == [vehicle.kind.name for vehicle in env.swarm.vehicles]
+    assert all(space.dtype == np.float32 for space in map(env.observation_space, env.agents))
+
+
+class Still(Formation):
+    """A ring that does not move."""
+
+    SPEED = TURN = 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", [Still, Escort])
+def test_who_flies_to_the_goals_succeeds(task: type[Formation] | type[Escort]) -> None:
+    env = SwarmEnv(task(3), steps=175, estimator="truth")
+    observations, _ = env.reset(seed=5)
+    infos: dict[str, Any] = {}
+    while env.agents:
+        observations, _, _, _, infos = env.step(to_goals(env, observations))
+    assert len(infos) == 3
+    assert all(info["is_success"] for info in infos.values()), observations
+
+
+def test_a_hit_costs_and_ends_the_episode_of_both() -> None:
+    """Two copters that change places meet in the middle."""
+    env = SwarmEnv(Crossing(2), steps=60, estimator="truth")
+    env.task.begin = lambda places, rng: setattr(env.task, "_goals", places[::-1].copy())  # type: ignore[method-assign]
+    observations, _ = env.reset(seed=0)
+    rewards: dict[str, float] = {}
+    terminations: dict[str, bool] = {}
+    while env.agents:
+        observations, rewards, terminations, _, infos = env.step(to_goals(env, observations))
+    assert terminations == {"copter_0": True, "copter_1": True}
+    assert all(reward < HIT + 2.0 for reward in rewards.values())
+    assert all(info["was_hit"] for info in infos.values())
+
+
+def test_rewards_are_what_is_gained() -> None:
+    task = Formation(3)
+    before, places, goals = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+    goals[:, 0], places[:, 0] = 5.0, (1.0, 0.0, 4.5)
+    assert task.rewards(Scene(places, before, goals)) == pytest.approx([1.0, 0.0, 4.6])
+
+
+def test_what_cannot_be_is_refused() -> None:
+    for options, needed in (({"task": "dance"}, "formation"), ({"count": 1}, "from 2"), ({"step": 0.001}, "multiple")):
+        with pytest.raises(EnvOptionError, match=needed):
+            SwarmEnv(**options)  # type: ignore[arg-type]
+
+
+def test_the_example_of_the_page_runs() -> None:
+    _, example = blocks(ROOT / "docs/swarm.md", "python")
+    scope: dict[str, Any] = {}
+    exec(compile(example, "docs/swarm.md", "exec"), scope)
+    assert not scope["env"].agents and set(scope["rewards"]) == set(scope["infos"]) != set()
