@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import os
 import re
@@ -17,7 +16,6 @@ from typing import Any
 import pytest
 
 from sitl import envs
-from sitl.agents import cli as agents_cli
 from sitl.agents.rehearsal import plan as plans
 from sitl.agents.rehearsal.change import GROUPS, Change
 from sitl.agents.runs.training import train_one
@@ -190,8 +188,7 @@ def test_the_example_of_learning_runs(capsys):
 
 @pytest.mark.parametrize(("page", "least"), [("learning", 7), ("mental-rehearsal", 7), ("results", 3)])
 def test_the_commands_of_learning_are_understood(page, least):
-    top = argparse.ArgumentParser()
-    agents_cli.add_parser(top.add_subparsers(dest="command", required=True))
+    top = parser()
     lines = re.findall(r"^sitl (.*)$|`sitl ([^`]*)`", (DOCS / f"{page}.md").read_text(), re.MULTILINE)
     whole = [line for pair in lines for line in pair if " --" in line]
     for line in whole:

@@ -65,7 +65,7 @@ class Played:
     """The episode ended by itself: a crash, or a goal reached."""
     crashed: bool
     reached: bool
-    """The goal was reached (False for tasks without a goal)."""
+    """The task was solved: a goal reached (False for tasks without one)."""
     simulated_s: float
     laps: float
     """Net turns around the centre of the world; nan in worlds without laps."""
@@ -190,7 +190,7 @@ def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str
         steps=steps,
         terminated=bool(terminated),
         crashed=bool(info.get("crashed", False)),  # an environment of another kind knows of no crashes
-        reached=bool(info.get("reached", False)),
+        reached=bool(info.get("is_success", info.get("reached", False))),
         simulated_s=steps * environments.step_time(env),
         laps=math.nan if counter is None else counter.laps,
     )

@@ -199,7 +199,7 @@ class _Play:
         done, none = self._episode[ended], np.zeros(len(ended), np.bool_)
         self._terminated[done] = terminated[ended]
         self._crashed[done] = infos.get("crashed", none)[ended]
-        self._reached[done] = infos.get("reached", none)[ended]
+        self._reached[done] = infos.get("is_success", infos.get("reached", none))[ended]
         if keeps:
             self._last.append({"episode": done, **_rows("final_observations", self._observations, ended)})
         again = np.flatnonzero(ended)[: self._part.episodes - self._next]

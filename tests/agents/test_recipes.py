@@ -51,7 +51,7 @@ def test_the_shipped_ones_can_be_used():
     assert {"circuit", "circuit2", "maze", "round"} <= set(recipes.names())
     for name in recipes.names():
         recipe = recipes.load(name)
-        assert recipe.name == name and recipe.summary and gym.spec(recipe.env)
+        assert recipe.name == name and recipe.summary and all(gym.spec(env) for env in (recipe.env, *recipe.also))
         if recipe.algorithm in algorithms.TABULAR:
             assert recipe.config(3).seed == 3
 
@@ -155,6 +155,18 @@ def test_train_and_evaluate_by_a_recipe(sitl, small):
     assert sitl("evaluate", "runs/small")[:2] == (0, out)
     assert sitl("evaluate", "runs/small", "--jitter", 0.0)[1] != out
     assert "2 episodes" in sitl("evaluate", "runs/small", "--episodes", 2)[1]
+
+
+def test_a_recipe_is_good_for_further_environments(small, tmp_path):
+    further = "GazeboRoundTurtlebotLIDAR-v0"
+    small.write_text(SMALL.replace("episodes = 12", f'also = ["{further}"]\nepisodes = 12', 1))
+    recipe = recipes.load(small)
+    assert recipe.config().env == CIRCUIT2 and recipe.config(env=further).env == further
+    with pytest.raises(AgentError, match=f"learns in {CIRCUIT2} or {further}, not Other"):
+        recipe.config(env="Other")
+    small.write_text(SMALL.replace("episodes = 12", "also = [3]\nepisodes = 12", 1))
+    with pytest.raises(AgentError, match=r"also = \[3\]; it must be a list of ids"):
+        recipes.load(small)
 
 
 def test_conflicts_are_refused(sitl, small, tmp_path):

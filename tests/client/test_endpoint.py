@@ -127,8 +127,8 @@ def test_by_the_vehicles_own_clock(core: Core, tmp_path: Path) -> None:
 
 
 def test_addresses_are_checked() -> None:
-    with pytest.raises(OptionError, match="connection 'serial:COM1' is none of"):
-        Client("serial:COM1")
+    with pytest.raises(OptionError, match="connection 'http:COM1' is none of"):
+        Client("http:COM1")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

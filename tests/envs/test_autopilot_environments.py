@@ -222,7 +222,7 @@ def test_figures_are_drawn_anew():
         ({"take_of": 2.0}, "did you mean 'take_off'"),
         ({"setpoint": "drive"}, "takes velocity, rc, position, attitude"),
         ({"step_time": 0.01}, "whole number of 0.02 s"),
-        ({"connection": "serial:1"}, "is none of"),
+        ({"connection": "http:1"}, "is none of"),
         ({"connection": "tcp:127.0.0.1:1", "params": {"WP_SPEED": 1.0}}, "leads to one vehicle"),
         ({"gcs": "udpout:14550"}, "gcs: link 'udpout:14550': the host is missing"),
         ({"params": {"WP_SPEED": float("nan")}}, "WP_SPEED"),

@@ -42,15 +42,13 @@ def config_by_recipe(options: argparse.Namespace) -> RunConfig:
         MissingExtra: its algorithm needs what is not installed.
     """
     recipe = recipes.load(options.recipe)
-    for given, its, what in (
-        (options.env, recipe.env, "learns in"),
-        (options.algo, recipe.algorithm, "learns by"),
-    ):
-        if given is not None and given != its:
-            raise AgentError(
-                f"recipe {recipe.name} {what} {its}, not {given}; leave that out, or train without --recipe"
-            )
+    if options.algo not in (None, recipe.algorithm):
+        raise AgentError(
+            f"recipe {recipe.name} learns by {recipe.algorithm}, not {options.algo}; leave that out, or train without "
+            "--recipe"
+        )
     return recipe.config(
+        env=options.env,
         seed=options.seed or 0,
         episodes=options.episodes,
         steps=options.steps,

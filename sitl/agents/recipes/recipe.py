@@ -36,6 +36,8 @@ class Recipe:
     algorithm: str
     summary: str = ""
     """One line for reports and lists."""
+    also: Sequence[str] = ()
+    """Ids of further environments that it is good for."""
     episodes: int | None = None
     steps: int | None = None
     """Length of a run; both None: the algorithm's default."""
@@ -65,13 +67,20 @@ class Recipe:
         max_steps: int | None = None,
         options: Mapping[str, Any] | None = None,
         settings: Mapping[str, Any] | None = None,
+        env: str | None = None,
     ) -> RunConfig:
         """A run by this recipe; what is given replaces what the recipe says, options and settings one by one.
 
         Raises:
-            AgentError: a setting that the algorithm does not have, or a figure that cannot be.
+            AgentError: a setting that the algorithm does not have, a figure that cannot be, or another environment
+                than the recipe's.
             MissingExtra: the algorithm needs what is not installed.
         """
+        if env not in (None, self.env, *self.also):
+            known = " or ".join((self.env, *self.also))
+            raise AgentError(
+                f"recipe {self.name} learns in {known}, not {env}; leave that out, or train without --recipe"
+            )
         module = algorithms.load(self.algorithm)
         try:
             module.settings(self.algorithm, self.settings)
@@ -81,7 +90,7 @@ class Recipe:
         if episodes is None and steps is None:
             length = self._length(module)
         return RunConfig(
-            env=self.env,
+            env=env or self.env,
             algorithm=self.algorithm,
             env_options={**self.options, **(options or {})},
             settings=module.settings(self.algorithm, {**self.settings, **(settings or {})}),
@@ -97,6 +106,7 @@ KEYS: dict[str, tuple[type, str]] = {
     "summary": (str, "text"),
     "env": (str, "text"),
     "algorithm": (str, "text"),
+    "also": (list, "a list of ids"),
     "episodes": (int, "a whole number"),
     "steps": (int, "a whole number"),
     "max_steps": (int, "a whole number"),
@@ -145,10 +155,21 @@ def _recipe(name: str, values: dict[str, Any]) -> Recipe:
         if key not in values:
             raise AgentError(f"key {key!r} is missing")
     plan = EvaluationPlan.of(values.pop("evaluation", {}))
-    refused = code_in_files.refusal("it", code_of(values["env"], values.get("options", {}), plan.options))
+    refused = code_in_files.refusal("it", _code(values, plan))
     if refused is not None:
         raise AgentError(refused)
     return Recipe(name=name, evaluation=plan, **values)
+
+
+def _code(values: dict[str, Any], plan: EvaluationPlan) -> list[str]:
+    """What of a recipe runs code of others; raises AgentError when ``also`` holds no ids."""
+    also = values.get("also", [])
+    if not all(isinstance(name, str) for name in also):
+        raise AgentError(f"also = {also!r}; it must be a list of ids")
+    return [
+        *code_of(values["env"], values.get("options", {}), plan.options),
+        *(code for n in also for code in code_of(n)),
+    ]
 
 
 _FOLDER = Path(__file__).parent

@@ -21,20 +21,20 @@ from .places import PlacesTask
 
 @law
 def pass_places(
-    pose: Table, places: Table, per_robot: int, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
+    pose: Table, places: Table, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
 ) -> None:
     """Judge a step on the way along places.
 
     Args:
         pose: x, y, z [m], yaw [rad], shape (count, 4).
-        places: x, y, z [m], one robot after another, shape (count * per_robot, 3).
-        per_robot: places of a robot.
+        places: x, y, z [m], one robot after another, shape (count * n, 3).
         radius: distance at which a place is passed [m].
         at: number of each robot's present place; goes on where that is passed, shape (count,).
         distance: to each robot's present place [m]: of the step before, becomes that of now, shape (count,).
         gain: how much nearer each robot has come [m], written, shape (count,).
         passed: whether each robot has passed a place, written, shape (count,).
     """
+    per_robot = places.shape[0] // at.shape[0]
     for i in range(at.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
         x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
@@ -125,7 +125,7 @@ class Waypoints(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         pose = np.ascontiguousarray(step.pose)
         places = self.places.reshape(-1, 3)
-        _pass(pose, places, self._count, self.radius, self.at, self._distance, self._gain, self._passed)
+        _pass(pose, places, self.radius, self.at, self._distance, self._gain, self._passed)
         rewards += self.progress * self._gain + self.place_reward * self._passed + self.each_second * step.seconds
         self.success = self.at == self._count
         terminated |= self.success
