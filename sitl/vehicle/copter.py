@@ -15,6 +15,7 @@ from ..autopilot.copter.trim import trim as trim_firmware
 from ..autopilot.events import HIT_GROUND, emit
 from ..autopilot.terrain.ground import height_in_square
 from ..core.algebra import rotate
+from ..core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER
 from ..core.displacement import Displacement
 from ..core.kernels import inlined, law, unit
 from ..core.memory import record_at
@@ -26,7 +27,7 @@ from ..physics.native.copter.state import Physics
 from ..physics.native.copter.step import step
 from ..physics.native.copter.trim import balance, command_speeds
 from ..physics.native.move import show_field
-from ..physics.native.records import GROUND_AIRBORNE
+from ..physics.native.records import GROUND_AIRBORNE, IMUS
 from ..physics.native.traffic import Mover
 from ..vehicles import CopterAirframe
 from . import sim_parameters
@@ -150,6 +151,7 @@ def apply_sim_parameters(v: Copter) -> None:
     params, rotors = v.autopilot.params, v.physics.rotors
     rotors.telemetry = params.SIM.ESC_TELEM != 0
     rotors.rpm_armed, rotors.rpm_max = params.SIM.ESC_ARM_RPM, 60.0 * params.SIM.VIB_MOT_MAX
+    _vibrate(v)
     for k in range(len(rotors.share)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
         rotors.share[k] = params.SIM.ENGINE_MUL if fails else 1.0
@@ -166,6 +168,24 @@ def apply_sim_parameters(v: Copter) -> None:
         shove.twist = Vec3(sim.TWIST_X, sim.TWIST_Y, sim.TWIST_Z)
         shove.twist_until_us = v.time_us + round(sim.TWIST_TIME * 1000.0)
         sim.TWIST_TIME = 0.0
+
+
+def _vibrate(v: Copter) -> None:
+    """With SIM_VIB_MOT_MAX the noise of the IMUs that send samples is vibration of the rotors."""
+    sim, rotors, sensors = v.autopilot.params.SIM, v.physics.rotors, v.physics.sensors
+    rotors.vibrating, rotors.harmonics = int(sim.VIB_MOT_MASK), int(sim.VIB_MOT_HMNC)
+    for k in range(IMUS):
+        imu = sensors.imus[k]
+        rotors.acc_shake[k] = rotors.gyro_shake[k] = 0.0
+        if sim.VIB_MOT_MAX == 0.0:
+            continue
+        if k == 0 or sensors.imu_state & IMUS_DIFFER:
+            if not sensors.imu_state & ACC_SILENT << k and imu.acc_stuck == 0.0:
+                rotors.acc_shake[k] = sim.VIB_MOT_MULT * imu.acc_noise
+            if not sensors.imu_state & GYRO_SILENT << k:
+                rotors.gyro_shake[k] = sim.VIB_MOT_MULT * imu.gyro_noise
+        imu.acc_noise = imu.gyro_noise = 0.0
+    rotors.shakes = any(rotors.acc_shake) or any(rotors.gyro_shake)
 
 
 def motor_output(v: Copter) -> float:

@@ -79,7 +79,14 @@ class Simulated(simulation.Simulated):
 
     ESC_TELEM: float = param(1, 0, 1, "", "1: speed controllers tell how fast their motors turn", INT8)
     ESC_ARM_RPM: float = param(0, 0, 100000, "RPM", "Speed that the controllers of armed motors tell at least")
-    VIB_MOT_MAX: float = param(0, 0, 10000, "Hz", "Turns a second at full command, of rotors whose model has no speed")
+    VIB_MOT_MAX: float = param(
+        0, 0, 10000, "Hz", "Turns a second at full command, of rotors whose model has no speed; noise of IMUs is theirs"
+    )
+    VIB_MOT_MULT: float = param(1, -1000, 1000, "", "With SIM_VIB_MOT_MAX: that noise times this")
+    VIB_MOT_HMNC: float = param(
+        1, 0, 255, "", "Bits: 1 the speed of the motors, 2 twice the speed, 4 three times", INT16
+    )
+    VIB_MOT_MASK: float = param(0, 0, 255, "", "Bits of the motors that vibrate; 0: all", INT32)
     SHOVE_X: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, forward")
     SHOVE_Y: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, right")
     SHOVE_Z: float = param(0, -1000, 1000, "m/s/s", "Acceleration of a shove, down")

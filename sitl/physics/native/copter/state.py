@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.records import Float32, Floats, Record, array
+from ....core.records import Float32, Floats, Int32, Record, array
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import ROTORS_MAX, Figures
 from .. import records as shared
@@ -37,6 +37,13 @@ class Rotors(Record):
     rpm_armed: float  # they tell so much at least while armed
     rpm_max: float  # of a rotor at full command, where the model has no speeds
     power: float  # taken from the battery by all [W]
+    # vibration (SIM_VIB_MOT_*)
+    shakes: bool  # an IMU shows it
+    vibrating: Int32  # bits of those that make it; 0: all
+    harmonics: Int32  # bits of the multiples of their speed that it has; the lowest: the speed itself
+    phase: Floats = array(ROTORS_MAX, stored="f4")  # how far each has turned [rad]
+    acc_shake: Floats = array(2, stored="f4")  # amplitude that each rotor adds to what an accelerometer shows [m/s^2]
+    gyro_shake: Floats = array(2, stored="f4")  # and a gyro [rad/s]
 
 
 class Ground(Record):

@@ -10,9 +10,10 @@ from ....core.vectors import Vec3
 from .. import battery, bench, obstacles, wind
 from ..body import GRAVITY, Inertia, Wrench, fly
 from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
+from ..sensors.imu_faults import MOTORS_TURN
 from ..sensors.sense import sense
 from ..tick import TICK_US, Clock
-from . import esc, rotors
+from . import esc, rotors, vibration
 from .ground import absorb, lifts_off, rest, touch
 from .state import Physics
 from .wrench import act
@@ -72,6 +73,8 @@ def end(v: Vehicle[Physics]) -> None:
     p = v.physics
     battery.discharge(p.battery, p.rotors.power, p.airframe, p.derived.charge_per_amp)
     sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
+    if p.rotors.shakes and p.battery.current > p.airframe.avionics_current + MOTORS_TURN:
+        vibration.shake(p.rotors, v.sensors, p.airframe)
     if v.tick % esc.PERIOD_TICKS == 0:
         esc.sample(p.rotors, v.sensors, p.airframe, v.actuators.armed, v.time_us)
 
