@@ -186,6 +186,17 @@ def test_frozen_barometer(fly: Fly) -> None:
     assert copter.height == pytest.approx(where(copter)[2], abs=1.0)
 
 
+def test_both_accelerometers_lie_at_once(fly: Fly) -> None:
+    """By 2 m/s^2: barometer and receiver contradict in the same sense, so it is the IMUs that lie, and it lands."""
+    copter = fly()
+    for number in (1, 2):
+        copter.fail(f"SIM_ACC{number}_BIAS_Z", amount=2.0)
+    copter.delay(3)
+    copter.change_mode("LAND")
+    heights = watch(copter, 45)[:, 2]
+    assert heights.max() < 12.0 and heights[-1] < 0.5
+
+
 def test_late_barometer(fly: Fly) -> None:
     """0.5 s late. ArduPilot climbs at 0.7 m/s and believes to be 0.3 m lower; it holds the height afterwards."""
     copter = fly()

@@ -21,6 +21,8 @@ ODD = 64.0
 """Squared innovation by variance that cannot be."""
 ALONG_GRAVITY = 0.8
 """Cosine of the angle to gravity within which an axis of the accelerometer is along it."""
+PUSHED_SPEED, PUSHED_HEIGHT = 0.2, 0.05
+"""Innovations of the receiver's vertical velocity [m/s] and of the barometer [m] that a healthy flight seldom has both."""
 HOLD_US = 5_000_000
 """After the last of them the filter stays in doubt so long."""
 
@@ -55,9 +57,22 @@ def forget(P: Floats, k: int) -> None:
 
 
 @law
+def is_pushed(ekf: Ekf) -> bool:
+    """Whether barometer and receiver contradict the filter vertically in the same sense: then the accelerometer lies.
+
+    When one of these two lies, it pulls the filter away from the other one, which contradicts in the opposite sense.
+    """
+    speed, height = ekf.innovation_vel.z, ekf.innovation_pos.z
+    return speed * height > 0.0 and abs(speed) > PUSHED_SPEED and abs(height) > PUSHED_HEIGHT
+
+
+@law
 def begin(ekf: Ekf) -> None:
-    """Be in doubt from now on, or still; while the IMUs differ, it is one of them that lies."""
+    """Be in doubt from now on, or still; while the IMUs differ or are pushed, it is one of them that lies."""
     if ekf.blames_imu:
+        return
+    if is_pushed(ekf):
+        ekf.doubt_us = 0
         return
     if ekf.doubt_us == 0:
         for k in range(3):
