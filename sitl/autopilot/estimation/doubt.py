@@ -22,7 +22,7 @@ ODD = 64.0
 ALONG_GRAVITY = 0.8
 """Cosine of the angle to gravity within which an axis of the accelerometer is along it."""
 PUSHED_SPEED, PUSHED_HEIGHT = 0.2, 0.05
-"""Innovations of the receiver's vertical velocity [m/s] and of the barometer [m] that a healthy flight seldom has both."""
+"""Innovations of the receiver's vertical velocity [m/s] and of the barometer [m]: a healthy flight seldom has both."""
 HOLD_US = 5_000_000
 """After the last of them the filter stays in doubt so long."""
 
