@@ -69,10 +69,7 @@ def is_pushed(ekf: Ekf) -> bool:
 @law
 def begin(ekf: Ekf) -> None:
     """Be in doubt from now on, or still; while the IMUs differ or are pushed, it is one of them that lies."""
-    if ekf.blames_imu:
-        return
-    if is_pushed(ekf):
-        ekf.doubt_us = 0
+    if ekf.blames_imu or (ekf.doubt_us == 0 and is_pushed(ekf)):
         return
     if ekf.doubt_us == 0:
         for k in range(3):
