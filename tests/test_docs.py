@@ -131,7 +131,9 @@ def test_the_parameter_pages_are_up_to_date(name: str) -> None:
 def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> None:
     assert [unit.name for unit in compiler.reached(KINDS[name].advance)] == [
         f"physics.native.{name}.step.step",
+        "autopilot.estimation.update.prepare_lanes",
         "autopilot.estimation.update.step",
+        "autopilot.estimation.update.run_second",
         "autopilot.estimation.update.update",
         f"autopilot.{name}.modes.update.update",
         f"autopilot.{name}.control.update.update",
