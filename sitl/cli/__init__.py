@@ -50,7 +50,7 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     return top
 
 
-def _add_others(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_others(commands: argparse._SubParsersAction[Parser]) -> None:
     """Load the subcommands of other packages."""
     for name, entry in added():
         try:

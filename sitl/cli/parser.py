@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import partial
 from typing import Any, NoReturn
 
@@ -34,7 +34,9 @@ class Parser(argparse.ArgumentParser):
         """Leave with exit code 2 after one line on standard error."""
         self.exit(2, f"{self.prog}: {self._plain(message)} (see {self.prog} --help)\n")
 
-    def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> Any:
+    def parse_known_args(  # type: ignore[override]  # the base has an overload for each way to leave one out
+        self, args: Iterable[str] | None = None, namespace: Any = None
+    ) -> tuple[Any, list[str]]:
         """As the base's, but what is not known is refused by the command that it was given to, not by ``sitl``."""
         found, extra = super().parse_known_args(args, namespace)
         if extra:

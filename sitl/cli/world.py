@@ -7,7 +7,7 @@ import argparse
 from pathlib import Path
 
 from .. import worlds
-from ..simulation import OptionError
+from ..errors import OptionError
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

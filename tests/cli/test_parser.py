@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,12 @@ import pytest
 from sitl.cli import WELCOME, main, parser
 from sitl.cli.commands import COMMANDS
 from tests.cli.command import ROOT, environment
+
+
+@pytest.fixture(autouse=True)
+def alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No other package adds commands."""
+    monkeypatch.setattr(metadata, "entry_points", lambda **wanted: [])
 
 
 @pytest.mark.parametrize(
