@@ -34,6 +34,7 @@ COMMANDS = {
     "params": Listed("sitl.cli.params", "list the parameters"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),
     "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),
+    "doctor": Listed("sitl.cli.doctor", "tell what is installed, what is missing for what, and what mends it"),
     "completion": Listed("sitl.cli.completion", "print what makes a shell complete this command's words"),
 }
 """Name -> the command, in the order of ``sitl --help``."""

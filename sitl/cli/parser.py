@@ -4,22 +4,17 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import re
 from collections.abc import Iterable
 from functools import partial
 from typing import Any, NoReturn
 
+from ..errors import did_you_mean
+
 _MISSING = "the following arguments are required: "
 _CHOICE = re.compile(r"argument (?P<name>\S+): invalid choice: (?P<value>'.*?'|\S+) \(choose from (?P<choices>.*)\)$")
 _SHOWN = 12
 """Choices that are listed in full."""
-
-
-def nearest(word: str, allowed: Iterable[str]) -> str:
-    """"; did you mean X?" when ``word`` is nearly one of those allowed, else nothing."""
-    found = difflib.get_close_matches(word, list(allowed), 1, 0.6)
-    return f"; did you mean {found[0]}?" if found else ""
 
 
 class Parser(argparse.ArgumentParser):
@@ -51,14 +46,14 @@ class Parser(argparse.ArgumentParser):
             word = message.removeprefix("unrecognized arguments: ").split()[0]
             if word.startswith("-"):
                 name = word.partition("=")[0]
-                return f"there is no option {name}{nearest(name, self._option_string_actions)}"
+                return f"there is no option {name}{did_you_mean(name, self._option_string_actions)}"
             return f"{word!r} is one argument too many"
         choice = _CHOICE.match(message)
         if choice:
             value, choices = choice["value"].strip("'"), re.findall(r"'([^']*)'|([^\s',]+)", choice["choices"])
             allowed = [quoted or bare for quoted, bare in choices]
             shown = f"; it is one of {', '.join(allowed)}" if len(allowed) <= _SHOWN else ""
-            return f"{choice['name']} {value!r} is not known{nearest(value, allowed) or shown}"
+            return f"{choice['name']} {value!r} is not known{did_you_mean(value, allowed) or shown}"
         return message.removeprefix("argument ")
 
     def _wanted(self, name: str) -> str:

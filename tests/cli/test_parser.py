@@ -25,17 +25,17 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("rnu", "sitl: COMMAND 'rnu' is not known; did you mean run?"),
+        ("rnu", "sitl: COMMAND 'rnu' is not known; did you mean 'run'?"),
         ("run", "sitl run: vehicle (copter or rover) is missing"),
-        ("run coptr", "vehicle 'coptr' is not known; did you mean copter?"),
-        ("run copter --speedpu 3", "there is no option --speedpu; did you mean --speedup?"),
-        ("run copter --speedpu=3", "there is no option --speedpu; did you mean --speedup?"),
+        ("run coptr", "vehicle 'coptr' is not known; did you mean 'copter'?"),
+        ("run copter --speedpu 3", "there is no option --speedpu; did you mean '--speedup'?"),
+        ("run copter --speedpu=3", "there is no option --speedpu; did you mean '--speedup'?"),
         ("run copter --speed 3", "there is no option --speed; did you mean"),
         ("run copter x", "'x' is one argument too many"),
         ("run copter --speedup", "--speedup: expected one argument"),
         ("run copter --estimator magic", "--estimator 'magic' is not known; it is one of ekf, truth"),
         ("world", "sitl world: ACTION (list or show) is missing"),
-        ("world shwo", "ACTION 'shwo' is not known; did you mean show?"),
+        ("world shwo", "ACTION 'shwo' is not known; did you mean 'show'?"),
         ("evaluate", "sitl evaluate: RUN is missing"),
     ],
 )
