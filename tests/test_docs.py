@@ -23,6 +23,7 @@ from sitl.agents.tabular.settings import Settings
 from sitl.autopilot.params import docs
 from sitl.bridge.links.faults import OPTIONS
 from sitl.cli import parser
+from sitl.cli.commands import COMMANDS
 from sitl.core import compile as compiler
 from sitl.envs.observations import OBSERVATIONS
 from sitl.envs.tasks import TASKS
@@ -112,6 +113,12 @@ def test_the_commands_of_the_readme_are_understood() -> None:
     for line in lines:
         words = line.split("#")[0].split()[1:]
         parser().parse_args(words)
+
+
+def test_every_command_is_on_the_page_of_the_command_line() -> None:
+    page = (ROOT / "docs" / "command-line.md").read_text()
+    table = " ".join(line.split("|")[1] for line in page.splitlines() if line.startswith("| `"))
+    assert set(COMMANDS) == set(re.findall(r"`(?:sitl )?([a-z]+)`", table))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
