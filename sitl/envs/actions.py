@@ -23,6 +23,8 @@ class Setpoint:
     name: str
     columns: tuple[str, ...]
     """Name and unit of each number."""
+    only: str = ""
+    """Where alone it can be had, for messages; "": wherever the robot takes it."""
 
     @property
     def width(self) -> int:
@@ -46,9 +48,16 @@ THRUST = Setpoint("thrust", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "thrus
 """SET_ATTITUDE_TARGET as ``ATTITUDE``, but with a thrust, a share of the greatest, in place of the climb rate."""
 RATES = Setpoint("rates", ("roll rate [rad/s]", "pitch rate [rad/s]", "turn [rad/s]", "thrust [0, 1]"))
 """SET_ATTITUDE_TARGET with rates of the body alone (roll to the right, pitch up) and a thrust."""
+MOTORS = Setpoint(
+    "motors",
+    tuple(f"motor {k} [0, 1]" for k in range(1, 9)),
+    only="motors are driven directly, past the autopilot, by no message of MAVLink: of copters in process on native "
+    "physics only",
+)
+"""Controls of a copter's motors, as an autopilot's outputs would be: the direct path, no autopilot behind it."""
 
 SETPOINTS = {
-    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES)
+    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS)
 }
 
 

@@ -22,9 +22,10 @@ class Navigate(gym.Env[Any, Any]):
     Args:
         render_mode: "rgb_array", "human" or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
-            randomise, latency, faults, and options of the robot's class.
+            randomise, latency, faults, info, and options of the robot's class.
 
-    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" and what ``Task.info`` adds.
+    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed", what ``Task.info`` adds, and what
+    the option ``info`` names.
 
     Raises:
         EnvOptionError: an option that cannot be used; the message says what is allowed.
@@ -47,7 +48,7 @@ class Navigate(gym.Env[Any, Any]):
         session = self._session
         self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.info
-        self._plain_info = type(session.task).info is Task.info and session.faults is None
+        self._plain_info = type(session.task).info is Task.info and session.faults is None and not session.details
         self._over = getattr(session.robot, "over", None)
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 

@@ -11,6 +11,7 @@ from . import paper
 from .ids import NEW
 from .navigate import Navigate
 from .parts import GoalConditioned
+from .session import DETAILS
 from .targets.gates import Gate, Gates
 from .targets.hold import Hold
 from .targets.landing import Land
@@ -50,14 +51,14 @@ TRACK = [
 def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[str, Any]:
     return {
         "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
-        "observation": list(parts), "action": "normalised", "setpoint": "velocity", **options,
+        "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": DETAILS, **options,
     }  # fmt: skip
 
 
 def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[str, Any]:
     return {
         "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
-        "action": "normalised", "setpoint": "velocity", **options,
+        "action": "normalised", "setpoint": "velocity", "info": DETAILS, **options,
     }  # fmt: skip
 
 

@@ -68,6 +68,7 @@ class Task:
         contact_ends: bool = True,
     ) -> None:
         self.terms = [_term(term) for term in rewards]
+        self._names = [_name_of(term, k) for k, term in enumerate(rewards)]
         self.crash_range = crash_range
         if crash_range is not None and not 0.0 <= crash_range < math.inf:
             raise EnvOptionError(f"crash_range = {crash_range}; it must be 0 m or more")
@@ -92,9 +93,15 @@ class Task:
         robot, count = step.robot, _crashes.unchecked()
         crashes = count(robot.scan, self._range, robot.collided, self.contact_ends, terminated)
         step.crashed = terminated
-        rewards[...] = self.terms[0](step) if self.terms else 0.0
-        for term in self.terms[1:]:
-            rewards += term(step)
+        if not self.terms:
+            rewards[...] = 0.0
+        for k, term in enumerate(self.terms):
+            paid = term(step)
+            if k == 0:
+                rewards[...] = paid
+            else:
+                rewards += paid
+            step.note(**{self._names[k]: paid})
         if crashes:
             rewards[terminated] = self.crash_reward
 
@@ -160,11 +167,13 @@ class ReachGoal(Task):
         super().judge(step, rewards, terminated)
         distance = np.hypot(*(step.pose[:, :2] - self.goals).T)
         alive = ~terminated
-        rewards[alive] += self.progress * (self._distance - distance)[alive]
+        gain = self.progress * (self._distance - distance)
+        rewards[alive] += gain[alive]
         self._distance = distance
         step.crashed = terminated.copy()
         step.reached = alive & (distance < self.radius)
         rewards[step.reached] += self.goal_reward
+        step.note(progress=gain, goal=self.goal_reward * step.reached)
         terminated |= step.reached
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
@@ -189,6 +198,11 @@ def paper(forward: float = 5.0, turn: float = 1.0, **others: Any) -> Task:
 
 TASKS: dict[str, Callable[[], Task]] = {"wander": lambda: Task([Forward()]), "paper": paper, "goal": ReachGoal}
 """Tasks by name."""
+
+
+def _name_of(term: str | Term, k: int) -> str:
+    """Of a reward term, in ``info``."""
+    return term if isinstance(term, str) else getattr(term, "name", f"term_{k}")
 
 
 def _term(term: str | Term) -> Term:

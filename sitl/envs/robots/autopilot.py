@@ -31,7 +31,7 @@ from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
-from ..actions import Action, Setpoint
+from ..actions import MOTORS, Action, Continuous, Setpoint
 from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
@@ -111,7 +111,8 @@ class AutopilotRobot:
         self._truth = np.zeros_like(self.state)
         self._setup = setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
-        self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
+        is_driven = isinstance(made, FleetVehicles) and kind.drive is not None
+        self.step_time, self.setpoints = 0.1, tuple(s for s in kind.setpoints if s is not MOTORS or is_driven)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
         self.figures: Mapping[str, Figure] = (
             {**{f.name: f for f in airframe.known if f.length == 1 and not f.whole}, **made.extra_figures}
@@ -127,7 +128,11 @@ class AutopilotRobot:
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
-        return self.kind.action(form, setpoint)
+        made = self.kind.action(form, setpoint)
+        if setpoint is MOTORS and isinstance(made, Continuous):
+            count = len(getattr(self.airframe, "rotors"))  # noqa: B009 - a copter has them
+            return Continuous(MOTORS, count * [0.0], count * [1.0], range(count))
+        return made
 
     def ask_for(self, message: str) -> None:
         """See ``sitl.envs.senses.ReportingRobot``. Of a vehicle that does not send it, the first reset says so."""
