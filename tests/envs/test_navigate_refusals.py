@@ -52,7 +52,7 @@ def test_actions_outside_of_a_box_are_refused(action):
         ({"world": "moon"}, r"world 'moon' is not known; it is one of circuit"),
         ({"task": "wonder"}, r"task 'wonder' .*did you mean 'wander'"),
         ({"task": Task}, r"task .* nor an object with judge"),
-        ({"observation": "camera"}, r"observation 'camera' is not known; it is one of digits, scan"),
+        ({"observation": "smell"}, r"observation 'smell' is not known; it is one of digits, scan"),
         ({"action": "jump"}, r"action 'jump' is not known; it is one of discrete, continuous"),
         ({"action": 3}, r"action 3 is neither a name"),
         ({"action": Continuous(VELOCITY, (0,) * 4, (1,) * 4)}, r"action gives 'velocity'; turtlebot takes drive"),
