@@ -2,6 +2,7 @@
 """Reward terms: functions of a step that return one reward a robot. A task adds them up.
 
 Any function of a ``Step`` is a term: ``lambda step: -0.1 * abs(step.velocity[:, 3])``. Arrays have a row a robot.
+A term with an attribute ``reads_scan`` that is False says that it reads no lidar (``senses.reads_scan``).
 """
 
 from __future__ import annotations
@@ -56,6 +57,8 @@ Term = Callable[[Step], Floats]
 class ByAction:
     """A fixed reward for each discrete action: the paper's reward."""
 
+    reads_scan = False
+
     def __init__(self, rewards: Sequence[float]) -> None:
         self.rewards = np.array(rewards, np.float64)
 
@@ -66,6 +69,8 @@ class ByAction:
 
 class Forward:
     """Forward speed at the end of the step times its duration [m], times ``per_metre``."""
+
+    reads_scan = False
 
     def __init__(self, per_metre: float = 25.0) -> None:
         self.per_metre = per_metre
@@ -78,6 +83,8 @@ class Forward:
 class Turning:
     """Magnitude of the turn rate at the end of the step [rad/s] times ``per_rad``: a penalty when that is negative."""
 
+    reads_scan = False
+
     def __init__(self, per_rad: float = -1.0) -> None:
         self.per_rad = per_rad
 
@@ -88,6 +95,8 @@ class Turning:
 
 class EachStep:
     """A constant reward for each step."""
+
+    reads_scan = False
 
     def __init__(self, reward: float = -1.0) -> None:
         self.reward = reward

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from .robots.robot import Floats
 
@@ -54,3 +54,9 @@ class SensingRobot(Protocol):
 
     def judged_state(self) -> Floats:
         """What tasks judge by, shape (count, 12): as it really is; where nobody knows, as telemetry tells it."""
+
+
+def reads_scan(piece: Any) -> bool:
+    """Whether an observation, a part of one, a task or a reward term needs lidar readings: its attribute
+    ``reads_scan``; one that does not say may. Where none does, a vehicle at a connection need not send any."""
+    return bool(getattr(piece, "reads_scan", True))

@@ -28,7 +28,8 @@ from .options import COMMON, EnvOptionError, unknown
 from .parts import Part, observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
-from .robots.robot import LateRobot, PreparedRobot, Robot
+from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot
+from .senses import reads_scan
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
@@ -160,6 +161,19 @@ class Session:
         if prepare is not None:
             prepare(self)
         self.observation_space = self.observation.space(self.robot)
+        if isinstance(self.robot, AskedRobot):
+            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
+            if self.robot.is_live:
+                self._rehearse()
+
+    def _rehearse(self) -> None:
+        """Do once, on a robot that stands nowhere, what each step does: compiled pieces are loaded now, and not while a
+        vehicle waits for its first set-point."""
+        self.action.commands(self.actions, self.commands)
+        self.task.start(0, self.robot, np.random.default_rng(0))
+        self.observation.observe(self.robot)
+        self.task.judge(self.step, self.rewards, self.terminated)
+        self.info()
 
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
         robot = self.robot

@@ -71,7 +71,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
         NotReadyError: the vehicle does not send one of them so often.
     """
     telemetry = link.inbox
-    scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink else ()
+    scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink and telemetry.scans_used else ()
     intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
     for kind in (POSITION, ATTITUDE, *scan):
         if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):
@@ -81,12 +81,16 @@ def set_intervals(link: Connection, interval_us: int) -> None:
             link.inbox.scan_kind = kind = SECTORS
             result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
         if result != ACCEPTED:
-            raise NotReadyError(f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms")
+            why = "; the environment's observation or task reads the lidar" if kind is SECTORS else ""
+            raise NotReadyError(
+                f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms{why}"
+            )
 
 
 def request_again(link: Connection) -> None:
     """Ask for position, attitude and scan as they are: those of this instant were lost on the way."""
-    for kind in (POSITION, ATTITUDE, link.inbox.scan_kind):
+    scan = (link.inbox.scan_kind,) if link.inbox.scans_used else ()
+    for kind in (POSITION, ATTITUDE, *scan):
         link.command("REQUEST_MESSAGE", kind.id)
 
 
@@ -162,7 +166,7 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     hold_sticks()
     scans = inbox.scans
     link.run(_TENTH)
-    if inbox.scans == scans:
+    if inbox.scans == scans and inbox.scans_used:
         wanted = "LASER in DEBUG_FLOAT_ARRAY, or OBSTACLE_DISTANCE"
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
 

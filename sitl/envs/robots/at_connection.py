@@ -18,6 +18,7 @@ from sitl.worlds.shapes import from_ned, to_ned
 
 from ..mavlink.guard import Guard, Watch, guard_of
 from ..mavlink.preparation import (
+    AIRBORNE,
     BY_FORCE,
     CUSTOM_MODE_ENABLED,
     NONE,
@@ -38,6 +39,8 @@ GCS, INVALID, ACTIVE = 6, 8, 4
 """MAV_TYPE, MAV_AUTOPILOT, MAV_STATE of the environment's heartbeat."""
 NEAR = 1.0
 """A vehicle that goes back is back at such a distance [m]."""
+_SINKING = 0.3
+"""Speed at which a copter on the ground is to sink until it knows that it has landed [m/s]."""
 Origin = tuple[float, float, float]
 
 
@@ -60,6 +63,8 @@ class SocketVehicles(Vehicles):
         """Of the vehicle's local frame in the world, of one that was taken over in flight: NED [m]."""
         self._first = (0.0, 0.0, 0.0)
         """Where that was, in its local frame: NED [m]."""
+        self._height = 0.0
+        """How high that was above its home [m]."""
         self._heard_ms = -1000
 
     @staticmethod
@@ -90,7 +95,7 @@ class SocketVehicles(Vehicles):
                 link = connect(self._connection, inbox, self.options.patience, warn=logger.warn)
             except OptionError as error:
                 raise EnvOptionError(str(error)) from None
-            link.inbox.angles = self.setup.angles
+            link.inbox.angles, link.inbox.scans_used = self.setup.angles, self.scans_used
             self.links[0] = link
         else:
             link.is_simulator = is_simulator(link)
@@ -121,11 +126,31 @@ class SocketVehicles(Vehicles):
             above = height_above_home(link) if kind.takes_off else 0.0
             x, y, floor = to_ned(*pose[:3])
             self._origin, self._first = (x - north, y - east, floor - above - down), (north, east, down)
+            self._height = above
         return self._origin
 
-    def _stop(self, link: Connection) -> None:
-        """Ask for no speed, in GUIDED."""
-        fields = {"coordinate_frame": LOCAL_NED, "type_mask": VELOCITY_ONLY | YAWS_IGNORED, "vx": 0, "vy": 0, "vz": 0}
+    def _lift_off(self, link: Connection) -> None:
+        """A copter that has landed and is still armed takes off. Before it knows that it has landed, it refuses: until
+        then it is to sink."""
+        inbox = link.inbox
+        for _ in range(max(round(self.options.wait), 1)):
+            if not inbox.armed or inbox.mode != self.setup.kind.guided:
+                return
+            if link.command("NAV_TAKEOFF", altitude=self._height) == ACCEPTED:
+                if self.watch is not None:
+                    self.watch.note(1e-3 * inbox.time_ms, "take-off", "it flies back")
+                break
+            self._stop(link, sinking=_SINKING)
+            link.pause(1_000_000)
+        for _ in range(max(round(self.options.wait), 1)):
+            if height_above_home(link) > self._height - NEAR:
+                return
+            link.pause(1_000_000)
+
+    def _stop(self, link: Connection, sinking: float = 0.0) -> None:
+        """Ask for no speed, in GUIDED, but ``sinking`` [m/s]."""
+        fields = {"coordinate_frame": LOCAL_NED, "type_mask": VELOCITY_ONLY | YAWS_IGNORED, "vx": 0, "vy": 0}
+        fields["vz"] = sinking
         link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=link.inbox.system, **fields))
 
     def _go_back(self, link: Connection) -> None:
@@ -133,6 +158,8 @@ class SocketVehicles(Vehicles):
         inbox, place = link.inbox, self._first
         if not inbox.armed or inbox.mode != self.setup.kind.guided:
             return
+        if self.setup.kind.takes_off and height_above_home(link) < AIRBORNE:
+            self._lift_off(link)
         x, y, z = place
         mask = PLACE_ONLY | YAWS_IGNORED
         for _ in range(max(round(self.options.wait), 1)):

@@ -137,6 +137,15 @@ class AutopilotRobot:
         """Where a vehicle is prepared that is moved to other start poses; before the first reset."""
         self._vehicles.base = pose
 
+    @property
+    def is_live(self) -> bool:
+        """See ``AskedRobot``."""
+        return isinstance(self._vehicles, SocketVehicles)
+
+    def use_scan(self, used: bool) -> None:
+        """See ``AskedRobot``: a vehicle at a connection is asked for scans only where they are used."""
+        self._vehicles.scans_used = used
+
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
         try:
@@ -235,7 +244,8 @@ class AutopilotRobot:
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
-                if inbox.position[0] == inbox.attitude[0] == goal_ms and inbox.scans > scans:
+                seen = inbox.scans > scans or not inbox.scans_used
+                if inbox.position[0] == inbox.attitude[0] == goal_ms and seen:
                     break
                 request_again(link)
             else:
