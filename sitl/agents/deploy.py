@@ -25,6 +25,7 @@ from . import environments
 from .algorithms import Policy
 from .errors import AgentError
 from .learnt import Learnt
+from .runs.config import RunConfig
 
 SIMULATED = ("autopilot", "autopilot_path", "begin", "faults", "gcs", "latency", "params", "physics", "randomise",
              "start", "threads")  # fmt: skip
@@ -94,6 +95,13 @@ def options_of(learnt: Learnt, given: Mapping[str, Any]) -> tuple[dict[str, Any]
     return {**kept, **given}, out
 
 
+def neutral(learnt: Learnt, given: Mapping[str, Any] | None = None, max_steps: int | None = None) -> RunConfig:
+    """What the policy was learnt in, without all that a vehicle at a connection has not; ``given`` options replace
+    those that are left."""
+    made = {**NEUTRAL, **options_of(learnt, given or {})[0]}
+    return learnt.config.with_(env_options=made, max_steps=max_steps or learnt.config.max_steps)
+
+
 def deploy(
     learnt: Learnt,
     connection: str,
@@ -105,8 +113,9 @@ def deploy(
     wait: float = 60.0,
     options: Mapping[str, Any] | None = None,
     clock: Callable[[], float] = time.perf_counter,
+    out: Deployed | None = None,
 ) -> Deployed:
-    """Let a policy act on a vehicle.
+    """Let a policy act on a vehicle. However it ends, short of SIGKILL, the vehicle is handed over to the guard's mode.
 
     Args:
         learnt: the policy.
@@ -118,6 +127,7 @@ def deploy(
         wait: how long "none" and "return" wait for the vehicle [s].
         options: of the environment, in place of those that it was learnt with.
         clock: wall time [s].
+        out: is filled in, for a caller who wants to know what came of it when this raises; None: a new one.
 
     Raises:
         AgentError: an environment or option that cannot be.
@@ -125,10 +135,9 @@ def deploy(
     """
     if (max_steps is not None and max_steps < 1) or episodes < 1:
         raise AgentError(f"episodes = {episodes}, max_steps = {max_steps}; they must be 1 or more")
-    made = {**NEUTRAL, **options_of(learnt, options or {})[0]}
-    config = learnt.config.with_(env_options=made, max_steps=max_steps or learnt.config.max_steps)
+    config = neutral(learnt, options or {}, max_steps)
     env = environments.make(config, connection=connection, reset=reset, guard=dict(guard or {}), wait=wait)
-    out, inner = Deployed(), cast(Any, env.unwrapped)
+    out, inner = Deployed() if out is None else out, cast(Any, env.unwrapped)
     try:
         learnt.policy.check(env.observation_space, env.action_space)
         _check_floor(inner, guard or {})

@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from sitl.client.connection import ACCEPTED, PROOF, Connection
+from sitl.client.connection import ACCEPTED, PROOF, TRIES, Connection
 from sitl.errors import NotASimulatorError, NotReadyError
 
 from .telemetry import ATTITUDE, GLOBAL, ORIGIN, POSITION, SCAN, SECTORS
@@ -30,6 +30,8 @@ ALIGN_US = 6_000_000
 """An episode begins at a whole multiple of it since boot, so that messages fall due at the ends of all usual steps."""
 _SECOND, _TENTH = 1_000_000, 100_000
 _PATIENCE_S = 90
+_LOOK, _ANSWER_LOOKS = 20_000, 25
+"""Wall time between two looks for a message that was asked for [us], and their number."""
 
 
 LEARNED = "MOT_THST_HOVER"
@@ -206,10 +208,20 @@ AIRBORNE, AT_REST = 0.5, 0.5
 
 
 def height_above_home(link: Connection) -> float:
-    """[m]; nan when the vehicle does not tell it."""
-    link.inbox.height = math.nan
-    link.command("REQUEST_MESSAGE", GLOBAL.id)
-    return float(link.inbox.height)
+    """[m], as the vehicle tells it now.
+
+    Raises:
+        NotReadyError: it does not tell it.
+    """
+    inbox = link.inbox
+    inbox.height = math.nan
+    for _ in range(TRIES):
+        link.command("REQUEST_MESSAGE", GLOBAL.id)
+        for _ in range(1 if link.is_exact else _ANSWER_LOOKS):  # the acknowledgement may come before the message
+            if not math.isnan(inbox.height):
+                return float(inbox.height)
+            link.pause(0 if link.is_exact else _LOOK)
+    raise NotReadyError(f"{link.name}: the vehicle does not send GLOBAL_POSITION_INT, so its height is not known")
 
 
 def until(
