@@ -26,13 +26,19 @@ from .runs.folder import RunFolder
 
 FASTEST_S = 0.04
 """Shortest duration of a frame [s]: viewers slow down GIFs with shorter ones."""
+LARGEST = 4_000_000
+"""Size of a GIF [bytes]: what pages, issues and mails take."""
 
 
 class Film(Protocol):
     """An animation file; complete when it is closed."""
 
-    def add(self, picture: Picture) -> None:
-        """Append a frame, shape (height, width, 3); all frames have the same size."""
+    size: int
+    """Bytes written so far, of a file that grows with each frame; else 0."""
+
+    def add(self, picture: Picture, times: int = 1) -> None:
+        """Append a frame, shape (height, width, 3); all frames have the same size. It stands for ``times`` the usual
+        duration."""
 
     def close(self) -> None:
         """Write what is buffered, and close the file."""
@@ -41,11 +47,13 @@ class Film(Protocol):
 class Mp4:
     """An MP4 (H.264), encoded by ffmpeg frame by frame."""
 
+    size = 0
+
     def __init__(self, path: Path, seconds: float, program: str) -> None:
         self._path, self._rate, self._program = path, 1.0 / seconds, program
         self._process: subprocess.Popen[bytes] | None = None
 
-    def add(self, picture: Picture) -> None:
+    def add(self, picture: Picture, times: int = 1) -> None:
         """See ``Film``."""
         if self._process is None:
             height, width = picture.shape[:2]
@@ -73,7 +81,9 @@ class Mp4:
 
 
 class Reel:
-    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S.
+    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S. A GIF stays below
+    LARGEST: each time half of what is left of it is full, only every second of the steps still becomes a frame, which
+    stands for twice as long.
 
     Args:
         path: .gif or .mp4.
@@ -87,6 +97,7 @@ class Reel:
     def __init__(self, path: Path, step_s: float) -> None:
         self.every = max(round(FASTEST_S / step_s), 1) if step_s < FASTEST_S else 1
         """Number of steps per frame."""
+        self._first, self._left = self.every, LARGEST
         seconds = self.every * step_s
         self._steps, self.pictures = 0, 0
         if not path.parent.is_dir():
@@ -111,8 +122,11 @@ class Reel:
 
     def add(self, picture: Picture) -> None:
         """Append a frame, shape (height, width, 3)."""
-        self._film.add(picture)
+        self._film.add(picture, self.every // self._first)
         self.pictures += 1
+        if self._film.size > LARGEST - self._left // 2:
+            self._left //= 2
+            self.every *= 2
 
     def __enter__(self) -> Reel:
         return self
@@ -207,7 +221,7 @@ def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended,
     try:
         play(env, policy, episodes, seed, after, ended)
     except DependencyNotInstalled as error:
-        raise AgentError(str(error)) from None
+        raise AgentError(f"{error}; --out FILE.gif makes a film") from None
     finally:
         env.close()
 

@@ -40,6 +40,7 @@ class Navigate(gym.Env[Any, Any]):
         self.action_space = session.action.space
         self.render_mode = render_mode
         self._renderer = None if render_mode is None else Renderer(session.robot, session.task)
+        self._is_begun = False
         self._bind()
 
     def _bind(self) -> None:
@@ -81,6 +82,7 @@ class Navigate(gym.Env[Any, Any]):
         super().reset(seed=seed)
         self._session.reset(0, self.np_random, options)
         self._session.look()
+        self._is_begun = True
         if self._renderer is not None:
             self._renderer.start()
             self._show()
@@ -92,7 +94,10 @@ class Navigate(gym.Env[Any, Any]):
 
         Raises:
             InvalidAction: the action is not in the space.
+            ResetNeeded: before the first ``reset``.
         """
+        if not self._is_begun:
+            raise gym.error.ResetNeeded("the robot stands nowhere before the first reset()")
         session = self._session
         self._actions[0] = self._check(action)
         self._advance()
@@ -137,6 +142,7 @@ class Navigate(gym.Env[Any, Any]):
     def restore(self, snapshot: Snapshot) -> Any:
         """Restore a snapshot of this or of an equal environment; returns the observation."""
         self._session.restore(0, snapshot, self.np_random)
+        self._is_begun = True
         if self._renderer is not None:
             self._renderer.start()
         return self._observation()

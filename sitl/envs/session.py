@@ -66,7 +66,7 @@ class NavigateOptions:
 
     Args:
         robot: name (``robots.ROBOTS``) or class.
-        world: name (``sitl.worlds.names()``), .toml file or World.
+        world: name (``sitl.worlds.names()``), .toml file or World; None: the robot's usual one (``robots.WORLDS``).
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
             "scan+velocity": a dict), or Observation.
@@ -90,7 +90,7 @@ class NavigateOptions:
     """
 
     robot: str | Callable[..., Robot] = "turtlebot"
-    world: str | Path | World = "circuit2"
+    world: str | Path | World | None = None
     task: str | Task = "wander"
     observation: str | Sequence[str | Part] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
@@ -114,7 +114,7 @@ class Session:
 
     def __init__(self, count: int, options: NavigateOptions) -> None:
         try:
-            world = worlds.load(options.world)
+            world = worlds.load(robots.world_of(options.robot) if options.world is None else options.world)
         except WorldError as error:
             raise EnvOptionError(str(error)) from None
         self.robot = robots.load(options.robot, world, count, options.robot_options)
@@ -134,6 +134,12 @@ class Session:
         self.faults = None if options.faults is None else EpisodeFaults(options.faults, self.robot)
         """None: nothing fails."""
         self.starts = Starts(options.start, self.robot)
+        if self.starts.fixed is None and getattr(self.robot, "is_live", False):
+            name = world.start(self.robot.name).name
+            raise EnvOptionError(
+                f"start {options.start!r}: a vehicle at a connection begins where it is; give the option start={name!r} "
+                f"(sitl evaluate --option start={name})"
+            )
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")

@@ -86,7 +86,11 @@ class SocketVehicles(Vehicles):
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         if self._pose not in (None, pose):
-            raise EnvOptionError(f"{self.where}: the vehicle starts where it was started")
+            name = self.setup.world.start(self.setup.airframe.name).name
+            raise EnvOptionError(
+                f"{self.where}: the vehicle starts where it was started: all episodes begin at one pose; start={name!r} "
+                f"(sitl evaluate --option start={name}, which moves no starts)"
+            )
         self._pose = pose
         link = self.links[0]
         if link is None:
@@ -98,6 +102,8 @@ class SocketVehicles(Vehicles):
             link.inbox.angles, link.inbox.scans_used = self.setup.angles, self.scans_used
             self.links[0] = link
         else:
+            if self.watch is not None and self.watch.in_charge and link.inbox.mode == self.setup.kind.guided:
+                self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
             link.is_simulator = is_simulator(link)
         if self.options.reset in (NONE, RETURN):
             origin = self._joined(link, pose)
@@ -116,8 +122,6 @@ class SocketVehicles(Vehicles):
         """Take over a vehicle that somebody else has brought up; its place at the first episode is the world's start
         pose. Returns its local origin in the world: north, east, down [m]."""
         kind, inbox, wait = self.setup.kind, link.inbox, self.options.wait
-        if self.watch is not None and self.watch.in_charge and inbox.mode == kind.guided:
-            self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
         if self._origin is not None and self.options.reset == RETURN:
             self._go_back(link)
         join(link, kind.guided, kind.takes_off, wait)
