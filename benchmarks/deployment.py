@@ -147,7 +147,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.episodes < 2:
         parser.error(f"--episodes {options.episodes}: it must be 2 or more")
     warnings.filterwarnings("ignore", message=".*clock cannot be held")
-    print("| policy | vehicle | solved | reward | difference of twins | seconds | off the straight way [m] | late steps |")
+    head = ("policy", "vehicle", "solved", "reward", "difference of twins", "seconds", "off the straight way [m]")
+    print(f"| {' | '.join(head)} | late steps |")
     print("|---|---|---:|---:|---:|---:|---:|---:|")
     for name in options.names or POLICIES:
         for line in rows(name, options.ardupilot, options.episodes, options.speedup):

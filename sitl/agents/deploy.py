@@ -159,7 +159,8 @@ def _check_floor(env: Any, guard: Mapping[str, Any]) -> None:
     floor = Guard(**guard).floor
     if getattr(env.task, "lands", False) and floor > 0.0:
         raise AgentError(
-            f"the policy is to land, and the guard's floor is {floor:g} m above the ground: --guard floor=-5 lets it down"
+            f"the policy is to land, and the guard's floor is {floor:g} m above the ground: --guard floor=-5 lets it "
+            "down"
         )
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
 import shutil
 import subprocess
 import time
@@ -81,7 +80,7 @@ class Mp4:
 
 
 class Reel:
-    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S. A GIF stays below
+    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S. A GIF stays at about
     LARGEST: each time half of what is left of it is full, only every second of the steps still becomes a frame, which
     stands for twice as long.
 
@@ -215,7 +214,6 @@ def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended,
     pace = Pace(_step_s(env) / speed)
 
     def after(shown: Any) -> bool:
-        _check_screen()
         return pace() and not _window_closed()
 
     try:
@@ -257,15 +255,6 @@ def _step_s(env: gym.Env[Any, Any]) -> float:
     """Simulated time of a step [s]."""
     seconds = environments.step_time(env)
     return STEP_S if math.isnan(seconds) else seconds
-
-
-def _check_screen() -> None:
-    """Refuse a display that nobody can see, unless the user asked for it. Raises AgentError."""
-    import pygame
-
-    if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_init():
-        if pygame.display.get_driver() in ("dummy", "offscreen"):
-            raise AgentError("there is no screen for a window; --out FILE.gif makes a film")
 
 
 def _window_closed() -> bool:

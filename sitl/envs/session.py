@@ -137,8 +137,8 @@ class Session:
         if self.starts.fixed is None and getattr(self.robot, "is_live", False):
             name = world.start(self.robot.name).name
             raise EnvOptionError(
-                f"start {options.start!r}: a vehicle at a connection begins where it is; give the option start={name!r} "
-                f"(sitl evaluate --option start={name})"
+                f"start {options.start!r}: a vehicle at a connection begins where it is; give the option "
+                f"start={name!r} (sitl evaluate --option start={name})"
             )
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)

@@ -152,7 +152,7 @@ def test_a_vehicle_without_a_lidar_flies_what_reads_none(flown):
         assert not done.handed_over and done.episodes[0].steps == 30
         seen = policy.config.with_(env="sitl/CopterForest-v0", env_options={"world": "open"})
         env = environments.make(seen, connection=url, reset="none")
-        with pytest.raises(NotReadyError, match="does not send OBSTACLE_DISTANCE every 100 ms; .* reads the lidar"):
+        with pytest.raises(NotReadyError, match=r"does not send OBSTACLE_DISTANCE every 100 ms; .* reads the lidar"):
             env.reset()
         env.close()
 

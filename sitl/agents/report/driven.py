@@ -149,16 +149,17 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
     with stage(run, plan) as (env, policy, poses):
         noted = Trails(env)
         found = evaluate(noted, policy, plan.episodes, poses=poses, watch=watch)
-        facts = _facts(env, {**run.config.env_options, **plan.options}.get("observation", "digits"))
+        about = facts(env, {**run.config.env_options, **plan.options}.get("observation", "digits"))
         trails = noted.trails
-        return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, facts.world) for trail in trails), facts)
+        return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, about.world) for trail in trails), about)
 
 
-def _facts(env: gym.Env[Any, Any], asked: Any) -> Facts:
-    """``asked``: the option ``observation``, as far as it is given."""
+def facts(env: gym.Env[Any, Any], asked: Any) -> Facts:
+    """Facts about an environment; ``asked``: the option ``observation``, as far as it is given."""
     inner: Any = env.unwrapped
     made, space = inner.session.observation, env.observation_space
-    seen = ", ".join(made.names) if isinstance(made, Parts) else asked if isinstance(asked, str) else type(made).__name__
+    named = asked if isinstance(asked, str) else type(made).__name__
+    seen = ", ".join(made.names) if isinstance(made, Parts) else named
     shape = f" ({space.shape[0]})" if space.shape else ""
     acts = env.action_space
     names = getattr(getattr(inner.session, "action", None), "names", ())

@@ -88,8 +88,8 @@ class SocketVehicles(Vehicles):
         if self._pose not in (None, pose):
             name = self.setup.world.start(self.setup.airframe.name).name
             raise EnvOptionError(
-                f"{self.where}: the vehicle starts where it was started: all episodes begin at one pose; start={name!r} "
-                f"(sitl evaluate --option start={name}, which moves no starts)"
+                f"{self.where}: the vehicle starts where it was started: all episodes begin at one pose; "
+                f"start={name!r} (sitl evaluate --option start={name}, which moves no starts)"
             )
         self._pose = pose
         link = self.links[0]
@@ -153,8 +153,8 @@ class SocketVehicles(Vehicles):
 
     def _stop(self, link: Connection, sinking: float = 0.0) -> None:
         """Ask for no speed, in GUIDED, but ``sinking`` [m/s]."""
-        fields = {"coordinate_frame": LOCAL_NED, "type_mask": VELOCITY_ONLY | YAWS_IGNORED, "vx": 0, "vy": 0}
-        fields["vz"] = sinking
+        mask = VELOCITY_ONLY | YAWS_IGNORED
+        fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "vx": 0, "vy": 0, "vz": sinking}
         link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=link.inbox.system, **fields))
 
     def _go_back(self, link: Connection) -> None:
