@@ -98,7 +98,7 @@ class Reel:
         """Number of steps per frame."""
         self._first, self._left = self.every, LARGEST
         seconds = self.every * step_s
-        self._steps, self.pictures = 0, 0
+        self._steps, self._next, self.pictures = 0, 0, 0
         if not path.parent.is_dir():
             raise AgentError(f"{path} cannot be written: there is no folder {path.parent}")
         self._film: Film
@@ -115,17 +115,20 @@ class Reel:
 
     def wants(self) -> bool:
         """Whether this step becomes a frame; call it once per step."""
-        wanted = self._steps % self.every == 0
+        wanted = self._steps >= self._next
+        if wanted:
+            self._next = self._steps + self.every
         self._steps += 1
         return wanted
 
     def add(self, picture: Picture) -> None:
         """Append a frame, shape (height, width, 3)."""
-        self._film.add(picture, self.every // self._first)
-        self.pictures += 1
         if self._film.size > LARGEST - self._left // 2:
             self._left //= 2
+            self._next += self.every
             self.every *= 2
+        self._film.add(picture, self.every // self._first)
+        self.pictures += 1
 
     def __enter__(self) -> Reel:
         return self
