@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
 
 from sitl.worlds import World
 
-from .options import EnvOptionError, unknown
+from .options import unknown
+from .parts import GoalConditioned
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -41,6 +43,7 @@ class Navigate(gym.Env[Any, Any]):
         self.action_space = session.action.space
         self.render_mode = render_mode
         self._renderer = None if render_mode is None else Renderer(session.robot, session.task)
+        self._is_begun = False
         self._bind()
 
     def _bind(self) -> None:
@@ -82,6 +85,7 @@ class Navigate(gym.Env[Any, Any]):
         super().reset(seed=seed)
         self._session.reset(0, self.np_random, options)
         self._session.look()
+        self._is_begun = True
         if self._renderer is not None:
             self._renderer.start()
             self._show()
@@ -93,7 +97,10 @@ class Navigate(gym.Env[Any, Any]):
 
         Raises:
             InvalidAction: the action is not in the space.
+            ResetNeeded: before the first ``reset``.
         """
+        if not self._is_begun:
+            raise gym.error.ResetNeeded("the robot stands nowhere before the first reset()")
         session = self._session
         self._actions[0] = self._check(action)
         self._advance()
@@ -117,16 +124,18 @@ class Navigate(gym.Env[Any, Any]):
             return {name: value[0] for name, value in rows.items()}
         return rows[0]
 
-    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
-        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``.
+    @property
+    def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
+        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``. Others have no such
+        attribute, by which libraries know them.
 
         Raises:
-            EnvOptionError: the task has no goal that counts alone.
+            AttributeError: the task has no goal that counts alone, or the observation does not tell it.
         """
-        rule = getattr(self.task, "compute_reward", None)
-        if rule is None:
-            raise EnvOptionError(f"compute_reward: task {self.task!r} has no goal that counts alone")
-        return rule(achieved_goal, desired_goal, info)
+        if not isinstance(self._session.observation, GoalConditioned):
+            raise AttributeError(f"compute_reward: task {self.task!r} is not observed by its goal (GoalConditioned)")
+        rule: Callable[[Any, Any, Any], Any] = self.task.compute_reward  # type: ignore[attr-defined]
+        return rule
 
     def snapshot(self) -> Snapshot:
         """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.
@@ -138,6 +147,7 @@ class Navigate(gym.Env[Any, Any]):
     def restore(self, snapshot: Snapshot) -> Any:
         """Restore a snapshot of this or of an equal environment; returns the observation."""
         self._session.restore(0, snapshot, self.np_random)
+        self._is_begun = True
         if self._renderer is not None:
             self._renderer.start()
         return self._observation()

@@ -2,6 +2,7 @@
 """Reward terms: functions of a step that return one reward a robot. A task adds them up.
 
 Any function of a ``Step`` is a term: ``lambda step: -0.1 * abs(step.velocity[:, 3])``. Arrays have a row a robot.
+A term with an attribute ``reads_scan`` that is False says that it reads no lidar (``senses.reads_scan``).
 """
 
 from __future__ import annotations
@@ -66,6 +67,7 @@ class ByAction:
     """A fixed reward for each discrete action: the paper's reward."""
 
     name = "by_action"
+    reads_scan = False
 
     def __init__(self, rewards: Sequence[float]) -> None:
         self.rewards = np.array(rewards, np.float64)
@@ -79,6 +81,7 @@ class Forward:
     """Forward speed at the end of the step times its duration [m], times ``per_metre``."""
 
     name = "forward"
+    reads_scan = False
 
     def __init__(self, per_metre: float = 25.0) -> None:
         self.per_metre = per_metre
@@ -92,6 +95,7 @@ class Turning:
     """Magnitude of the turn rate at the end of the step [rad/s] times ``per_rad``: a penalty when that is negative."""
 
     name = "turning"
+    reads_scan = False
 
     def __init__(self, per_rad: float = -1.0) -> None:
         self.per_rad = per_rad
@@ -105,6 +109,7 @@ class EachStep:
     """A constant reward for each step."""
 
     name = "each_step"
+    reads_scan = False
 
     def __init__(self, reward: float = -1.0) -> None:
         self.reward = reward

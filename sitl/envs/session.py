@@ -30,8 +30,8 @@ from .pictures import Film, Picture
 from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
-from .robots.robot import LateRobot, PreparedRobot, Robot
-from .senses import SensingRobot
+from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot
+from .senses import SensingRobot, reads_scan
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
@@ -72,7 +72,7 @@ class NavigateOptions:
 
     Args:
         robot: name (``robots.ROBOTS``) or class.
-        world: name (``sitl.worlds.names()``), .toml file or World.
+        world: name (``sitl.worlds.names()``), .toml file or World; None: the robot's usual one (``robots.WORLDS``).
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
             "scan+velocity": a dict), pictures ("depth", "depth+velocity"; ``pictures.PICTURES``), a dict of such, or
@@ -100,7 +100,7 @@ class NavigateOptions:
     """
 
     robot: str | Callable[..., Robot] = "turtlebot"
-    world: str | Path | World = "circuit2"
+    world: str | Path | World | None = None
     task: str | Task = "wander"
     observation: str | Sequence[str | Part] | Mapping[str, Any] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
@@ -125,7 +125,7 @@ class Session:
 
     def __init__(self, count: int, options: NavigateOptions) -> None:
         try:
-            world = worlds.load(options.world)
+            world = worlds.load(robots.world_of(options.robot) if options.world is None else options.world)
         except WorldError as error:
             raise EnvOptionError(str(error)) from None
         self.robot = robots.load(options.robot, world, count, options.robot_options)
@@ -145,6 +145,12 @@ class Session:
         self.faults = None if options.faults is None else EpisodeFaults(options.faults, self.robot)
         """None: nothing fails."""
         self.starts = Starts(options.start, self.robot)
+        if self.starts.fixed is None and getattr(self.robot, "is_live", False):
+            name = world.start(self.robot.name).name
+            raise EnvOptionError(
+                f"start {options.start!r}: a vehicle at a connection begins where it is; give the option "
+                f"start={name!r} (sitl evaluate --option start={name})"
+            )
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")
@@ -177,6 +183,19 @@ class Session:
         self.observation_space = self.observation.space(self.robot)
         self.pictures: tuple[Picture, ...] = tuple(getattr(self.observation, "pictures", ()))
         """What the observation has of pictures."""
+        if isinstance(self.robot, AskedRobot):
+            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
+            if self.robot.is_live:
+                self._rehearse()
+
+    def _rehearse(self) -> None:
+        """Do once, on a robot that stands nowhere, what each step does: compiled pieces are loaded now, and not while a
+        vehicle waits for its first set-point."""
+        self.action.commands(self.actions, self.commands)
+        self.task.start(0, self.robot, np.random.default_rng(0))
+        self.observation.observe(self.robot)
+        self.task.judge(self.step, self.rewards, self.terminated)
+        self.info()
 
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
         robot = self.robot

@@ -16,6 +16,7 @@ from sitl.core.kernels import law
 from .options import EnvOptionError, unknown
 from .rewards import TERMS, ByAction, EachStep, Floats, Forward, Step, Term
 from .robots.robot import Robot
+from .senses import reads_scan
 from .starts import ReachableCells
 
 _DRAWS = 100
@@ -84,6 +85,12 @@ class Task:
     def limit(self) -> float:
         """Readings below it are a crash [m]; valid after ``prepare``."""
         return self._range
+
+    @property
+    def reads_scan(self) -> bool:
+        """Whether it needs lidar readings (``senses.reads_scan``): for its crash range, or a term. A subclass that
+        reads them besides says True. Valid after ``prepare``."""
+        return self._range > 0.0 or any(reads_scan(term) for term in self.terms)
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """Called at the start of an episode of one robot, when it is at its start pose."""

@@ -292,7 +292,8 @@ class NavigateVector(OfSubEnvironments):
 
     def close_extras(self, **kwargs: Any) -> None:
         """See ``gymnasium.vector.VectorEnv.close``."""
-        self._session.robot.close()
+        if hasattr(self, "_session"):  # older Gymnasiums close what was refused while it was made, too
+            self._session.robot.close()
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:

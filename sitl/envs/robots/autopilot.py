@@ -153,6 +153,15 @@ class AutopilotRobot:
         """Where a vehicle is prepared that is moved to other start poses; before the first reset."""
         self._vehicles.base = pose
 
+    @property
+    def is_live(self) -> bool:
+        """See ``AskedRobot``."""
+        return isinstance(self._vehicles, SocketVehicles)
+
+    def use_scan(self, used: bool) -> None:
+        """See ``AskedRobot``: a vehicle at a connection is asked for scans only where they are used."""
+        self._vehicles.scans_used = used
+
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
         try:
@@ -252,7 +261,8 @@ class AutopilotRobot:
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
-                is_whole = inbox.scans > scans and len(inbox.reported) == len(inbox.wanted)
+                seen = inbox.scans > scans or not inbox.scans_used
+                is_whole = seen and len(inbox.reported) == len(inbox.wanted)
                 if is_whole and inbox.position[0] == inbox.attitude[0] == goal_ms:
                     break
                 request_again(link)

@@ -39,6 +39,9 @@ class Land(MovingTask):
         others: further arguments of ``MovingTask``.
     """
 
+    lands = True
+    """It ends on the ground: a guard's floor must let it down there."""
+
     def __init__(
         self,
         offset: float = 5.0,
