@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from sitl.envs.options import EnvOptionError
 from sitl.envs.swarm.parallel import HIT, SwarmEnv
 from sitl.envs.swarm.tasks import Crossing
 from sitl.envs.swarm.vector import SwarmVectorEnv
-from tests.envs.test_swarm_envs import GUST
+from tests.envs.test_swarm_envs import GUST, equal, flown
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*action space.*")
 
@@ -82,6 +83,25 @@ def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(gym.error.InvalidAction, match=r"shape \(2, 2\); it must be \(2, 3\)"):
         env.step(np.zeros((2, 2)))
     env.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("steps", [None, 3])
+def test_a_pickled_swarm_goes_on(steps: int | None) -> None:
+    """Before its first episode, and within one."""
+    env = SwarmEnv("escort", params=GUST)
+    if steps is not None:
+        flown(env, 3, steps)
+    copy = pickle.loads(pickle.dumps(env))
+    assert copy.agents == env.agents
+    if steps is None:
+        assert equal(flown(copy, 1, 3), flown(env, 1, 3))
+    else:
+        actions = {agent: np.full(env.action_space(agent).shape, 0.5, np.float32) for agent in env.agents}
+        assert all(equal(copy.step(actions), env.step(actions)) for _ in range(3))
+        assert equal(copy.reset(), env.reset())
+    env.close()
+    copy.close()
 
 
 @pytest.mark.slow

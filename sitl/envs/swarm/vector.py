@@ -37,6 +37,8 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         EnvOptionError: a number or an option that cannot be.
     """
 
+    swarms: Sequence[SwarmEnv] = ()
+    """Each of them."""
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}  # noqa: RUF012 (Gymnasium's)
 
     def __init__(
