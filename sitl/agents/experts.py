@@ -164,8 +164,9 @@ class Auto(_Autopilot):
                 north, east, down = to_ned(*place)
                 mission.append(client.item("NAV_WAYPOINT", ours[0] + north, ours[1] + east, above - down))
             client.upload(mission)
-            if not client.flies:
-                client.params["WP_RADIUS"] = 0.5 * float(getattr(self._task, "radius", 2.0))
+            if hasattr(self._task, "radius"):  # else corners are cut beside places
+                name, unit = ("WPNAV_RADIUS", 100.0) if client.flies else ("WP_RADIUS", 1.0)
+                client.params[name] = 0.5 * unit * float(self._task.radius)
             client.start_mission()
         except ClientError as error:
             raise AgentError(f"expert {self.name!r}: no mission of the task's places can be flown: {error}") from None

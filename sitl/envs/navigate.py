@@ -9,11 +9,11 @@ import gymnasium as gym
 
 from sitl.worlds import World
 
-from .options import EnvOptionError, unknown
+from .options import unknown
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
-from .tasks import Task
+from .tasks import Task, reward_of_goals
 
 
 class Navigate(gym.Env[Any, Any]):
@@ -122,10 +122,7 @@ class Navigate(gym.Env[Any, Any]):
         Raises:
             EnvOptionError: the task has no goal that counts alone.
         """
-        rule = getattr(self.task, "compute_reward", None)
-        if rule is None:
-            raise EnvOptionError(f"compute_reward: task {self.task!r} has no goal that counts alone")
-        return rule(achieved_goal, desired_goal, info)
+        return reward_of_goals(self.task, achieved_goal, desired_goal, info)
 
     def snapshot(self) -> Snapshot:
         """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several swarms as one vector environment: rows are what single swarms give, and libraries learn one policy for all."""
+"""Several swarms as one vector environment: rows are what single swarms give; one policy learns for all."""
 
 from __future__ import annotations
 
