@@ -21,6 +21,7 @@ from sitl.envs.swarm.parallel import HIT, SwarmEnv
 from sitl.envs.swarm.tasks import Crossing
 from sitl.envs.swarm.vector import SwarmVectorEnv
 from tests.envs.test_swarm_envs import GUST, equal, flown
+from tests.test_docs import ROOT, blocks
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*action space.*")
 
@@ -127,15 +128,17 @@ def test_supersuit_makes_a_vector_environment() -> None:
 
 @pytest.mark.slow
 def test_one_policy_learns_for_all_agents() -> None:
-    library = pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
-    from sitl.envs.sb3 import Sb3VecEnv
-
-    env = Sb3VecEnv(SwarmVectorEnv("formation", swarms=2, steps=20))
-    model = library.PPO("MlpPolicy", env, n_steps=32, batch_size=64, n_epochs=2, seed=1, device="cpu")
+    """As the page shows it, with fewer steps."""
+    pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
+    (example,) = blocks(ROOT / "docs/swarm.md", "py")
+    example, learning = example.replace("200_000", "512").split("model.learn")
+    scope: dict[str, Any] = {}
+    exec(compile(example, "docs/swarm.md", "exec"), scope)
+    model = scope["model"]
     before = [values.detach().numpy().copy() for values in model.policy.parameters()]
-    model.learn(512)
+    exec(compile("model.learn" + learning, "docs/swarm.md", "exec"), scope)
     after = [values.detach().numpy() for values in model.policy.parameters()]
+    assert scope["env"].num_envs == 16 and model.num_timesteps >= 512
     assert all(np.isfinite(b).all() for b in after)
     assert any(not np.array_equal(a, b) for a, b in zip(before, after))
-    assert model.ep_info_buffer is not None and env.num_envs == 8
-    env.close()
+    scope["env"].close()

@@ -275,11 +275,10 @@ def test_tianshou(name):
     before = weights(algorithm)
     collector = Collector(algorithm, envs, VectorReplayBuffer(1000, 2), exploration_noise=True)
     collector.reset()
-    algorithm.run_training(
-        OffPolicyTrainerParams(
-            training_collector=collector, max_epochs=1, epoch_num_steps=200, collection_step_num_env_steps=20,
-            update_step_num_gradient_steps_per_sample=0.2, batch_size=32, show_progress=False,
-        )  # fmt: skip
-    )
+    plan = OffPolicyTrainerParams(
+        training_collector=collector, max_epochs=1, epoch_num_steps=200, collection_step_num_env_steps=20,
+        update_step_num_gradient_steps_per_sample=0.2, batch_size=32, show_progress=False,
+    )  # fmt: skip
+    algorithm.run_training(plan)
     assert has_learnt(before, weights(algorithm))
     envs.close()
