@@ -19,6 +19,17 @@ from .tasks import Task
 Flags = npt.NDArray[np.bool_]
 
 
+class Agent:
+    """One agent of a swarm, for what libraries ask of single environments: its attributes are the swarm's."""
+
+    def __init__(self, swarm: SwarmEnv, name: str) -> None:
+        self.swarm, self.name = swarm, name
+
+    def get_wrapper_attr(self, name: str) -> Any:
+        """See ``gymnasium.Env.get_wrapper_attr``."""
+        return getattr(self.swarm, name)
+
+
 class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
     """Agents of several swarms, each a row: those of the first swarm in their order, then those of the second one.
 
@@ -60,6 +71,11 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self._seen = np.zeros(self.observation_space.shape or (), np.float32)
+
+    @property
+    def envs(self) -> list[Agent]:
+        """Of each row its agent."""
+        return [Agent(swarm, name) for swarm in self.swarms for name in self.agents]
 
     def reset(  # type: ignore[override]
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
