@@ -138,6 +138,12 @@ class Discrete:
         """See ``Action``."""
         self.table.take(actions, 0, out, "clip")
 
+    def nearest(self, command: Floats) -> np.int64:
+        """The action whose set-point is nearest to one, of shape (setpoint.width,); columns count by their range."""
+        span = np.ptp(self.table, axis=0)
+        away = (self.table - command) / np.where(span > 0.0, span, 1.0)
+        return np.int64((away * away).sum(axis=1).argmin())
+
 
 class Continuous:
     """A box of set-points.
@@ -183,6 +189,11 @@ class Continuous:
         """See ``Action``."""
         out[:, self.columns] = actions
 
+    def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
+        """The action whose set-point is nearest to one, of shape (setpoint.width,)."""
+        wanted = np.asarray(command, np.float64)[self.columns].astype(np.float32)
+        return np.clip(wanted, self.space.low, self.space.high)
+
 
 class Normalised(Continuous):
     """A box of set-points whose actions are all within [-1, 1]: -1 is the low limit, 1 the high one.
@@ -203,3 +214,8 @@ class Normalised(Continuous):
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
         out[:, self.columns] = self._middle + self._half * actions
+
+    def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
+        """See ``Continuous``."""
+        share = (np.asarray(command, np.float64)[self.columns] - self._middle) / self._half
+        return np.clip(share, -1.0, 1.0).astype(np.float32)

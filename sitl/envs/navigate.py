@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -15,7 +16,7 @@ from .parts import GoalConditioned
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
-from .tasks import Task
+from .tasks import Task, reward_of_goals
 
 
 class Navigate(gym.Env[Any, Any]):
@@ -134,8 +135,7 @@ class Navigate(gym.Env[Any, Any]):
         """
         if not isinstance(self._session.observation, GoalConditioned):
             raise AttributeError(f"compute_reward: task {self.task!r} is not observed by its goal (GoalConditioned)")
-        rule: Callable[[Any, Any, Any], Any] = self.task.compute_reward  # type: ignore[attr-defined]
-        return rule
+        return partial(reward_of_goals, self.task)
 
     def snapshot(self) -> Snapshot:
         """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.

@@ -18,7 +18,6 @@ from .targets.landing import Land
 from .targets.moving import Follow, Trajectory
 from .targets.waypoints import Waypoints
 from .tasks import Task
-from .vector import NavigateVector
 
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
 ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
@@ -112,10 +111,3 @@ class PresetNavigate(Navigate):
 
     def __init__(self, preset: str, **options: Any) -> None:
         super().__init__(**{**PRESETS[preset](), **options})
-
-
-class PresetNavigateVector(NavigateVector):
-    """Many of an environment of a preset."""
-
-    def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
-        super().__init__(num_envs, **{**PRESETS[preset](), **options})

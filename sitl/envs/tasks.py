@@ -198,6 +198,18 @@ class ReachGoal(Task):
         self.goals[index], self._distance[index] = memory
 
 
+def reward_of_goals(task: Task, achieved: Any, desired: Any, info: Any) -> Any:
+    """What goals are worth, one or many: the ``compute_reward`` of a task.
+
+    Raises:
+        EnvOptionError: the task has no goal that counts alone.
+    """
+    rule = getattr(task, "compute_reward", None)
+    if rule is None:
+        raise EnvOptionError(f"compute_reward: task {task!r} has no goal that counts alone")
+    return rule(achieved, desired, info)
+
+
 def paper(forward: float = 5.0, turn: float = 1.0, **others: Any) -> Task:
     """The paper's task: reward ``forward`` or ``turn`` by action; -200 for a crash instead."""
     return Task([ByAction((forward, turn, turn))], **others)

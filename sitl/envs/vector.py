@@ -15,6 +15,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from .options import EnvOptionError, unknown
+from .presets import PRESETS
 from .rendering import Renderer, tile
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -301,3 +302,10 @@ def _mode(given: str | AutoresetMode) -> AutoresetMode:
         return AutoresetMode(given)
     except ValueError:
         raise unknown("autoreset_mode", given, [mode.value for mode in AutoresetMode]) from None
+
+
+class PresetNavigateVector(NavigateVector):
+    """Many of an environment of a preset (``presets.PRESETS``); every option can still be replaced."""
+
+    def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
+        super().__init__(num_envs, **{**PRESETS[preset](), **options})

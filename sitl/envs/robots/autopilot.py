@@ -228,7 +228,9 @@ class AutopilotRobot:
         interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
         for index in vehicles.rows(rows).tolist():
             now = states[index]
-            if now.setpoint != setpoint or now.interval_us != interval_us:
+            if now.interval_us != interval_us or not (
+                now.setpoint == setpoint or self.kind.are_alike(now.setpoint, setpoint)
+            ):
                 states[index] = vehicles.change(index, now, setpoint, interval_us)
         vehicles.step(rows, us, setpoint, self._commands, waits_us)
 
@@ -244,7 +246,9 @@ class AutopilotRobot:
             watch.stepped()
             return
         interval_us = min(math.gcd(ALIGN_US, us), inbox.longest_interval_us)
-        if now.setpoint != setpoint.name or now.interval_us != interval_us:
+        if now.interval_us != interval_us or not (
+            now.setpoint == setpoint.name or self.kind.are_alike(now.setpoint, setpoint.name)
+        ):
             now = self._change(link, now, setpoint.name, interval_us)
             self._states[index] = now
         hits, scans, goal_ms = inbox.hits, inbox.scans, inbox.position[0] + us // 1000
@@ -383,6 +387,11 @@ class AutopilotRobot:
         return self._vehicles.photograph(index, width, height)
 
     # ------------------------------------------------------------------ snapshots
+
+    @property
+    def has_snapshots(self) -> bool:
+        """Whether its state can be kept and restored: that of vehicles in process."""
+        return self._vehicles.has_snapshots
 
     def snapshot(self, index: int) -> Any:
         """See ``Robot``."""

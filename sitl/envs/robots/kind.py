@@ -53,6 +53,11 @@ class RobotKind:
     with_px4: RobotKind | None = None
     """The same when PX4 controls it; None: environments do not drive it then."""
 
+    def are_alike(self, one: str, other: str) -> bool:
+        """Whether a vehicle that is ready for one kind of set-point takes the other one, too, as it is."""
+        modes, parameters = self.modes, self.parameters
+        return one in modes and modes[one] == modes[other] and parameters.get(one) == parameters.get(other)
+
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The default actions of a form, "discrete", "continuous" or "agile", for a kind of set-point."""
         if form == "discrete":
