@@ -160,7 +160,8 @@ def baro_altitude(path: str) -> Column:
 
 def baros_differ(s: Any) -> Array:
     """Whether a second barometer shows something of its own, shape (rows,)."""
-    return s.raw(S + "baro_state") & BAROS_DIFFER != 0
+    found: Array = s.raw(S + "baro_state") == BAROS_DIFFER
+    return found
 
 
 def resting_voltage(s: Any) -> Array:
