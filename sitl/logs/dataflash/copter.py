@@ -142,8 +142,8 @@ def _is_twitching(s: Any) -> Array:
 
 def _twitched(s: Any) -> Array:
     """Angle since the twitch of AUTOTUNE began, in its direction [deg]."""
-    axis, q = s.raw(_TWITCH + "axis"), E + "q"
-    angle = np.choose(np.minimum(axis, 2).astype(np.int64), [derived.roll(q)(s), derived.pitch(q)(s), derived.yaw(q)(s)])
+    axis, q = np.minimum(s.raw(_TWITCH + "axis"), 2).astype(np.int64), E + "q"
+    angle = np.choose(axis, [derived.roll(q)(s), derived.pitch(q)(s), derived.yaw(q)(s)])
     sign = np.where(s.raw(_TWITCH + "backwards") != 0, -1.0, 1.0)
     return np.remainder(sign * angle - s(_TWITCH + "start_angle") * DEG + 180.0, 360.0) - 180.0
 
