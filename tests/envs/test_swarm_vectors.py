@@ -131,7 +131,7 @@ def test_one_policy_learns_for_all_agents() -> None:
     """As the page shows it, with fewer steps."""
     pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
     (example,) = blocks(ROOT / "docs/swarm.md", "py")
-    example, learning = example.replace("200_000", "512").split("model.learn")
+    example, learning = example.replace("24_000", "512").split("model.learn")
     scope: dict[str, Any] = {}
     exec(compile(example, "docs/swarm.md", "exec"), scope)
     model = scope["model"]
