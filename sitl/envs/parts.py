@@ -173,6 +173,24 @@ class Path:
         out[:] = self._task.ways(self.count).reshape(out.shape)
 
 
+class GoalHeading:
+    """How the heading that the task wants differs from the robot's."""
+
+    columns = ("cosine of the turn to the goal's heading", "sine of it, counter-clockwise")
+    low, high = (-1.0, -1.0), (1.0, 1.0)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        if not hasattr(session.task, "turns"):
+            raise EnvOptionError(f'observation "goal_heading": task {session.task!r} wants no heading')
+        self._task = session.task
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        turns = self._task.turns()
+        out[:, 0], out[:, 1] = np.cos(turns), np.sin(turns)
+
+
 PARTS: dict[str, Callable[[], Part]] = {
     **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
     "height": Height,
@@ -181,6 +199,7 @@ PARTS: dict[str, Callable[[], Part]] = {
     "last_action": LastAction,
     "goal": lambda: Path(1),
     "path": Path,
+    "goal_heading": GoalHeading,
 }
 """By name."""
 

@@ -11,10 +11,12 @@ from . import paper
 from .ids import NEW
 from .navigate import Navigate
 from .parts import GoalConditioned
+from .starts import Near
 from .targets.gates import Gate, Gates
 from .targets.hold import Hold
 from .targets.landing import Land
 from .targets.moving import Follow, Trajectory
+from .targets.parking import Park
 from .targets.waypoints import Waypoints
 from .tasks import Task
 from .vector import NavigateVector
@@ -78,6 +80,7 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-waypoint": lambda: _copter(Waypoints(1)),
     "copter-course": lambda: _copter(Waypoints(5), ON_A_WAY),
     "copter-gates": lambda: _copter(Gates(TRACK), ON_A_WAY),
+    "copter-race": lambda: _copter(Gates(TRACK, laps=3), ON_A_WAY),
     "copter-trajectory": lambda: _copter(Trajectory("eight", speed=(1.0, 3.0)), ON_A_WAY),
     "copter-follow": lambda: _copter(Follow(), ON_A_WAY),
     "copter-land": lambda: _copter(Land()),
@@ -88,6 +91,16 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
     "rover-labyrinth": lambda: _rover(
         _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60,scale=3"
+    ),
+    "rover-slalom": lambda: _rover(
+        Gates(crash_reward=-20.0), DRIVEN_ON_A_WAY, world="slalom:seed=1", start=Near((0.0, 0.0, 0.0), (1.0, 1.5, 0.4))
+    ),
+    "rover-race": lambda: _rover(Gates(laps=2, crash_reward=-20.0), (*DRIVEN_ON_A_WAY, "scan"), world="track:seed=1"),
+    "rover-parking": lambda: _rover(
+        Park(crash_reward=-20.0),
+        ("goal", "goal_heading", "velocity", "last_action", "scan"),
+        world="car_park:seed=1",
+        start=Near((0.0, 0.0, 0.0), (8.0, 2.0, math.pi)),
     ),
 }
 

@@ -88,6 +88,11 @@ class NavigateVector(OfSubEnvironments):
         return self._session.robot
 
     @property
+    def session(self) -> Session:
+        """Robots, task, observation and action of this environment."""
+        return self._session
+
+    @property
     def task(self) -> Task:
         """The task of all robots."""
         return self._session.task
