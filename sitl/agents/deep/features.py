@@ -57,7 +57,7 @@ class Features:
         self._slices = {str(name): slice(a, b) for (name, _), a, b in zip(self._parts, [0, *ends], ends)}
 
     def _part(self, name: str, space: gym.Space[Any]) -> Callable[[Any], Rows]:
-        if name == "goal":
+        if name == "goal" and space.shape == (2,):
             return _goal
         if name == "pose":
             return _pose
