@@ -37,8 +37,6 @@ FAULTS: dict[str, dict[str, Any]] = {
     "none": {},
     "a motor at 80 %": {"motor:2=0.8": (1, 5)},
     "GPS lost": {"gps": (1, 5)},
-    "GPS wrong by 5 m": {"gps/wrong=5": (1, 5)},
-    "barometer drifts 0.3 m/s": {"baro/slow=0.3": (1, 5)},
     "a shove of 5 m/s²": {"shove": (1, 5)},
     "wind of 8 m/s": {"wind=8": (1, 5)},
 }

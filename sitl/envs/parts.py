@@ -78,6 +78,22 @@ class State:
         out[:] = state[:, self._slice]
 
 
+class Heading:
+    """Cosine and sine of the heading, which do not jump at +-pi as the yaw of "pose" does."""
+
+    columns = ("cosine of the yaw", "sine of the yaw")
+    low, high = (-1.0, -1.0), (1.0, 1.0)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        self._robot = session.robot
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        yaw = self._robot.pose[:, 3]
+        out[:, 0], out[:, 1] = np.cos(yaw), np.sin(yaw)
+
+
 class Height:
     """Height above the world's floor [m], as the robot believes."""
 
@@ -193,6 +209,7 @@ class GoalHeading:
 
 PARTS: dict[str, Callable[[], Part]] = {
     **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
+    "heading": Heading,
     "height": Height,
     "scan": Readings,
     "digits": DigitReadings,

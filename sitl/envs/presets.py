@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import paper
+from .actions import VELOCITY, Continuous, Normalised
 from .ids import NEW
 from .navigate import Navigate
 from .parts import GoalConditioned
@@ -72,10 +73,11 @@ WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulen
 _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-hover": lambda: _copter(Hold(), randomise=WIND),
     "copter-reach-goal": lambda: _copter(
-        Hold((5.0, 2.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *SEEN[1:]))
+        Hold((5.0, 2.0), 1.0, is_sparse=True), observation=GoalConditioned(("heading", *SEEN[1:])),
+        action=Normalised(Continuous(VELOCITY, (-5.0, -5.0, -2.0), (5.0, 5.0, 2.0), (0, 1, 2))),  # it does not turn
     ),
     "rover-reach-goal": lambda: _rover(
-        Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *DRIVEN[1:]))
+        Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("heading", *DRIVEN[1:]))
     ),
     "copter-waypoint": lambda: _copter(Waypoints(1)),
     "copter-course": lambda: _copter(Waypoints(5), ON_A_WAY),
@@ -119,15 +121,25 @@ PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
 assert all(listed.preset in PRESETS for listed in NEW.values())
 
 
+def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a preset, with those that are given in their place; a box that is made for one kind of set-point
+    gives way to the usual one when another kind is asked for."""
+    options = {**PRESETS[preset](), **given}
+    action = options.get("action")
+    if isinstance(action, Normalised) and options.get("setpoint", action.setpoint.name) != action.setpoint.name:
+        options["action"] = "normalised"
+    return options
+
+
 class PresetNavigate(Navigate):
     """An environment of a preset; every option of ``Navigate`` can still be replaced."""
 
     def __init__(self, preset: str, **options: Any) -> None:
-        super().__init__(**{**PRESETS[preset](), **options})
+        super().__init__(**options_of(preset, options))
 
 
 class PresetNavigateVector(NavigateVector):
     """Many of an environment of a preset."""
 
     def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
-        super().__init__(num_envs, **{**PRESETS[preset](), **options})
+        super().__init__(num_envs, **options_of(preset, options))
