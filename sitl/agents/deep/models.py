@@ -48,7 +48,7 @@ def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
             "exploration_final_eps": settings.epsilon_end,
         }  # fmt: skip
     if isinstance(settings, Sac):
-        own |= {"tau": settings.tau}
+        own |= {"tau": settings.tau, "ent_coef": f"auto_{settings.entropy_start}"}
     if isinstance(settings, OffPolicy) and learns_by_goal(settings):
         own |= {
             "replay_buffer_class": stable_baselines3().HerReplayBuffer,

@@ -120,6 +120,8 @@ class Sac(OffPolicy):
 
     tau: float = 0.005
     """Fraction by which target networks approach the network in a gradient step."""
+    entropy_start: float = 1.0
+    """Weight of exploration at first; learning adjusts it."""
 
 
 _CHOICES = {"check_by": ("reward", "crashes")}
@@ -129,6 +131,7 @@ _LIMITS: dict[str, tuple[float, float]] = {
     "reward_scale": (1e-9, math.inf),
     "learning_rate": (1e-9, 1.0),
     "warm_up": (0, math.inf),
+    "entropy_start": (1e-6, 10.0),
     "hindsight": (0, 64),
     "check_every": (0, math.inf),
 }
