@@ -23,6 +23,7 @@ from sitl.agents.tabular.settings import Settings
 from sitl.autopilot.params import docs
 from sitl.bridge.links.faults import OPTIONS
 from sitl.cli import parser
+from sitl.cli.commands import COMMANDS
 from sitl.core import compile as compiler
 from sitl.envs.observations import OBSERVATIONS
 from sitl.envs.tasks import TASKS
@@ -114,6 +115,12 @@ def test_the_commands_of_the_readme_are_understood() -> None:
         parser().parse_args(words)
 
 
+def test_every_command_is_on_the_page_of_the_command_line() -> None:
+    page = (ROOT / "docs" / "command-line.md").read_text()
+    table = " ".join(line.split("|")[1] for line in page.splitlines() if line.startswith("| `"))
+    assert set(COMMANDS) == set(re.findall(r"`(?:sitl )?([a-z]+)`", table))
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
 def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
@@ -131,7 +138,9 @@ def test_the_parameter_pages_are_up_to_date(name: str) -> None:
 def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> None:
     assert [unit.name for unit in compiler.reached(KINDS[name].advance)] == [
         f"physics.native.{name}.step.step",
+        "autopilot.estimation.update.prepare_lanes",
         "autopilot.estimation.update.step",
+        "autopilot.estimation.update.run_second",
         "autopilot.estimation.update.update",
         f"autopilot.{name}.modes.update.update",
         f"autopilot.{name}.control.update.update",

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("cache", help="show, clear or build the compiled core")
+    parser = commands.add_parser("cache")
     parser.add_argument("action", choices=("show", "clear", "build"))
     parser.set_defaults(function=cache)
 

@@ -27,7 +27,7 @@ _SHOWN_US = 200_000
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("demo", help="run a MAVSDK example and draw what the vehicle did")
+    parser = commands.add_parser("demo")
     parser.add_argument("vehicle", choices=sorted(KINDS))
     execute.add_speedup(parser, default="max")
     recordings.add_recording_option(parser)

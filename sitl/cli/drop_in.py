@@ -14,9 +14,8 @@ from .progress import CompileProgress
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the commands; their words are ArduPilot's, so that none of them is an option here."""
-    for program, vehicle in server.PROGRAMS.items():
-        text = f"run a {vehicle} in place of ArduPilot's {program}"
-        parser = commands.add_parser(program, help=text, add_help=False, prefix_chars="\0")
+    for program in server.PROGRAMS:
+        parser = commands.add_parser(program, add_help=False, prefix_chars="\0")
         parser.add_argument("words", nargs="*", metavar="OPTION")
         parser.set_defaults(function=lambda options: run(options.command, options.words))
 

@@ -34,7 +34,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "exec",
-        help="run a script in simulated time against a vehicle of its own",
         usage="sitl exec [options] -- COMMAND [ARGUMENT ...]",
         epilog="{tcp} in an argument of the command becomes the TCP port that is served.",
     )

@@ -14,7 +14,7 @@ from .options import check_kind
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("params", help="list the parameters")
+    parser = commands.add_parser("params")
     parser.add_argument(
         "--vehicle", choices=sorted(KINDS), help=f"whose parameters (default: the frame's, or {DEFAULT})"
     )

@@ -25,7 +25,7 @@ LISTENERS = {"tcp": "sitl.plants.physics_server", "json": "sitl.foreign.json_hos
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("physics", help="run the physics of a vehicle whose autopilot is elsewhere")
+    parser = commands.add_parser("physics")
     parser.add_argument("vehicle", choices=sorted(KINDS))
     parser.add_argument(
         "--backend", dest="physics", choices=BACKENDS, default=NATIVE, help=f"what simulates it (default {NATIVE})"

@@ -24,7 +24,7 @@ from .status import StatusLine
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("run", help="run a vehicle and serve MAVLink")
+    parser = commands.add_parser("run")
     parser.add_argument("vehicle", choices=sorted(KINDS))
     clock = parser.add_mutually_exclusive_group()
     clock.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")

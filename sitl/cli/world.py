@@ -7,12 +7,12 @@ import argparse
 from pathlib import Path
 
 from .. import worlds
-from ..simulation import OptionError
+from ..errors import OptionError
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("world", help="list and draw worlds")
+    parser = commands.add_parser("world")
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     actions.add_parser("list", help="the worlds there are").set_defaults(function=list_worlds)
     show = actions.add_parser("show", help="describe a world and draw its plan")

@@ -43,6 +43,8 @@ NarrowLine = Annotated[Floats, Layout("f4", 1)]
 """Floats at float32 precision, shape (n,)."""
 NarrowTable = Annotated[FloatRows, Layout("f4", 2)]
 """Floats at float32 precision, shape (m, n)."""
+ByteLine = Annotated[Ints, Layout("u1", 1)]
+"""Bytes, shape (n,)."""
 IntLine = Annotated[Ints, Layout("i8", 1)]
 """Integers, shape (n,)."""
 IntTable = Annotated[IntRows, Layout("i8", 2)]
@@ -132,7 +134,7 @@ def _type(hint: Any) -> Any:
         return numbers[hint]
     if get_origin(hint) is Annotated:
         _, layout = get_args(hint)
-        codes = {"f8": types.float64, "f4": types.float32, "i8": types.int64, "b1": types.boolean}
+        codes = {"f8": types.float64, "f4": types.float32, "i8": types.int64, "b1": types.boolean, "u1": types.uint8}
         return types.Array(codes[layout.code], layout.axes, layout.order)
     if get_origin(hint) is Records:
         return types.Array(numba_type(get_args(hint)[0]), 1, "C")

@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .actions import Discrete, Normalised
-from .observations import Digits, Observation
+from .observations import Digits
 from .options import EnvOptionError, unknown
+from .pictures import PICTURES
 from .robots.robot import Robot
-from .senses import FAR, SENSES, TRUE, SensingRobot
+from .senses import FAR, REPORTS, SENSES, TRUE, ReportingRobot, SensingRobot
 
 Narrow = npt.NDArray[np.float32]
 
@@ -92,6 +93,30 @@ class Heading:
         """See ``Part``."""
         yaw = self._robot.pose[:, 3]
         out[:, 0], out[:, 1] = np.cos(yaw), np.sin(yaw)
+
+
+class Told:
+    """What a vehicle tells by a message of its own: "acceleration", "battery", "wind", "range_finder" (``REPORTS``)."""
+
+    def __init__(self, name: str) -> None:
+        self._name, self._report = name, REPORTS[name]
+        self.columns, self.low, self.high = self._report.columns, self._report.low, self._report.high
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        robot = session.robot
+        if not isinstance(robot, ReportingRobot):
+            raise EnvOptionError(
+                f"observation {self._name!r}: robot {robot.name!r} sends no {self._report.message}; vehicles with an "
+                "autopilot do"
+            )
+        robot.ask_for(self._report.message)
+        self._robot, first = robot, self._report.first
+        self._slice = slice(first, first + len(self.columns))
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        out[:] = self._robot.reports[:, self._slice]
 
 
 class Height:
@@ -210,6 +235,7 @@ class GoalHeading:
 PARTS: dict[str, Callable[[], Part]] = {
     **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
     "heading": Heading,
+    **{name: lambda name=name: Told(name) for name in REPORTS},  # type: ignore[misc]
     "height": Height,
     "scan": Readings,
     "digits": DigitReadings,
@@ -305,18 +331,14 @@ class GoalConditioned(Parts):
 
 def _part(part: str | Part) -> Part:
     if isinstance(part, str):
+        if part in PICTURES:
+            raise EnvOptionError(
+                f"observation: {part!r} is a picture, which is no row of numbers; it is alone ({part!r}), or an entry "
+                f'of a dict ("{part}+velocity")'
+            )
         if part not in PARTS:
             raise unknown("observation: part", part, PARTS)
         return PARTS[part]()
     if isinstance(part, type) or not hasattr(part, "write"):
         raise EnvOptionError(f"observation: {part!r} is neither a part's name ({', '.join(PARTS)}) nor a part")
     return part
-
-
-def observation_of(option: Any, known: Any) -> Observation | None:
-    """Parts that an option names: a list or tuple gives one box, a text "scan+velocity" a dict; None: neither."""
-    if isinstance(option, list | tuple):
-        return Parts(option)
-    if isinstance(option, str) and option not in known and all(name in PARTS for name in option.split("+")):
-        return NamedParts(option.split("+"))
-    return None

@@ -73,7 +73,8 @@ WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulen
 _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-hover": lambda: _copter(Hold(), randomise=WIND),
     "copter-reach-goal": lambda: _copter(
-        Hold((5.0, 2.0), 1.0, is_sparse=True), observation=GoalConditioned(("heading", *SEEN[1:])),
+        Hold((5.0, 2.0), 1.0, is_sparse=True),
+        observation=GoalConditioned(("heading", *SEEN[1:])),
         action=Normalised(Continuous(VELOCITY, (-5.0, -5.0, -2.0), (5.0, 5.0, 2.0), (0, 1, 2))),  # it does not turn
     ),
     "rover-reach-goal": lambda: _rover(

@@ -6,12 +6,46 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Protocol, runtime_checkable
 
+from .mavlink import reports
 from .robots.robot import Floats
 
 FASTEST, FASTEST_TURN = 50.0, 40.0
 """Bounds of velocities [m/s] and of rates of turn [rad/s]; what is beyond is clipped."""
 FAR = 10_000.0
 """Bound of coordinates [m]: that of world files."""
+
+
+class Report(NamedTuple):
+    """Columns of what a vehicle tells besides its state."""
+
+    columns: tuple[str, ...]
+    """Name and unit of each number."""
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    """What is beyond is clipped."""
+    first: int
+    """Column of ``ReportingRobot.reports`` where they begin."""
+    message: str
+    """Of MAVLink, which is asked for."""
+
+
+_SHOCK, _GALE = 160.0, 50.0
+"""Bounds of specific force [m/s^2], of wind [m/s]."""
+REPORTS = {
+    "acceleration": Report(
+        ("specific force forward [m/s^2]", "left [m/s^2]", "up [m/s^2]"), 3 * (-_SHOCK,), 3 * (_SHOCK,),
+        reports.ACCELERATION, "SCALED_IMU",
+    ),
+    "battery": Report(
+        ("voltage [V]", "current [A]", "charge left [0, 1]"), 3 * (0.0,), (66.0, 330.0, 1.0), reports.BATTERY,
+        "SYS_STATUS",
+    ),
+    "wind": Report(
+        ("wind forward [m/s]", "wind to the left [m/s]"), 2 * (-_GALE,), 2 * (_GALE,), reports.WIND, "WIND"
+    ),
+    "range_finder": Report(("range below [m]",), (0.0,), (601.0,), reports.RANGE, "RANGEFINDER"),
+}  # fmt: skip
+"""By name."""
 
 
 class Sense(NamedTuple):
@@ -54,3 +88,18 @@ class SensingRobot(Protocol):
 
     def judged_state(self) -> Floats:
         """What tasks judge by, shape (count, 12): as it really is; where nobody knows, as telemetry tells it."""
+
+
+@runtime_checkable
+class ReportingRobot(Protocol):
+    """A robot that tells more when it is asked to: a vehicle with an autopilot."""
+
+    reports: Floats
+    """What ``REPORTS`` says, shape (count, 9); zeros where it was not asked for."""
+
+    def ask_for(self, message: str) -> None:
+        """Let it send a message of MAVLink with each step; before the first reset.
+
+        Raises:
+            EnvOptionError: the robot does not have what the message tells.
+        """

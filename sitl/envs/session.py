@@ -25,7 +25,9 @@ from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
 from .options import COMMON, EnvOptionError, unknown
-from .parts import Part, observation_of
+from .parts import Part
+from .pictures import Film, Picture
+from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import LateRobot, PreparedRobot, Robot
@@ -55,6 +57,8 @@ class Snapshot:
     """Pending commands; None: there is no latency."""
     action: Any = None
     """The episode's last action; None: there was none."""
+    films: tuple[Film, ...] = ()
+    """Of the observation's pictures."""
     fault: tuple[int, float] | None = None
     """Number and time of the episode's fault; None: there are no faults."""
 
@@ -68,7 +72,8 @@ class NavigateOptions:
         world: name (``sitl.worlds.names()``), .toml file or World.
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
-            "scan+velocity": a dict), or Observation.
+            "scan+velocity": a dict), pictures ("depth", "depth+velocity"; ``pictures.PICTURES``), a dict of such, or
+            Observation.
         action: "discrete", "continuous" (in units), "normalised" (within [-1, 1]), a table (name of an action ->
             numbers of its set-point), or an Action.
         setpoint: kind of set-point of named actions, one that the robot accepts (``setpoints``); None: its default.
@@ -91,7 +96,7 @@ class NavigateOptions:
     robot: str | Callable[..., Robot] = "turtlebot"
     world: str | Path | World = "circuit2"
     task: str | Task = "wander"
-    observation: str | Sequence[str | Part] | Observation = "scan"
+    observation: str | Sequence[str | Part] | Mapping[str, Any] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
     setpoint: str | None = None
     step_time: float | None = None
@@ -160,6 +165,8 @@ class Session:
         if prepare is not None:
             prepare(self)
         self.observation_space = self.observation.space(self.robot)
+        self.pictures: tuple[Picture, ...] = tuple(getattr(self.observation, "pictures", ()))
+        """What the observation has of pictures."""
 
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
         robot = self.robot
@@ -223,6 +230,8 @@ class Session:
         if self.faults is not None:
             self.faults.begin(index, rng)
         self.task.start(index, self.robot, rng)
+        for picture in self.pictures:
+            picture.start(index, seed)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Read the lidars of these robots (None: all) after ``reset``; ``rows`` has shape (count,)."""
@@ -237,6 +246,8 @@ class Session:
             self.robot.advance(self.seconds, rows)
         else:
             self._advance_late(self.latency, rows)
+        for picture in self.pictures:
+            picture.note(rows)
         self.task.judge(self.step, self.rewards, self.terminated)
 
     def _advance_late(self, latency: Latency, rows: npt.NDArray[np.bool_] | None) -> None:
@@ -256,6 +267,7 @@ class Session:
         return Snapshot(
             self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault,
             action=np.copy(self.actions[index]) if self.acted[index] else None,
+            films=tuple(picture.memory(index) for picture in self.pictures),
         )  # fmt: skip
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
@@ -270,12 +282,16 @@ class Session:
             raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has a latency")
         if (snapshot.fault is None) != (self.faults is None):
             raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has faults")
+        if len(snapshot.films) != len(self.pictures):
+            raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has other pictures")
         self.task.recall(index, snapshot.task)
         self.robot.restore(index, snapshot.robot)
         if self.latency is not None and snapshot.late is not None:
             self.latency.recall(index, snapshot.late)
         if self.faults is not None and snapshot.fault is not None:
             self.faults.recall(index, snapshot.fault)
+        for picture, film in zip(self.pictures, snapshot.films):
+            picture.recall(index, film)
         self.acted[index] = snapshot.action is not None
         if snapshot.action is not None:
             self.actions[index] = snapshot.action

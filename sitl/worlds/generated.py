@@ -42,7 +42,7 @@ def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0, scale: fl
             trees.append((x, y, radius))
         if len(trees) == wanted:
             break
-    solids = [Cylinder((x, y, 4.0), radius, 8.0, f"tree {k}") for k, (x, y, radius) in enumerate(trees, 1)]
+    solids = [Cylinder((x, y, 4.0), radius, 8.0, f"tree {k}", "brown") for k, (x, y, radius) in enumerate(trees, 1)]
     return made("forest", (seed, difficulty, size, scale), solids, f"A forest of {len(trees)} trees.")
 
 

@@ -154,12 +154,12 @@ def _meant(word: str, known: Any) -> str:
 
 def _boxes(tables: dict[str, list[_Row]]) -> Iterator[Solid]:
     for row in tables["box"]:
-        yield Box(row["centre"], row["size"], row.yaw, row.get("name", ""))
+        yield Box(row["centre"], row["size"], row.yaw, row.get("name", ""), row.get("colour", "grey"))
 
 
 def _cylinders(tables: dict[str, list[_Row]]) -> Iterator[Solid]:
     for row in tables["cylinder"]:
-        yield Cylinder(row["centre"], row["radius"], row["height"], row.get("name", ""))
+        yield Cylinder(row["centre"], row["radius"], row["height"], row.get("name", ""), row.get("colour", "grey"))
 
 
 def _segments(tables: dict[str, list[_Row]]) -> Iterator[Solid]:
@@ -172,7 +172,7 @@ def _segments(tables: dict[str, list[_Row]]) -> Iterator[Solid]:
             raise row.fault("z", "must be the height of the underside and then that of the top, above it")
         centre = (0.5 * (x1 + x2), 0.5 * (y1 + y2), 0.5 * (low + high))
         size = (math.hypot(x2 - x1, y2 - y1), row.get("thickness", 0.01), high - low)
-        yield Box(centre, size, math.atan2(y2 - y1, x2 - x1), row.get("name", ""))
+        yield Box(centre, size, math.atan2(y2 - y1, x2 - x1), row.get("name", ""), row.get("colour", "grey"))
 
 
 def _starts(tables: dict[str, list[_Row]]) -> Iterator[Start]:

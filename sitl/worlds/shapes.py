@@ -40,6 +40,8 @@ class Box:
     yaw: float = 0.0
     """[rad]."""
     name: str = ""
+    colour: str = "grey"
+    """Of pictures: one of ``tables.COLOURS``."""
 
     @property
     def low(self) -> float:
@@ -67,6 +69,8 @@ class Cylinder:
     height: float
     """[m]."""
     name: str = ""
+    colour: str = "grey"
+    """As of a ``Box``."""
 
     @property
     def low(self) -> float:

@@ -13,7 +13,12 @@ FAR = 10_000.0
 """Greatest coordinate or size [m]."""
 THIN = 0.001
 """Least size [m]."""
-COLOURS = ("black", "blue", "brown", "green", "grey", "orange", "purple", "red", "white", "yellow")
+COLOURS = {
+    "black": (0.08, 0.08, 0.08), "blue": (0.16, 0.32, 0.75), "brown": (0.45, 0.30, 0.18), "green": (0.20, 0.55, 0.25),
+    "grey": (0.55, 0.55, 0.55), "orange": (0.93, 0.55, 0.13), "purple": (0.50, 0.25, 0.60), "red": (0.80, 0.15, 0.13),
+    "white": (0.95, 0.95, 0.95), "yellow": (0.93, 0.82, 0.20),
+}  # fmt: skip
+"""Name -> shares of red, green and blue that it reflects, which cameras see."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,7 @@ def point(doc: str, count: int, low: float = -FAR, required: bool = True) -> Key
     return Key("point", doc, required, count, low)
 
 
+_COLOUR = Key("colour", "in pictures by a camera (grey when absent)")
 _YAW = number("turned about z, counter-clockwise from above", -360.0, 360.0, "degrees")
 
 TABLES: dict[str, dict[str, Key]] = {
@@ -75,12 +81,14 @@ TABLES: dict[str, dict[str, Key]] = {
         "centre": point("x, y, z of its middle", 3),
         "size": point("full lengths along its own x and y, and along z", 3, THIN),
         "yaw_deg": _YAW,
+        "colour": _COLOUR,
     },
     "cylinder": {
         "name": text("of the cylinder"),
         "centre": point("x, y, z of its middle", 3),
         "radius": number("of the circle", THIN, required=True),
         "height": number("from underside to top", THIN, required=True),
+        "colour": _COLOUR,
     },
     "segment": {
         "name": text("of the thin wall"),
@@ -88,6 +96,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "to": point("x, y of the other end", 2),
         "z": point("heights of its underside and its top", 2),
         "thickness": number("of the wall (0.01 when absent)", THIN),
+        "colour": _COLOUR,
     },
     "start": {
         "name": text("of the pose", required=True),

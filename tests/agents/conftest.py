@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-import argparse
-
 import pytest
 
-from sitl.agents import cli as agents_cli
+from sitl.cli import parser
 from sitl.errors import SitlError
 
 
@@ -17,10 +15,9 @@ def sitl(monkeypatch, tmp_path, capsys):
     monkeypatch.chdir(tmp_path)
 
     def run(*words):
-        top = argparse.ArgumentParser(prog="sitl")
-        agents_cli.add_parser(top.add_subparsers(dest="command", required=True))
+        words = [str(word) for word in words]
         try:
-            options = top.parse_args([str(word) for word in words])
+            options = parser(words).parse_args(words)
             code = options.function(options)
         except SitlError as error:
             return 2, "", str(error)

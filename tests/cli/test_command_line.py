@@ -72,7 +72,7 @@ def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> N
         (("--instance", "-1"), "is not a whole number from 0 to 254"),
         (("--duration", "-5"), "is not a positive number of simulated seconds"),
         (("--tcp", "99999"), "is not a port"),
-        (("--estimator", "magic"), "invalid choice: 'magic'"),
+        (("--estimator", "magic"), "'magic' is not known; it is one of ekf, truth"),
     ],
 )
 def test_a_bad_option_is_one_clear_line(core: Core, tmp_path: Path, arguments: tuple[str, ...], says: str) -> None:

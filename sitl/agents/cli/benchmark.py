@@ -32,7 +32,7 @@ _REHEARSAL_OUT, _ENVIRONMENTS_OUT = Path("reports/rehearsal-benchmark"), Path("r
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("benchmark", help="published results, made again")
+    parser = commands.add_parser("benchmark")
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     one = actions.add_parser(
         "paper",

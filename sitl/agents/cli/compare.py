@@ -13,7 +13,7 @@ from .options import add_jobs, positive, workers
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("compare", help="report on runs side by side: tables, curves, statistics over seeds")
+    parser = commands.add_parser("compare")
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of runs, or of groups of seeds")
     parser.add_argument(
         "--out", type=Path, default=Path("reports/compare"), metavar="DIR", help="default: reports/compare"

@@ -20,7 +20,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "deploy",
-        help="let a policy act on a vehicle at a connection, within limits",
         description="Takes over a vehicle that stands or hovers in GUIDED, lets a policy act on it within a fence and "
         "limits, and hands it back to its own modes at the end, on Ctrl-C, and when anything goes wrong.",
     )

@@ -15,7 +15,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "evaluate",
-        help="let what a run has learnt play, and count crashes and laps",
         description="Plays greedy episodes. A run by a recipe has defaults of its own: how its recipe is evaluated.",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or of several")

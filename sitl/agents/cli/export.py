@@ -14,7 +14,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "export",
-        help="write what a run has learnt as one small file, .npz or .onnx",
         description="Writes a network without what it was trained with: .npz plays here and by NumPy alone, .onnx "
         "in other programs.",
     )

@@ -29,7 +29,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     shipped = ", ".join(plans.names())
     parser = commands.add_parser(
         "rehearse",
-        help="try what was learnt in simulations that it has not seen",
         description="Plays runs at home and under changes of the simulation: another world, other physics, vehicle "
         "figures, sensor noise, latency. Reports how much of the reward transfers.",
     )

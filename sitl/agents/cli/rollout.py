@@ -28,7 +28,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "rollout",
-        help="let a policy play many episodes, by fleets of robots, on many machines",
         description="Plays episodes with a policy and prints rewards and success. Results depend on the seed, not on "
         "the number of workers.",
     )

@@ -136,7 +136,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "train",
-        help="let an agent learn in an environment",
         description="Trains an agent and writes a run folder: config.json, episodes.csv, the model, curve.png. "
         "Ctrl-C ends it after the episode; --resume goes on, and nothing is lost.",
     )

@@ -18,7 +18,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "watch",
-        help="see what a run has learnt, in a window or as a film",
         description="Plays what a run has learnt, without learning and exploring: in a window, or onto a film.",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run; of several, the first is shown")

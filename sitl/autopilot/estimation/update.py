@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.algebra import IDENTITY
 from ...core.border import IMUS_DIFFER
-from ...core.kernels import inline_unit, law
+from ...core.kernels import inline_unit, inlined, law, unit
 from ...core.records import Records
 from .. import events, optical_flow
 from ..inertial_filter import smoothed_acc, smoothed_rates
@@ -159,7 +159,7 @@ def smooth(ap: Autopilot) -> None:
     e.acc_ned = smoothed_acc(ap.inertial_filter, e.acc_ned, params)
 
 
-@law
+@inlined
 def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
     """One tick of a filter: the one that is flown by (0), or the second one."""
     v = fleet[i]
@@ -187,6 +187,25 @@ def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
     status.publish(ekf, estimate, DT, ap.params.EK3.TAU_OUTPUT)
 
 
+@unit
+def prepare_lanes(fleet: Records[Vehicle], i: int) -> None:
+    """Before the filters, while the IMUs differ or two run: clipped samples, and whether there is a second filter."""
+    v = fleet[i]
+    ap, sensors = v.autopilot, v.sensors
+    lanes.begin_or_end(ap, sensors, v.time_us)
+    if sensors.imu_state & IMUS_DIFFER != 0:
+        compare_clips(ap.vibration, ap.calibrated.acc, ap.calibrated.acc2)
+
+
+@unit
+def run_second(fleet: Records[Vehicle], i: int) -> None:
+    """One tick of the second filter, and which of the two is flown by."""
+    run_lane(fleet, i, 1)
+    ap = fleet[i].autopilot
+    if ap.ekf.step_ticks == 0:
+        lanes.compare(ap, ap.params.EK3)
+
+
 @inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
     """One tick: ``sensors`` to ``autopilot.estimate``."""
@@ -199,14 +218,11 @@ def update(fleet: Records[Vehicle], i: int) -> None:
     boots = ap.ekf.phase == CALIBRATE
     second = ap.second_lane
     if sensors.imu_state | second.runs != 0:
-        lanes.begin_or_end(ap, sensors, v.time_us)
-        if sensors.imu_state & IMUS_DIFFER != 0:
-            compare_clips(ap.vibration, ap.calibrated.acc, ap.calibrated.acc2)
+        prepare_lanes(fleet, i)
     if ap.flow.kind != 0:
         optical_flow.read(ap.flow, sensors, v.time_us, ap.params.FLOW)
-    for lane in range(1 + second.runs):
-        run_lane(fleet, i, lane)
-    if second.runs != 0 and ap.ekf.step_ticks == 0:
-        lanes.compare(ap, ap.params.EK3)
+    run_lane(fleet, i, 0)
+    if second.runs != 0:
+        run_second(fleet, i)
     if not boots:
         smooth(ap)

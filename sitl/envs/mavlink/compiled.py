@@ -22,11 +22,12 @@ from sitl.core.algebra import quat_from_euler
 from sitl.core.array_kernels import IntColumn, IntLine, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
 from sitl.core.memory import Bytes, bytes_at, record_at
-from sitl.core.records import Floats, Ints, Record, Records
+from sitl.core.records import Floats, Ints, Record, Records, array
 from sitl.core.vectors import Euler, Vec3
 from sitl.worlds.shapes import from_heading, from_ned, to_heading, to_ned
 
 from ..robots.truth import STATE
+from .reports import REPORTED, read_report, show_report
 from .setpoints import (
     ACCELERATION_ONLY,
     ATTITUDE_AND_RATES,
@@ -123,6 +124,7 @@ class ClientEnd(Record):
     hits: int  # touches since they were last shown
     mode: int
     armed: bool
+    reports: Floats = array(REPORTED)  # see ``reports``
 
 
 class RobotArrays(NamedTuple):
@@ -139,13 +141,16 @@ class RobotArrays(NamedTuple):
     """Since the episode began [s], shape (count,)."""
     began_us: IntLine
     """When the episode began [us of simulated time], shape (count,)."""
+    reports: Table
+    """See ``sitl.envs.senses.REPORTS``; only what was asked for, shape (count, REPORTED)."""
 
 
 def robot_arrays(count: int, readings: int) -> RobotArrays:
     """For ``count`` robots at rest, of which nothing is known."""
     scan = np.full((count, readings), np.inf, np.float32)
     numbers = np.zeros((2, count), np.int64)
-    return RobotArrays(scan, np.zeros((count, STATE)), numbers[0], np.zeros(count), numbers[1])
+    states, reports = np.zeros((count, STATE)), np.zeros((count, REPORTED))
+    return RobotArrays(scan, states, numbers[0], np.zeros(count), numbers[1], reports)
 
 
 # ---------------------------------------------------------------------- set-points
@@ -367,6 +372,8 @@ def read_bytes(
             end.armed = (beat.base_mode & ARMED) != 0
         elif number == TEXT_ and begins_with(record_at(Statustext, payload).text, _HIT):
             end.hits += 1
+        else:
+            read_report(end.reports, number, payload)
 
 
 @law
@@ -441,6 +448,7 @@ def show_robots(
         state[i, 6], state[i, 7] = -v.z, -end.rates.z
         state[i, 8], state[i, 9] = end.euler.roll, end.euler.pitch
         state[i, 10], state[i, 11] = end.rates.x, end.rates.y
+        show_report(end.reports, heading, robots.reports, i)
         robots.collided[i] = 1 if end.hits > 0 else 0
         end.hits = 0
         robots.time[i] = 1e-6 * (origins.before_boot_us[i] + origins.since_boot_us[i] - robots.began_us[i])

@@ -61,7 +61,7 @@ def reboot(link: Connection) -> None:
 
 
 def set_intervals(link: Connection, interval_us: int) -> None:
-    """Ask for position, attitude and scan at an interval.
+    """Ask for position, attitude, scan and what else is wanted at an interval.
 
     A vehicle that knows nothing of whole scans (a real one) is asked for OBSTACLE_DISTANCE: centimetres, 72 sectors.
     One whose clock does not go exactly as far as it is told to may send at longer intervals, up to twice as long: an
@@ -73,7 +73,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     telemetry = link.inbox
     scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink else ()
     intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
-    for kind in (POSITION, ATTITUDE, *scan):
+    for kind in (POSITION, ATTITUDE, *scan, *telemetry.wanted):
         if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):
             continue
         result = None
@@ -85,8 +85,8 @@ def set_intervals(link: Connection, interval_us: int) -> None:
 
 
 def request_again(link: Connection) -> None:
-    """Ask for position, attitude and scan as they are: those of this instant were lost on the way."""
-    for kind in (POSITION, ATTITUDE, link.inbox.scan_kind):
+    """Ask for position, attitude, scan and the rest as they are: those of this instant were lost on the way."""
+    for kind in (POSITION, ATTITUDE, link.inbox.scan_kind, *link.inbox.wanted):
         link.command("REQUEST_MESSAGE", kind.id)
 
 
@@ -165,6 +165,19 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     if inbox.scans == scans:
         wanted = "LASER in DEBUG_FLOAT_ARRAY, or OBSTACLE_DISTANCE"
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
+    check_reports(link)
+
+
+def check_reports(link: Connection) -> None:
+    """After some time with all intervals set.
+
+    Raises:
+        NotReadyError: the vehicle took a wish for a message, and has not sent it.
+    """
+    for kind in link.inbox.wanted:
+        if kind not in link.inbox.reported:
+            raise NotReadyError(f"{link.name}: the vehicle takes the wish for {kind.name}, but sends none: has it "
+                                "what that message tells?")  # fmt: skip
 
 
 def join(link: Connection, guided: int, flies: bool, seconds: float) -> None:
@@ -193,6 +206,7 @@ def join(link: Connection, guided: int, flies: bool, seconds: float) -> None:
     for _ in range(max(round(seconds / 0.1), 1)):
         link.pause(_TENTH)
         if not missing():
+            check_reports(link)
             return
     raise NotReadyError(f"{link.name}: no episode can begin within {seconds:g} s: {missing()}; {_last_texts(link)}")
 

@@ -17,7 +17,7 @@ from sitl.bridge.services.setpoints import (
 from sitl.client.connection import ACCEPTED, Connection
 from sitl.errors import NotReadyError
 
-from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, set_intervals, until
+from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, check_reports, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
 from .telemetry import StepTelemetry
 
@@ -104,3 +104,4 @@ def prepare(link: Connection, take_off: float) -> None:
         link.run(_TENTH)
     if inbox.scans == scans:
         raise NotReadyError(f"{link.name}: the physics sends no scan")
+    check_reports(link)

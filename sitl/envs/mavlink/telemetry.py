@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ import numpy.typing as npt
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
 from sitl.client.endpoint import AUTOPILOT, HEARTBEAT, TEXT, Inbox
+
+from .reports import REPORTED, note_report
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
@@ -33,10 +36,16 @@ class StepTelemetry(Inbox):
 
     Args:
         readings: of a scan.
+        wanted: messages that are asked for besides (``reports``).
     """
 
-    def __init__(self, readings: int) -> None:
+    def __init__(self, readings: int, wanted: Sequence[MessageType] = ()) -> None:
         super().__init__()
+        self.wanted = wanted
+        self.reports = np.zeros(REPORTED)
+        """What these have told."""
+        self.reported: set[MessageType] = set()
+        """Which of them have come since this was last cleared."""
         self._parts = -(-readings // PART)
         self._fresh: set[int] = set()
         self._scan_us = -1
@@ -84,6 +93,9 @@ class StepTelemetry(Inbox):
                 self.attitude = _seven(payload.ljust(28, b"\0"))
             elif kind is SCAN:
                 self._scan_part(payload.ljust(252, b"\0"))
+            elif kind in self.wanted:
+                note_report(self.reports, kind, payload)
+                self.reported.add(kind)
             else:
                 self._other(kind, payload, system)
                 continue
@@ -141,11 +153,15 @@ class StepTelemetry(Inbox):
     def memory(self) -> tuple[Any, ...]:
         """What ``recall`` needs to go on as from here; can be pickled."""
         scan = self.scan_kind is SECTORS, self.scan.copy(), self._scan_us
-        return self.position, self.attitude, scan, self.mode, self.armed, self.origin
+        reports = tuple(self.reports.tolist())
+        return self.position, self.attitude, scan, self.mode, self.armed, self.origin, reports
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Go on as from a ``memory``; parts of bytes and of scans are gone."""
-        self.position, self.attitude, (in_sectors, scan, self._scan_us), self.mode, self.armed, self.origin = memory
+        self.position, self.attitude, (in_sectors, scan, self._scan_us), self.mode, self.armed, self.origin, told = (
+            memory
+        )
+        self.reports[:] = told
         self.scan_kind = SECTORS if in_sectors else SCAN
         self.scan[:] = scan
         self._splitter = Splitter()

@@ -29,7 +29,6 @@ from ..mavlink.preparation import (
     refusal,
 )
 from ..mavlink.setpoints import LOCAL, LOCAL_NED, PLACE_ONLY, VELOCITY_ONLY, YAWS_IGNORED
-from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
@@ -85,12 +84,10 @@ class SocketVehicles(Vehicles):
         self._pose = pose
         link = self.links[0]
         if link is None:
-            inbox = StepTelemetry(len(self.setup.angles))
             try:
-                link = connect(self._connection, inbox, self.options.patience, warn=logger.warn)
+                link = connect(self._connection, self.setup.inbox(), self.options.patience, warn=logger.warn)
             except OptionError as error:
                 raise EnvOptionError(str(error)) from None
-            link.inbox.angles = self.setup.angles
             self.links[0] = link
         else:
             link.is_simulator = is_simulator(link)

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl import vehicles, worlds
+from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import PX4, Choice, choose
@@ -34,6 +35,7 @@ from ..actions import Action, Setpoint
 from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
+from ..mavlink.reports import show_report
 from ..options import COMMON, EnvOptionError, unknown
 from .at_connection import SocketVehicles
 from .foreign import ForeignVehicles
@@ -104,10 +106,10 @@ class AutopilotRobot:
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         arrays: Any = robot_arrays(count, readings)
-        self.scan, self.state, self.collided, self.time, self._began_us = arrays
+        self.scan, self.state, self.collided, self.time, self._began_us, self.reports = arrays
         self.pose, self.velocity = self.state[:, :4], self.state[:, 4:8]
         self._truth = np.zeros_like(self.state)
-        setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
+        self._setup = setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
         self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
@@ -126,6 +128,15 @@ class AutopilotRobot:
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
         return self.kind.action(form, setpoint)
+
+    def ask_for(self, message: str) -> None:
+        """See ``sitl.envs.senses.ReportingRobot``. Of a vehicle that does not send it, the first reset says so."""
+        in_world = self.airframe.value("rangefinder_max") > 0.0 or not self._vehicles.simulates
+        if message == "RANGEFINDER" and not in_world:
+            raise EnvOptionError(f"airframe {self.name!r} has no range-finder: its rangefinder_max is 0 m")
+        kind = message_kind(message)
+        if kind not in self._setup.wanted:
+            self._setup.wanted.append(kind)
 
     # ------------------------------------------------------------------ episodes
 
@@ -223,6 +234,7 @@ class AutopilotRobot:
             now = self._change(link, now, setpoint.name, interval_us)
             self._states[index] = now
         hits, scans, goal_ms = inbox.hits, inbox.scans, inbox.position[0] + us // 1000
+        inbox.reported.clear()
         if wait_us > 0:
             if not link.is_held:
                 raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
@@ -235,7 +247,8 @@ class AutopilotRobot:
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
-                if inbox.position[0] == inbox.attitude[0] == goal_ms and inbox.scans > scans:
+                is_whole = inbox.scans > scans and len(inbox.reported) == len(inbox.wanted)
+                if is_whole and inbox.position[0] == inbox.attitude[0] == goal_ms:
                     break
                 request_again(link)
             else:
@@ -290,6 +303,7 @@ class AutopilotRobot:
             *inbox.attitude[1:3], *inbox.attitude[4:6],
         )  # fmt: skip
         self.scan[index] = inbox.scan[: self.scan.shape[1]]
+        show_report(inbox.reports, heading, self.reports, index)
         self.time[index] = 1e-6 * (self._vehicles.time_us(index) - now.began_us)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
@@ -304,6 +318,15 @@ class AutopilotRobot:
         """See ``sitl.envs.senses.SensingRobot``; the array is written anew by each call."""
         self._vehicles.true_states(self._base_along, self._truth)
         return self._truth
+
+    @property
+    def camera_mount(self) -> tuple[float, float, float, float] | None:
+        """Where a camera is unless told otherwise: forward, left, up of the body's origin [m], as the lidar; and how
+        far the robot's base lies ahead of that origin [m]. None: nobody knows where the vehicle really is."""
+        if not self._vehicles.has_snapshots:
+            return None
+        forward, right, down = self.airframe.value("lidar_at")
+        return forward, -right, -down, self._base_along
 
     def judged_state(self) -> Floats:
         """See ``sitl.envs.senses.SensingRobot``."""
@@ -369,11 +392,13 @@ class AutopilotRobot:
         kept = [None if state is NOT_STARTED else self.snapshot(i) for i, state in enumerate(self._states)]
         vehicles = self._vehicles
         return {"options": self._given, "kept": kept, "changed": vehicles.changed, "collided": self.collided,
-                "base": vehicles.base}  # fmt: skip
+                "base": vehicles.base, "wanted": [kind.name for kind in self._setup.wanted]}  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["options"])  # type: ignore[misc]
         self._vehicles.changed, self._vehicles.base = state["changed"], state["base"]
+        for message in state["wanted"]:
+            self.ask_for(message)
         for index, kept in enumerate(state["kept"]):
             if kept is not None:
                 self.restore(index, kept)

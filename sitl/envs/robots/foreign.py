@@ -15,7 +15,6 @@ from sitl.vehicles import Airframe, AirframeError
 
 from ..mavlink.foreign import Foreign, launch
 from ..mavlink.preparation import BY_FORCE, is_simulator, refusal
-from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
@@ -49,7 +48,6 @@ class ForeignVehicles(Vehicles):
         before, self.links[index] = self.links[index], None
         link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
         self.links[index] = link
-        link.inbox.angles = self.setup.angles
         return self.begun(index, self.prepare(link, pose))
 
     def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:
@@ -71,7 +69,7 @@ class ForeignVehicles(Vehicles):
             scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
             plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
             if rebooted is None:
-                found = launch(choice, plant, params, StepTelemetry(len(self.setup.angles)), options.patience)
+                found = launch(choice, plant, params, self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

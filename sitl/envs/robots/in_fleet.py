@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from sitl.bridge.telemetry.builder import build, by_number
 from sitl.client.connection import InProcess
 from sitl.core.geodesy import offset_ne
 from sitl.core.kernels import jit_disabled
@@ -41,6 +42,7 @@ from ..mavlink.compiled import (
     show_all,
 )
 from ..mavlink.preparation import set_bit, set_intervals, set_mode
+from ..mavlink.reports import note_report
 from ..mavlink.setpoints import (
     Encode,
     acceleration,
@@ -53,7 +55,7 @@ from ..mavlink.setpoints import (
     velocity,
 )
 from ..mavlink.setpoints import attitude as copter_attitude
-from ..mavlink.telemetry import PART, StepTelemetry
+from ..mavlink.telemetry import PART
 from ..options import EnvOptionError
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
@@ -110,6 +112,7 @@ class FleetVehicles(InProcessVehicles):
         shell = self.fleet.shell
         check_parameters(shell)
         self._core = shell.core
+        self._builders = by_number(shell.bridge.profile.core.builders)
         for end in self._views:
             end.system = shell.bridge.system
 
@@ -158,6 +161,11 @@ class FleetVehicles(InProcessVehicles):
         said = np.array([*e.pos, *e.vel, *e.euler, *e.rates], np.float32).tolist()  # as messages carry them
         end.position, end.velocity, end.euler, end.rates = said[:3], said[3:6], said[6:9], said[9:]
         self._scans[index] = self._ranges[index, : self._scans.shape[1]]
+        bridge = self.fleet.shell.bridge
+        for kind in self.setup.wanted:
+            payload = build(self._builders[kind.id], self.fleet.view(index), bridge.shell_port)
+            if payload:
+                note_report(end.reports, kind, payload)
         north, east = offset_ne(*self._home, e.origin_lat, e.origin_lon)
         self._origins[index] = origin = north, east, -pose[2]
         return EpisodeState(None, None, origin, state.began_us, state.setpoint, state.interval_us)
@@ -179,7 +187,7 @@ class FleetVehicles(InProcessVehicles):
         self._failing.pop(index, None)
         fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
-        place, angles, (_, scan, scan_us), end.mode, end.armed, _ = telemetry
+        place, angles, (_, scan, scan_us), end.mode, end.armed, _, end.reports[:] = telemetry
         end.position_ms, end.position, end.velocity = int(place[0]), place[1:4], place[4:]
         end.attitude_ms, end.euler, end.rates = int(angles[0]), angles[1:4], angles[4:]
         end.scan_us, end.fresh, end.hits = scan_us, 0, 0
@@ -208,7 +216,7 @@ class FleetVehicles(InProcessVehicles):
 
     def _ready(self, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED) -> Snapshot:
         simulation = Simulation(self.fleet.scenario, core=self._core)
-        link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
+        link = InProcess(simulation, self.setup.inbox())
         simulation.restore(start)
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
@@ -314,6 +322,7 @@ class FleetVehicles(InProcessVehicles):
             end.mode,
             end.armed,
             None,
+            tuple(end.reports.tolist()),
         )
         simulation = self.fleet.snapshot(index)
         return EpisodeState(simulation, telemetry, now.origin, now.began_us, now.setpoint, now.interval_us)

@@ -25,7 +25,6 @@ from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 
 from ..mavlink.preparation import INTERVAL_US
-from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
@@ -94,8 +93,7 @@ class InProcessVehicles(Vehicles):
         state = self._states.get(key)
         if state is None:
             simulation = self._simulation(pose, figures)
-            link = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
-            link.inbox.angles = self.setup.angles
+            link = InProcess(simulation, self.setup.inbox())
             origin = self.prepare(link, pose)
             state = EpisodeState(
                 simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US
@@ -134,8 +132,7 @@ class InProcessVehicles(Vehicles):
         link = self.links[index]
         if link is None:
             simulation = self._simulation()
-            link = self.links[index] = InProcess(simulation, StepTelemetry(len(self.setup.angles)))
-            link.inbox.angles = self.setup.angles
+            link = self.links[index] = InProcess(simulation, self.setup.inbox())
             if index == 0 and self._gcs is not None:
                 simulation.bridge.add_link(self._gcs)
         assert isinstance(link, InProcess)

@@ -99,6 +99,12 @@ class Turtlebot:
         """See ``sitl.envs.senses.SensingRobot``."""
         return self.state
 
+    @property
+    def camera_mount(self) -> tuple[float, float, float, float]:
+        """See ``AutopilotRobot.camera_mount``."""
+        airframe = self._robots.airframe
+        return float(airframe.value("lidar_ahead")), 0.0, float(airframe.value("lidar_height")), 0.0
+
     def judged_state(self) -> Floats:
         """See ``sitl.envs.senses.SensingRobot``."""
         return self.state

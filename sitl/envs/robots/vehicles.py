@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, ClassVar
 
+from sitl.bridge.dialect import MessageType
 from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
 from sitl.foreign.choice import NATIVE as OURS
@@ -23,6 +24,7 @@ from sitl.worlds import World
 from ..mavlink import px4, setpoints
 from ..mavlink.guard import Guard, Watch
 from ..mavlink.preparation import INTERVAL_US, REBOOT, prepare
+from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
@@ -106,7 +108,7 @@ class AutopilotOptions:
     @classmethod
     def names(cls) -> list[str]:
         """Names of all."""
-        return [field.name for field in fields(cls)]
+        return [each.name for each in fields(cls)]
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,14 @@ class VehicleSetup:
     """Angles of the lidar's readings, counter-clockwise from ahead, shape (readings,) [rad]."""
     arrays: Any
     """What the environment knows of each vehicle (``mavlink.compiled.RobotArrays``)."""
+    wanted: list[MessageType] = field(default_factory=list)
+    """Messages that vehicles send with each step besides position, attitude and scan (``senses.REPORTS``)."""
+
+    def inbox(self) -> StepTelemetry:
+        """What takes in the messages of a vehicle."""
+        inbox = StepTelemetry(len(self.angles), self.wanted)
+        inbox.angles = self.angles
+        return inbox
 
 
 class Vehicles(ABC):

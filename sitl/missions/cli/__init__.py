@@ -13,7 +13,7 @@ from importlib import import_module
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare ``sitl mission`` and its commands."""
-    parser = commands.add_parser("mission", help="fly mission files, and keep flights as tests")
+    parser = commands.add_parser("mission")
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     for found in sorted(pkgutil.iter_modules(__path__), key=lambda found: found.name):
         module = import_module(f"{__name__}.{found.name}")

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The commands that come with the package: where each is, so that only the one that is given has to be loaded."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Listed(NamedTuple):
+    """A command."""
+
+    module: str
+    """Has ``add_parser(commands)``, which declares it, and maybe others of this table with the same module."""
+    help: str
+
+
+COMMANDS = {
+    "run": Listed("sitl.cli.run", "run a vehicle and serve MAVLink"),
+    "exec": Listed("sitl.cli.execute", "run a script in simulated time against a vehicle of its own"),
+    "demo": Listed("sitl.cli.demo", "run a MAVSDK example and draw what the vehicle did"),
+    "mission": Listed("sitl.missions.cli", "fly mission files, and keep flights as tests"),
+    "train": Listed("sitl.agents.cli.train", "let an agent learn in an environment"),
+    "evaluate": Listed("sitl.agents.cli.evaluate", "let what a run has learnt play, and count crashes and laps"),
+    "watch": Listed("sitl.agents.cli.watch", "see what a run has learnt, in a window or as a film"),
+    "compare": Listed("sitl.agents.cli.compare", "report on runs side by side: tables, curves, statistics over seeds"),
+    "rollout": Listed("sitl.agents.cli.rollout", "let a policy play many episodes, by fleets of robots"),
+    "rehearse": Listed("sitl.agents.cli.rehearse", "try what was learnt in simulations that it has not seen"),
+    "export": Listed("sitl.agents.cli.export", "write what a run has learnt as one small file, .npz or .onnx"),
+    "deploy": Listed("sitl.agents.cli.deploy", "let a policy act on a vehicle at a connection, within limits"),
+    "benchmark": Listed("sitl.agents.cli.benchmark", "published results, made again"),
+    "physics": Listed("sitl.cli.physics", "run the physics of a vehicle whose autopilot is elsewhere"),
+    "arducopter": Listed("sitl.cli.drop_in", "run a copter in place of ArduPilot's arducopter"),
+    "ardurover": Listed("sitl.cli.drop_in", "run a rover in place of ArduPilot's ardurover"),
+    "params": Listed("sitl.cli.params", "list the parameters"),
+    "world": Listed("sitl.cli.world", "list and draw worlds"),
+    "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),
+    "doctor": Listed("sitl.cli.doctor", "tell what is installed, what is missing for what, and what mends it"),
+    "completion": Listed("sitl.cli.completion", "print what makes a shell complete this command's words"),
+}
+"""Name -> the command, in the order of ``sitl --help``."""
+
+WELCOME = """\
+Autopilot-in-the-loop simulator in simulated time. Five things to begin with:
+
+  sitl demo copter              fly a MAVSDK script and draw the flight
+  sitl run copter               serve a copter by MAVLink, for any ground station or script
+  sitl exec -- python FLY.py    run your script against a vehicle of its own, as fast as it goes
+  sitl mission fly FILE.plan    fly a mission file; `sitl mission suite` keeps flights as tests
+  sitl train --recipe NAME      let an agent learn, by the vehicle's real command interface
+
+All commands: sitl --help. One of them: sitl COMMAND --help.
+"""
+"""What ``sitl`` alone prints."""

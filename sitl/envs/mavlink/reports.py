@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a vehicle tells besides where it is: acceleration, battery, wind, range-finder. Asked for only where an
+observation needs it (``sitl.envs.senses.REPORTS``).
+
+The laws read one message each, from a record in the core or from a decoded message of ``sitl.bridge.dialect``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from sitl.bridge.dialect import MessageType
+from sitl.bridge.telemetry.ranging import RangeFinder
+from sitl.bridge.telemetry.sensors import MILLIG_PER_ACC, ScaledImu
+from sitl.bridge.telemetry.status import SysStatus
+from sitl.bridge.wire.message import Message
+from sitl.core.array_kernels import Line, Table
+from sitl.core.kernels import law
+from sitl.core.memory import record_at
+
+ACCELERATION, BATTERY, WIND, RANGE = 0, 3, 6, 8
+"""Columns of what is told: specific force forward, left, up [m/s^2]; voltage [V], current [A], share that is left
+[0, 1]; where the wind blows to, north and east here, forward and left in ``RobotArrays.reports`` [m/s]; range of the
+range-finder that looks down [m]."""
+REPORTED = 9
+"""Number of these."""
+
+
+class Wind(Message, name="WIND"):
+    """Where it comes from [deg], speed [m/s]."""
+
+    direction: float
+    speed: float
+
+
+IMU_, STATUS_, WIND_, RANGE_ = ScaledImu.kind.id, SysStatus.kind.id, Wind.kind.id, RangeFinder.kind.id
+_UNKNOWN = 65535
+"""Voltage of SYS_STATUS when nothing measures it [mV]."""
+
+
+@law
+def read_imu(told: Line, m: ScaledImu) -> None:
+    """SCALED_IMU: mG along the body's axes (forward, right, down), at rest (0, 0, -1000)."""
+    told[ACCELERATION] = m.xacc / MILLIG_PER_ACC
+    told[ACCELERATION + 1] = -m.yacc / MILLIG_PER_ACC
+    told[ACCELERATION + 2] = -m.zacc / MILLIG_PER_ACC
+
+
+@law
+def read_battery(told: Line, m: SysStatus) -> None:
+    """SYS_STATUS: mV, cA, per cent; what is not measured (65535, -1) becomes 0."""
+    told[BATTERY] = 0.0 if m.voltage_battery == _UNKNOWN else 1e-3 * m.voltage_battery
+    told[BATTERY + 1] = 0.01 * m.current_battery if m.current_battery >= 0 else 0.0
+    told[BATTERY + 2] = 0.01 * m.battery_remaining if m.battery_remaining >= 0 else 0.0
+
+
+@law
+def read_wind(told: Line, m: Wind) -> None:
+    """WIND: where it comes from [deg], its speed [m/s]."""
+    angle = math.radians(m.direction)
+    told[WIND] = -m.speed * math.cos(angle)
+    told[WIND + 1] = -m.speed * math.sin(angle)
+
+
+@law
+def read_range(told: Line, m: RangeFinder) -> None:
+    """RANGEFINDER [m]."""
+    told[RANGE] = m.distance
+
+
+@law
+def read_report(told: Line, number: int, payload: int) -> None:
+    """The message ``number`` whose payload is at an address; others are left alone."""
+    if number == IMU_:
+        read_imu(told, record_at(ScaledImu, payload))
+    elif number == STATUS_:
+        read_battery(told, record_at(SysStatus, payload))
+    elif number == WIND_:
+        read_wind(told, record_at(Wind, payload))
+    elif number == RANGE_:
+        read_range(told, record_at(RangeFinder, payload))
+
+
+@law
+def show_report(told: Line, heading: float, reports: Table, i: int) -> None:
+    """Write what a vehicle of this heading [rad] has told into row ``i``, the wind along its heading."""
+    for k in range(REPORTED):
+        reports[i, k] = told[k]
+    c, s = math.cos(heading), math.sin(heading)
+    reports[i, WIND] = told[WIND] * c + told[WIND + 1] * s
+    reports[i, WIND + 1] = told[WIND] * s - told[WIND + 1] * c
+
+
+_READERS: dict[int, Any] = {IMU_: read_imu, STATUS_: read_battery, WIND_: read_wind, RANGE_: read_range}
+
+
+def note_report(told: Any, kind: MessageType, payload: bytes) -> None:
+    """Read a message of one of these kinds into ``told``, ``REPORTED`` floats."""
+    _READERS[kind.id](told, kind.decode(payload))
