@@ -33,7 +33,7 @@ def picture(name: str, path: Path) -> Any:
     env.close()
     image = Image.fromarray(shown)  # type: ignore[arg-type]
     smaller = image.resize((WIDTH, round(image.height * WIDTH / image.width)), Image.Resampling.LANCZOS)
-    return smaller.quantize(COLOURS)
+    return smaller.quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
 
 
 def main() -> None:

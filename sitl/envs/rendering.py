@@ -144,9 +144,9 @@ class Renderer:
         x, y, _, yaw = robot.pose[self._index].tolist()
         middle = self._point(x, y)
         for angle, reading in zip(robot.angles.tolist(), robot.scan[self._index].tolist()):
-            reach = min(reading, robot.range_max)
-            end = self._point(x + reach * math.cos(yaw + angle), y + reach * math.sin(yaw + angle))
-            pygame.draw.aaline(canvas, _RAY, middle, end)
+            if reading <= robot.range_max:  # one that meets nothing would only hide the rest
+                end = self._point(x + reading * math.cos(yaw + angle), y + reading * math.sin(yaw + angle))
+                pygame.draw.aaline(canvas, _RAY, middle, end)
         radius = max(robot.volume.radius * self._scale, 4.0)
         crashed = bool(robot.collided[self._index])
         pygame.draw.circle(canvas, _CRASHED if crashed else _BODY, middle, radius)
