@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from ..core import code_cache
 from ..core import compile as compiler
+from .output import add_json_option, print_json
 
 if TYPE_CHECKING:
     from ..vehicle.kind import Kind
@@ -18,6 +19,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("cache")
     parser.add_argument("action", choices=("show", "clear", "build"))
+    add_json_option(parser, "with show, the folder and its units")
     parser.set_defaults(function=cache)
 
 
@@ -32,14 +34,24 @@ def cache(options: argparse.Namespace) -> int:
         with CompileProgress() as progress:
             took = sum(compiler.build(entries(kind), kind.record_path, progress) for kind in KINDS.values())
         print(f"built in {took:.1f} s")
+    elif options.json:
+        rows = [{"vehicle": kind, "unit": unit, "ready": ready} for kind, unit, ready in units()]
+        print_json({"folder": str(code_cache.cache_folder()), "units": rows})
     else:
         print(code_cache.cache_folder())
-        for kind in KINDS.values():
-            units = dict.fromkeys(unit for entry in entries(kind) for unit in compiler.reached(entry))
-            absent = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
-            for unit in units:
-                print(f"  {'to build' if unit in absent else 'ready   '}  {kind.name}: {unit.name}")
+        for kind, unit, ready in units():
+            print(f"  {'ready   ' if ready else 'to build'}  {kind}: {unit}")
     return 0
+
+
+def units() -> Iterator[tuple[str, str, bool]]:
+    """(kind of vehicle, name, whether there is machine code) of each unit of the core."""
+    from ..vehicle.kinds import KINDS
+
+    for kind in KINDS.values():
+        absent = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
+        for unit in dict.fromkeys(unit for entry in entries(kind) for unit in compiler.reached(entry)):
+            yield kind.name, unit.name, unit not in absent
 
 
 def entries(kind: Kind) -> tuple[Callable[..., None], ...]:

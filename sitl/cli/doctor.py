@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import platform
 import shutil
@@ -22,6 +21,7 @@ from ..vehicle.kinds import KINDS
 from ..warp import CannotBuild
 from ..warp.build import compiler as c_compiler
 from .cache import entries
+from .output import add_json_option, print_json
 
 OLDEST = (3, 11)
 """Version of Python that is needed."""
@@ -61,7 +61,7 @@ class Finding:
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("doctor")
-    parser.add_argument("--json", action="store_true", help="for programs: a list of objects")
+    add_json_option(parser, "a list of findings")
     parser.set_defaults(function=doctor)
 
 
@@ -69,7 +69,7 @@ def doctor(options: argparse.Namespace) -> int:
     """Print what was found; returns 1 when something that is needed is broken."""
     found = [*system(), *extras(), *clock(), *cache(), *ports(), *display()]
     if options.json:
-        print(json.dumps([asdict(one) for one in found], indent=2))
+        print_json([asdict(one) for one in found])
     else:
         show(found)
     return int(any(one.state == BROKEN for one in found))

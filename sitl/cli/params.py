@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from .. import vehicles
 from ..autopilot.params import docs, files
+from ..autopilot.params.parameter import Parameter, stored
 from ..autopilot.params.table import Values
 from ..vehicle.kinds import DEFAULT, KINDS
 from .options import check_kind
+from .output import print_json
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -19,7 +22,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--vehicle", choices=sorted(KINDS), help=f"whose parameters (default: the frame's, or {DEFAULT})"
     )
     parser.add_argument("--frame", metavar="NAME", help="with the values of this airframe")
-    parser.add_argument("--markdown", action="store_true", help="as the documentation page")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--markdown", action="store_true", help="as the documentation page")
+    form.add_argument("--json", action="store_true", help="for programs: a list of parameters")
     parser.set_defaults(function=params)
 
 
@@ -43,5 +48,23 @@ def params(options: argparse.Namespace) -> int:
     values = Values(table, holder)
     if airframe:
         files.apply(values, airframe.parameters, f"airframe {airframe.name}")
-    print(files.dump(values), end="")
+    if options.json:
+        print_json([row(p, values[p.name]) for p in table])
+    else:
+        print(files.dump(values), end="")
     return 0
+
+
+def row(p: Parameter, value: float) -> dict[str, Any]:
+    """A parameter as ``--json`` prints it."""
+    return {
+        "name": p.name,
+        "value": value,
+        "default": stored(p, p.default),
+        "low": p.low,
+        "high": p.high,
+        "unit": p.unit,
+        "type": p.kind,
+        "meaning": p.doc,
+        "has_effect": p.has_effect,
+    }

@@ -4,17 +4,22 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
+from typing import Any
 
 from .. import worlds
 from ..errors import OptionError
+from .output import add_json_option, print_json
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("world")
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
-    actions.add_parser("list", help="the worlds there are").set_defaults(function=list_worlds)
+    listing = actions.add_parser("list", help="the worlds there are")
+    add_json_option(listing, "a list of worlds")
+    listing.set_defaults(function=list_worlds)
     show = actions.add_parser("show", help="describe a world and draw its plan")
     show.add_argument("world", metavar="NAME|FILE", help="one of the list, or a .toml file")
     show.add_argument("--png", type=Path, metavar="OUT", help="where the picture goes (default: NAME.png)")
@@ -26,10 +31,28 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def list_worlds(options: argparse.Namespace) -> int:
     """Print every world with what it is."""
+    if options.json:
+        print_json([row(worlds.load(name)) for name in worlds.names()])
+        return 0
     width = max(map(len, worlds.names()))
     for name in worlds.names():
         print(f"{name:{width}s}  {worlds.load(name).description}")
     return 0
+
+
+def row(world: worlds.World) -> dict[str, Any]:
+    """A world as ``--json`` prints it: lengths in metres, angles in degrees."""
+    starts = [
+        {"name": start.name, "position": start.position, "yaw": math.degrees(start.yaw), "robot": start.robot}
+        for start in world.starts
+    ]
+    return {
+        "name": world.name,
+        "description": world.description,
+        "solids": len(world.solids),
+        "bounds": world.bounds,
+        "starts": starts,
+    }
 
 
 def show_world(options: argparse.Namespace) -> int:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import json
 
 import pytest
 
@@ -79,6 +80,9 @@ def test_evaluate_plays(sitl):
     assert sitl("train", CIRCUIT2, "--out", "run", *SHORT)[0] == 0
     code, out, _ = sitl("evaluate", "run", "--episodes", 3, "--jitter", 0.1)
     assert code == 0 and out.startswith("run: 3 episodes: mean reward") and "laps an episode" in out
+    (told,) = json.loads(sitl("evaluate", "run", "--episodes", 3, "--jitter", 0.1, "--json")[1])
+    rewards = [played["reward"] for played in told["episodes"]]
+    assert told["run"] == "run" and f"mean reward {sum(rewards) / 3:.0f}," in out
     assert "laps" not in sitl("evaluate", "run", "--episodes", 1, "--option", "world=maze")[1]
 
 

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import asdict
 from pathlib import Path
+
+from sitl.cli.output import add_json_option, print_json
 
 from ..evaluations import evaluate_runs
 from ..runs import folder as folders
@@ -28,6 +31,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
     )
     add_jobs(parser)
+    add_json_option(parser, "a list of runs, with each episode")
     parser.set_defaults(function=evaluate)
 
 
@@ -38,6 +42,15 @@ def evaluate(options: argparse.Namespace) -> int:
     plans = [
         run.config.evaluation.changed(options.episodes, options.jitter, options.max_steps, changes) for run in runs
     ]
-    for run, found in zip(runs, evaluate_runs(runs, plans, options.seed, pool)):
+    evaluations = evaluate_runs(runs, plans, options.seed, pool)
+    if options.json:
+        print_json(
+            [
+                {"run": str(run.path), "episodes": [asdict(played) for played in found.episodes]}
+                for run, found in zip(runs, evaluations)
+            ]
+        )
+        return 0
+    for run, found in zip(runs, evaluations):
         print(f"{run.path}: {found.sentence()}")
     return 0

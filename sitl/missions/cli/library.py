@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import argparse
 import shutil
+from dataclasses import asdict
 from pathlib import Path
 
+from sitl.cli.output import add_json_option, print_json
 from sitl.errors import OptionError
 
 from .. import library
@@ -17,12 +19,16 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser = actions.add_parser("library", help="list or copy the missions that come with the simulator")
     parser.add_argument("names", nargs="*", metavar="NAME", help="such as copter/square (default: all)")
     parser.add_argument("--copy", type=Path, metavar="DIR", help="copy their files there")
+    add_json_option(parser, "a list of missions")
     parser.set_defaults(function=show)
 
 
 def show(options: argparse.Namespace) -> int:
     """List them, or copy their files."""
     chosen = [library.find(name) for name in options.names] or list(library.entries().values())
+    if options.json and options.copy is None:
+        print_json([{**asdict(entry), "path": str(entry.path)} for entry in chosen])
+        return 0
     for entry in chosen:
         if options.copy is None:
             where = f" [{entry.frame}{', world ' + entry.world if entry.world else ''}]"
