@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Policies that come with the program: for each environment with places one, learnt by the recipe of its name.
+"""Policies that come with the program, for environments with places: each was learnt by the recipe of its name.
 
 "NAME-discrete" is of the environment's form with a table of actions; where there is no recipe of that name, it was
 learnt by that of NAME, which names this form among those that it is good for.
