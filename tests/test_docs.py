@@ -139,7 +139,10 @@ def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> N
     assert [unit.name for unit in compiler.reached(KINDS[name].advance)] == [
         f"physics.native.{name}.step.step",
         "autopilot.estimation.update.prepare_lanes",
+        "autopilot.estimation.update.choose_sensors",
+        "autopilot.estimation.update.step_bank",
         "autopilot.estimation.update.step",
+        "autopilot.estimation.update.advance_bank",
         "autopilot.estimation.update.run_second",
         "autopilot.estimation.update.update",
         f"autopilot.{name}.modes.update.update",

@@ -25,7 +25,7 @@ ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3
 
 
 def is_off(simulation: Simulation) -> bool:
-    return simulation.parameters["SIM_GPS1_ENABLE"] == 0.0 and bool(simulation.v.physics.sensors.gps_off)
+    return simulation.parameters["SIM_GPS1_ENABLE"] == 0.0 and bool(simulation.v.physics.sensors.gps[0].off)
 
 
 def test_a_fault_comes_and_goes_at_its_tick() -> None:
@@ -146,7 +146,7 @@ def test_a_fleet_takes_all_of_an_order_or_nothing() -> None:
     ):
         with pytest.raises(OptionError, match=why):
             order()
-        assert not any(fleet.view(k).physics.sensors.gps_off for k in range(2))
+        assert not any(fleet.view(k).physics.sensors.gps[0].off for k in range(2))
     fleet.fail([0, 1], "gps")
     for order, why in (
         (lambda: fleet.repair([0, -1]), "no vehicle -1"),
@@ -154,7 +154,7 @@ def test_a_fleet_takes_all_of_an_order_or_nothing() -> None:
     ):
         with pytest.raises(OptionError, match=why):
             order()
-        assert all(fleet.view(k).physics.sensors.gps_off for k in range(2))
+        assert all(fleet.view(k).physics.sensors.gps[0].off for k in range(2))
     fleet.close()
 
 
@@ -188,12 +188,12 @@ def test_a_vehicle_of_a_fleet_fails_as_one_alone() -> None:
     for _ in range(4):
         alone.advance(0.2)
         fleet.advance(0.2)
-        assert fleet.view(1).physics.sensors.gps_off == alone.v.physics.sensors.gps_off
-        assert not fleet.view(0).physics.sensors.gps_off
+        assert fleet.view(1).physics.sensors.gps[0].off == alone.v.physics.sensors.gps[0].off
+        assert not fleet.view(0).physics.sensors.gps[0].off
     assert fleet.records[1].tobytes() == alone.fleet[0].tobytes()
     fleet.fail([0, 1], "gps")
     fleet.repair(0)
-    assert [bool(fleet.view(k).physics.sensors.gps_off) for k in (0, 1)] == [False, True]
+    assert [bool(fleet.view(k).physics.sensors.gps[0].off) for k in (0, 1)] == [False, True]
     fleet.close()
 
 

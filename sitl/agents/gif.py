@@ -51,11 +51,13 @@ class Gif:
     def __init__(self, path: Path, seconds: float) -> None:
         self._path, self._ms = path, max(round(100.0 * seconds), 2) * 10  # GIFs count hundredths
         self._file: BinaryIO | None = None
+        self.size = 0
+        """Bytes written so far."""
         self._shown: npt.NDArray[np.uint8] | None = None
         self._palette: Any = pillow().new("P", (1, 1))
         self._colours: npt.NDArray[np.int64] = np.zeros((0, 3), np.int64)
 
-    def add(self, picture: Picture) -> None:
+    def add(self, picture: Picture, times: int = 1) -> None:
         """See ``Film``."""
         image = pillow().fromarray(picture)
         self._extend_palette(image)
@@ -66,7 +68,8 @@ class Gif:
                 self._file = open(self._path, "wb")  # noqa: SIM115 (``close`` closes it)
                 self._file.write(_gif_head(*drawn.size))
             left, top, right, bottom = _changed(self._shown, pixels)
-            self._file.writelines(_gif_picture(drawn.crop((left, top, right, bottom)), (left, top), self._ms))
+            self._file.writelines(_gif_picture(drawn.crop((left, top, right, bottom)), (left, top), self._ms * times))
+            self.size = self._file.tell()
         except OSError as error:
             raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
         self._shown = pixels

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
 import shutil
 import subprocess
 import time
@@ -26,13 +25,19 @@ from .runs.folder import RunFolder
 
 FASTEST_S = 0.04
 """Shortest duration of a frame [s]: viewers slow down GIFs with shorter ones."""
+LARGEST = 4_000_000
+"""Size of a GIF [bytes]: what pages, issues and mails take."""
 
 
 class Film(Protocol):
     """An animation file; complete when it is closed."""
 
-    def add(self, picture: Picture) -> None:
-        """Append a frame, shape (height, width, 3); all frames have the same size."""
+    size: int
+    """Bytes written so far, of a file that grows with each frame; else 0."""
+
+    def add(self, picture: Picture, times: int = 1) -> None:
+        """Append a frame, shape (height, width, 3); all frames have the same size. It stands for ``times`` the usual
+        duration."""
 
     def close(self) -> None:
         """Write what is buffered, and close the file."""
@@ -41,11 +46,13 @@ class Film(Protocol):
 class Mp4:
     """An MP4 (H.264), encoded by ffmpeg frame by frame."""
 
+    size = 0
+
     def __init__(self, path: Path, seconds: float, program: str) -> None:
         self._path, self._rate, self._program = path, 1.0 / seconds, program
         self._process: subprocess.Popen[bytes] | None = None
 
-    def add(self, picture: Picture) -> None:
+    def add(self, picture: Picture, times: int = 1) -> None:
         """See ``Film``."""
         if self._process is None:
             height, width = picture.shape[:2]
@@ -73,7 +80,9 @@ class Mp4:
 
 
 class Reel:
-    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S.
+    """An animation of an episode; steps are left out where frames would be shorter than FASTEST_S. A GIF stays at about
+    LARGEST: each time half of what is left of it is full, only every second of the steps still becomes a frame, which
+    stands for twice as long.
 
     Args:
         path: .gif or .mp4.
@@ -87,8 +96,9 @@ class Reel:
     def __init__(self, path: Path, step_s: float) -> None:
         self.every = max(round(FASTEST_S / step_s), 1) if step_s < FASTEST_S else 1
         """Number of steps per frame."""
+        self._first, self._left = self.every, LARGEST
         seconds = self.every * step_s
-        self._steps, self.pictures = 0, 0
+        self._steps, self._next, self.pictures = 0, 0, 0
         if not path.parent.is_dir():
             raise AgentError(f"{path} cannot be written: there is no folder {path.parent}")
         self._film: Film
@@ -105,13 +115,19 @@ class Reel:
 
     def wants(self) -> bool:
         """Whether this step becomes a frame; call it once per step."""
-        wanted = self._steps % self.every == 0
+        wanted = self._steps >= self._next
+        if wanted:
+            self._next = self._steps + self.every
         self._steps += 1
         return wanted
 
     def add(self, picture: Picture) -> None:
         """Append a frame, shape (height, width, 3)."""
-        self._film.add(picture)
+        if self._film.size > LARGEST - self._left // 2:
+            self._left //= 2
+            self._next += self.every
+            self.every *= 2
+        self._film.add(picture, self.every // self._first)
         self.pictures += 1
 
     def __enter__(self) -> Reel:
@@ -201,13 +217,12 @@ def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended,
     pace = Pace(_step_s(env) / speed)
 
     def after(shown: Any) -> bool:
-        _check_screen()
         return pace() and not _window_closed()
 
     try:
         play(env, policy, episodes, seed, after, ended)
     except DependencyNotInstalled as error:
-        raise AgentError(str(error)) from None
+        raise AgentError(f"{error}; --out FILE.gif makes a film") from None
     finally:
         env.close()
 
@@ -243,15 +258,6 @@ def _step_s(env: gym.Env[Any, Any]) -> float:
     """Simulated time of a step [s]."""
     seconds = environments.step_time(env)
     return STEP_S if math.isnan(seconds) else seconds
-
-
-def _check_screen() -> None:
-    """Refuse a display that nobody can see, unless the user asked for it. Raises AgentError."""
-    import pygame
-
-    if "SDL_VIDEODRIVER" not in os.environ and pygame.display.get_init():
-        if pygame.display.get_driver() in ("dummy", "offscreen"):
-            raise AgentError("there is no screen for a window; --out FILE.gif makes a film")
 
 
 def _window_closed() -> bool:

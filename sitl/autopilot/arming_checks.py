@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from ..core import border
 from ..core.algebra import dot, norm
 from ..core.kernels import law
-from . import radio_checks, sensor_calibration
+from . import gps_receivers, radio_checks, sensor_calibration
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
 from .events import ARMING_REFUSED, Events, emit
@@ -84,6 +84,7 @@ OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
 CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
 PARACHUTE_RELEASED = 1 << 60
+SECOND_GPS_FIX, GPS_DIFFER, GPS_BLENDING = 1 << 56, 1 << 57, 1 << 58
 ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 
 TEXTS = {
@@ -103,6 +104,9 @@ TEXTS = {
     ATTITUDE: "EKF attitude is bad",
     LEANING: "Leaning",
     GPS_FIX: "GPS 1: Bad fix",
+    SECOND_GPS_FIX: "GPS 2: Bad fix",
+    GPS_DIFFER: "GPS positions differ",
+    GPS_BLENDING: "GPS blending unhealthy",
     WAITING_FOR_HOME: "AHRS: waiting for home",
     NEED_POSITION: "Need Position Estimate",
     NEED_ALTITUDE: "Need Alt Estimate",
@@ -230,6 +234,23 @@ def sensor_checks(time_us: int, sensors: Sensors, baro_us: int, attitude_ok: boo
         elif not attitude_ok:
             failed |= ATTITUDE
     return failed
+
+
+@law
+def receiver_checks(sensors: Sensors, params: Parameters) -> int:
+    """Failed checks of two GPS receivers; there is no blending of their fixes."""
+    if params.GPS2_TYPE == 0.0:
+        return 0
+    failed = GPS_BLENDING if params.GPS_AUTO_SWITCH == gps_receivers.BLEND else 0
+    if not gps_receivers.has_fix(1, sensors):
+        return failed | SECOND_GPS_FIX
+    apart = gps_receivers.has_fix(0, sensors) and gps_receivers.distance(sensors) >= gps_receivers.DIFFERENCE
+    return failed | GPS_DIFFER if apart else failed
+
+
+def differing_gps(sensors: Sensors) -> dict[int, str]:
+    """The text that tells how far the receivers' positions are from each other."""
+    return {GPS_DIFFER: f"GPS positions differ by {gps_receivers.distance(sensors):4.1f}m"}
 
 
 @law

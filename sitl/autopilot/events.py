@@ -67,6 +67,7 @@ EKF_RELATIVE = 65  # the filter's position is relative to where it began; a: IMU
 EKF_STOPPED_AIDING = 66  # a: IMU
 EKF_USES = 67  # a: IMU, b: 1 optical flow, 2 another system's position, 3 its heading
 EKF_LANE_SWITCHED = 68  # a: IMU whose filter is flown by now
+EKF_EMERGENCY_YAW = 76  # a: IMU of the filter
 EKF_COMPASS_CHANGED = 69  # a: IMU of the filter, b: compass
 TERRAIN_DID = 70  # copter; a: what (terrain/state.py)
 TERRAIN_LEFT = 71  # copter: it has left the square of the grid whose heights it knows

@@ -76,6 +76,7 @@ def move_autopilot(ap: Autopilot, d: Displacement) -> None:
         move_ekf(ap.second_lane.ekf, d)
         move_estimate(ap.second_lane.estimate, d)
     move_estimate(ap.estimate, d)
+    ap.yaw_bank.runs = False
     acc = ap.inertial_filter.acc
     acc.first, acc.second = turned(d, acc.first), turned(d, acc.second)
     move_home(ap.home, ap.estimate, d)

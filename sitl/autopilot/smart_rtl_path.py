@@ -71,7 +71,7 @@ def length(v: Vec3) -> float:
 @law
 def point(path: PathState, k: int) -> Vec3:
     """Point ``k`` of the path [m]."""
-    return Vec3(path.n[k], path.e[k], path.d[k])
+    return Vec3(float(path.n[k]), float(path.e[k]), float(path.d[k]))
 
 
 @law

@@ -15,9 +15,12 @@ from ..core.records import Float32, Floats, Ints, Record, array
 from ..core.vectors import Euler, Quat, Vec3
 from .avoidance.proximity import Proximity
 from .avoidance.state import Avoidance, Objects
+from .barometers import Barometers
 from .estimation.state import Ekf
+from .estimation.yaw_bank import YawBank
 from .events import Events
 from .fence.state import FenceState, RallyState
+from .gps_receivers import GpsChoice
 from .inertial_filter import InertialFilter
 from .inertial_ring import InertialRing
 from .landing_target.state import LandingTarget
@@ -223,9 +226,9 @@ class PathState(Record):
     good_us: int  # last good position
     saved_us: int  # last point that found room
     told_us: int  # when it was last said that there is little room
-    n: Floats = array(PATH_POINTS)  # NED [m]
-    e: Floats = array(PATH_POINTS)
-    d: Floats = array(PATH_POINTS)
+    n: Floats = array(PATH_POINTS, stored="f4")  # NED [m]
+    e: Floats = array(PATH_POINTS, stored="f4")
+    d: Floats = array(PATH_POINTS, stored="f4")
     keep: Ints = array(PATH_POINTS, stored="u1")  # for the simplification: 1 a point that stays
 
 
@@ -242,12 +245,15 @@ class Autopilot(Record):
     estimate: Estimate
     ekf: Ekf
     second_lane: SecondLane
+    yaw_bank: YawBank
     rc: Radio
     home: HomeState
     battery: BatteryState
     arming: Arming
     modes: Modes
     calibrated: Calibrated
+    gps: GpsChoice
+    baros: Barometers
     control: Control
     events: Events
     inertial: InertialRing

@@ -24,6 +24,7 @@ COMMANDS = {
     "watch": Listed("sitl.agents.cli.watch", "see what a run has learnt, in a window or as a film"),
     "compare": Listed("sitl.agents.cli.compare", "report on runs side by side: tables, curves, statistics over seeds"),
     "rollout": Listed("sitl.agents.cli.rollout", "let a policy play many episodes, by fleets of robots"),
+    "dataset": Listed("sitl.agents.cli.dataset", "record flights of experts for offline learning, in Minari's form"),
     "rehearse": Listed("sitl.agents.cli.rehearse", "try what was learnt in simulations that it has not seen"),
     "export": Listed("sitl.agents.cli.export", "write what a run has learnt as one small file, .npz or .onnx"),
     "deploy": Listed("sitl.agents.cli.deploy", "let a policy act on a vehicle at a connection, within limits"),

@@ -34,6 +34,7 @@ EXTRAS = {
     "report": (("matplotlib", "scipy"), "reports on learning"),
     "rl": (("stable_baselines3", "torch"), "sitl train with deep learning"),
     "onnx": (("onnx",), "sitl export to .onnx"),
+    "minari": (("minari", "h5py"), "datasets of flights: sitl dataset"),
     "pettingzoo": (("pettingzoo",), "several agents: sitl.envs.swarm"),
     "pybullet": (("pybullet",), "--physics pybullet"),
     "jsbsim": (("jsbsim",), "--physics jsbsim"),

@@ -30,19 +30,13 @@ NarrowVec3 = Annotated[Vec3, Stored("f4")]
 NarrowVec2 = Annotated[Vec2, Stored("f4")]
 
 
-class Sensors(Record):
-    """What the autopilot gets from its sensors."""
+ONE_BARO, BAROS_DIFFER = 1, 2
+"""``Sensors.baro_state``: there is no second barometer; the second one shows something of its own."""
 
-    # HIL_SENSOR, one a tick
-    time_us: int
-    acc: NarrowVec3  # specific force, body [m/s^2]; at rest and level (0, 0, -9.81)
-    gyro: NarrowVec3  # body rates [rad/s]
-    mag: NarrowVec3  # field, body [gauss]
-    abs_pressure: Float32  # [hPa]
-    temperature: Float32  # [degC]
-    mag_count: int  # samples so far; a change tells the reader that the sample is new
-    baro_count: int
-    # HIL_GPS
+
+class GpsReading(Record):
+    """What a GPS receiver says: HIL_GPS."""
+
     gps_count: int
     gps_time_us: int  # when the reader got it; the fix is older by the receiver's delay
     gps_fix: int  # GPS_FIX_TYPE: 0 no GPS, 1 none, 3 3D
@@ -53,6 +47,21 @@ class Sensors(Record):
     gps_epv: Int32  # VDOP * 100
     gps_vel: Annotated[Vec3, Stored("i4")]  # NED, whole [cm/s]
     gps_satellites: Int32
+
+
+class Sensors(GpsReading):
+    """What the autopilot gets from its sensors; as a GpsReading, what the first receiver says."""
+
+    # HIL_SENSOR, one a tick
+    time_us: int
+    acc: NarrowVec3  # specific force, body [m/s^2]; at rest and level (0, 0, -9.81)
+    gyro: NarrowVec3  # body rates [rad/s]
+    mag: NarrowVec3  # field, body [gauss]
+    abs_pressure: Float32  # [hPa]
+    temperature: Float32  # [degC]
+    mag_count: int  # samples so far; a change tells the reader that the sample is new
+    baro_count: int
+    gps2: GpsReading  # what a second receiver says; zeros where there is none
     # BATTERY_STATUS
     battery_voltage: Float32  # [V]
     battery_current: Float32  # [A]
@@ -60,6 +69,10 @@ class Sensors(Record):
     mag2: NarrowVec3  # field, body [gauss]
     mag3: NarrowVec3
     mag_us: Ints = array(3, stored="i8")  # when each compass was last heard; 0: never, or its reader does not know
+    # a second barometer
+    baro_state: int  # 0: it shows what the first does; else bits ONE_BARO, BAROS_DIFFER
+    baro2_count: int  # samples, while they differ
+    abs_pressure2: Float32  # [hPa]
     # a second IMU
     imu_state: int  # 0: it shows what the first does; else bits IMUS_DIFFER, GYRO_SILENT, ACC_SILENT
     acc2: NarrowVec3  # specific force, body [m/s^2]

@@ -39,7 +39,7 @@ def register() -> None:
         gym.register(
             name,
             entry_point="sitl.envs.presets:PresetNavigate",
-            vector_entry_point="sitl.envs.presets:PresetNavigateVector",
+            vector_entry_point="sitl.envs.vector:PresetNavigateVector",
             max_episode_steps=steps,
             kwargs={"preset": preset},
         )

@@ -23,6 +23,8 @@ class Setpoint:
     name: str
     columns: tuple[str, ...]
     """Name and unit of each number."""
+    only: str = ""
+    """Where alone it can be had, for messages; "": wherever the robot takes it."""
 
     @property
     def width(self) -> int:
@@ -46,9 +48,16 @@ THRUST = Setpoint("thrust", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "thrus
 """SET_ATTITUDE_TARGET as ``ATTITUDE``, but with a thrust, a share of the greatest, in place of the climb rate."""
 RATES = Setpoint("rates", ("roll rate [rad/s]", "pitch rate [rad/s]", "turn [rad/s]", "thrust [0, 1]"))
 """SET_ATTITUDE_TARGET with rates of the body alone (roll to the right, pitch up) and a thrust."""
+MOTORS = Setpoint(
+    "motors",
+    tuple(f"motor {k} [0, 1]" for k in range(1, 9)),
+    only="motors are driven directly, past the autopilot, by no message of MAVLink: of copters in process on native "
+    "physics only",
+)
+"""Controls of a copter's motors, as an autopilot's outputs would be: the direct path, no autopilot behind it."""
 
 SETPOINTS = {
-    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES)
+    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS)
 }
 
 
@@ -129,6 +138,12 @@ class Discrete:
         """See ``Action``."""
         self.table.take(actions, 0, out, "clip")
 
+    def nearest(self, command: Floats) -> np.int64:
+        """The action whose set-point is nearest to one, of shape (setpoint.width,); columns count by their range."""
+        span = np.ptp(self.table, axis=0)
+        away = (self.table - command) / np.where(span > 0.0, span, 1.0)
+        return np.int64((away * away).sum(axis=1).argmin())
+
 
 class Continuous:
     """A box of set-points.
@@ -174,6 +189,11 @@ class Continuous:
         """See ``Action``."""
         out[:, self.columns] = actions
 
+    def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
+        """The action whose set-point is nearest to one, of shape (setpoint.width,)."""
+        wanted = np.asarray(command, np.float64)[self.columns].astype(np.float32)
+        return np.clip(wanted, self.space.low, self.space.high)
+
 
 class Normalised(Continuous):
     """A box of set-points whose actions are all within [-1, 1]: -1 is the low limit, 1 the high one.
@@ -194,3 +214,8 @@ class Normalised(Continuous):
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
         out[:, self.columns] = self._middle + self._half * actions
+
+    def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
+        """See ``Continuous``."""
+        share = (np.asarray(command, np.float64)[self.columns] - self._middle) / self._half
+        return np.clip(share, -1.0, 1.0).astype(np.float32)

@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
 
 from sitl.worlds import World
 
-from .options import EnvOptionError, unknown
+from .options import unknown
+from .parts import GoalConditioned
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
-from .tasks import Task
+from .tasks import Task, reward_of_goals
 
 
 class Navigate(gym.Env[Any, Any]):
@@ -22,9 +25,10 @@ class Navigate(gym.Env[Any, Any]):
     Args:
         render_mode: "rgb_array", "human" or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
-            randomise, latency, faults, and options of the robot's class.
+            randomise, latency, faults, info, and options of the robot's class.
 
-    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed" and what ``Task.info`` adds.
+    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed", what ``Task.info`` adds, and what
+    the option ``info`` names.
 
     Raises:
         EnvOptionError: an option that cannot be used; the message says what is allowed.
@@ -40,6 +44,7 @@ class Navigate(gym.Env[Any, Any]):
         self.action_space = session.action.space
         self.render_mode = render_mode
         self._renderer = None if render_mode is None else Renderer(session.robot, session.task)
+        self._is_begun = False
         self._bind()
 
     def _bind(self) -> None:
@@ -47,7 +52,7 @@ class Navigate(gym.Env[Any, Any]):
         session = self._session
         self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.info
-        self._plain_info = type(session.task).info is Task.info and session.faults is None
+        self._plain_info = type(session.task).info is Task.info and session.faults is None and not session.details
         self._over = getattr(session.robot, "over", None)
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 
@@ -81,6 +86,7 @@ class Navigate(gym.Env[Any, Any]):
         super().reset(seed=seed)
         self._session.reset(0, self.np_random, options)
         self._session.look()
+        self._is_begun = True
         if self._renderer is not None:
             self._renderer.start()
             self._show()
@@ -92,7 +98,10 @@ class Navigate(gym.Env[Any, Any]):
 
         Raises:
             InvalidAction: the action is not in the space.
+            ResetNeeded: before the first ``reset``.
         """
+        if not self._is_begun:
+            raise gym.error.ResetNeeded("the robot stands nowhere before the first reset()")
         session = self._session
         self._actions[0] = self._check(action)
         self._advance()
@@ -116,16 +125,17 @@ class Navigate(gym.Env[Any, Any]):
             return {name: value[0] for name, value in rows.items()}
         return rows[0]
 
-    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
-        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``.
+    @property
+    def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
+        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``. Others have no such
+        attribute, by which libraries know them.
 
         Raises:
-            EnvOptionError: the task has no goal that counts alone.
+            AttributeError: the task has no goal that counts alone, or the observation does not tell it.
         """
-        rule = getattr(self.task, "compute_reward", None)
-        if rule is None:
-            raise EnvOptionError(f"compute_reward: task {self.task!r} has no goal that counts alone")
-        return rule(achieved_goal, desired_goal, info)
+        if not isinstance(self._session.observation, GoalConditioned):
+            raise AttributeError(f"compute_reward: task {self.task!r} is not observed by its goal (GoalConditioned)")
+        return partial(reward_of_goals, self.task)
 
     def snapshot(self) -> Snapshot:
         """State of robot, episode and random numbers; after ``restore`` it continues bit for bit. Picklable.
@@ -137,6 +147,7 @@ class Navigate(gym.Env[Any, Any]):
     def restore(self, snapshot: Snapshot) -> Any:
         """Restore a snapshot of this or of an equal environment; returns the observation."""
         self._session.restore(0, snapshot, self.np_random)
+        self._is_begun = True
         if self._renderer is not None:
             self._renderer.start()
         return self._observation()

@@ -16,7 +16,7 @@ from .observations import Digits
 from .options import EnvOptionError, unknown
 from .pictures import PICTURES
 from .robots.robot import Robot
-from .senses import FAR, REPORTS, SENSES, TRUE, ReportingRobot, SensingRobot
+from .senses import FAR, REPORTS, SENSES, TRUE, ReportingRobot, SensingRobot, reads_scan
 
 Narrow = npt.NDArray[np.float32]
 
@@ -46,6 +46,8 @@ class Part(Protocol):
     def high(self) -> Sequence[float]:
         """Greatest value of each."""
 
+    # reads_scan = False: it reads no lidar (``senses.reads_scan``).
+
     def prepare(self, session: Surroundings) -> None:
         """Called once, before the first episode, when the task is prepared.
 
@@ -59,6 +61,8 @@ class Part(Protocol):
 
 class State:
     """Columns of the robot's state: "pose", "velocity", "attitude", "rates", and with "true_" as they really are."""
+
+    reads_scan = False
 
     def __init__(self, name: str) -> None:
         self._is_true = name.startswith(TRUE)
@@ -98,6 +102,8 @@ class Heading:
 class Told:
     """What a vehicle tells by a message of its own: "acceleration", "battery", "wind", "range_finder" (``REPORTS``)."""
 
+    reads_scan = False
+
     def __init__(self, name: str) -> None:
         self._name, self._report = name, REPORTS[name]
         self.columns, self.low, self.high = self._report.columns, self._report.low, self._report.high
@@ -122,6 +128,7 @@ class Told:
 class Height:
     """Height above the world's floor [m], as the robot believes."""
 
+    reads_scan = False
     columns = ("height [m]",)
     low, high = (-FAR,), (FAR,)
 
@@ -166,6 +173,8 @@ class DigitReadings:
 class LastAction:
     """The agent's last action; zeros before the first one of an episode. Of a table: one number for each row."""
 
+    reads_scan = False
+
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
         self._session, space = session, session.action.space
@@ -196,6 +205,8 @@ class Path:
 
     "goal" is the way to the next one alone.
     """
+
+    reads_scan = False
 
     def __init__(self, count: int = 3) -> None:
         self.count = count
@@ -262,6 +273,7 @@ class Parts:
             raise EnvOptionError(f"observation {list(parts)!r} has no parts; there are {', '.join(PARTS)}")
         self.names = tuple(part if isinstance(part, str) else type(part).__name__ for part in parts)
         self._parts: list[Part] = [_part(part) for part in parts]
+        self.reads_scan = any(reads_scan(part) for part in self._parts)
 
     def prepare(self, session: Surroundings) -> None:
         """Called once, when robot, action and task are there."""

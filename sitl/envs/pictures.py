@@ -82,6 +82,7 @@ class Picture:
     """
 
     name = ""
+    reads_scan = False
 
     def __init__(
         self, width: int = 64, height: int = 48, field_of_view: float = 90.0, reach: float = 20.0, *,

@@ -14,6 +14,7 @@ from .options import EnvOptionError, unknown
 from .parts import PARTS, NamedParts, Parts, Surroundings
 from .pictures import PICTURES, Picture
 from .robots.robot import Robot
+from .senses import reads_scan
 
 
 class Pieces:
@@ -29,6 +30,7 @@ class Pieces:
         self.pieces = {name: _piece(name, piece) for name, piece in pieces.items()}
         self.pictures = tuple(p for piece in self.pieces.values() for p in getattr(piece, "pictures", ()))
         """Those among them that are pictures."""
+        self.reads_scan = any(reads_scan(piece) for piece in self.pieces.values())
 
     def prepare(self, session: Surroundings) -> None:
         """Called once, when robot, action and task are there."""

@@ -12,6 +12,7 @@ from .actions import VELOCITY, Continuous, Normalised
 from .ids import NEW
 from .navigate import Navigate
 from .parts import GoalConditioned
+from .session import DETAILS
 from .starts import Near
 from .targets.gates import Gate, Gates
 from .targets.hold import Hold
@@ -20,7 +21,6 @@ from .targets.moving import Follow, Trajectory
 from .targets.parking import Park
 from .targets.waypoints import Waypoints
 from .tasks import Task
-from .vector import NavigateVector
 
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
 ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
@@ -53,14 +53,14 @@ TRACK = [
 def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[str, Any]:
     return {
         "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
-        "observation": list(parts), "action": "normalised", "setpoint": "velocity", **options,
+        "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": DETAILS, **options,
     }  # fmt: skip
 
 
 def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[str, Any]:
     return {
         "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
-        "action": "normalised", "setpoint": "velocity", **options,
+        "action": "normalised", "setpoint": "velocity", "info": DETAILS, **options,
     }  # fmt: skip
 
 
@@ -137,10 +137,3 @@ class PresetNavigate(Navigate):
 
     def __init__(self, preset: str, **options: Any) -> None:
         super().__init__(**options_of(preset, options))
-
-
-class PresetNavigateVector(NavigateVector):
-    """Many of an environment of a preset."""
-
-    def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
-        super().__init__(num_envs, **options_of(preset, options))

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import math
+import os
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -28,6 +30,8 @@ _BORDER = 0.5
 _PAPER, _WALL, _LOW_WALL = (250, 250, 247), (62, 68, 76), (190, 194, 198)
 _RAY, _TRAIL, _BODY, _CRASHED, _NOSE = (222, 168, 90), (70, 130, 180), (40, 90, 160), (200, 50, 40), (255, 255, 255)
 _GOAL = (60, 150, 80)
+_SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+"""Variables that say where windows are shown, or by which of SDL's drivers."""
 
 
 def _pygame() -> Any:
@@ -36,6 +40,18 @@ def _pygame() -> Any:
     except ImportError:
         raise DependencyNotInstalled("rendering needs pygame: pip install 'gym-sitl[viz]'") from None
     return pygame
+
+
+def _check_screen() -> None:
+    """Refuse to open a window that nobody can see, unless the user names SDL's driver.
+
+    Raises:
+        DependencyNotInstalled: there is no screen.
+    """
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in _SCREENS):
+        raise DependencyNotInstalled(
+            'render_mode "human" finds no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); "rgb_array" needs none'
+        )
 
 
 def tile(pictures: Sequence[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
@@ -180,6 +196,7 @@ class Renderer:
         """Draw into the window, without waiting; opens it first. Closing the window does not stop the environment."""
         pygame = _pygame()
         if self._window is None:
+            _check_screen()
             try:
                 pygame.display.init()
                 self._window = pygame.display.set_mode(self._shape)

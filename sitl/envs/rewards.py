@@ -2,6 +2,7 @@
 """Reward terms: functions of a step that return one reward a robot. A task adds them up.
 
 Any function of a ``Step`` is a term: ``lambda step: -0.1 * abs(step.velocity[:, 3])``. Arrays have a row a robot.
+A term with an attribute ``reads_scan`` that is False says that it reads no lidar (``senses.reads_scan``).
 """
 
 from __future__ import annotations
@@ -32,6 +33,15 @@ class Step:
         self.crashed: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
         self.reached: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
         """Whether the goal was reached (False for tasks without a goal), shape (count,)."""
+        self.outside: npt.NDArray[np.bool_] = np.zeros(robot.count, np.bool_)
+        """Whether the robot left the arena (False for tasks without one), shape (count,)."""
+        self.terms: dict[str, Any] | None = None
+        """What the reward is made of, by name, each a number or shape (count,); None: nobody asks."""
+
+    def note(self, **terms: Any) -> None:
+        """Tell terms of the reward; they are not added to it by this."""
+        if self.terms is not None:
+            self.terms.update(terms)
 
     @property
     def scan(self) -> npt.NDArray[np.float32]:
@@ -56,6 +66,9 @@ Term = Callable[[Step], Floats]
 class ByAction:
     """A fixed reward for each discrete action: the paper's reward."""
 
+    name = "by_action"
+    reads_scan = False
+
     def __init__(self, rewards: Sequence[float]) -> None:
         self.rewards = np.array(rewards, np.float64)
 
@@ -66,6 +79,9 @@ class ByAction:
 
 class Forward:
     """Forward speed at the end of the step times its duration [m], times ``per_metre``."""
+
+    name = "forward"
+    reads_scan = False
 
     def __init__(self, per_metre: float = 25.0) -> None:
         self.per_metre = per_metre
@@ -78,6 +94,9 @@ class Forward:
 class Turning:
     """Magnitude of the turn rate at the end of the step [rad/s] times ``per_rad``: a penalty when that is negative."""
 
+    name = "turning"
+    reads_scan = False
+
     def __init__(self, per_rad: float = -1.0) -> None:
         self.per_rad = per_rad
 
@@ -89,6 +108,9 @@ class Turning:
 class EachStep:
     """A constant reward for each step."""
 
+    name = "each_step"
+    reads_scan = False
+
     def __init__(self, reward: float = -1.0) -> None:
         self.reward = reward
 
@@ -99,6 +121,8 @@ class EachStep:
 
 class Nearness:
     """A penalty that grows linearly from 0 at a nearest reading of ``distance`` [m] to ``most`` at a reading of 0."""
+
+    name = "nearness"
 
     def __init__(self, distance: float = 0.5, most: float = -1.0) -> None:
         if not distance > 0.0:

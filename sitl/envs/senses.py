@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from .mavlink import reports
 from .robots.robot import Floats
@@ -103,3 +103,9 @@ class ReportingRobot(Protocol):
         Raises:
             EnvOptionError: the robot does not have what the message tells.
         """
+
+
+def reads_scan(piece: Any) -> bool:
+    """Whether an observation, a part of one, a task or a reward term needs lidar readings: its attribute
+    ``reads_scan``; one that does not say may. Where none does, a vehicle at a connection need not send any."""
+    return bool(getattr(piece, "reads_scan", True))

@@ -30,11 +30,14 @@ from .pictures import Film, Picture
 from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
-from .robots.robot import LateRobot, PreparedRobot, Robot
+from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot
+from .senses import SensingRobot, reads_scan
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
 FORMS = ("discrete", "continuous", "normalised")
+DETAILS = ("rewards", "true_pose", "events")
+"""What ``info`` may have besides what the task tells."""
 RESET_OPTIONS = ("pose", "reset_mask")
 """Options of ``reset``; the second one only in vector environments."""
 MAX_STEP_S = 3600.0
@@ -69,7 +72,7 @@ class NavigateOptions:
 
     Args:
         robot: name (``robots.ROBOTS``) or class.
-        world: name (``sitl.worlds.names()``), .toml file or World.
+        world: name (``sitl.worlds.names()``), .toml file or World; None: the robot's usual one (``robots.WORLDS``).
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
             "scan+velocity": a dict), pictures ("depth", "depth+velocity"; ``pictures.PICTURES``), a dict of such, or
@@ -87,6 +90,9 @@ class NavigateOptions:
             The previous command holds until then; at the start of an episode the robot stands or hovers.
         faults: fault, as "gps" or "motor:2=0.5" ("": none) -> when it begins in an episode [s], or (earliest, latest);
             each episode draws one of them.
+        info: what ``info`` has besides what the task tells, of ``DETAILS``: "rewards", the terms of the reward as
+            "reward_NAME"; "true_pose", x, y, z [m], yaw [rad] as they really are (left out where nobody knows);
+            "events", "touched" and "outside".
         robot_options: further options of the robot's class, by name.
 
     Raises:
@@ -94,7 +100,7 @@ class NavigateOptions:
     """
 
     robot: str | Callable[..., Robot] = "turtlebot"
-    world: str | Path | World = "circuit2"
+    world: str | Path | World | None = None
     task: str | Task = "wander"
     observation: str | Sequence[str | Part] | Mapping[str, Any] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
@@ -104,6 +110,7 @@ class NavigateOptions:
     randomise: Randomise | None = None
     latency: float = 0.0
     faults: Faults | None = None
+    info: Sequence[str] = ()
     robot_options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -118,7 +125,7 @@ class Session:
 
     def __init__(self, count: int, options: NavigateOptions) -> None:
         try:
-            world = worlds.load(options.world)
+            world = worlds.load(robots.world_of(options.robot) if options.world is None else options.world)
         except WorldError as error:
             raise EnvOptionError(str(error)) from None
         self.robot = robots.load(options.robot, world, count, options.robot_options)
@@ -138,6 +145,12 @@ class Session:
         self.faults = None if options.faults is None else EpisodeFaults(options.faults, self.robot)
         """None: nothing fails."""
         self.starts = Starts(options.start, self.robot)
+        if self.starts.fixed is None and getattr(self.robot, "is_live", False):
+            name = world.start(self.robot.name).name
+            raise EnvOptionError(
+                f"start {options.start!r}: a vehicle at a connection begins where it is; give the option "
+                f"start={name!r} (sitl evaluate --option start={name})"
+            )
         if self.starts.fixed is not None and isinstance(self.robot, PreparedRobot):
             self.robot.prepare_at(self.starts.fixed)
         self.task: Task = _named("task", options.task, TASKS, "judge")
@@ -157,6 +170,9 @@ class Session:
         self.terminated = np.zeros(count, np.bool_)
         self.step = Step(self.robot, self.seconds)
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
+        self.details = _checked_details(options.info)
+        """See ``NavigateOptions.info``."""
+        self._knows_truth = isinstance(self.robot, SensingRobot) and getattr(self.robot, "camera_mount", None)
         self.task.prepare(self.robot)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
@@ -167,13 +183,27 @@ class Session:
         self.observation_space = self.observation.space(self.robot)
         self.pictures: tuple[Picture, ...] = tuple(getattr(self.observation, "pictures", ()))
         """What the observation has of pictures."""
+        if isinstance(self.robot, AskedRobot):
+            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
+            if self.robot.is_live:
+                self._rehearse()
+
+    def _rehearse(self) -> None:
+        """Do once, on a robot that stands nowhere, what each step does: compiled pieces are loaded now, and not while a
+        vehicle waits for its first set-point."""
+        self.action.commands(self.actions, self.commands)
+        self.task.start(0, self.robot, np.random.default_rng(0))
+        self.observation.observe(self.robot)
+        self.task.judge(self.step, self.rewards, self.terminated)
+        self.info()
 
     def _choose_action(self, action: str | Mapping[str, Sequence[float]] | Action, setpoint: str | None) -> Action:
         robot = self.robot
         kinds = {kind.name: kind for kind in robot.setpoints}
         if setpoint is not None and (not isinstance(setpoint, str) or setpoint not in kinds):
             if isinstance(setpoint, str) and setpoint in SETPOINTS:
-                raise EnvOptionError(f"setpoint {setpoint!r}: {robot.name} takes {', '.join(kinds)}")
+                why = f" ({SETPOINTS[setpoint].only})" if SETPOINTS[setpoint].only else ""
+                raise EnvOptionError(f"setpoint {setpoint!r}: {robot.name} takes {', '.join(kinds)}{why}")
             raise unknown("setpoint", setpoint, kinds)
         usual = robot.setpoints[0] if setpoint is None else kinds[setpoint]
         if isinstance(action, Mapping):
@@ -248,6 +278,8 @@ class Session:
             self._advance_late(self.latency, rows)
         for picture in self.pictures:
             picture.note(rows)
+        if "rewards" in self.details:
+            self.step.terms = {}
         self.task.judge(self.step, self.rewards, self.terminated)
 
     def _advance_late(self, latency: Latency, rows: npt.NDArray[np.bool_] | None) -> None:
@@ -256,9 +288,26 @@ class Session:
         cast(LateRobot, self.robot).advance_late(self.seconds, latency.waits, rows)
 
     def info(self) -> dict[str, npt.NDArray[Any]]:
-        """What the task tells of this step, and the number of the fault that has begun; a row a robot."""
+        """What the task tells of this step, what ``details`` names, and the number of the fault that has begun; a row a
+        robot."""
         found = self.task.info(self.step)
+        if self.details:
+            found |= self._told_in_detail()
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
+
+    def _told_in_detail(self) -> dict[str, npt.NDArray[Any]]:
+        """What ``details`` names."""
+        found: dict[str, npt.NDArray[Any]] = {}
+        step, crashed = self.step, self.step.crashed
+        if "rewards" in self.details:
+            terms = step.terms or {}
+            found |= {f"reward_{name}": np.where(crashed, 0.0, term) for name, term in terms.items()}
+            found["reward_crash"] = np.where(crashed, self.rewards, 0.0)
+        if "true_pose" in self.details and self._knows_truth:
+            found["true_pose"] = cast(SensingRobot, self.robot).true_state()[:, :4].copy()
+        if "events" in self.details:
+            found |= {"touched": self.robot.collided != 0, "outside": step.outside.copy()}
+        return found
 
     def snapshot(self, index: int, rng: np.random.Generator) -> Snapshot:
         """A snapshot of one robot, with the state of its random generator."""
@@ -296,6 +345,14 @@ class Session:
         if snapshot.action is not None:
             self.actions[index] = snapshot.action
         rng.bit_generator.state = dict(snapshot.rng)
+
+
+def _checked_details(given: Any) -> tuple[str, ...]:
+    details = (given,) if isinstance(given, str) else tuple(given)
+    for name in details:
+        if name not in DETAILS:
+            raise unknown("info", name, DETAILS)
+    return details
 
 
 def _named(option: str, value: Any, known: Mapping[str, Callable[[], Any]], method: str) -> Any:

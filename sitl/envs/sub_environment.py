@@ -17,7 +17,7 @@ from sitl.worlds import World
 
 from .robots.robot import Robot
 from .session import Snapshot
-from .tasks import Task
+from .tasks import Task, reward_of_goals
 
 if TYPE_CHECKING:
     from .vector import NavigateVector
@@ -181,6 +181,10 @@ class SubEnvironment(gym.Env[Any, Any]):
     def step(self, action: Any) -> Any:
         """Refused: robots of a vector environment move together."""
         raise gym.error.Error("a robot of a vector environment moves with all others: use the vector's step()")
+
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """See ``Navigate.compute_reward``."""
+        return reward_of_goals(self.task, achieved_goal, desired_goal, info)
 
     def snapshot(self) -> Snapshot:
         """See ``NavigateVector.snapshot_of``."""

@@ -16,6 +16,7 @@ from sitl.core.kernels import law
 from .options import EnvOptionError, unknown
 from .rewards import TERMS, ByAction, EachStep, Floats, Forward, Step, Term
 from .robots.robot import Robot
+from .senses import reads_scan
 from .starts import ReachableCells
 
 _DRAWS = 100
@@ -68,6 +69,7 @@ class Task:
         contact_ends: bool = True,
     ) -> None:
         self.terms = [_term(term) for term in rewards]
+        self._names = [_name_of(term, k) for k, term in enumerate(rewards)]
         self.crash_range = crash_range
         if crash_range is not None and not 0.0 <= crash_range < math.inf:
             raise EnvOptionError(f"crash_range = {crash_range}; it must be 0 m or more")
@@ -84,6 +86,12 @@ class Task:
         """Readings below it are a crash [m]; valid after ``prepare``."""
         return self._range
 
+    @property
+    def reads_scan(self) -> bool:
+        """Whether it needs lidar readings (``senses.reads_scan``): for its crash range, or a term. A subclass that
+        reads them besides says True. Valid after ``prepare``."""
+        return self._range > 0.0 or any(reads_scan(term) for term in self.terms)
+
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """Called at the start of an episode of one robot, when it is at its start pose."""
 
@@ -92,9 +100,15 @@ class Task:
         robot, count = step.robot, _crashes.unchecked()
         crashes = count(robot.scan, self._range, robot.collided, self.contact_ends, terminated)
         step.crashed = terminated
-        rewards[...] = self.terms[0](step) if self.terms else 0.0
-        for term in self.terms[1:]:
-            rewards += term(step)
+        if not self.terms:
+            rewards[...] = 0.0
+        for k, term in enumerate(self.terms):
+            paid = term(step)
+            if k == 0:
+                rewards[...] = paid
+            else:
+                rewards += paid
+            step.note(**{self._names[k]: paid})
         if crashes:
             rewards[terminated] = self.crash_reward
 
@@ -160,11 +174,13 @@ class ReachGoal(Task):
         super().judge(step, rewards, terminated)
         distance = np.hypot(*(step.pose[:, :2] - self.goals).T)
         alive = ~terminated
-        rewards[alive] += self.progress * (self._distance - distance)[alive]
+        gain = self.progress * (self._distance - distance)
+        rewards[alive] += gain[alive]
         self._distance = distance
         step.crashed = terminated.copy()
         step.reached = alive & (distance < self.radius)
         rewards[step.reached] += self.goal_reward
+        step.note(progress=gain, goal=self.goal_reward * step.reached)
         terminated |= step.reached
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
@@ -182,6 +198,18 @@ class ReachGoal(Task):
         self.goals[index], self._distance[index] = memory
 
 
+def reward_of_goals(task: Task, achieved: Any, desired: Any, info: Any) -> Any:
+    """What goals are worth, one or many: the ``compute_reward`` of a task.
+
+    Raises:
+        EnvOptionError: the task has no goal that counts alone.
+    """
+    rule = getattr(task, "compute_reward", None)
+    if rule is None:
+        raise EnvOptionError(f"compute_reward: task {task!r} has no goal that counts alone")
+    return rule(achieved, desired, info)
+
+
 def paper(forward: float = 5.0, turn: float = 1.0, **others: Any) -> Task:
     """The paper's task: reward ``forward`` or ``turn`` by action; -200 for a crash instead."""
     return Task([ByAction((forward, turn, turn))], **others)
@@ -189,6 +217,11 @@ def paper(forward: float = 5.0, turn: float = 1.0, **others: Any) -> Task:
 
 TASKS: dict[str, Callable[[], Task]] = {"wander": lambda: Task([Forward()]), "paper": paper, "goal": ReachGoal}
 """Tasks by name."""
+
+
+def _name_of(term: str | Term, k: int) -> str:
+    """Of a reward term, in ``info``."""
+    return term if isinstance(term, str) else getattr(term, "name", f"term_{k}")
 
 
 def _term(term: str | Term) -> Term:

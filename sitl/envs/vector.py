@@ -15,6 +15,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from .options import EnvOptionError, unknown
+from .presets import options_of
 from .rendering import Renderer, tile
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -297,7 +298,8 @@ class NavigateVector(OfSubEnvironments):
 
     def close_extras(self, **kwargs: Any) -> None:
         """See ``gymnasium.vector.VectorEnv.close``."""
-        self._session.robot.close()
+        if hasattr(self, "_session"):  # older Gymnasiums close what was refused while it was made, too
+            self._session.robot.close()
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:
@@ -305,3 +307,10 @@ def _mode(given: str | AutoresetMode) -> AutoresetMode:
         return AutoresetMode(given)
     except ValueError:
         raise unknown("autoreset_mode", given, [mode.value for mode in AutoresetMode]) from None
+
+
+class PresetNavigateVector(NavigateVector):
+    """Many of an environment of a preset (``presets.PRESETS``); every option can still be replaced."""
+
+    def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
+        super().__init__(num_envs, **options_of(preset, options))

@@ -42,7 +42,7 @@ class HilPlant(Plant):
 
     name = "hil"
     has_truth_in_record = False
-    idle_parameters = ("SIM_ACC2_", "SIM_ACCEL2_", "SIM_GYR2_", "SIM_MAG2_", "SIM_MAG3_")
+    idle_parameters = ("SIM_ACC2_", "SIM_ACCEL2_", "SIM_GYR2_", "SIM_MAG2_", "SIM_MAG3_", "SIM_GPS2_", "SIM_BAR2_")
 
     def __init__(self, vehicle: SimulatedVehicle, link: HilLink, patience_s: float) -> None:
         super().__init__(vehicle)

@@ -23,7 +23,7 @@ from ..core.vectors import Vec2, Vec3
 from ..physics.native.copter import pieces
 from ..physics.native.copter.init import init
 from ..physics.native.copter.prepare import prepare
-from ..physics.native.copter.state import Physics
+from ..physics.native.copter.state import ALL_DRIVEN, DRIVEN, Physics
 from ..physics.native.copter.step import step
 from ..physics.native.copter.trim import balance, command_speeds
 from ..physics.native.move import show_field
@@ -155,7 +155,7 @@ def apply_sim_parameters(v: Copter) -> None:
     for k in range(len(rotors.share)):
         fails = int(params.SIM.ENGINE_FAIL) >> k & 1
         rotors.share[k] = params.SIM.ENGINE_MUL if fails else 1.0
-    rotors.stuck = int(params.SIM.ENGINE_STUCK)
+    rotors.stuck = int(params.SIM.ENGINE_STUCK) | (ALL_DRIVEN if rotors.stuck & DRIVEN else 0)
     sim, shove, derived = params.SIM, v.physics.shove, v.physics.derived
     if derived.motor_lag != sim.ENGINE_LAG and derived.dt > 0.0:  # before power-on it is 0
         derived.motor_lag = sim.ENGINE_LAG

@@ -47,7 +47,7 @@ class Effect(NamedTuple):
     unit: str
     type: str
     values: Mapping[str, Value]
-    """SIM_ parameters that are set; "{n}" stands for the instance."""
+    """SIM_ parameters that are set; "{n}" stands for the instance, "{baro}" for BARO, BAR2."""
     does: str
     """What that is."""
     amount: float | None = None
@@ -64,15 +64,20 @@ class Effect(NamedTuple):
     def names(self, instances: int = 0) -> list[str]:
         """Its parameters, of the first so many instances; 0: of all."""
         last = instances or self.instances
-        return [name.format(n=k) for name in self.values for k in range(1, last + 1 if "{n}" in name else 2)]
+        return [named(name, k) for name in self.values for k in range(1, last + 1 if "{" in name else 2)]
+
+
+def named(parameter: str, instance: int) -> str:
+    """A parameter of an instance."""
+    return parameter.format(n=instance, baro="BARO" if instance == 1 else f"BAR{instance}")
 
 
 EFFECTS: tuple[Effect, ...] = (
-    Effect("gps", "off", {"SIM_GPS1_ENABLE": 0}, "no receiver any more"),
-    Effect("gps", "wrong", {"SIM_GPS1_GLTCH_X": (AMOUNT, _METRE)}, "fixes lie to the north", 50.0, "[m]"),
-    Effect("gps", "garbage", {"SIM_GPS1_JAM": 1}, "jammed: place, speed and satellites jump"),
-    Effect("gps", "delayed", {"SIM_GPS1_LAG_MS": (AMOUNT, 1000.0)}, "fixes come late", 0.5, "[s]"),
-    Effect("gps", "intermittent", {"SIM_GPS1_BYTELOS": (AMOUNT, 100.0)}, "bytes are lost", 0.01, "share"),
+    Effect("gps", "off", {"SIM_GPS{n}_ENABLE": 0}, "no receiver any more", instances=2),
+    Effect("gps", "wrong", {"SIM_GPS{n}_GLTCH_X": (AMOUNT, _METRE)}, "fixes lie to the north", 50.0, "[m]", 2),
+    Effect("gps", "garbage", {"SIM_GPS{n}_JAM": 1}, "jammed: place, speed and satellites jump", instances=2),
+    Effect("gps", "delayed", {"SIM_GPS{n}_LAG_MS": (AMOUNT, 1000.0)}, "fixes come late", 0.5, "[s]", 2),
+    Effect("gps", "intermittent", {"SIM_GPS{n}_BYTELOS": (AMOUNT, 100.0)}, "bytes are lost", 0.01, "share", 2),
     Effect("gyro", "wrong", {"SIM_GYR{n}_BIAS_X": AMOUNT}, "the roll rate that it shows is off", 0.5, "[rad/s]", 2),
     Effect("gyro", "off", {"SIM_GYR_FAIL_MSK": MASK}, "the gyro sends nothing", instances=2),
     Effect("accel", "wrong", {"SIM_ACC{n}_BIAS_X": AMOUNT}, "it shows so much too much forward", 5.0, "[m/s/s]", 2),
@@ -80,12 +85,12 @@ EFFECTS: tuple[Effect, ...] = (
     Effect("accel", "stuck", {"SIM_ACCEL{n}_FAIL": AMOUNT}, "all axes show one number", 20.0, "[m/s/s]", 2),
     Effect("mag", "off", {"SIM_MAG{n}_FAIL": 1}, "the compass sends nothing", instances=3),
     Effect("mag", "wrong", {"SIM_MAG{n}_OFS_X": AMOUNT}, "hard iron ahead of it", 400.0, "[mGauss]", 3),
-    Effect("baro", "off", {"SIM_BARO_DISABLE": 1}, "no samples any more"),
-    Effect("baro", "stuck", {"SIM_BARO_FREEZE": 1}, "the same height for ever"),
-    Effect("baro", "garbage", {"SIM_BARO_RND": AMOUNT}, "noise", 3.0, "[m]"),
-    Effect("baro", "wrong", {"SIM_BARO_GLITCH": AMOUNT}, "another height", 10.0, "[m]"),
-    Effect("baro", "slow", {"SIM_BARO_DRIFT": AMOUNT}, "the height drifts away", 0.5, "[m/s]"),
-    Effect("baro", "delayed", {"SIM_BARO_DELAY": (AMOUNT, 1000.0)}, "samples come late", 0.5, "[s]"),
+    Effect("baro", "off", {"SIM_{baro}_DISABLE": 1}, "no samples any more", instances=2),
+    Effect("baro", "stuck", {"SIM_{baro}_FREEZE": 1}, "the same height for ever", instances=2),
+    Effect("baro", "garbage", {"SIM_{baro}_RND": AMOUNT}, "noise", 3.0, "[m]", 2),
+    Effect("baro", "wrong", {"SIM_{baro}_GLITCH": AMOUNT}, "another height", 10.0, "[m]", 2),
+    Effect("baro", "slow", {"SIM_{baro}_DRIFT": AMOUNT}, "the height drifts away", 0.5, "[m/s]", 2),
+    Effect("baro", "delayed", {"SIM_{baro}_DELAY": (AMOUNT, 1000.0)}, "samples come late", 0.5, "[s]", 2),
     Effect("battery", "wrong", {"SIM_BATT_VOLTAGE": AMOUNT}, "another voltage of the full battery", 10.0, "[V]"),
     Effect("battery", "slow", {"SIM_BATT_RES": AMOUNT}, "the voltage sags under load", 0.1, "[Ohm]"),
     Effect("motor", "off", {"SIM_ENGINE_MUL": AMOUNT, "SIM_ENGINE_FAIL": MASK}, "weaker motors", 0.0, "share left", 8),
@@ -94,6 +99,7 @@ EFFECTS: tuple[Effect, ...] = (
     Effect("servo", "off", {"SIM_ENGINE_MUL": AMOUNT, "SIM_ENGINE_FAIL": MASK}, "weaker outputs", 0.0, "share left", 8),
     Effect("servo", "stuck", {"SIM_ENGINE_STUCK": MASK}, "outputs stay as they are", instances=8),
     Effect("servo", "slow", {"SIM_SERVO_SPEED": AMOUNT}, "the steering servo is slow", 1.0, "[s] for 60 degrees"),
+    Effect("servo", "delayed", {"SIM_SERVO_DELAY": AMOUNT}, "the steering servo hears commands late", 0.2, "[s]"),
     Effect("rc", "off", {"SIM_RC_FAIL": 1}, "the transmitter is silent"),
     Effect("rc", "wrong", {"SIM_RC_FAIL": 2}, "sticks centred, throttle at 950 us"),
     Effect("rc", "stuck", {"SIM_RC_STUCK": MASK}, "channels stay as they are", instances=16),
@@ -262,8 +268,8 @@ class Failure:
         which = self.numbers(table)
         found = {}
         for name, value in effect.values.items():
-            for n in which if "{n}" in name else which[:1]:
-                full = name.format(n=n)
+            for n in which if "{" in name else which[:1]:
+                full = named(name, n)
                 if value == MASK:
                     found[full] = float(int(now.get(full, 0.0)) | sum(1 << (k - 1) for k in which))
                 elif isinstance(value, tuple):

@@ -24,8 +24,9 @@ from ..physics.native.rover.drive import commanded
 from ..physics.native.rover.init import init
 from ..physics.native.rover.motion import hold_back
 from ..physics.native.rover.prepare import prepare
-from ..physics.native.rover.state import Physics
+from ..physics.native.rover.state import Physics, SteeringServo
 from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
+from ..physics.native.tick import TICK_S
 from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
 from . import sim_parameters
@@ -124,8 +125,22 @@ def hold_outputs(p: Physics, sim: Simulated, controls: Floats) -> None:
     wheels.is_faulty = bool((fails | stuck) & (1 << first | 1 << second))
 
 
+def slow_servo(servo: SteeringServo, delay: int, hz: float) -> None:
+    """Delay [ticks] and low-pass (Butterworth, by the bilinear transform) of the steering servo's commands."""
+    if not servo.is_slow:
+        servo.kept, servo.first, servo.second = 0, 0.0, 0.0
+    servo.delay, servo.is_filtered = delay, hz > 0.0
+    servo.is_slow = delay > 0 or servo.is_filtered
+    if servo.is_filtered:
+        k = math.tan(math.pi * hz * TICK_S)
+        norm = 1.0 / (1.0 + math.sqrt(2.0) * k + k * k)
+        servo.gain = k * k * norm
+        servo.a1, servo.a2 = 2.0 * (k * k - 1.0) * norm, (1.0 - math.sqrt(2.0) * k + k * k) * norm
+
+
 def slow_down(p: Physics, sim: Simulated) -> None:
     """Motors and steering servo as slow as the parameters say."""
+    slow_servo(p.wheels.servo, round(sim.SERVO_DELAY / TICK_S), sim.SERVO_FILTER)
     d = p.derived
     rate = 0.0 if sim.SERVO_SPEED == DEFAULT_SERVO_SPEED else math.radians(60.0) / sim.SERVO_SPEED
     if (d.motor_lag, d.servo_rate) != (sim.ENGINE_LAG, rate) and d.control_scale > 0.0:  # before power-on it is 0

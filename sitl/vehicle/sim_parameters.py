@@ -7,19 +7,21 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..autopilot.params.simulation import DELIVERED, Barometer, Receiver, axes
+from ..autopilot.params.simulation import DELIVERED, Receiver, SecondBarometer, Simulated, axes
 from ..core.algebra import ZERO, conjugate, quat_from_euler
+from ..core.border import BAROS_DIFFER, ONE_BARO, Sensors
 from ..core.constants import TICK_US
+from ..core.memory import words_of
 from ..core.rng import next_u32
 from ..core.vectors import Euler, Vec3
-from ..physics.native.records import BARO_RING, BaroFault, Iron, SensorState
+from ..physics.native.records import BARO_RING, BaroFault, GpsReceiver, Iron, SensorState
 from ..physics.native.tick import TICK_S
 from ..physics.native.wind import EVEN
 from . import imu_faults
 from .record import Vehicle
 
 PREFIX = "SIM_"
-OTHERS = ("RNGFND1_", "GPS1_TYPE")
+OTHERS = ("RNGFND1_", "GPS1_TYPE", "GPS2_TYPE")
 """Beginnings of other names of parameters that make sensors."""
 DEFAULT_VOLTAGE = float(np.float32(12.6))
 """SIM_BATT_VOLTAGE that leaves the airframe's battery as it is [V]."""
@@ -75,10 +77,11 @@ def _look_down(v: Vehicle) -> None:
     down.present = has_flow or down.ranges
 
 
-def _spoil_gps(sensors: SensorState, gps: Receiver, is_looked_for: bool) -> None:
-    sensors.gps_off = gps.ENABLE == 0 or gps.TYPE == 0 or not is_looked_for
-    sensors.gps_jammed = gps.JAM != 0
-    fault = sensors.gps_fault
+def _spoil_gps(receiver: GpsReceiver, gps: Receiver, is_looked_for: bool) -> None:
+    receiver.present = is_looked_for
+    receiver.off = gps.ENABLE == 0 or gps.TYPE == 0 or not is_looked_for
+    receiver.jammed = gps.JAM != 0
+    fault = receiver.fault
     fault.delay = -1 if gps.LAG_MS == DEFAULT_LAG_MS else round(1e-3 * gps.LAG_MS / TICK_S)
     fault.satellites = -1 if gps.NUMSATS == DEFAULT_SATELLITES else int(gps.NUMSATS)
     fault.lat, fault.lon = round(1e7 * gps.GLTCH.X), round(1e7 * gps.GLTCH.Y)
@@ -90,7 +93,7 @@ def _spoil_gps(sensors: SensorState, gps: Receiver, is_looked_for: bool) -> None
     )  # fmt: skip
 
 
-def _spoil_barometer(fault: BaroFault, baro: Barometer, period: int) -> None:
+def _spoil_barometer(fault: BaroFault, baro: SecondBarometer, period: int) -> None:
     fault.off, fault.frozen = baro.DISABLE != 0, baro.FREEZE != 0
     fault.height, fault.drift = baro.GLITCH, baro.DRIFT
     fault.noise = 0.0 if baro.RND == DEFAULT_BARO_NOISE else baro.RND
@@ -104,6 +107,27 @@ def _spoil_barometer(fault: BaroFault, baro: Barometer, period: int) -> None:
         fault.taken = 0
 
 
+def _kind(fault: BaroFault) -> tuple[object, ...]:
+    """What is wrong with a barometer."""
+    return (
+        fault.off, fault.frozen, fault.height, fault.drift, fault.drifted, fault.noise, fault.delay, fault.front,
+        fault.back,
+    )  # fmt: skip
+
+
+def _spoil_barometers(s: SensorState, shown: Sensors, sim: Simulated, period: int) -> None:
+    """Both of them; a second one that has the same faults shows what the first does."""
+    first, second = s.baros[0], s.baros[1]
+    if not s.baros_differ:
+        words_of(second)[:] = words_of(first)
+        shown.abs_pressure2 = shown.abs_pressure
+    _spoil_barometer(first, sim.BARO, period)
+    _spoil_barometer(second, sim.BAR2, period)
+    has_second = sim.BARO.COUNT >= 2
+    s.baros_differ = has_second and _kind(first) != _kind(second)
+    shown.baro_state = BAROS_DIFFER if s.baros_differ else 0 if has_second else ONE_BARO
+
+
 def apply(v: Vehicle) -> None:
     """Bring what every kind of vehicle has in line with its SIM_ parameters, and with those of other packages."""
     sim, physics, sensors, wind = v.autopilot.params.SIM, v.physics, v.physics.sensors, v.physics.wind
@@ -112,8 +136,9 @@ def apply(v: Vehicle) -> None:
     wind.profile, wind.full_height, wind.gain = int(sim.WIND_T), sim.WIND_T_ALT, sim.WIND_T_COEF
     wind.elevation = sim.WIND_DIR_Z
     wind.is_shaped = wind.profile != EVEN or wind.elevation != 0.0
-    _spoil_gps(sensors, sim.GPS1, v.autopilot.params.GPS1_TYPE != 0)
-    _spoil_barometer(sensors.baro_fault, sim.BARO, physics.derived.baro_period)
+    _spoil_gps(sensors.gps[0], sim.GPS1, v.autopilot.params.GPS1_TYPE != 0)
+    _spoil_gps(sensors.gps[1], sim.GPS2, v.autopilot.params.GPS2_TYPE != 0)
+    _spoil_barometers(sensors, v.sensors, sim, physics.derived.baro_period)
     ranges = sensors.range_fault
     ranges.glitch, ranges.noise, ranges.loss = sim.SONAR_GLITCH, sim.SONAR_RND, sim.SONAR_LOSS
     ranges.lidar_loss = sim.LIDAR_LOSS

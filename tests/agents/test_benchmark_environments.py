@@ -7,6 +7,7 @@ import argparse
 import csv
 import math
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -14,8 +15,9 @@ from sitl.agents import recipes
 from sitl.agents.cli import benchmark
 from sitl.agents.deep import library
 from sitl.agents.errors import AgentError
+from sitl.agents.evaluate import Evaluation, Played
 from sitl.agents.recipes.recipe import Recipe, check_all, runs_of
-from sitl.agents.report.driven import Trails, Whereabouts, place_of, whereabouts
+from sitl.agents.report.driven import Driven, Trails, Whereabouts, facts, place_of, whereabouts
 from sitl.agents.report.environments import drive_one, with_range
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
@@ -157,3 +159,14 @@ def test_ranges_as_text():
     assert with_range([1.0, 3.0], ".1f") == "2.0 (1.0 .. 3.0)"
     assert with_range([5.0, 5.0], ".0f") == with_range([5.0], ".0f") == "5"
     assert with_range([99.0, 100.0, 100.0], ".3g") == "99.7 (99 .. 100)"
+
+
+def test_a_goal_reached_has_not_left_the_world_and_parts_are_named():
+    env = gym.make("sitl/RoverWaypoint-v0")
+    found = facts(env, "digits")
+    env.close()
+    assert found.observation == "goal, velocity, last_action (9)" and found.action == "2 set-points"
+    assert not whereabouts(np.array([[0.0, 0.0], [50.0, 0.0]]), found.world).left  # it has no walls
+    played = [Played(1.0, 1, True, crashed, reached, 1.0, 0.0) for crashed, reached in ((0, 1), (1, 0), (0, 0))]
+    out = Driven(Evaluation(tuple(played)), (), (Whereabouts(1.0, True),) * 3, found)
+    assert out.left == 1

@@ -4,17 +4,23 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
+import subprocess
+import sys
 
 import gymnasium as gym
 import numpy as np
 import pytest
 
 from sitl import cli
-from sitl.agents import learnt
+from sitl.agents import baselines, environments, learnt
 from sitl.agents.deep import policy_file
-from sitl.agents.deploy import deploy, options_of
+from sitl.agents.deploy import Deployed, deploy, options_of
 from sitl.agents.errors import AgentError
-from sitl.errors import OptionError
+from sitl.autopilot.copter.modes.guided import GUIDED
+from sitl.envs.robots import at_connection
+from sitl.errors import NotReadyError, OptionError
 from tests.agents.test_policy_files import made
 from tests.envs.test_guarded_vehicles import BRAKE, LOITER, mode, position
 from tests.envs.test_reset_of_real_vehicles import DISARM, REBOOT, RealVehicle, height, hovering
@@ -44,7 +50,7 @@ def test_a_policy_flies_within_its_guard_and_hands_over_at_the_end(flown):
         guard = {"radius": 4.0, "floor": 2.0, "ceiling": 8.0, "late": 60.0}
         url = f"udpout:127.0.0.1:{vehicle.port}"
         done = deploy(policy, url, episodes=2, guard=guard, wait=10.0)
-    assert not done.handed_over and [steps for steps, _, _ in done.episodes] == [30, 30]
+    assert not done.handed_over and [flown.steps for flown in done.episodes] == [30, 30]
     assert [deed.what for deed in done.deeds if deed.what != "limited"] == ["taken over"] * 2 + ["handed over"]
     assert done.deeds[-1].why == "closed" and len(done.thinking) == 60
     assert np.median(done.periods) == pytest.approx(0.1, abs=0.05)
@@ -55,20 +61,112 @@ def test_a_policy_flies_within_its_guard_and_hands_over_at_the_end(flown):
     assert 1.0 < height(simulation) < 9.0 and math.dist(position(simulation)[:2], began[:2]) < 8.0
 
 
-def test_ctrl_c_and_an_error_leave_it_in_a_safe_mode(flown):
+class Acting:
+    """A policy that does something else at its tenth step."""
+
+    def __init__(self, policy, deed):
+        self.check, self.begin, self._policy, self._deed, self._steps = policy.check, policy.begin, policy, deed, 0
+
+    def act(self, observation):
+        self._steps += 1
+        action = self._policy.act(observation)
+        return self._deed(action) if self._steps == 10 else action
+
+
+class Clock:
+    """Wall time that a test sets forth."""
+
+    def __init__(self):
+        self.late = 0.0
+
+    def monotonic(self):
+        return self.late
+
+
+def raises(error):
+    def deed(action):
+        raise error
+
+    return deed
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), RuntimeError("no such tensor"), SystemExit(143)], ids=repr)
+def test_a_policy_that_raises_leaves_the_vehicle_in_a_safe_mode(flown, error):
+    policy, simulation, out = learnt.load(flown), hovering(), Deployed()
+    acting = policy._replace(policy=Acting(policy.policy, raises(error)))
+    with RealVehicle(simulation) as vehicle, pytest.raises(type(error)):
+        deploy(acting, f"udpout:127.0.0.1:{vehicle.port}", wait=10.0, guard={"late": 60.0}, out=out)
+    assert [deed.what for deed in out.deeds if deed.what != "limited"] == ["taken over", "handed over"]
+    simulation.advance(5.0)
+    assert mode(simulation) == BRAKE and simulation.v.autopilot.arming.armed == 1 and height(simulation) > 1.0
+
+
+def test_actions_that_are_no_numbers_and_a_policy_that_thinks_too_long_end_it(flown, monkeypatch):
     policy = learnt.load(flown)
-
-    class Interrupted:
-        check, begin = policy.policy.check, policy.policy.begin
-
-        def act(self, observation):
-            raise KeyboardInterrupt
-
     simulation = hovering()
-    with RealVehicle(simulation) as vehicle, pytest.raises(KeyboardInterrupt):
-        deploy(policy._replace(policy=Interrupted()), f"udpout:127.0.0.1:{vehicle.port}", wait=10.0)
-    simulation.advance(3.0)
-    assert mode(simulation) == BRAKE and height(simulation) == pytest.approx(5.0, abs=0.7)
+    acting = policy._replace(policy=Acting(policy.policy, lambda action: np.full_like(action, np.nan)))
+    with RealVehicle(simulation) as vehicle, pytest.raises(gym.error.InvalidAction):
+        deploy(acting, f"udpout:127.0.0.1:{vehicle.port}", wait=10.0, guard={"late": 60.0})
+    assert mode(simulation) == BRAKE
+    clock, simulation = Clock(), hovering()
+    monkeypatch.setattr(at_connection, "time", clock)
+
+    def late(action):
+        clock.late = 1.5
+        return action
+
+    acting = policy._replace(policy=Acting(policy.policy, late))
+    with RealVehicle(simulation) as vehicle:
+        done = deploy(acting, f"udpout:127.0.0.1:{vehicle.port}", wait=10.0, episodes=3)
+    assert done.handed_over == "the agent is late: 1.50 s since its last step" and len(done.episodes) == 1
+    assert mode(simulation) == BRAKE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
+def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
+    simulation = hovering()
+    words = [sys.executable, "-m", "sitl", "deploy", str(flown), "--episodes", "1000", "--guard", "late=60",
+             "--guard", "floor=2"]  # fmt: skip
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with RealVehicle(simulation) as vehicle:
+        words += ["--connection", f"udpout:127.0.0.1:{vehicle.port}"]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=paths) as process:
+            while vehicle.count("SET_POSITION_TARGET_LOCAL_NED") < 20 and process.poll() is None:
+                vehicle.wait()
+            process.send_signal(number)
+            said, _ = process.communicate(timeout=60)
+    assert ("handed over: closed" in said) == (number != signal.SIGKILL)
+    assert not {DISARM, REBOOT} & vehicle.commands()
+    simulation.advance(8.0)
+    assert simulation.v.autopilot.arming.armed == 1 and height(simulation) > 1.0
+    assert mode(simulation) == (GUIDED if number == signal.SIGKILL else BRAKE)
+    assert np.linalg.norm(simulation.v.physics.body.vel) < 0.3
+
+
+def test_a_vehicle_without_a_lidar_flies_what_reads_none(flown):
+    policy, simulation = learnt.load(flown), hovering()
+    with RealVehicle(simulation, unsent=("OBSTACLE_DISTANCE", "DEBUG_FLOAT_ARRAY")) as vehicle:
+        url = f"udpout:127.0.0.1:{vehicle.port}"
+        done = deploy(policy, url, guard={"late": 60.0}, wait=10.0)
+        assert not done.handed_over and done.episodes[0].steps == 30
+        seen = policy.config.with_(env="sitl/CopterForest-v0", env_options={"world": "open"})
+        env = environments.make(seen, connection=url, reset="none")
+        with pytest.raises(NotReadyError, match=r"does not send OBSTACLE_DISTANCE every 100 ms; .* reads the lidar"):
+            env.reset()
+        env.close()
+
+
+def test_a_copter_that_has_landed_flies_back_and_lands_again(flown):
+    land = learnt.load(baselines.find("copter-land"))
+    with pytest.raises(AgentError, match="the guard's floor is 1 m above the ground: --guard floor=-5"):
+        deploy(land, "udpout:127.0.0.1:1")
+    simulation = hovering()
+    with RealVehicle(simulation, step_us=4_000) as vehicle:
+        guard = {"late": 60.0, "floor": -5.0}
+        done = deploy(land, f"udpout:127.0.0.1:{vehicle.port}", episodes=2, reset="return", guard=guard, wait=30.0)
+    assert [flown.solved for flown in done.episodes] == [True, True]
+    assert "take-off" in [deed.what for deed in done.deeds]
 
 
 def test_the_command_says_what_happened(flown, capsys):

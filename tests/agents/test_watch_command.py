@@ -148,14 +148,26 @@ def test_a_window_plays_until_it_is_closed(run, monkeypatch):
 
 
 def test_a_window_that_nobody_can_see_is_refused(run, monkeypatch):
-    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
-    import pygame
-
-    monkeypatch.setattr(pygame.display, "get_driver", lambda: "offscreen")
-    monkeypatch.setattr(pygame.display, "get_init", lambda: True)
-    monkeypatch.setattr("sitl.envs.rendering.Renderer.show", lambda renderer: None)
-    with pytest.raises(AgentError, match=r"no screen for a window; --out FILE\.gif"):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(AgentError, match=r"no screen .neither DISPLAY nor .* is set.*--out FILE\.gif"):
         call(run.path)
+
+
+def test_a_gif_stays_small_and_each_frame_of_its_end_lasts_longer(tmp_path, monkeypatch):
+    monkeypatch.setattr(showing, "LARGEST", 60_000)
+    rng, shown = np.random.default_rng(1), 0
+    with Reel(tmp_path / "long.gif", 0.1) as reel:
+        for _ in range(400):
+            if reel.wants():
+                reel.add(rng.integers(0, 255, (40, 40, 3), np.uint8))
+    assert (tmp_path / "long.gif").stat().st_size < 70_000 and reel.every >= 8
+    with Image.open(tmp_path / "long.gif") as film:
+        assert film.n_frames == reel.pictures
+        for frame in range(film.n_frames):
+            film.seek(frame)
+            shown += film.info["duration"]
+    assert 40_000 <= shown < 40_000 + 100 * reel.every
 
 
 def test_the_pace_waits_for_what_is_left_of_a_step():

@@ -71,6 +71,21 @@ def test_a_slow_servo_and_a_slow_motor(core: Core) -> None:
     assert bytes(derived._bytes) == before
 
 
+def test_a_late_steering_servo(core: Core) -> None:
+    """SIM_SERVO_DELAY: the wheels begin to turn so much later."""
+    p = at_speed(core, "erle_rover", 4.0)
+    wheels = p.simulation.v.physics.wheels
+    p.simulation.fail("servo/delayed=0.5")
+    p.sticks(1.0, 1500, 1700)
+    straight = wheels.angle
+    p.sticks(0.45, 2000, 1700)
+    assert wheels.angle == pytest.approx(straight, abs=0.02)
+    p.sticks(0.5, 2000, 1700)
+    assert wheels.angle > straight + 0.2
+    p.simulation.repair("servo")
+    assert not wheels.servo.is_slow
+
+
 @pytest.mark.parametrize("frame", ["ardupilot_rover", "skid_rover"])
 def test_outputs_that_are_stuck(core: Core, frame: str) -> None:
     """They stay as they were, and are as the autopilot says when that is over. ArduPilot has no parameter for it."""

@@ -67,7 +67,7 @@ def test_amounts_are_drawn_for_each_episode() -> None:
 
     def seen(robot: Any, index: int = 0) -> tuple[float, ...]:
         v = robot.view(index)
-        return (v.physics.wheels.share.y, v.physics.battery.full_voltage, v.physics.sensors.gps_fault.noise)
+        return (v.physics.wheels.share.y, v.physics.battery.full_voltage, v.physics.sensors.gps[0].fault.noise)
 
     many.reset(seed=5)
     many.step(np.zeros(3, np.int64))
@@ -82,7 +82,7 @@ def test_amounts_are_drawn_for_each_episode() -> None:
         env.unwrapped.restore(kept)  # type: ignore[attr-defined]
         env.step(0)
         assert seen(robot) == wanted and wanted[1] in (10, 11, 12) and 1.0 <= wanted[2] <= 2.0
-        assert robot.view(0).physics.sensors.gps_jammed
+        assert robot.view(0).physics.sensors.gps[0].jammed
     assert len(set(drawn)) == 3 and all(0.3 <= share <= 0.9 for share, *_ in drawn)
     env.close()
     many.close()

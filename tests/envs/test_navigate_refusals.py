@@ -9,7 +9,7 @@ import math
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium.error import InvalidAction
+from gymnasium.error import DependencyNotInstalled, InvalidAction, ResetNeeded
 
 from sitl import worlds
 from sitl.envs import EnvOptionError
@@ -19,6 +19,7 @@ from sitl.envs.options import COMMON
 from sitl.envs.rewards import Nearness
 from sitl.envs.session import NavigateOptions
 from sitl.envs.tasks import ReachGoal, Task
+from sitl.envs.vector import NavigateVector
 from sitl.vehicles.turtlebot import Lidar
 
 NAVIGATE = "sitl/Navigate-v0"
@@ -52,7 +53,7 @@ def test_actions_outside_of_a_box_are_refused(action):
         ({"world": "moon"}, r"world 'moon' is not known; it is one of circuit"),
         ({"task": "wonder"}, r"task 'wonder' .*did you mean 'wander'"),
         ({"task": Task}, r"task .* nor an object with judge"),
-        ({"observation": "camera"}, r"observation 'camera' is not known; it is one of digits, scan"),
+        ({"observation": "smell"}, r"observation 'smell' is not known; it is one of digits, scan"),
         ({"action": "jump"}, r"action 'jump' is not known; it is one of discrete, continuous"),
         ({"action": 3}, r"action 3 is neither a name"),
         ({"action": Continuous(VELOCITY, (0,) * 4, (1,) * 4)}, r"action gives 'velocity'; turtlebot takes drive"),
@@ -180,3 +181,50 @@ def test_snapshot_of_another_task_is_refused():
     env.reset(seed=1), other.reset(seed=1)
     with pytest.raises(EnvOptionError, match="a task without a goal"):
         env.restore(other.snapshot())
+
+
+@pytest.mark.parametrize(
+    ("robot", "world"),
+    [("turtlebot", "circuit2"), ("erle_rover", "maze_erlerover"), ("erle-copter", "office_erlecopter")],
+)
+def test_each_robot_has_a_world_that_it_has_room_in(robot, world):
+    env = gym.make(NAVIGATE, robot=robot)
+    assert env.unwrapped.world.name == world
+    env.reset(seed=1)
+    assert not env.unwrapped.task.limit > env.unwrapped.robot.scan.min()
+    env.close()
+
+
+@pytest.mark.parametrize("name", [NAVIGATE, "sitl/CopterHover-v0"])
+def test_a_step_before_the_first_reset_is_refused(name):
+    env = gym.make(name).unwrapped
+    with pytest.raises(ResetNeeded, match=r"before the first reset\(\)"):
+        env.step(env.action_space.sample())
+    env.reset(seed=1)
+    snapshot = env.snapshot()
+    other = gym.make(name).unwrapped
+    other.restore(snapshot)
+    other.step(other.action_space.sample())
+    env.close()
+    other.close()
+
+
+def test_a_vector_that_was_refused_while_it_was_made_closes_in_silence():
+    NavigateVector.__new__(NavigateVector).close()  # as older Gymnasiums do when it is deleted
+
+
+def test_a_window_needs_a_screen(monkeypatch, capfd):
+    pytest.importorskip("pygame")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    env = gym.make(NAVIGATE, render_mode="human")
+    with pytest.raises(DependencyNotInstalled, match=r'render_mode "human" finds no screen .*; "rgb_array" needs none'):
+        env.reset(seed=1)
+    env.close()
+    assert "XDG_RUNTIME_DIR" not in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("start", ["turned", "random"])
+def test_a_vehicle_at_a_connection_starts_where_it_is(start):
+    with pytest.raises(EnvOptionError, match=f"start '{start}': a vehicle at a connection.*--option start=original"):
+        gym.make("GazeboMazeErleRoverLIDAR-v0", connection="udpout:127.0.0.1:9", start=start)

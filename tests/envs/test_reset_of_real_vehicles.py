@@ -12,6 +12,7 @@ import gymnasium as gym
 import pytest
 
 import sitl.envs  # noqa: F401
+from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
 from sitl.client.endpoint import Endpoint
 from sitl.envs import EnvOptionError, NotASimulatorError
@@ -19,7 +20,8 @@ from sitl.missions.pilot import Pilot
 from sitl.simulation import Simulation
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
-DISARM, MODE, REBOOT, REQUEST_MESSAGE = 400, 176, 246, 512
+DISARM, MODE, REBOOT, REQUEST_MESSAGE, INTERVAL = 400, 176, 246, 512, 511
+DENIED = 2
 QUESTIONS = {"PARAM_REQUEST_READ", "COMMAND_LONG"}
 
 
@@ -48,10 +50,15 @@ class RealVehicle:
     Args:
         simulation: the vehicle as it is now, armed and in the air, say.
         hidden: whether its SIM_ parameters are kept from clients.
+        unsent: messages that it does not send at an interval.
+        step_us: time from one look at the socket to the next [us]; looks take a millisecond of wall time, or more.
     """
 
-    def __init__(self, simulation: Simulation, hidden: bool = True) -> None:
-        self.simulation, self.hidden = simulation, hidden
+    def __init__(
+        self, simulation: Simulation, hidden: bool = True, unsent: tuple[str, ...] = (), step_us: int = _STEP_US
+    ) -> None:
+        self.simulation, self.hidden, self._step_us = simulation, hidden, step_us
+        self._unsent = {message(name).id for name in unsent}
         self.received: list[tuple[str, Any]] = []
         """Name and fields of each message that came from the client."""
         self._client, self._splitter, self._sequence = Endpoint(), Splitter(), 0
@@ -60,7 +67,8 @@ class RealVehicle:
         self._socket.bind(("127.0.0.1", 0))
         self._socket.settimeout(0.001)
         self.port = self._socket.getsockname()[1]
-        self._stop = threading.Event()
+        self._stop, self._came = threading.Event(), threading.Event()
+        self._refusals: list[bytes] = []
         self._thread = threading.Thread(target=self._serve)
 
     def __enter__(self) -> RealVehicle:
@@ -79,18 +87,33 @@ class RealVehicle:
                 data, peer = self._socket.recvfrom(1 << 16)
                 for frame in self._splitter.feed(data):
                     self._take(frame)
-            self.simulation.advance_to(self.simulation.time_us + _STEP_US)
-            said = self._client.link.receive()
+            self.simulation.advance_to(self.simulation.time_us + self._step_us)
+            said = self._client.link.receive() + b"".join(self._refusals)
+            self._refusals.clear()
             for at in range(0, len(said) if peer else 0, 8192):
                 self._socket.sendto(said[at : at + 8192], peer)
 
     def _take(self, frame: Any) -> None:
         fields = frame.kind.decode(frame.payload)
         self.received.append((frame.kind.name, fields))
+        self._came.set()
         if self.hidden and frame.kind.name == "PARAM_REQUEST_READ" and fields.param_id.startswith(b"SIM_"):
+            return
+        if frame.kind.name == "COMMAND_LONG" and fields.command == INTERVAL and int(fields.param1) in self._unsent:
+            ack = message("COMMAND_ACK")
+            self._refusals.append(encode_v2(ack, ack.payload(command=INTERVAL, result=DENIED), 0, 1, 1))
             return
         self._client.link.send(encode_v2(frame.kind, frame.payload, self._sequence, 255, 190))
         self._sequence = (self._sequence + 1) & 0xFF
+
+    def count(self, name: str) -> int:
+        """How many messages of this name have come."""
+        return sum(each == name for each, _ in self.received)
+
+    def wait(self, seconds: float = 1.0) -> None:
+        """Until a message comes, at most so long [s of wall time]."""
+        self._came.wait(seconds)
+        self._came.clear()
 
     def commands(self) -> set[int]:
         """Numbers of the commands that came."""

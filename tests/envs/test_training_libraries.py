@@ -54,6 +54,58 @@ def test_other_algorithms_of_stable_baselines3(algorithm):
     env.close()
 
 
+@pytest.mark.parametrize(
+    ("algorithm", "name"),
+    [
+        ("PPO", "sitl/CopterHoverDiscrete-v0"),
+        ("PPO", "sitl/CopterHover-v0"),
+        ("DQN", "sitl/RoverWaypointDiscrete-v0"),
+        ("SAC", "sitl/RoverWaypoint-v0"),
+        ("TQC", "sitl/CopterHover-v0"),
+    ],
+)
+def test_stable_baselines3_with_single_environments_by_id(algorithm, name):
+    """As its first page shows: a class and an id."""
+    library = pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
+    if algorithm == "TQC":
+        library = pytest.importorskip("sb3_contrib", reason="needs sb3-contrib")
+    off_policy = {"learning_starts": 50, "buffer_size": 1000, "batch_size": 32}
+    settings = {"n_steps": 128, "batch_size": 64, "n_epochs": 2} if algorithm == "PPO" else off_policy
+    model = getattr(library, algorithm)("MlpPolicy", name, seed=1, device="cpu", **settings)
+    before = weights(model.policy)
+    model.learn(256)
+    assert has_learnt(before, weights(model.policy))
+    model.get_env().close()
+
+
+@pytest.mark.parametrize("many", [False, True])
+@pytest.mark.parametrize(
+    ("algorithm", "name"),
+    [("SAC", "sitl/CopterReachGoal-v0"), ("TQC", "sitl/RoverReachGoal-v0"), ("DQN", "sitl/CopterReachGoalDiscrete-v0")],
+)
+def test_hindsight_replay_of_stable_baselines3(algorithm, name, many):
+    library = pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
+    if algorithm == "TQC":
+        library = pytest.importorskip("sb3_contrib", reason="needs sb3-contrib")
+    from stable_baselines3 import HerReplayBuffer
+
+    from sitl.envs.sb3 import Sb3VecEnv
+
+    env = Sb3VecEnv(name, 4, max_episode_steps=20) if many else gym.make(name, max_episode_steps=20)
+    model = getattr(library, algorithm)(
+        "MultiInputPolicy", env, replay_buffer_class=HerReplayBuffer, seed=1, device="cpu", learning_starts=100,
+        buffer_size=1000, batch_size=64, replay_buffer_kwargs={"n_sampled_goal": 4, "goal_selection_strategy": "final"},
+    )  # fmt: skip
+    before = weights(model.policy)
+    model.learn(200)
+    assert has_learnt(before, weights(model.policy))
+    batch = model.replay_buffer.sample(200)
+    there = np.linalg.norm(batch.next_observations["achieved_goal"] - batch.observations["desired_goal"], axis=1)
+    assert np.array_equal(batch.rewards.numpy()[:, 0] == 0.0, there < 1.0), "rewards are those of the goals put in"
+    assert (batch.rewards == 0.0).any(), "some goals were reached in hindsight"
+    env.close()
+
+
 @pytest.mark.parametrize("name", ["sitl/Navigate-v0", "GazeboOfficeErleCopterLIDAR-v0"])
 def test_a_loop_in_one_file(name):
     """PPO as CleanRL has it: a vector environment that resets in the next step, arrays of all robots, one update."""
@@ -102,6 +154,8 @@ def test_a_loop_in_one_file(name):
         ("sitl/Navigate-v0", SCAN),
         ("sitl/Navigate-v0", CONTINUOUS),
         ("GazeboMazeErleRoverLIDAR-v0", SCAN),
+        ("sitl/CopterHoverDiscrete-v0", {}),
+        ("sitl/CopterHover-v0", {}),
     ],
 )
 def test_skrl(tmp_path, name, options):
@@ -159,7 +213,13 @@ def test_skrl(tmp_path, name, options):
 
 @pytest.mark.parametrize(
     ("name", "options"),
-    [("sitl/Navigate-v0", SCAN), ("sitl/Navigate-v0", CONTINUOUS), ("GazeboMazeErleRoverLIDAR-v0", SCAN)],
+    [
+        ("sitl/Navigate-v0", SCAN),
+        ("sitl/Navigate-v0", CONTINUOUS),
+        ("GazeboMazeErleRoverLIDAR-v0", {"observation": ["digits"]}),
+        ("sitl/CopterHoverDiscrete-v0", {}),
+        ("sitl/CopterHover-v0", {}),
+    ],
 )
 def test_rllib(name, options):
     pytest.importorskip("ray.rllib", reason="needs ray[rllib]")
@@ -180,3 +240,45 @@ def test_rllib(name, options):
         assert np.isfinite(result["learners"]["default_policy"]["total_loss"])
     finally:
         algorithm.stop()
+
+
+@pytest.mark.parametrize("name", ["sitl/CopterHoverDiscrete-v0", "sitl/CopterHover-v0"])
+def test_tianshou(name):
+    pytest.importorskip("tianshou", minversion="2", reason="needs tianshou 2")
+    from tianshou.algorithm import DQN, SAC
+    from tianshou.algorithm.modelfree.dqn import DiscreteQLearningPolicy
+    from tianshou.algorithm.modelfree.sac import SACPolicy
+    from tianshou.algorithm.optim import AdamOptimizerFactory
+    from tianshou.data import Collector, VectorReplayBuffer
+    from tianshou.env import DummyVectorEnv
+    from tianshou.trainer import OffPolicyTrainerParams
+    from tianshou.utils.net.common import Net
+    from tianshou.utils.net.continuous import ContinuousActorProbabilistic, ContinuousCritic
+
+    envs = DummyVectorEnv([lambda: gym.make(name, max_episode_steps=20) for _ in range(2)])
+    space, seen = envs.action_space[0], envs.observation_space[0].shape
+    optimiser = AdamOptimizerFactory(lr=1e-3)
+    if isinstance(space, gym.spaces.Discrete):
+        net = Net(state_shape=seen, action_shape=space.n, hidden_sizes=[32])
+        policy = DiscreteQLearningPolicy(model=net, action_space=space, eps_training=0.5)
+        algorithm = DQN(policy=policy, optim=optimiser, target_update_freq=50)
+    else:
+        actor = ContinuousActorProbabilistic(
+            preprocess_net=Net(state_shape=seen, hidden_sizes=[32]), action_shape=space.shape, unbounded=True,
+            conditioned_sigma=True,
+        )  # fmt: skip
+        both = Net(state_shape=seen, action_shape=space.shape, hidden_sizes=[32], concat=True)
+        algorithm = SAC(
+            policy=SACPolicy(actor=actor, action_space=space), policy_optim=optimiser,
+            critic=ContinuousCritic(preprocess_net=both), critic_optim=optimiser,
+        )  # fmt: skip
+    before = weights(algorithm)
+    collector = Collector(algorithm, envs, VectorReplayBuffer(1000, 2), exploration_noise=True)
+    collector.reset()
+    plan = OffPolicyTrainerParams(
+        training_collector=collector, max_epochs=1, epoch_num_steps=200, collection_step_num_env_steps=20,
+        update_step_num_gradient_steps_per_sample=0.2, batch_size=32, show_progress=False,
+    )  # fmt: skip
+    algorithm.run_training(plan)
+    assert has_learnt(before, weights(algorithm))
+    envs.close()

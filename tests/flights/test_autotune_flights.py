@@ -103,6 +103,10 @@ def test_roll_is_tuned_as_by_a_real_one_tried_and_kept(core: Core, tmp_path: Pat
     rows = log["ATUN"]
     assert len(rows) == pytest.approx(107, abs=16)
     assert [m.TuneStep for m in rows] == sorted(m.TuneStep for m in rows)
+    details = log["ATDE"]
+    assert 0.5 < len(details) / len(rows) < 25.0
+    assert 0.7 < max(m.Rate for m in details) / max(m.Max for m in rows) < 1.6, "twitches of an angle are faster"
+    assert max(abs(m.Angle) for m in details) < 60.0
     assert rows[0].Targ == pytest.approx(155.86, rel=0.05)
     assert rows[0].Max == pytest.approx(145.88, rel=0.05) and pytest.approx(0.135) == rows[0].RP
     assert pytest.approx(found["ATC_ANG_RLL_P"]) == rows[-1].SP

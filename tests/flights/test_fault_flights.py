@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sitl.autopilot.barometers import uses_second
 from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults
@@ -489,3 +490,54 @@ def test_lidar_and_range_finder_see_less(tmp_path: Path) -> None:
     copter.delay(1)
     assert np.isfinite(scan()).sum() == pytest.approx(whole, abs=2)
     factory.close()
+
+
+TWO_RECEIVERS = {"GPS2_TYPE": 1, "SIM_GPS2_ENABLE": 1}
+
+
+def test_a_second_receiver_takes_over(fly: Fly) -> None:
+    """SIM_GPS1_ENABLE 0. ArduPilot stays in LOITER within 0.05 m and tells nothing; flags 0x33F."""
+    copter = fly(params=TWO_RECEIVERS)
+    assert copter.simulation.v.autopilot.gps.primary == 0
+    at, start = where(copter), copter.now
+    copter.fail("gps", "off", instance=1)
+    seen = watch(copter, 20.0)
+    assert copter.simulation.v.autopilot.gps.primary == 1 and copter.mode == "LOITER"
+    assert np.abs(seen - at).max() < 0.6
+    assert copter.message("EKF_STATUS_REPORT").flags == 0x33F
+    assert not [t.text for t in copter.texts if t.time > start]
+    copter.simulation.repair()
+    copter.delay(10.0)
+    assert copter.simulation.v.autopilot.gps.primary == 1, "the other one is no better"
+    copter.fail("gps", "off", instance=2)
+    copter.delay(10.0)
+    assert copter.simulation.v.autopilot.gps.primary == 0 and np.abs(where(copter) - at).max() < 0.6
+
+
+def test_a_jammed_receiver_that_is_not_the_primary_one(fly: Fly) -> None:
+    """With GPS_AUTO_SWITCH 0 the other one is not listened to, however many satellites it tells of; nor at power-on."""
+    copter = fly(params={**TWO_RECEIVERS, "GPS_AUTO_SWITCH": 0, "GPS_PRIMARY": 1})
+    at = where(copter)
+    copter.fail("gps", "garbage", instance=1)
+    assert np.abs(watch(copter, 20.0) - at).max() < 0.3
+    assert copter.simulation.v.autopilot.gps.primary == 1 and copter.mode == "LOITER"
+
+
+def test_a_second_barometer_takes_over(fly: Fly) -> None:
+    """SIM_BARO_DISABLE, then 5 m too much from the second one. ArduPilot: nothing happens, then it goes down by 5 m."""
+    copter = fly()
+    v, at = copter.simulation.v, where(copter)
+    copter.fail("baro", "off", instance=1)
+    assert np.abs(watch(copter, 6.0) - at).max() < 0.5 and uses_second(v.autopilot.baros, v.sensors)
+    copter.set_rc(throttle=1700)
+    copter.delay(3.0)
+    copter.set_rc(throttle=1500)
+    copter.delay(3.0)
+    high = where(copter)[2]
+    assert high > at[2] + 2.0 and copter.height == pytest.approx(high, abs=0.5)
+    copter.fail("baro", "wrong", instance=2, amount=5.0)
+    copter.delay(20.0)
+    assert where(copter)[2] == pytest.approx(high - 5.0, abs=1.5) and copter.mode == "LOITER"
+    copter.restore("baro")
+    copter.delay(20.0)
+    assert not uses_second(v.autopilot.baros, v.sensors) and copter.height == pytest.approx(where(copter)[2], abs=0.7)

@@ -10,8 +10,10 @@ import pytest
 from pytest import approx
 
 from sitl.autopilot.vibration import vibration_levels
+from sitl.core.algebra import euler_of
+from sitl.core.scalars import wrap_pi
 from sitl.simulation import Core
-from tests.flights.aviator import LAND, LOITER, Aviator
+from tests.flights.aviator import GUIDED, LAND, LOITER, Aviator
 
 SECOND_LANE, PRIMARY = "EKF3 lane switch 1", "EKF primary changed:1"
 
@@ -203,3 +205,25 @@ def test_a_landed_copter_goes_back_to_its_first_compass(core: Core) -> None:
     p.fly(2.0)
     assert p.said("EKF3 IMU0 switching to compass 0")
     assert p.ap.ekf.compass == 0
+
+
+def test_yaw_is_found_when_all_compasses_are_turned_round(core: Core) -> None:
+    """They show the field turned by 180 degrees from power-on. The real one takes off to 10 m in GUIDED, goes astray by
+    9 m, tells "emergency yaw reset" 4.7 s after its "in-flight yaw alignment complete", and stays in its mode.
+    """
+    round_about = {f"SIM_MAG{k}_DIA_{axis}": x for k in (1, 2, 3) for axis, x in zip("XYZ", (-1, -1, 1), strict=True)}
+    p = Aviator(core, "ardupilot_quad", **round_about).ready()
+    p.arm()
+    assert p.ask(22, 0, 0, 0, 0, 0, 0, 10.0) == 0  # NAV_TAKEOFF
+    p.fly(35.0)
+    aligned = next(time for time, _, said in p.texts if said == "EKF3 IMU0 MAG0 in-flight yaw alignment complete")
+    assert 1.0 < seconds_until(p, "EKF3 IMU0 emergency yaw reset", aligned) < 7.0
+    assert p.said("EKF3 IMU1 emergency yaw reset")
+    assert p.mode == GUIDED and not p.said("EKF Failsafe: changed to LAND Mode")
+    assert p.ap.ekf.compass_lies and p.ap.yaw_bank.resets == 1
+    yaw = euler_of(p.simulation.v.physics.body.q).yaw
+    assert abs(wrap_pi(p.ap.estimate.yaw - yaw)) < math.radians(10.0)
+    assert np.hypot(*p.pos[:2]) < 60.0 and p.height == approx(10.0, abs=1.5)
+    before = p.pos
+    p.fly(20.0)
+    assert np.hypot(*(p.pos - before)[:2]) < 6.0

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import argparse
+import signal
 from dataclasses import fields
 
 from sitl.envs.mavlink.guard import Guard
 
 from .. import baselines, learnt
-from ..deploy import deploy, options_of
+from ..deploy import Deployed, deploy, options_of
 from ..errors import check_names
 from .options import assignment, assignments, positive
 
@@ -61,11 +62,21 @@ def run(options: argparse.Namespace) -> int:
     left_out = options_of(policy, given)[1]
     if left_out:
         print(f"left out, since a simulator alone has them: {', '.join(left_out)}")
-    done = deploy(
-        policy, options.connection, episodes=options.episodes, max_steps=options.max_steps, reset=options.reset,
-        guard=guard, wait=options.wait, options=given,
-    )  # fmt: skip
-    for deed in done.deeds:
-        print(f"{deed.time:.3f} s: {deed.what}{': ' if deed.why else ''}{deed.why}")
-    print("\n".join(done.sentences(policy.step_time)))
+    done = Deployed()
+    before = signal.signal(signal.SIGTERM, _leave)
+    try:
+        deploy(
+            policy, options.connection, episodes=options.episodes, max_steps=options.max_steps, reset=options.reset,
+            guard=guard, wait=options.wait, options=given, out=done,
+        )  # fmt: skip
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        for deed in done.deeds:
+            print(f"{deed.time:.3f} s: {deed.what}{': ' if deed.why else ''}{deed.why}")
+        print("\n".join(done.sentences(policy.step_time)), flush=True)
     return 1 if done.handed_over else 0
+
+
+def _leave(number: int, _: object) -> None:
+    """SIGTERM ends the command as Ctrl-C does: the vehicle is handed over."""
+    raise SystemExit(128 + number)

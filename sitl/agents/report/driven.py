@@ -12,6 +12,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
+from sitl.envs.parts import Parts
 from sitl.worlds import World
 from sitl.worlds.shapes import from_ned
 
@@ -46,7 +47,7 @@ class Whereabouts:
     farthest_m: float
     """Greatest distance from its start [m]."""
     left: bool
-    """The episode ended outside of the rectangle around the walls of the world."""
+    """The episode ended outside of the rectangle around the walls of the world; False where it has none."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +63,9 @@ class Driven:
 
     @property
     def left(self) -> int:
-        """Episodes that ended outside of the world's walls, without a crash."""
+        """Episodes that ended outside of the world's walls, neither by a crash nor by a goal reached."""
         pairs = zip(self.whereabouts, self.evaluation.episodes)
-        return sum(where.left and not played.crashed for where, played in pairs)
+        return sum(where.left and not (played.crashed or played.reached) for where, played in pairs)
 
     @property
     def farthest_m(self) -> float:
@@ -112,7 +113,7 @@ def whereabouts(trail: Floats, world: World) -> Whereabouts:
     x0, y0, x1, y1 = world.bounds
     x, y = trail[-1].tolist()
     farthest = float(np.hypot(*(trail - trail[0]).T).max())
-    return Whereabouts(farthest, not (x0 <= x <= x1 and y0 <= y <= y1))
+    return Whereabouts(farthest, bool(world.solids) and not (x0 <= x <= x1 and y0 <= y <= y1))
 
 
 def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
@@ -148,22 +149,24 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
     with stage(run, plan) as (env, policy, poses):
         noted = Trails(env)
         found = evaluate(noted, policy, plan.episodes, poses=poses, watch=watch)
-        facts = _facts(env, {**run.config.env_options, **plan.options})
+        about = facts(env, {**run.config.env_options, **plan.options}.get("observation", "digits"))
         trails = noted.trails
-        return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, facts.world) for trail in trails), facts)
+        return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, about.world) for trail in trails), about)
 
 
-def _facts(env: gym.Env[Any, Any], options: dict[str, Any]) -> Facts:
+def facts(env: gym.Env[Any, Any], asked: Any) -> Facts:
+    """Facts about an environment; ``asked``: the option ``observation``, as far as it is given."""
     inner: Any = env.unwrapped
-    seen = options.get("observation", "digits")
-    space = env.observation_space
+    made, space = inner.session.observation, env.observation_space
+    named = asked if isinstance(asked, str) else type(made).__name__
+    seen = ", ".join(made.names) if isinstance(made, Parts) else named
     shape = f" ({space.shape[0]})" if space.shape else ""
     acts = env.action_space
     names = getattr(getattr(inner.session, "action", None), "names", ())
     return Facts(
         world=inner.robot.world,
         robot=inner.robot.name,
-        observation=f"{seen if isinstance(seen, str) else type(seen).__name__}{shape}",
+        observation=f"{seen}{shape}",
         action=", ".join(names) if isinstance(acts, gym.spaces.Discrete) else f"{acts.shape[0]} set-points",  # type: ignore[index]
         step_s=environments.step_time(env),
     )

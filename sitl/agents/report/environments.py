@@ -113,8 +113,9 @@ def _played(document: Document, dishes: Sequence[Dish]) -> None:
     document.table(head, rows)
     document.paragraph(
         "Minutes are of simulated time, until a crash or the last step. Farthest: the greatest distance from the start "
-        "in an episode, median of the episodes. Left the world: episodes that ended, without a crash, outside of the "
-        "rectangle that its walls lie in, by an exit or a window."
+        "in an episode, median of the episodes. Left the world: episodes that ended, neither by a crash nor by a goal "
+        "reached, outside of the rectangle that its walls lie in, by an exit or a window; a world without walls is not "
+        "left."
     )
 
 

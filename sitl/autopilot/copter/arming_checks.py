@@ -9,8 +9,10 @@ from ...core.kernels import law
 from ...core.vectors import Vec3
 from .. import radio, radio_checks
 from ..arming_checks import (
+    BAROMETER,
     BY_MAVLINK,
     BY_RUDDER,
+    CHECK_BARO,
     CHECK_GPS,
     CHECK_PARAMETERS,
     CHECK_RC,
@@ -33,9 +35,11 @@ from ..arming_checks import (
     calibration_checks,
     obstacle_check,
     proximity_checks,
+    receiver_checks,
     sensor_checks,
     wants,
 )
+from ..barometers import are_healthy
 from ..fence import arming as fence_arming
 from ..params.system import Arming
 from ..radio import PITCH, ROLL, THROTTLE, YAW
@@ -100,6 +104,10 @@ def check(v: Vehicle) -> int:
     failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, needs_fix, p.ARMING)
+    if requires_position(ap.modes.number) and wants(p.ARMING, CHECK_GPS):
+        failed |= receiver_checks(v.sensors, p)
+    if wants(p.ARMING, CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
+        failed |= BAROMETER
     failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
     failed |= proximity_checks(ap.proximity, v.time_us)
     if ap.avoid.obstacles and wants(p.ARMING, CHECK_PARAMETERS):

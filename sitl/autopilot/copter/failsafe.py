@@ -96,7 +96,7 @@ _BY_ESTIMATE = {EKF_LANDS: "LAND", EKF_HOLDS: "ALT_HOLD"}
 
 RADIO_FRAMES = 3
 """Bad frames in a row that set the radio failsafe; as many good ones, not needing to be in a row, clear it."""
-EKF_COUNT = 10
+EKF_COUNT, YAW_COUNT = 10, 8
 """Tenths of a second of bad estimate that count."""
 
 
@@ -233,6 +233,8 @@ def watch_estimate(v: Vehicle) -> None:
         fs.ekf = 0
         return
     count_estimate(fs, bad)
+    if bad and fs.ekf_count == YAW_COUNT:
+        ap.yaw_bank.asked_us = v.time_us
     if before == 0 and fs.ekf != 0:
         report(ap.events, v.time_us, VARIANCE, True)
         emit(ap.events, v.time_us, FAILSAFE, float(EKF), float(act_on_estimate(v)))

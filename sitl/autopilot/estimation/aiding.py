@@ -10,7 +10,8 @@ from ...core.geodesy import offset_ne
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from .. import events
-from ..state import Estimate, Sensors
+from ..gps_receivers import Fix
+from ..state import Estimate
 from . import noise
 from .covariance import clear
 from .history import shift
@@ -61,22 +62,22 @@ def reset_ne(ekf: Ekf, estimate: Estimate, pos: Vec2, vel: Vec2) -> None:
 
 
 @law
-def fix_ne(estimate: Estimate, sensors: Sensors) -> Vec2:
+def fix_ne(estimate: Estimate, fix: Fix) -> Vec2:
     """Horizontal position [m] of the fix."""
-    return offset_ne(estimate.origin_lat, estimate.origin_lon, sensors.gps_lat, sensors.gps_lon)
+    return offset_ne(estimate.origin_lat, estimate.origin_lon, fix.gps_lat, fix.gps_lon)
 
 
 @law
-def reset_to_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, age: float) -> None:
+def reset_to_fix(ekf: Ekf, estimate: Estimate, fix: Fix, age: float) -> None:
     """Jump to the fix, which is ``age`` [s] old."""
-    vel = 0.01 * horizontal(sensors.gps_vel)
-    reset_ne(ekf, estimate, fix_ne(estimate, sensors) + age * vel, vel)
+    vel = 0.01 * horizontal(fix.gps_vel)
+    reset_ne(ekf, estimate, fix_ne(estimate, fix) + age * vel, vel)
 
 
 @law
-def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, sensors: Sensors, age: float) -> None:
+def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, fix: Fix, age: float) -> None:
     """From holding the position to GPS, whose fix is ``age`` [s] old."""
-    reset_to_fix(ekf, estimate, sensors, age)
+    reset_to_fix(ekf, estimate, fix, age)
     ekf.absolute = True
     ekf.relative = False
     ekf.gps_used_before = True

@@ -9,7 +9,7 @@ from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..params.estimator import Ekf3
-from ..state import Estimate, Sensors
+from ..state import Estimate
 from . import doubt, noise
 from .covariance import clear
 from .fusion import NIS_BAROMETER, correct, gate_ratio, innovate_position
@@ -33,12 +33,11 @@ def standard_altitude(pressure: float) -> float:
 
 
 @law
-def read(ekf: Ekf, sensors: Sensors) -> None:
-    """Add a new sample to the sum; one that makes no sense is passed over."""
-    if sensors.baro_count == ekf.baro_seen:
+def read(ekf: Ekf, count: int, pressure: float) -> None:
+    """Add sample ``count`` [hPa] to the sum if it is new; one that makes no sense is passed over."""
+    if count == ekf.baro_seen:
         return
-    ekf.baro_seen = sensors.baro_count
-    pressure = sensors.abs_pressure
+    ekf.baro_seen = count
     if 100.0 < pressure < 1200.0:
         ekf.baro_sum += standard_altitude(pressure)
         ekf.baro_us_sum += ekf.now_us

@@ -17,6 +17,7 @@ from ...core.algebra import horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
 from ..events import Events
+from ..gps_receivers import Fix, fix_of
 from ..params.estimator import Ekf3
 from ..params.parameters import Parameters
 from ..params.without_gps import Sources
@@ -59,36 +60,36 @@ SILENCE_US = 2_000_000
 
 
 @law
-def read(ekf: Ekf, sensors: Sensors) -> None:
-    """Note when a message arrived."""
-    if sensors.gps_count != ekf.gps_seen:
-        ekf.gps_seen = sensors.gps_count
+def read(ekf: Ekf, count: int) -> None:
+    """Note when message ``count`` of the receiver in use arrived."""
+    if count != ekf.gps_seen:
+        ekf.gps_seen = count
         ekf.gps_arrival_us = ekf.now_us
         ekf.gps_new = True
 
 
 @law
-def is_sane(sensors: Sensors) -> bool:
+def is_sane(fix: Fix) -> bool:
     """Whether the message is a 3D fix with figures that make sense."""
-    lat, lon, alt = sensors.gps_lat, sensors.gps_lon, sensors.gps_alt
-    if sensors.gps_fix < 3 or abs(lat) > 900000000 or abs(lon) > 1800000000 or (lat == 0 and lon == 0):
+    lat, lon, alt = fix.gps_lat, fix.gps_lon, fix.gps_alt
+    if fix.gps_fix < 3 or abs(lat) > 900000000 or abs(lon) > 1800000000 or (lat == 0 and lon == 0):
         return False
-    return -1000000 <= alt <= 50000000 and within(sensors.gps_vel, MAX_SPEED)
+    return -1000000 <= alt <= 50000000 and within(fix.gps_vel, MAX_SPEED)
 
 
 @law
-def has_quality(sensors: Sensors, params: Ekf3) -> bool:
+def has_quality(fix: Fix, params: Ekf3) -> bool:
     """Whether a sane fix passes the checks that EK3_GPS_CHECK asks for."""
     mask = int(params.GPS_CHECK)
-    if mask & 1 and sensors.gps_satellites < MIN_SATELLITES:
+    if mask & 1 and fix.gps_satellites < MIN_SATELLITES:
         return False
-    return not (mask & 2 and (sensors.gps_eph <= 0 or sensors.gps_eph > MAX_HDOP * (0.01 * params.CHECK_SCALE)))
+    return not (mask & 2 and (fix.gps_eph <= 0 or fix.gps_eph > MAX_HDOP * (0.01 * params.CHECK_SCALE)))
 
 
 @law
-def count_fix(ekf: Ekf, sensors: Sensors, params: Ekf3) -> bool:
+def count_fix(ekf: Ekf, fix: Fix, params: Ekf3) -> bool:
     """Count the fixes in a row and how long they have been good; whether this one makes sense."""
-    sane = is_sane(sensors)
+    sane = is_sane(fix)
     if not sane or ekf.now_us - ekf.gps_us > SILENCE_US:
         ekf.gps_good_us = 0
         ekf.gps_fixes = 0
@@ -96,11 +97,11 @@ def count_fix(ekf: Ekf, sensors: Sensors, params: Ekf3) -> bool:
         return False
     ekf.gps_us = ekf.now_us
     ekf.gps_fixes += 1
-    alt = 0.001 * sensors.gps_alt
+    alt = 0.001 * fix.gps_alt
     if ekf.gps_fixes == 1 or ekf.gps_alt_filter != ekf.gps_alt_filter:  # the first, or after a filter step gone bad
         ekf.gps_alt_filter = alt + ekf.pos.z
     ekf.gps_alt_filter += 0.1 * (alt + ekf.pos.z - ekf.gps_alt_filter)
-    if not has_quality(sensors, params):
+    if not has_quality(fix, params):
         ekf.gps_good_us = 0
     elif ekf.gps_good_us == 0:
         ekf.gps_good_us = ekf.now_us
@@ -211,7 +212,7 @@ def is_position_fresh(ekf: Ekf) -> bool:
 
 
 @law
-def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_us: int, source: Sources) -> bool:
+def fuse_fix(ekf: Ekf, estimate: Estimate, fix: Fix, params: Ekf3, when_us: int, source: Sources) -> bool:
     """Fuse the velocity, as far as it is a source, and position of a fix taken at ``when_us``.
 
     Whether one passed its gate. As with ArduPilot the vertical velocity counts only where the horizontal one does.
@@ -219,17 +220,31 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, sensors: Sensors, params: Ekf3, when_
     takes_velocity = source.VELXY == sources.GPS
     age = 1e-6 * (ekf.now_us - when_us)
     past = past_at(ekf, when_us)
-    residual = 0.01 * sensors.gps_vel - past.vel
+    residual = 0.01 * fix.gps_vel - past.vel
     estimate.innovation_vel_d = -residual.z
     velocity = fuse_velocity(ekf, residual, params, source.VELZ == sources.GPS) if takes_velocity else 0.0
     estimate.variance_vel = math.sqrt(velocity)
-    position = fuse_position(ekf, fix_ne(estimate, sensors) - horizontal(past.pos), age, params)
+    position = fuse_position(ekf, fix_ne(estimate, fix) - horizontal(past.pos), age, params)
     estimate.variance_pos = math.sqrt(position)
     watch_gates(ekf, velocity < 1.0 and position < 1.0)
     if ekf.now_us - ekf.pos_fused_us > GLITCH_TIMEOUT_US and ekf.gps_good_us != 0:
-        reset_to_fix(ekf, estimate, sensors, age)
+        reset_to_fix(ekf, estimate, fix, age)
         ekf.pos_fused_us = ekf.now_us
     return not ((velocity >= 1.0 or not takes_velocity) and position >= 1.0)
+
+
+@law
+def delay_of(receiver: int, params: Parameters) -> int:
+    """Age of a fix of a receiver when it arrives [us]."""
+    return delay_us(params.GPS2_DELAY_MS if receiver == 1 else params.GPS1_DELAY_MS)
+
+
+@law
+def follow(ekf: Ekf, estimate: Estimate, fix: Fix, age: float, receiver: int) -> None:
+    """Another receiver is used from this fix on, ``age`` [s] old: jump to it, as ArduPilot does."""
+    ekf.gps_receiver = receiver
+    reset_to_fix(ekf, estimate, fix, age)
+    ekf.pos_fused_us = ekf.now_us
 
 
 @law
@@ -246,29 +261,34 @@ def fuse(
     params: Parameters,
     sensors: Sensors,
     source: Sources,
+    receiver: int,
 ) -> bool:
-    """Look at the GPS message; whether something was fused. Where it is no source of the position it gives no more
-    than the origin."""
+    """Look at the message of the GPS receiver in use; whether something was fused. Where GPS is no source of the
+    position it gives no more than the origin."""
     is_source = source.POSXY == sources.GPS
     if ekf.absolute and ekf.now_us - max(ekf.pos_fused_us, ekf.vel_fused_us) > STOP_TIMEOUT_US:
         stop_using(ekf, estimate, log)
     if not ekf.gps_new:
         return False
     ekf.gps_new = False
-    if not count_fix(ekf, sensors, params.EK3):
+    fix = fix_of(receiver, sensors)
+    if not count_fix(ekf, fix, params.EK3):
         return False
     if not ekf.field_known and ekf.yaw_aligned:
-        learn_field(ekf, estimate, sensors.gps_lat, sensors.gps_lon)
+        learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
-        place_origin(ekf, estimate, log, Origin(sensors.gps_lat, sensors.gps_lon, ekf.gps_alt_filter))
+        place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
         if is_source:
             ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)
-    when_us = ekf.gps_arrival_us - delay_us(params.GPS1_DELAY_MS)
+    when_us = ekf.gps_arrival_us - delay_of(receiver, params)
     if not is_source or not estimate.origin_set:
         return False
     if ekf.absolute:
-        return fuse_fix(ekf, estimate, sensors, params.EK3, when_us, source)
+        if receiver != ekf.gps_receiver:
+            follow(ekf, estimate, fix, 1e-6 * (ekf.now_us - when_us), receiver)
+        return fuse_fix(ekf, estimate, fix, params.EK3, when_us, source)
     if may_start(ekf):
-        start_using(ekf, estimate, log, sensors, 1e-6 * (ekf.now_us - when_us))
+        ekf.gps_receiver = receiver
+        start_using(ekf, estimate, log, fix, 1e-6 * (ekf.now_us - when_us))
     return False

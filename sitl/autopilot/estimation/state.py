@@ -99,6 +99,7 @@ class Ekf(Record):
     gps_us: int  # last sane 3D fix arrived
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
+    gps_receiver: int  # whose fixes are fused: 0 the first's, 1 the second's
     gps_alt_filter: float  # mean altitude while on the ground [m]
     gps_used_before: bool
     gps_glitch: bool  # fixes have been beyond the gates for a second, and within for less than ten since
@@ -114,6 +115,7 @@ class Ekf(Record):
     source_set: int  # of EK3_SRC1, 2, 3: 0 .. 2
     relative: bool  # velocity comes from optical flow or another system: the position is relative to where that began
     relative_us: int  # when something of theirs was last fused
+    compass_lies: bool  # yaw has been taken from the bank (yaw_bank.py) since the vehicle was armed
     without_compass: bool  # the heading comes from another system, or from gyros alone
     pose_seen: int  # last pose and velocity of another system (external.py)
     velocity_seen: int

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from ...core.algebra import IDENTITY
-from ...core.border import IMUS_DIFFER
+from ...core.border import BAROS_DIFFER, IMUS_DIFFER
 from ...core.kernels import inline_unit, inlined, law, unit
 from ...core.records import Records
-from .. import events, optical_flow
+from .. import barometers, events, gps_receivers, optical_flow
 from ..inertial_filter import smoothed_acc, smoothed_rates
 from ..sensor_calibration import field_of, read_sensors
 from ..state import Autopilot, Estimate, Vehicle
@@ -29,6 +29,8 @@ from . import (
     sources,
     status,
     strapdown,
+    yaw_bank,
+    yaw_reset,
 )
 from .alignment import CALIBRATE, RUN, TILT, YAW
 from .state import POS, VEL, Ekf
@@ -97,6 +99,13 @@ def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate) -> bool:
     return fused
 
 
+@unit
+def step_bank(fleet: Records[Vehicle], i: int, has_fix: int) -> None:
+    """A filter step of the bank of yaw filters, where it runs or should."""
+    v = fleet[i]
+    yaw_reset.step(v.autopilot, v.sensors, has_fix != 0)
+
+
 @inline_unit
 def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     """Prediction of the covariance over the last ticks, then fusion of what the sensors brought; ``lane``: 0, or 1 for
@@ -119,13 +128,15 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
         fused |= barometer.fuse(ekf, estimate, params)
     else:
         barometer.leave_out(ekf)
-    ekf.without_compass = not usual and (source.YAW == sources.EXTERNAL or source.YAW == sources.NONE)
+    otherwise = not usual and (source.YAW == sources.EXTERNAL or source.YAW == sources.NONE)
+    ekf.without_compass = ekf.compass_lies or otherwise
     if not ekf.without_compass:
         compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
         fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
     else:
         magnetometer.clear_samples(ekf)
-    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, source)
+    has_fix = 1 if ekf.gps_new else 0
+    fused |= gps.fuse(ekf, estimate, ap.events, ap.params, v.sensors, source, ap.gps.primary)
     if not usual or ekf.relative:
         fused |= fuse_others(v, ekf, estimate)
     if not (ekf.absolute or (ekf.relative and armed)):
@@ -134,6 +145,8 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
         fusion.inject(ekf, params.ACC_BIAS_LIM)
         covariance.bound(ekf.P)
     watch_alignment(ekf, ap.events, armed)
+    if lane == 0 and (ap.yaw_bank.runs or ekf.doubt_us != 0 or ekf.compass_lies):
+        step_bank(fleet, i, has_fix)
     status.publish_status(ekf, estimate)
 
 
@@ -171,8 +184,11 @@ def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
         strapdown.read_imu(ekf, shown.gyro, shown.acc)
     else:
         strapdown.read_imu(ekf, lanes.gyro_of(ekf.imu, shown, state), lanes.acc_of(ekf.imu, shown, state))
-    barometer.read(ekf, sensors)
-    gps.read(ekf, sensors)
+    if barometers.uses_second(ap.baros, sensors):
+        barometer.read(ekf, sensors.baro2_count, sensors.abs_pressure2)
+    else:
+        barometer.read(ekf, sensors.baro_count, sensors.abs_pressure)
+    gps.read(ekf, gps_receivers.count_of(ap.gps.primary, sensors))
     if ekf.phase == CALIBRATE:
         if ap.params.EK3.ENABLE != 0:
             _boot(ekf, estimate, ap.events)
@@ -185,6 +201,24 @@ def run_lane(fleet: Records[Vehicle], i: int, lane: int) -> None:
     if ekf.step_ticks >= STEP_TICKS:
         step(fleet, i, lane)
     status.publish(ekf, estimate, DT, ap.params.EK3.TAU_OUTPUT)
+
+
+@unit
+def choose_sensors(fleet: Records[Vehicle], i: int) -> None:
+    """Before the filters, where there are two GPS receivers or two barometers that differ: which of them they get."""
+    v = fleet[i]
+    ap, sensors = v.autopilot, v.sensors
+    if ap.params.GPS2_TYPE != 0.0:
+        gps_receivers.choose(ap.gps, sensors, ap.params, v.time_us)
+    if sensors.baro_state & BAROS_DIFFER != 0:
+        barometers.choose(ap.baros, sensors, ap.params.BARO_PRIMARY, v.time_us)
+
+
+@unit
+def advance_bank(fleet: Records[Vehicle], i: int) -> None:
+    """One tick of the bank of yaw filters, while it runs."""
+    ap = fleet[i].autopilot
+    yaw_bank.advance(ap.yaw_bank, ap.ekf.good_gyro, ap.ekf.good_acc, DT)
 
 
 @unit
@@ -221,7 +255,11 @@ def update(fleet: Records[Vehicle], i: int) -> None:
         prepare_lanes(fleet, i)
     if ap.flow.kind != 0:
         optical_flow.read(ap.flow, sensors, v.time_us, ap.params.FLOW)
+    if ap.params.GPS2_TYPE != 0.0 or sensors.baro_state & BAROS_DIFFER != 0:
+        choose_sensors(fleet, i)
     run_lane(fleet, i, 0)
+    if ap.yaw_bank.runs:
+        advance_bank(fleet, i)
     if second.runs != 0:
         run_second(fleet, i)
     if not boots:

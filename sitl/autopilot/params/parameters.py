@@ -29,6 +29,7 @@ class Parameters(ParameterGroup):
     AHRS: Ahrs
     ARMING: Arming
     AVOID: Avoid
+    BARO_PRIMARY: float = param(0, -128, 127, "", "Barometer that counts while it is healthy: 0 or 1", INT8)
     BATT: Battery
     COMPASS: Compass
     EK3: Ekf3
@@ -38,6 +39,13 @@ class Parameters(ParameterGroup):
     FS: Failsafes
     GPS1_TYPE: float = param(1, -128, 127, "", "0: there is no GPS receiver, and arming needs none", INT8)
     GPS1_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix when it arrives; 0: the usual 120 ms", INT16)
+    GPS2_TYPE: float = param(0, -128, 127, "", "0: there is no second GPS receiver", INT8)
+    GPS2_DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix of the second receiver; 0: the usual 120 ms", INT16)
+    GPS_AUTO_SWITCH: float = param(
+        1, 0, 4, "", "Of two receivers: 0 GPS_PRIMARY, 1 the better one, 4 GPS_PRIMARY while it has a 3D fix; no other",
+        INT8,
+    )  # fmt: skip
+    GPS_PRIMARY: float = param(0, 0, 1, "", "Receiver of GPS_AUTO_SWITCH 0 and 4: 0 the first, 1 the second", INT8)
     INITIAL_MODE: float = param(0, 0, 127, "", "Mode after boot, until the mode channel says another", INT8)
     INS: Inertial
     LOG: Log

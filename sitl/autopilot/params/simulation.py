@@ -51,7 +51,7 @@ class SimulatedCompass(ParameterGroup):
 
 
 class Receiver(ParameterGroup):
-    """SIM_GPS1_: what is wrong with the GPS receiver."""
+    """SIM_GPS1_, SIM_GPS2_: what is wrong with a GPS receiver."""
 
     ENABLE: float = param(1, 0, 1, "", "0 switches the GPS receiver off", INT8)
     LAG_MS: float = param(100, 0, 1000, "ms", "Age of a fix when it arrives; 100: the airframe's", INT16)
@@ -83,10 +83,9 @@ class Wcf(ParameterGroup):
     DN: float = param(0, -10, 10, "", "The same, in air from below")
 
 
-class Barometer(ParameterGroup):
-    """SIM_BARO_: what is wrong with the barometer."""
+class SecondBarometer(ParameterGroup):
+    """SIM_BAR2_: what is wrong with a barometer."""
 
-    COUNT: float = param(2, -128, 127, "", "Barometers at power-on; below 1: none, and nothing starts", INT8)
     RND: float = param(0.2, 0, 1000, "m", "Noise, standard deviation; 0.2: the airframe's, else it comes on top")
     DRIFT: float = param(0, -1000, 1000, "m/s", "Speed at which the height drifts away")
     DISABLE: float = param(0, 0, 1, "", "1: no more samples", INT8)
@@ -94,6 +93,14 @@ class Barometer(ParameterGroup):
     FREEZE: float = param(0, 0, 1, "", "1: the same height for ever", INT8)
     DELAY: float = param(0, 0, 1000, "ms", "Age of a sample", INT16)
     WCF: Wcf
+
+
+class Barometer(SecondBarometer):
+    """SIM_BARO_: the same, and how many there are."""
+
+    COUNT: float = param(
+        2, -128, 127, "", "Barometers at power-on, two at most; below 1: none, and nothing starts", INT8
+    )
 
 
 class LandingBeacon(ParameterGroup):
@@ -154,10 +161,12 @@ class Simulated(ParameterGroup):
     GYR_FAIL_MSK: float = param(0, 0, 127, "", "Gyros that send nothing: bit 0 the first, bit 1 the second", INT8)
     VIB_FREQ: Axes = group("Frequency at which the frame vibrates while motors turn; 0, 0, 0: not at all [Hz]")
     BARO: Barometer
+    BAR2: SecondBarometer
     BATT_VOLTAGE: float = param(12.6, 0, 1000, "V", "Voltage of the full battery; 12.6: that of the airframe")
     BATT_CAP_AH: float = param(0, 0, 10000, "Ah", "Charge of the full battery; 0: the airframe's")
     BATT_RES: float = param(0, 0, 10, "Ohm", "Inner resistance of the battery besides the airframe's")
     GPS1: Receiver
+    GPS2: Receiver = group(ENABLE=0)
     MAG1: SimulatedCompass
     MAG2: SimulatedCompass
     MAG3: SimulatedCompass

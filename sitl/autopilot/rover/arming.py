@@ -84,4 +84,4 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
 
 def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
     """Status texts of failed checks, each after ``prefix``."""
-    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix)
+    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix, arming_checks.differing_gps(v.sensors))

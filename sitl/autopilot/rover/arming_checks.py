@@ -7,7 +7,9 @@ from ...core.kernels import law
 from .. import radio_checks
 from ..arming_checks import (
     AHRS_TYPE,
+    BAROMETER,
     BY_RUDDER,
+    CHECK_BARO,
     CHECK_GPS,
     CHECK_PARAMETERS,
     CHECK_RC,
@@ -25,9 +27,11 @@ from ..arming_checks import (
     battery_checks,
     calibration_checks,
     proximity_checks,
+    receiver_checks,
     sensor_checks,
     wants,
 )
+from ..barometers import are_healthy
 from ..fence import arming as fence_arming
 from ..radio import ROLL, THROTTLE, YAW
 from ..state import Estimate, Radio
@@ -79,6 +83,10 @@ def check(v: Vehicle) -> int:
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
+    if wants(p.ARMING, CHECK_GPS):
+        sensors |= receiver_checks(v.sensors, p)
+    if wants(p.ARMING, CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
+        sensors |= BAROMETER
     sensors |= proximity_checks(ap.proximity, v.time_us)
     failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
     if modes.number == AUTO and modes.mission_count < 2:

@@ -37,7 +37,7 @@ ENABLED_BUT_IN_AUTO = 2.0
 """FS_THR_ENABLE, FS_GCS_ENABLE: missions go on."""
 ACTIVE_IN_HOLD = 1
 """FS_OPTIONS"""
-EKF_COUNT = 10
+EKF_COUNT, YAW_COUNT = 10, 8
 """Tenths of a second of bad estimate that count."""
 EKF_NOTHING, EKF_HOLD, EKF_REPORT = 0, 1, 2
 """FS_EKF_ACTION"""
@@ -191,6 +191,8 @@ def check_ekf(v: Vehicle) -> None:
     """Ten times a second: a bad estimate ends modes that need a good one (FS_EKF_ACTION)."""
     ap = v.autopilot
     change = watch_estimate(ap.modes, ap.estimate, ap.arming.armed, ap.params.FS, is_glitch_long(ap.ekf))
+    if change == EKF_SAME and ap.modes.failsafe.ekf_count == YAW_COUNT:
+        ap.yaw_bank.asked_us = v.time_us
     if change == EKF_RECOVERS:
         report(ap.events, v.time_us, EKF, False)
     elif change == EKF_FAILS:

@@ -35,13 +35,13 @@ class FaultService(Service):
         vehicle: Any = self.bridge.vehicle
         table = self._table
         names, idle = failure.checked(table).values(table, {}), vehicle.plant.idle_parameters
-        without = next((name for name in names if name.startswith(idle)), None) if idle else None
-        if without is not None:
+        without = [name for name in names if name.startswith(idle)] if idle else []
+        if without and (failure.instance or len(without) == len(names)):  # of all instances some may do nothing
             works = [unit for unit, types in known(table).items() for effect in types.values()
                      if not effect.names()[0].startswith(idle)]  # fmt: skip
             there_are = ", ".join(dict.fromkeys(works))
             raise OptionError(
-                f"fault {failure.unit}: {without} does nothing to physics {vehicle.physics}; there are {there_are}"
+                f"fault {failure.unit}: {without[0]} does nothing to physics {vehicle.physics}; there are {there_are}"
             )
 
     def repair_of(self, what: object, instance: object = 0) -> Repair:

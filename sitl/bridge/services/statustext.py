@@ -73,6 +73,7 @@ TEXTS = {
     core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
     core.EKF_STOPPED_AIDING: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
     core.EKF_RELATIVE: (INFO, "EKF3 IMU{a:.0f} started relative aiding"),
+    core.EKF_EMERGENCY_YAW: (WARNING, "EKF3 IMU{a:.0f} emergency yaw reset"),
     core.EKF_COMPASS_CHANGED: (INFO, "EKF3 IMU{a:.0f} switching to compass {b:.0f}"),
     core.EKF_LANE_SWITCHED: (CRITICAL, "EKF3 lane switch {a:.0f}"),
     core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from ...autopilot.estimation.status import POS_HORIZ_REL
 from ...autopilot.state import Estimate
+from ...core.border import GpsReading
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
@@ -188,12 +189,28 @@ class GpsRawInt(Message, name="GPS_RAW_INT"):
     vel_acc: int
 
 
+class Gps2Raw(Message, name="GPS2_RAW"):
+    time_usec: int
+    lat: int
+    lon: int
+    alt: int
+    eph: int
+    epv: int
+    vel: int
+    cog: int
+    fix_type: int
+    satellites_visible: int
+    alt_ellipsoid: int
+    h_acc: int
+    v_acc: int
+    vel_acc: int
+
+
 @law
-def gps_raw_int(m: GpsRawInt, v: Vehicle) -> bool:
-    """GPS_RAW_INT: the receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] are 0.3 m x HDOP
-    and 0.5 m x VDOP, vel_acc [mm/s] is 0.1 m/s x HDOP; the heading's accuracy is not known (0).
+def fill_fix(m: GpsRawInt | Gps2Raw, s: GpsReading) -> None:
+    """A receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] are 0.3 m x HDOP and 0.5 m x VDOP,
+    vel_acc [mm/s] is 0.1 m/s x HDOP; the heading's accuracy is not known (0).
     """
-    s = v.sensors
     vel = s.gps_vel
     m.time_usec = s.gps_time_us
     m.lat = s.gps_lat
@@ -210,7 +227,20 @@ def gps_raw_int(m: GpsRawInt, v: Vehicle) -> bool:
         m.h_acc = m.eph * 3
         m.v_acc = m.epv * 5
         m.vel_acc = m.eph
+
+
+@law
+def gps_raw_int(m: GpsRawInt, v: Vehicle) -> bool:
+    """GPS_RAW_INT: the first receiver's fix."""
+    fill_fix(m, v.sensors)
     return True
+
+
+@law
+def gps2_raw(m: Gps2Raw, v: Vehicle) -> bool:
+    """GPS2_RAW: the second receiver's fix, of a vehicle with GPS2_TYPE."""
+    fill_fix(m, v.sensors.gps2)
+    return v.autopilot.params.GPS2_TYPE != 0.0
 
 
 class Attitude(Message, name="ATTITUDE"):
@@ -302,6 +332,6 @@ def ahrs2(m: Ahrs2, v: Vehicle) -> bool:
 
 
 MESSAGES = (
-    global_position_int, local_position_ned, home_position, gps_global_origin, gps_raw_int, attitude,
+    global_position_int, local_position_ned, home_position, gps_global_origin, gps_raw_int, gps2_raw, attitude,
     attitude_quaternion, ahrs, ahrs2,
 )  # fmt: skip

@@ -7,6 +7,7 @@ import math
 
 from ...autopilot.vibration import vibration_levels
 from ...core.algebra import euler_of
+from ...core.border import BAROS_DIFFER, ONE_BARO
 from ...core.constants import GRAVITY
 from ...core.kernels import law
 from ...core.vectors import Quat
@@ -140,6 +141,22 @@ def scaled_pressure(m: ScaledPressure, v: Vehicle) -> bool:
     return True
 
 
+class ScaledPressure2(Message, name="SCALED_PRESSURE2"):
+    time_boot_ms: int
+    press_abs: float
+    temperature: int
+
+
+@law
+def scaled_pressure2(m: ScaledPressure2, v: Vehicle) -> bool:
+    """SCALED_PRESSURE2: the second barometer, hPa, centidegrees Celsius; both show the same but for faults."""
+    s = v.sensors
+    m.time_boot_ms = boot_ms(v.time_us)
+    m.press_abs = s.abs_pressure2 if s.baro_state & BAROS_DIFFER != 0 else s.abs_pressure
+    m.temperature = int16(s.temperature * 100.0)
+    return s.baro_state & ONE_BARO == 0
+
+
 class SimState(Message, name="SIMSTATE"):
     roll: float
     pitch: float
@@ -202,4 +219,4 @@ def vibration(m: VibrationMessage, v: Vehicle) -> bool:
     return True
 
 
-MESSAGES = (raw_imu, scaled_imu, highres_imu, scaled_pressure, simstate, vibration)
+MESSAGES = (raw_imu, scaled_imu, highres_imu, scaled_pressure, scaled_pressure2, simstate, vibration)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ... import __version__
 from ...autopilot import relays
+from ...autopilot.gps_receivers import has_fix
 from ...autopilot.modes import shown
 from ...core.records import as_bytes
 from .. import metadata
@@ -63,7 +64,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
     v = vehicle.v
     ap = v.autopilot
     velocity, here = ap.estimate.vel, global_position(v)
-    failures = 0 if v.sensors.gps_fix >= FIX_3D else GPS_FAILED
+    failures = 0 if has_fix(v.autopilot.gps.primary, v.sensors) else GPS_FAILED
     failures |= 0 if ap.rc.receiver_ok else RECEIVER_FAILED
     failures |= 0 if ap.modes.failsafe.ekf == 0 else ESTIMATE_FAILED
     return message("HIGH_LATENCY2").payload(
@@ -85,7 +86,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
     )
 
 
-ARDUPILOTMEGA, FIX_3D = 3, 3
+ARDUPILOTMEGA = 3
 GPS_FAILED, RECEIVER_FAILED, ESTIMATE_FAILED = 1, 256, 4096
 """HL_FAILURE_FLAG"""
 

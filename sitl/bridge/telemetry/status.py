@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ...autopilot import visual_odometry
 from ...autopilot.fence.checks import kinds
+from ...autopilot.gps_receivers import fix_of, has_fix, time_of
 from ...autopilot.optical_flow import is_healthy
 from ...autopilot.sensor_calibration import is_heard
 from ...core.border import ACC_SILENT, GYRO_SILENT
@@ -47,7 +48,8 @@ def sensor_health(v: Vehicle) -> int:
         health |= MAG
     if s.baro_count > 0 and not (watched and t - ekf.baro_us > SAMPLE_US):
         health |= BARO
-    if s.gps_fix >= 3 and t - s.gps_time_us <= GPS_US:
+    receiver = v.autopilot.gps.primary
+    if has_fix(receiver, s) and t - time_of(receiver, s) <= GPS_US:
         health |= GPS
     if v.autopilot.estimate.attitude_ok:
         health |= AHRS
@@ -69,7 +71,7 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
     ap, battery, monitor = v.autopilot, v.autopilot.battery, v.autopilot.params.BATT.MONITOR
     common = PRESENT
     health = healthy | sensor_health(v)
-    if v.sensors.gps_fix > 0:
+    if fix_of(ap.gps.primary, v.sensors).gps_fix > 0:
         common |= GPS
     if ap.rc.receiver_ok:
         common |= RECEIVER

@@ -35,7 +35,8 @@ class Guard:
 
     Args:
         radius: of the fence about the place where the vehicle was when the environment took it over [m].
-        floor, ceiling: heights above that place's ground between which a copter stays [m].
+        floor, ceiling: heights above that place's ground between which a copter stays [m]. A floor of 0 or less lets it
+            land: speeds shrink within some 5 m of the floor, so -5 leaves them as they are.
         speed, climb: greatest speeds, horizontal and vertical [m/s].
         tilt: greatest roll and pitch of attitude set-points [rad].
         acceleration: greatest, of acceleration set-points [m/s^2].
@@ -58,8 +59,11 @@ class Guard:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if field.type == "float" and not (isinstance(value, int | float) and 0.0 < value < math.inf):
-                raise EnvOptionError(f"Guard({field.name}={value!r}); it must be above 0")
+            if field.type != "float":
+                continue
+            low = -math.inf if field.name == "floor" else 0.0
+            if not (isinstance(value, int | float) and low < value < math.inf):
+                raise EnvOptionError(f"Guard({field.name}={value!r}); it must be {'finite' if low else 'above 0'}")
         if self.floor >= self.ceiling:
             raise EnvOptionError(f"Guard(floor={self.floor}, ceiling={self.ceiling}); the floor must be the lower one")
 

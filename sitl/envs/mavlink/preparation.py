@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from sitl.client.connection import ACCEPTED, PROOF, Connection
+from sitl.client.connection import ACCEPTED, PROOF, TRIES, Connection
 from sitl.errors import NotASimulatorError, NotReadyError
 
 from .telemetry import ATTITUDE, GLOBAL, ORIGIN, POSITION, SCAN, SECTORS
@@ -30,6 +30,8 @@ ALIGN_US = 6_000_000
 """An episode begins at a whole multiple of it since boot, so that messages fall due at the ends of all usual steps."""
 _SECOND, _TENTH = 1_000_000, 100_000
 _PATIENCE_S = 90
+_LOOK, _ANSWER_LOOKS = 20_000, 25
+"""Wall time between two looks for a message that was asked for [us], and their number."""
 
 
 LEARNED = "MOT_THST_HOVER"
@@ -71,7 +73,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
         NotReadyError: the vehicle does not send one of them so often.
     """
     telemetry = link.inbox
-    scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink else ()
+    scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink and telemetry.scans_used else ()
     intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
     for kind in (POSITION, ATTITUDE, *scan, *telemetry.wanted):
         if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):
@@ -81,12 +83,16 @@ def set_intervals(link: Connection, interval_us: int) -> None:
             link.inbox.scan_kind = kind = SECTORS
             result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
         if result != ACCEPTED:
-            raise NotReadyError(f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms")
+            why = "; the environment's observation or task reads the lidar" if kind is SECTORS else ""
+            raise NotReadyError(
+                f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms{why}"
+            )
 
 
 def request_again(link: Connection) -> None:
     """Ask for position, attitude, scan and the rest as they are: those of this instant were lost on the way."""
-    for kind in (POSITION, ATTITUDE, link.inbox.scan_kind, *link.inbox.wanted):
+    scan = (link.inbox.scan_kind,) if link.inbox.scans_used else ()
+    for kind in (POSITION, ATTITUDE, *scan, *link.inbox.wanted):
         link.command("REQUEST_MESSAGE", kind.id)
 
 
@@ -162,7 +168,7 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     hold_sticks()
     scans = inbox.scans
     link.run(_TENTH)
-    if inbox.scans == scans:
+    if inbox.scans == scans and inbox.scans_used:
         wanted = "LASER in DEBUG_FLOAT_ARRAY, or OBSTACLE_DISTANCE"
         raise NotReadyError(f"{link.name}: the vehicle sends no scan ({wanted})")
     check_reports(link)
@@ -216,10 +222,20 @@ AIRBORNE, AT_REST = 0.5, 0.5
 
 
 def height_above_home(link: Connection) -> float:
-    """[m]; nan when the vehicle does not tell it."""
-    link.inbox.height = math.nan
-    link.command("REQUEST_MESSAGE", GLOBAL.id)
-    return float(link.inbox.height)
+    """[m], as the vehicle tells it now.
+
+    Raises:
+        NotReadyError: it does not tell it.
+    """
+    inbox = link.inbox
+    inbox.height = math.nan
+    for _ in range(TRIES):
+        link.command("REQUEST_MESSAGE", GLOBAL.id)
+        for _ in range(1 if link.is_exact else _ANSWER_LOOKS):  # the acknowledgement may come before the message
+            if not math.isnan(inbox.height):
+                return float(inbox.height)
+            link.pause(0 if link.is_exact else _LOOK)
+    raise NotReadyError(f"{link.name}: the vehicle does not send GLOBAL_POSITION_INT, so its height is not known")
 
 
 def until(

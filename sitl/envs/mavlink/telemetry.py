@@ -71,6 +71,8 @@ class StepTelemetry(Inbox):
         """Above home [m]."""
         self.scans_by_mavlink = True
         """Whether scans and touches come by MAVLink; else the connection reads them off the physics."""
+        self.scans_used = True
+        """Whether anybody reads scans; else they are not asked for."""
         self.longest_interval_us = 1 << 62
         """Greatest interval of telemetry that is new enough at the end of a step [us]."""
         self.was_rebooted = False
@@ -79,8 +81,8 @@ class StepTelemetry(Inbox):
 
     @property
     def time_ms(self) -> int:
-        """The vehicle's clock, by its last position [ms]."""
-        return int(self.position[0])
+        """The vehicle's clock, by its last position and attitude: both are so new [ms]."""
+        return int(min(self.position[0], self.attitude[0]))
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""

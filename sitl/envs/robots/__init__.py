@@ -20,6 +20,18 @@ ROBOTS = {
     "autopilot": "sitl.envs.robots.autopilot:AutopilotRobot",
 }
 """Name -> class."""
+WORLDS = {"erle_copter": "office_erlecopter", "erle_rover": "maze_erlerover", "autopilot": "maze_erlerover"}
+"""Name -> world where none is asked for; others have ``WORLD``."""
+WORLD = "circuit2"
+
+
+def world_of(robot: str | Callable[..., Robot]) -> str:
+    """Name of the world that a robot has room in, for one that is to be in no other."""
+    return WORLDS.get(_name(robot), WORLD) if isinstance(robot, str) else WORLD
+
+
+def _name(robot: str) -> str:
+    return robot.strip().lower().replace("-", "_")
 
 
 def load(robot: str | Callable[..., Robot], world: World, count: int, options: Mapping[str, Any]) -> Robot:
@@ -36,7 +48,7 @@ def load(robot: str | Callable[..., Robot], world: World, count: int, options: M
     """
     made: Callable[..., Robot]
     if isinstance(robot, str):
-        name = robot.strip().lower().replace("-", "_")
+        name = _name(robot)
         if name not in ROBOTS:
             raise unknown("robot", robot, ROBOTS)
         module, attribute = ROBOTS[name].split(":")

@@ -18,6 +18,7 @@ from sitl.worlds.shapes import from_ned, to_ned
 
 from ..mavlink.guard import Guard, Watch, guard_of
 from ..mavlink.preparation import (
+    AIRBORNE,
     BY_FORCE,
     CUSTOM_MODE_ENABLED,
     NONE,
@@ -37,6 +38,8 @@ GCS, INVALID, ACTIVE = 6, 8, 4
 """MAV_TYPE, MAV_AUTOPILOT, MAV_STATE of the environment's heartbeat."""
 NEAR = 1.0
 """A vehicle that goes back is back at such a distance [m]."""
+_SINKING = 0.3
+"""Speed at which a copter on the ground is to sink until it knows that it has landed [m/s]."""
 Origin = tuple[float, float, float]
 
 
@@ -59,6 +62,8 @@ class SocketVehicles(Vehicles):
         """Of the vehicle's local frame in the world, of one that was taken over in flight: NED [m]."""
         self._first = (0.0, 0.0, 0.0)
         """Where that was, in its local frame: NED [m]."""
+        self._height = 0.0
+        """How high that was above its home [m]."""
         self._heard_ms = -1000
 
     @staticmethod
@@ -80,7 +85,11 @@ class SocketVehicles(Vehicles):
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         if self._pose not in (None, pose):
-            raise EnvOptionError(f"{self.where}: the vehicle starts where it was started")
+            name = self.setup.world.start(self.setup.airframe.name).name
+            raise EnvOptionError(
+                f"{self.where}: the vehicle starts where it was started: all episodes begin at one pose; "
+                f"start={name!r} (sitl evaluate --option start={name}, which moves no starts)"
+            )
         self._pose = pose
         link = self.links[0]
         if link is None:
@@ -88,8 +97,11 @@ class SocketVehicles(Vehicles):
                 link = connect(self._connection, self.setup.inbox(), self.options.patience, warn=logger.warn)
             except OptionError as error:
                 raise EnvOptionError(str(error)) from None
+            link.inbox.scans_used = self.scans_used
             self.links[0] = link
         else:
+            if self.watch is not None and self.watch.in_charge and link.inbox.mode == self.setup.kind.guided:
+                self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
             link.is_simulator = is_simulator(link)
         if self.options.reset in (NONE, RETURN):
             origin = self._joined(link, pose)
@@ -108,8 +120,6 @@ class SocketVehicles(Vehicles):
         """Take over a vehicle that somebody else has brought up; its place at the first episode is the world's start
         pose. Returns its local origin in the world: north, east, down [m]."""
         kind, inbox, wait = self.setup.kind, link.inbox, self.options.wait
-        if self.watch is not None and self.watch.in_charge and inbox.mode == kind.guided:
-            self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
         if self._origin is not None and self.options.reset == RETURN:
             self._go_back(link)
         join(link, kind.guided, kind.takes_off, wait)
@@ -118,11 +128,31 @@ class SocketVehicles(Vehicles):
             above = height_above_home(link) if kind.takes_off else 0.0
             x, y, floor = to_ned(*pose[:3])
             self._origin, self._first = (x - north, y - east, floor - above - down), (north, east, down)
+            self._height = above
         return self._origin
 
-    def _stop(self, link: Connection) -> None:
-        """Ask for no speed, in GUIDED."""
-        fields = {"coordinate_frame": LOCAL_NED, "type_mask": VELOCITY_ONLY | YAWS_IGNORED, "vx": 0, "vy": 0, "vz": 0}
+    def _lift_off(self, link: Connection) -> None:
+        """A copter that has landed and is still armed takes off. Before it knows that it has landed, it refuses: until
+        then it is to sink."""
+        inbox = link.inbox
+        for _ in range(max(round(self.options.wait), 1)):
+            if not inbox.armed or inbox.mode != self.setup.kind.guided:
+                return
+            if link.command("NAV_TAKEOFF", altitude=self._height) == ACCEPTED:
+                if self.watch is not None:
+                    self.watch.note(1e-3 * inbox.time_ms, "take-off", "it flies back")
+                break
+            self._stop(link, sinking=_SINKING)
+            link.pause(1_000_000)
+        for _ in range(max(round(self.options.wait), 1)):
+            if height_above_home(link) > self._height - NEAR:
+                return
+            link.pause(1_000_000)
+
+    def _stop(self, link: Connection, sinking: float = 0.0) -> None:
+        """Ask for no speed, in GUIDED, but ``sinking`` [m/s]."""
+        mask = VELOCITY_ONLY | YAWS_IGNORED
+        fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "vx": 0, "vy": 0, "vz": sinking}
         link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=link.inbox.system, **fields))
 
     def _go_back(self, link: Connection) -> None:
@@ -130,6 +160,8 @@ class SocketVehicles(Vehicles):
         inbox, place = link.inbox, self._first
         if not inbox.armed or inbox.mode != self.setup.kind.guided:
             return
+        if self.setup.kind.takes_off and height_above_home(link) < AIRBORNE:
+            self._lift_off(link)
         x, y, z = place
         mask = PLACE_ONLY | YAWS_IGNORED
         for _ in range(max(round(self.options.wait), 1)):

@@ -31,7 +31,7 @@ from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned
 
-from ..actions import Action, Setpoint
+from ..actions import MOTORS, Action, Continuous, Setpoint
 from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
@@ -111,7 +111,8 @@ class AutopilotRobot:
         self._truth = np.zeros_like(self.state)
         self._setup = setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
-        self.step_time, self.setpoints = 0.1, tuple(kind.setpoints)
+        is_driven = isinstance(made, FleetVehicles) and kind.drive is not None
+        self.step_time, self.setpoints = 0.1, tuple(s for s in kind.setpoints if s is not MOTORS or is_driven)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
         self.figures: Mapping[str, Figure] = (
             {**{f.name: f for f in airframe.known if f.length == 1 and not f.whole}, **made.extra_figures}
@@ -127,7 +128,11 @@ class AutopilotRobot:
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
-        return self.kind.action(form, setpoint)
+        made = self.kind.action(form, setpoint)
+        if setpoint is MOTORS and isinstance(made, Continuous):
+            count = len(getattr(self.airframe, "rotors"))  # noqa: B009 - a copter has them
+            return Continuous(MOTORS, count * [0.0], count * [1.0], range(count))
+        return made
 
     def ask_for(self, message: str) -> None:
         """See ``sitl.envs.senses.ReportingRobot``. Of a vehicle that does not send it, the first reset says so."""
@@ -147,6 +152,15 @@ class AutopilotRobot:
     def prepare_at(self, pose: Pose) -> None:
         """Where a vehicle is prepared that is moved to other start poses; before the first reset."""
         self._vehicles.base = pose
+
+    @property
+    def is_live(self) -> bool:
+        """See ``AskedRobot``."""
+        return isinstance(self._vehicles, SocketVehicles)
+
+    def use_scan(self, used: bool) -> None:
+        """See ``AskedRobot``: a vehicle at a connection is asked for scans only where they are used."""
+        self._vehicles.scans_used = used
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
@@ -214,7 +228,9 @@ class AutopilotRobot:
         interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
         for index in vehicles.rows(rows).tolist():
             now = states[index]
-            if now.setpoint != setpoint or now.interval_us != interval_us:
+            if now.interval_us != interval_us or not (
+                now.setpoint == setpoint or self.kind.are_alike(now.setpoint, setpoint)
+            ):
                 states[index] = vehicles.change(index, now, setpoint, interval_us)
         vehicles.step(rows, us, setpoint, self._commands, waits_us)
 
@@ -230,7 +246,9 @@ class AutopilotRobot:
             watch.stepped()
             return
         interval_us = min(math.gcd(ALIGN_US, us), inbox.longest_interval_us)
-        if now.setpoint != setpoint.name or now.interval_us != interval_us:
+        if now.interval_us != interval_us or not (
+            now.setpoint == setpoint.name or self.kind.are_alike(now.setpoint, setpoint.name)
+        ):
             now = self._change(link, now, setpoint.name, interval_us)
             self._states[index] = now
         hits, scans, goal_ms = inbox.hits, inbox.scans, inbox.position[0] + us // 1000
@@ -247,7 +265,8 @@ class AutopilotRobot:
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
-                is_whole = inbox.scans > scans and len(inbox.reported) == len(inbox.wanted)
+                seen = inbox.scans > scans or not inbox.scans_used
+                is_whole = seen and len(inbox.reported) == len(inbox.wanted)
                 if is_whole and inbox.position[0] == inbox.attitude[0] == goal_ms:
                     break
                 request_again(link)
@@ -368,6 +387,11 @@ class AutopilotRobot:
         return self._vehicles.photograph(index, width, height)
 
     # ------------------------------------------------------------------ snapshots
+
+    @property
+    def has_snapshots(self) -> bool:
+        """Whether its state can be kept and restored: that of vehicles in process."""
+        return self._vehicles.has_snapshots
 
     def snapshot(self, index: int) -> Any:
         """See ``Robot``."""

@@ -4,22 +4,49 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.core.constants import TICK_S
+from sitl.physics.native.copter.state import ALL_DRIVEN
 
-from ..actions import ACCELERATION, ATTITUDE, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
+from ..actions import ACCELERATION, ATTITUDE, MOTORS, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
 from ..mavlink import px4, setpoints
 from .kind import FAR, RobotKind, pulses
+from .robot import Floats
+
+
+def drive(records: Any, rows: npt.NDArray[np.int64], commands: Floats) -> None:
+    """Write the controls of motors into the physics of copters of a fleet, past the autopilots, which fly on without
+    effect. Motors that fail or are stuck do so here, too; a change is not slowed as MOT_SLEW_UP_TIME would.
+
+    Args:
+        records: of the fleet.
+        rows: numbers of the copters.
+        commands: controls, 0 .. 1, a row a copter of the fleet, shape (count, at least as many as rotors).
+    """
+    physics = records["physics"]
+    rotors, figures = physics["rotors"], physics["airframe"]
+    count = int(figures["rotor_count"][rows[0]]) if len(rows) else 0
+    least, scale = figures["control_min"][rows, None], physics["derived"]["control_scale"][rows, None]
+    wanted = np.clip((commands[rows, :count] * rotors["share"][rows, :count] - least) * scale, 0.0, 1.0)
+    stuck = records["autopilot"]["params"]["SIM"]["ENGINE_STUCK"][rows].astype(np.int64)
+    is_stuck = (stuck[:, None] >> np.arange(count)) & 1 == 1
+    rotors["command"][rows, :count] = np.where(is_stuck, rotors["command"][rows, :count], wanted)
+    rotors["stuck"][rows] = ALL_DRIVEN
+
 
 THRUST_IS_THRUST = 8
 """Bit of GUID_OPTIONS: the thrust of SET_ATTITUDE_TARGET is a thrust."""
 _ARDUPILOT = RobotKind(
-    setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES),
+    setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS),
     modes={
         "rc": ALT_HOLD,
-        **dict.fromkeys(("velocity", "position", "attitude", "acceleration", "thrust", "rates"), GUIDED),
+        **dict.fromkeys(("velocity", "position", "attitude", "acceleration", "thrust", "rates", "motors"), GUIDED),
     },
     parameters={"thrust": ("GUID_OPTIONS", THRUST_IS_THRUST), "rates": ("GUID_OPTIONS", THRUST_IS_THRUST)},
     guided=GUIDED,
@@ -46,14 +73,17 @@ _ARDUPILOT = RobotKind(
         "acceleration": ((-2.0, -2.0, -1.0, -1.0), (2.0, 2.0, 1.0, 1.0), (0, 1, 2, 3)),
         "thrust": ((-0.2, -0.2, -1.0, 0.0), (0.2, 0.2, 1.0, 1.0), (0, 1, 2, 3)),
         "rates": ((-2.0, -2.0, -2.0, 0.0), (2.0, 2.0, 2.0, 1.0), (0, 1, 2, 3)),
+        "motors": (8 * (0.0,), 8 * (1.0,), tuple(range(8))),
     },
     agile={
+        "rc": (4 * (1100.0,), 4 * (1900.0,), (0, 1, 2, 3)),
         "velocity": ((-5.0, -5.0, -2.0, -1.5), (5.0, 5.0, 2.0, 1.5), (0, 1, 2, 3)),
         "attitude": ((-0.5, -0.5, -1.5, -1.0), (0.5, 0.5, 1.5, 1.0), (0, 1, 2, 3)),
         "acceleration": ((-4.0, -4.0, -2.0, -1.5), (4.0, 4.0, 2.0, 1.5), (0, 1, 2, 3)),
         "thrust": ((-0.5, -0.5, -1.5, 0.0), (0.5, 0.5, 1.5, 1.0), (0, 1, 2, 3)),
         "rates": ((-4.0, -4.0, -3.0, 0.0), (4.0, 4.0, 3.0, 1.0), (0, 1, 2, 3)),
     },
+    drive=drive,
     takes_off=True,
     feels_wind=True,
 )
@@ -61,6 +91,7 @@ _PX4 = replace(
     _ARDUPILOT,
     setpoints=(VELOCITY, POSITION),
     parameters={},
+    drive=None,
     modes={"velocity": px4.OFFBOARD, "position": px4.OFFBOARD},
     guided=px4.OFFBOARD,
     encode=px4.COPTER,

@@ -24,6 +24,7 @@ from sitl.simulation import Simulation, Snapshot
 from sitl.turtlebots.native import full_pose
 from sitl.vehicle.faults import Failure
 
+from ..actions import MOTORS
 from ..mavlink.compiled import (
     ACCELERATION,
     ATTITUDE,
@@ -69,6 +70,8 @@ SORTS: dict[Encode, int] = {
     rates: RATES,
 }  # fmt: skip
 """What makes a set-point's message -> its number in the core."""
+DIRECT = -1
+"""In their place: controls of motors."""
 Rows = npt.NDArray[np.int64]
 
 
@@ -254,20 +257,29 @@ class FleetVehicles(InProcessVehicles):
             commands: float64, one row for each vehicle in one piece of memory, shape (count, columns).
             waits_us: how long each set-point is under way [us], shape (count,); None: no time.
         """
-        fleet, rows, sort = self.fleet, self.rows(which), SORTS[self.setup.kind.encode[setpoint]]
+        fleet, rows, kind = self.fleet, self.rows(which), self.setup.kind
+        sort = DIRECT if setpoint == MOTORS.name else SORTS[kind.encode[setpoint]]
         for index in [k for k in rows.tolist() if k in self._failing] if self._failing else ():
             self._order(index)
         if waits_us is None:
-            self._send(rows, sort, commands)
+            self._command(rows, sort, commands)
             fleet.advance_us(us, None if which is None else rows)
         else:
             late, sends = rows[waits_us[rows] > 0], rows[waits_us[rows] < us]
             fleet.advance_us(np.minimum(waits_us[late], us), late)
             self._read_shell_bytes()
             self._read_some(late)
-            self._send(sends, sort, commands)
+            self._command(sends, sort, commands)
             fleet.advance_us(us - np.minimum(waits_us[sends], us), sends)
         self.show(rows)
+
+    def _command(self, rows: Rows, sort: int, commands: Floats) -> None:
+        """Send set-points; controls of motors go into the physics."""
+        if sort != DIRECT:
+            self._send(rows, sort, commands)
+            return
+        assert self.setup.kind.drive is not None
+        self.setup.kind.drive(self.fleet.records, rows, commands)
 
     def fail(self, index: int, failure: Failure) -> None:
         self._failing.setdefault(index, []).append(failure)

@@ -4,8 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
@@ -13,7 +17,7 @@ from sitl.vehicles import Airframe
 from ..actions import Action, Continuous, Discrete, Setpoint
 from ..mavlink.setpoints import Encode
 from ..options import EnvOptionError
-from .robot import Volume
+from .robot import Floats, Volume
 
 Rows = Mapping[str, tuple[float, ...]]
 Limits = tuple[tuple[float, ...], tuple[float, ...], tuple[int, ...]]
@@ -43,8 +47,16 @@ class RobotKind:
     """Wind is among the figures that may be changed."""
     parameters: Mapping[str, tuple[str, int]] = field(default_factory=dict)
     """Kind of set-point -> parameter and the bit of it that the vehicle must have."""
+    drive: Callable[[Any, npt.NDArray[np.int64], Floats], None] | None = None
+    """Writes the controls of ``actions.MOTORS`` into a fleet's records: ``drive(records, rows, commands)``; None:
+    motors cannot be driven directly."""
     with_px4: RobotKind | None = None
     """The same when PX4 controls it; None: environments do not drive it then."""
+
+    def are_alike(self, one: str, other: str) -> bool:
+        """Whether a vehicle that is ready for one kind of set-point takes the other one, too, as it is."""
+        modes, parameters = self.modes, self.parameters
+        return one in modes and modes[one] == modes[other] and parameters.get(one) == parameters.get(other)
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The default actions of a form, "discrete", "continuous" or "agile", for a kind of set-point."""

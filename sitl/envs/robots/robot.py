@@ -127,3 +127,15 @@ class PreparedRobot(Protocol):
 
     def prepare_at(self, pose: Pose) -> None:
         """Where it is prepared; before the first ``reset``."""
+
+
+@runtime_checkable
+class AskedRobot(Protocol):
+    """A robot whose lidar readings may have to be asked for."""
+
+    @property
+    def is_live(self) -> bool:
+        """Whether its time goes by while an environment thinks, as that of a vehicle at a connection does."""
+
+    def use_scan(self, used: bool) -> None:
+        """Whether anything reads them; before the first ``reset``."""

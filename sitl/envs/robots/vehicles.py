@@ -171,6 +171,8 @@ class Vehicles(ABC):
         """Changed figures of each vehicle: name -> value, in the figure's unit."""
         self.watch: Watch | None = None
         """The guard of a vehicle that runs elsewhere."""
+        self.scans_used = True
+        """Whether anything reads the lidars."""
         self.base: Pose | None = None
         """Where a vehicle is prepared that is moved to other starts; None: at the world's start pose."""
 

@@ -76,6 +76,7 @@ class SwarmEnv(ParallelEnv):
         assert not isinstance(task, str)
         if not (step > 0.0 and round(step * 400) == step * 400):
             raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
+        self._given = {"step": step, "steps": steps, **options}
         self.task, self.step_us, self.steps = task, round(step * 1e6), steps
         self.metadata = {"name": "sitl_swarm_v0", "render_modes": [], "is_parallelizable": True}
         self.render_mode = None
@@ -219,6 +220,30 @@ class SwarmEnv(ParallelEnv):
             space = self._observation_space
             found[agent] = np.clip(row, space.low, space.high)
         return found
+
+    # ------------------------------------------------------------------ copies
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All of it, within an episode, too: a copy goes on bit for bit."""
+        begun = self._ready is not None
+        return {
+            "task": self.task, "given": self._given, "rng": self._rng, "agents": self.agents,
+            "begun": (self.swarm.snapshot(), self._told, self._count, self._hits, [end.sequence for end in self._ends])
+            if begun
+            else None,
+        }  # fmt: skip
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(state["task"], **state["given"])  # type: ignore[misc]
+        self._rng, self.agents = state["rng"], list(state["agents"])
+        if state["begun"] is not None:
+            self._ready = self._prepared()  # it is the same each time
+            now, told, self._count, self._hits, sequences = state["begun"]
+            self.swarm.restore(now)
+            self._told = told.copy()
+            for endpoint, sequence in zip(self._ends, sequences, strict=True):
+                endpoint.link.receive()
+                endpoint.sequence = sequence
 
     def render(self) -> None:
         """There is nothing to see."""

@@ -159,7 +159,9 @@ class Gates(PlacesTask):
         nearer = np.sqrt(((targets - self._before) ** 2).sum(axis=1)) - np.sqrt(
             ((targets - self._now) ** 2).sum(axis=1)
         )
-        rewards += self.progress * nearer + self.gate_reward * self._passed + self.each_second * step.seconds
+        gain, gates, time = self.progress * nearer, self.gate_reward * self._passed, self.each_second * step.seconds
+        rewards += gain + gates + time
+        step.note(progress=gain, gates=gates, time=time)
         self._before[:] = self._now
         self.at += self._passed
         done = self._passed & (self.at % len(self._gates) == 0)

@@ -66,16 +66,22 @@ class Hold(PlacesTask):
         way = self.places[:, 0] - step.pose[:, :3]
         distance = np.sqrt((way * way).sum(axis=1))
         if self.is_sparse:
-            rewards += self.compute_reward(self.achieved(), self.targets, None)
+            paid = self.compute_reward(self.achieved(), self.targets, None)
+            rewards += paid
+            step.note(goal=paid)
         else:
             self._pay(step, rewards, distance)
         self.since = np.where(distance < self.radius, self.since + step.seconds, 0.0)
         self.success = self.since >= self.hold - 1e-9
 
     def _pay(self, step: Step, rewards: Floats, distance: Floats) -> None:
-        rewards += step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        rewards += near
+        step.note(nearness=near)
         if self.effort and step.actions.ndim == 2:
-            rewards -= self.effort * step.seconds * (step.actions * step.actions).mean(axis=1)
+            effort = self.effort * step.seconds * (step.actions * step.actions).mean(axis=1)
+            rewards -= effort
+            step.note(effort=-effort)
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
         """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3)."""

@@ -39,6 +39,9 @@ class Land(MovingTask):
         others: further arguments of ``MovingTask``.
     """
 
+    lands = True
+    """It ends on the ground: a guard's floor must let it down there."""
+
     def __init__(
         self,
         offset: float = 5.0,
@@ -95,7 +98,8 @@ class Land(MovingTask):
         self.places[:, 0] = pad = self.along(time[:, None])[:, 0]
         way = pad - state[:, :3]
         distance = np.sqrt((way * way).sum(axis=1))
-        rewards += self.progress * (self._distance - distance) + self.each_second * step.seconds
+        gain, spent = self.progress * (self._distance - distance), self.each_second * step.seconds
+        rewards += gain + spent
         self._distance = distance
         down = (state[:, 2] - step.robot.world.floor_z < DOWN) & ~terminated
         turned = np.where(time % 20.0 < 10.0, 1.0, -1.0)[:, None]
@@ -106,6 +110,8 @@ class Land(MovingTask):
         self.success = down & on & (slip < SLOW) & (self._sinking < GENTLE)
         rewards[self.success] += self.success_reward
         rewards[down & ~self.success] += self.crash_reward
+        landing = self.success_reward * self.success + self.crash_reward * (down & ~self.success)
+        step.note(progress=gain, time=spent, landing=landing)
         terminated |= down
         self._sinking = 0.0 - state[:, 6]
 

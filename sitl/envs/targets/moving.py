@@ -90,7 +90,9 @@ class MovingTask(PlacesTask):
         way = self.places[:, 0] - step.pose[:, :3]
         squared = (way * way).sum(axis=1)
         distance = np.sqrt(squared)
-        rewards += step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        rewards += near
+        step.note(nearness=near)
         counts = time >= self.settle
         self.sums[counts] += np.stack([squared, np.ones(len(squared))], axis=1)[counts]
         self.success = counts & (self._errors() < self.radius)

@@ -118,6 +118,8 @@ class PlacesTask(Task):
         outside = ((step.pose[:, :3] < low) | (step.pose[:, :3] > high)).any(axis=1) & ~terminated
         rewards[outside] += self.out_reward
         terminated |= outside
+        step.outside = outside
+        step.note(out=np.where(outside, self.out_reward, 0.0))
         step.crashed, step.reached = crashed, self.success & ~crashed
 
     @abstractmethod

@@ -126,7 +126,10 @@ class Waypoints(PlacesTask):
         pose = np.ascontiguousarray(step.pose)
         places = self.places.reshape(-1, 3)
         _pass(pose, places, self.radius, self.at, self._distance, self._gain, self._passed)
-        rewards += self.progress * self._gain + self.place_reward * self._passed + self.each_second * step.seconds
+        gain, places_paid = self.progress * self._gain, self.place_reward * self._passed
+        time = self.each_second * step.seconds
+        rewards += gain + places_paid + time
+        step.note(progress=gain, places=places_paid, time=time)
         self.success = self.at == self._count
         terminated |= self.success
 

@@ -171,6 +171,29 @@ POSITION = Message(
     when=E + "origin_set",
 )
 
+def barometer(number: int, pressure: str, count: str, when: Source) -> Message:
+    """BARO of a barometer; ``pressure``, ``count``: paths of what it shows [hPa] and of its samples."""
+    return Message(
+        "BARO",
+        (
+            Field("I", "B", "#", source=number),
+            Field("Alt", "f", "m", "0", derived.baro_altitude(pressure)),
+            Field("AltAMSL", "f", "m", "0", derived.pressure_altitude(pressure)),
+            Field("Press", "f", "P", "0", pressure, 100.0),
+            Field("Temp", "c", "O", "B", S + "temperature"),
+            Field("CRt", "f", "n", "0", E + "vel[2]", -1.0),
+            Field("SMS", "I", "s", "C", S + "time_us", 1e-3),
+            Field("Offset", "f", "m", "-"),
+            Field("GndTemp", "f", "O", "0", S + "temperature"),
+            Field("H", "B", source=derived.is_seen(count)),
+            Field("CPress", "f", "P", "0", pressure, 100.0),
+        ),
+        bits.MEDIUM,
+        bits.IMU,
+        when=when,
+    )
+
+
 SENSORS = (
     Message(
         "IMU",
@@ -190,25 +213,8 @@ SENSORS = (
         bits.IMU,
         ring=True,
     ),
-    Message(
-        "BARO",
-        (
-            Field("I", "B", "#"),
-            Field("Alt", "f", "m", "0", derived.baro_altitude),
-            Field("AltAMSL", "f", "m", "0", derived.pressure_altitude),
-            Field("Press", "f", "P", "0", S + "abs_pressure", 100.0),
-            Field("Temp", "c", "O", "B", S + "temperature"),
-            Field("CRt", "f", "n", "0", E + "vel[2]", -1.0),
-            Field("SMS", "I", "s", "C", S + "time_us", 1e-3),
-            Field("Offset", "f", "m", "-"),
-            Field("GndTemp", "f", "O", "0", S + "temperature"),
-            Field("H", "B", source=derived.is_seen(S + "baro_count")),
-            Field("CPress", "f", "P", "0", S + "abs_pressure", 100.0),
-        ),
-        bits.MEDIUM,
-        bits.IMU,
-        when=S + "baro_count",
-    ),
+    barometer(0, S + "abs_pressure", S + "baro_count", S + "baro_count"),
+    barometer(1, S + "abs_pressure2", S + "baro2_count", derived.baros_differ),
     Message(
         "VIBE",
         (
@@ -283,27 +289,29 @@ def position_control(axis: str, k: int, path: Callable[[str], str], target: str,
     return Message(f"PSC{axis}", fields, bits.MEDIUM, bits.NAVIGATION, when=when)
 
 
-GPS_ACCURACY = Message(
-    "GPA",
-    (
-        Field("I", "B", "#"),
-        Field("VDop", "C", "-", "B", S + "gps_epv", 0.01),
-        Field("HAcc", "C", "m", "B", S + "gps_eph", 0.003),
-        Field("VAcc", "C", "m", "B", S + "gps_epv", 0.005),
-        Field("SAcc", "C", "n", "B"),
-        Field("YAcc", "f", "d", "0", float("nan")),
-        Field("VV", "B", source=1),
-        Field("SMS", "I", "s", "C", S + "gps_time_us", 1e-3),
-        Field("Delta", "H", "s", "C", 200),
-        Field("AEl", "e", "m", "B", S + "gps_alt", 1e-3),
-        Field("RTCMFU", "H"),
-        Field("RTCMFD", "H"),
-    ),
-    bits.MEDIUM,
-    bits.GPS,
-    change=S + "gps_count",
-    time=S + "gps_time_us",
-)
+def gps_accuracy(receiver: int, r: str) -> Message:
+    """GPA of a receiver, whose numbers begin with ``r``."""
+    return Message(
+        "GPA",
+        (
+            Field("I", "B", "#", source=receiver),
+            Field("VDop", "C", "-", "B", r + "gps_epv", 0.01),
+            Field("HAcc", "C", "m", "B", r + "gps_eph", 0.003),
+            Field("VAcc", "C", "m", "B", r + "gps_epv", 0.005),
+            Field("SAcc", "C", "n", "B"),
+            Field("YAcc", "f", "d", "0", float("nan")),
+            Field("VV", "B", source=1),
+            Field("SMS", "I", "s", "C", r + "gps_time_us", 1e-3),
+            Field("Delta", "H", "s", "C", 200),
+            Field("AEl", "e", "m", "B", r + "gps_alt", 1e-3),
+            Field("RTCMFU", "H"),
+            Field("RTCMFD", "H"),
+        ),
+        bits.MEDIUM,
+        bits.GPS,
+        change=r + "gps_count",
+        time=r + "gps_time_us",
+    )
 
 
 def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
@@ -445,36 +453,40 @@ _BODY, _PLACE = "physics.body.", "physics.place."
 
 
 def gps(boot_unix_us: int) -> tuple[Message, ...]:
-    """GPS: fixes with GPS week and time of week; ``boot_unix_us``: Unix time of boot [us].
+    """GPS and GPA of two receivers; ``boot_unix_us``: Unix time of boot [us]."""
+    return tuple(m for k, r in enumerate((S, S + "gps2.")) for m in (gps_fix(boot_unix_us, k, r), gps_accuracy(k, r)))
+
+
+def gps_fix(boot_unix_us: int, receiver: int, r: str) -> Message:
+    """GPS: fixes with GPS week and time of week, of a receiver whose numbers begin with ``r``.
 
     GPS time began in 1980 and has been 18 s ahead of UTC since 2017.
     """
     boot = (boot_unix_us - 315_964_800_000_000) * 1e-6 + 18.0
-    week = 7 * 86400.0
-    fix = Message(
+    week, seconds = 7 * 86400.0, derived.gps_seconds(r)
+    return Message(
         "GPS",
         (
-            Field("I", "B", "#"),
-            Field("Status", "B", source=S + "gps_fix"),
-            Field("GMS", "I", "s", "C", lambda s: (boot + derived.gps_seconds(s)) % week, 1000.0),
-            Field("GWk", "H", source=lambda s: (boot + derived.gps_seconds(s)) // week),
-            Field("NSats", "B", "S", "0", S + "gps_satellites"),
-            Field("HDop", "c", "-", "B", S + "gps_eph", 0.01),
-            Field("Lat", "L", "D", "G", S + "gps_lat"),
-            Field("Lng", "L", "U", "G", S + "gps_lon"),
-            Field("Alt", "e", "m", "B", S + "gps_alt", 1e-3),
-            Field("Spd", "f", "n", "0", derived.length(S + "gps_vel[0]", S + "gps_vel[1]"), 0.01),
-            Field("GCrs", "f", "h", "0", derived.course),
-            Field("VZ", "f", "n", "0", S + "gps_vel[2]", 0.01),
+            Field("I", "B", "#", source=receiver),
+            Field("Status", "B", source=r + "gps_fix"),
+            Field("GMS", "I", "s", "C", lambda s: (boot + seconds(s)) % week, 1000.0),
+            Field("GWk", "H", source=lambda s: (boot + seconds(s)) // week),
+            Field("NSats", "B", "S", "0", r + "gps_satellites"),
+            Field("HDop", "c", "-", "B", r + "gps_eph", 0.01),
+            Field("Lat", "L", "D", "G", r + "gps_lat"),
+            Field("Lng", "L", "U", "G", r + "gps_lon"),
+            Field("Alt", "e", "m", "B", r + "gps_alt", 1e-3),
+            Field("Spd", "f", "n", "0", derived.length(r + "gps_vel[0]", r + "gps_vel[1]"), 0.01),
+            Field("GCrs", "f", "h", "0", derived.course(r)),
+            Field("VZ", "f", "n", "0", r + "gps_vel[2]", 0.01),
             Field("Yaw", "f", "h", "0"),
-            Field("U", "B", source=1),
+            Field("U", "B", source=derived.is_used(receiver)),
         ),
         bits.MEDIUM,
         bits.GPS,
-        change=S + "gps_count",
-        time=S + "gps_time_us",
+        change=r + "gps_count",
+        time=r + "gps_time_us",
     )
-    return (fix, GPS_ACCURACY)
 
 
 _TARGET = A + "landing_target."

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from ...autopilot.copter.modes.autotune import AUTOTUNE
 from .. import plot
 from ..kind import KindLogs
 from . import autotune, bits, common, derived, system_id
@@ -73,7 +76,7 @@ CONTROL = Message(
         Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
         Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
         Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
-        Field("BAlt", "e", "m", "B", derived.baro_altitude),
+        Field("BAlt", "e", "m", "B", derived.baro_altitude("sensors.abs_pressure")),
         Field("DSAlt", "f", "m", "0"),
         Field("SAlt", "f", "m", "0"),
         Field("TAlt", "f", "m", "0"),
@@ -129,6 +132,28 @@ def _position(axis: str, k: int) -> Message:
     return common.position_control(axis, k, lambda name: base + name + end, "pos_desired", when)
 
 
+_TWITCH = A + "modes.autotune."
+
+
+def _is_twitching(s: Any) -> Array:
+    """Whether AUTOTUNE twitches, shape (rows,)."""
+    return (s.raw(A + "modes.number") == AUTOTUNE) & (s.raw(_TWITCH + "twitching") != 0)
+
+
+def _twitched(s: Any) -> Array:
+    """Angle since the twitch of AUTOTUNE began, in its direction [deg]."""
+    axis, q = np.minimum(s.raw(_TWITCH + "axis"), 2).astype(np.int64), E + "q"
+    angle = np.choose(axis, [derived.roll(q)(s), derived.pitch(q)(s), derived.yaw(q)(s)])
+    sign = np.where(s.raw(_TWITCH + "backwards") != 0, -1.0, 1.0)
+    return np.remainder(sign * angle - s(_TWITCH + "start_angle") * DEG + 180.0, 360.0) - 180.0
+
+
+def twitch(rate: float) -> Message:
+    """ATDE: angle and rate of a twitch, as AUTOTUNE judges them."""
+    fields = (Field("Angle", "f", "d", "0", _twitched), Field("Rate", "f", "k", "0", _TWITCH + "rate", DEG))
+    return Message("ATDE", fields, rate, bits.IMU | bits.ATTITUDE_FAST, when=_is_twitching)
+
+
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
     """Messages that LOG_BITMASK enables; ``simulated``: the record holds the true state."""
     fast = bool(bitmask & bits.ATTITUDE_FAST)
@@ -163,6 +188,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
             bits.COPTER_MOTORS,
         ),
         *pids,
+        twitch(bits.FAST if fast else bits.IMU_RATE),
         common.LANDING_TARGET,
         TERRAIN,
         *common.FILTER,

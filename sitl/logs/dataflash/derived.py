@@ -11,6 +11,7 @@ import numpy as np
 
 from ...core.algebra import euler_of
 from ...core.array_kernels import Kernel, Table
+from ...core.border import BAROS_DIFFER
 from ...core.geodesy import METRES_PER_DEGE7
 from ...core.kernels import law
 from ...core.vectors import Quat
@@ -131,24 +132,36 @@ def yaw(path: str) -> Column:
     return column
 
 
-def gps_seconds(s: Any) -> Array:
-    """GPS time of the fix relative to boot [s]."""
-    return s(S + "gps_time_us") * 1e-6
+def gps_seconds(receiver: str) -> Column:
+    """GPS time of the fix relative to boot [s], of a receiver whose numbers begin so."""
+    return lambda s: s(receiver + "gps_time_us") * 1e-6
 
 
-def course(s: Any) -> Array:
-    """Course over ground of the GPS receiver, 0 .. 360 [deg]."""
-    return np.mod(np.arctan2(s(S + "gps_vel[1]"), s(S + "gps_vel[0]")) * DEG, 360.0)
+def course(receiver: str) -> Column:
+    """Course over ground of a GPS receiver, 0 .. 360 [deg]."""
+    return lambda s: np.mod(np.arctan2(s(receiver + "gps_vel[1]"), s(receiver + "gps_vel[0]")) * DEG, 360.0)
 
 
-def pressure_altitude(s: Any) -> Array:
-    """Pressure altitude in the standard atmosphere [m]."""
-    return 44330.77 * (1.0 - np.power(np.maximum(s(S + "abs_pressure"), 0.0) / 1013.25, 0.1902632))
+def is_used(receiver: int) -> Column:
+    """1 while a GPS receiver is the one in use."""
+    return lambda s: s.raw(A + "gps.primary") == receiver
 
 
-def baro_altitude(s: Any) -> Array:
+def pressure_altitude(path: str) -> Column:
+    """Pressure altitude in the standard atmosphere [m] of a pressure [hPa]."""
+    return lambda s: 44330.77 * (1.0 - np.power(np.maximum(s(path), 0.0) / 1013.25, 0.1902632))
+
+
+def baro_altitude(path: str) -> Column:
     """Barometric altitude above the ground where it was calibrated [m]."""
-    return pressure_altitude(s) - s(A + "ekf.baro_ground")
+    above_sea = pressure_altitude(path)
+    return lambda s: above_sea(s) - s(A + "ekf.baro_ground")
+
+
+def baros_differ(s: Any) -> Array:
+    """Whether a second barometer shows something of its own, shape (rows,)."""
+    found: Array = s.raw(S + "baro_state") == BAROS_DIFFER
+    return found
 
 
 def resting_voltage(s: Any) -> Array:

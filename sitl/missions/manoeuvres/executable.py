@@ -63,8 +63,9 @@ def enter_namespace() -> None:
 
 @contextmanager
 def started(
-    path: Path, kind: str, home: tuple[float, ...], speedup: int, params: Mapping[str, float], instance: int = 0
-) -> Iterator[RealTime]:
+    path: Path, kind: str, home: tuple[float, ...], speedup: int, params: Mapping[str, float], instance: int = 0,
+    port: int = PORT,
+) -> Iterator[RealTime]:  # fmt: skip
     """The executable, started in a folder of its own, and the connection to it; it ends with the block.
 
     Args:
@@ -73,7 +74,8 @@ def started(
         home: latitude, longitude [deg], altitude [m], heading [deg].
         speedup: simulated seconds a second.
         params: what differs from the firmware's defaults.
-        instance: its number, which its ports follow from.
+        instance: its number, which adds 10 to its ports.
+        port: TCP port of instance 0; its second serial line is two above.
 
     Raises:
         LinkLostError: it does not listen.
@@ -85,12 +87,12 @@ def started(
         )
         command = [
             str(path), "-w", f"-I{instance}", "--model", PROGRAMS[kind][1], "--speedup", str(speedup),
-            "--home", ",".join(f"{x:.10g}" for x in home), "--defaults", str(defaults),
+            "--home", ",".join(f"{x:.10g}" for x in home), "--defaults", str(defaults), "--base-port", str(port),
         ]  # fmt: skip
         with open(os.devnull, "wb") as nowhere:
             process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=nowhere, stderr=nowhere)
         try:
-            connection = _connected(process, PORT + 10 * instance)
+            connection = _connected(process, port + 10 * instance)
             try:
                 yield connection
             finally:

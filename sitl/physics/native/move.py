@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import rotate_inverse
-from ...core.border import Sensors
+from ...core.border import GpsReading, Sensors
 from ...core.displacement import Displacement, faster, moved, turned, turned_attitude
 from ...core.geodesy import add_offset, offset_ne
 from ...core.kernels import law
@@ -18,7 +18,7 @@ from ...core.vectors import Quat, Vec2, Vec3
 from . import wind
 from .atmosphere import pressure, set_air
 from .obstacles import nearest
-from .records import GPS_RING, Body, Fix, Obstacles, Physics, Place, SensorState
+from .records import GPS_RING, Body, Fix, GpsReceiver, Obstacles, Physics, Place
 from .sensors.gps import FIX_3D
 from .tick import TICK_S, Clock
 
@@ -70,31 +70,41 @@ def move_fix(fix: Fix, place: Place, d: Displacement, age: float) -> None:
 
 
 @law
-def move_fixes(s: SensorState, place: Place, d: Displacement, tick: int, delay: int) -> None:
+def move_fixes(r: GpsReceiver, place: Place, d: Displacement, tick: int, delay: int) -> None:
     """All fixes on their way; ``delay`` of the receiver [ticks]."""
-    s.gps_drift = turned(d, s.gps_drift)
-    for n in range(s.gps_tail, s.gps_head):
-        fix = s.gps_fixes[n % GPS_RING]
+    r.drift = turned(d, r.drift)
+    for n in range(r.tail, r.head):
+        fix = r.fixes[n % GPS_RING]
         if fix.type >= FIX_3D:
             move_fix(fix, place, d, TICK_S * (tick - fix.due + delay))
 
 
 @law
-def move_delivered(sensors: Sensors, place: Place, d: Displacement, age: float) -> None:
+def move_delivered(shown: GpsReading, place: Place, d: Displacement, age: float) -> None:
     """The fix that the reader has, ``age`` [s] old."""
-    if sensors.gps_fix < FIX_3D:
+    if shown.gps_fix < FIX_3D:
         return
-    to = moved_fix(place, d, sensors.gps_lat, sensors.gps_lon, age)
-    sensors.gps_lat, sensors.gps_lon = int(to.x), int(to.y)
-    sensors.gps_alt += rise(d, age)
-    sensors.gps_vel = moved_velocity(d, sensors.gps_vel)
+    to = moved_fix(place, d, shown.gps_lat, shown.gps_lon, age)
+    shown.gps_lat, shown.gps_lon = int(to.x), int(to.y)
+    shown.gps_alt += rise(d, age)
+    shown.gps_vel = moved_velocity(d, shown.gps_vel)
+
+
+@law
+def move_receiver(r: GpsReceiver, shown: GpsReading, p: Physics, d: Displacement, now: Clock) -> None:
+    """A receiver's fixes, delivered and on their way."""
+    delay = p.derived.gps_delay
+    move_fixes(r, p.place, d, now.tick, delay)
+    move_delivered(shown, p.place, d, 1e-6 * (now.time_us - shown.gps_time_us) + TICK_S * delay)
 
 
 @law
 def move_air(p: Physics, sensors: Sensors, before: float) -> None:
     """Air and pressure of another height; ``before`` it was at so much above mean sea level [m]."""
     after = p.place.alt - p.body.pos.z
-    sensors.abs_pressure += 0.01 * (pressure(after) - pressure(before))
+    change = 0.01 * (pressure(after) - pressure(before))
+    sensors.abs_pressure += change
+    sensors.abs_pressure2 += change
     set_air(p.air, after)
 
 
@@ -105,8 +115,10 @@ def move_physics(p: Physics, sensors: Sensors, d: Displacement, now: Clock) -> N
     move_body(p.body, d)
     if d.shift.z != 0.0:
         move_air(p, sensors, before)
-    move_fixes(p.sensors, p.place, d, now.tick, p.derived.gps_delay)
-    move_delivered(sensors, p.place, d, 1e-6 * (now.time_us - sensors.gps_time_us) + TICK_S * p.derived.gps_delay)
+    receivers = p.sensors.gps
+    move_receiver(receivers[0], sensors, p, d, now)
+    if receivers[1].present:
+        move_receiver(receivers[1], sensors.gps2, p, d, now)
     o = p.obstacles
     o.impulse = turned(d, o.impulse)
     o.wanted = o.present

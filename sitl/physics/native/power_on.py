@@ -73,7 +73,7 @@ def draw_errors(s: SensorState, a: SensorFigures, rng: Rng) -> None:
     s.gyro_bias = scale * a.gyro_turn_on_bias * gyro_bias
     s.acc_scale = one + scale * a.acc_scale_error * acc_scale
     s.gyro_scale = one + scale * a.gyro_scale_error * gyro_scale
-    s.gps_drift = drift
+    s.gps[0].drift = drift
     s.baro_drift = random.normal(rng)
 
 

@@ -111,12 +111,12 @@ class Fix(Record):
     """What a GPS receiver found, on its way to the reader."""
 
     due: int  # tick of delivery
-    type: int  # MAVLink's GPS_FIX_TYPE
+    type: Int32  # MAVLink's GPS_FIX_TYPE
+    lat: Int32  # [degE7]
+    lon: Int32  # [degE7]
+    alt: Int32  # above mean sea level [mm]
+    vel: Annotated[Vec3, Stored("i4")]  # NED, whole [cm/s]
     jammed: bool
-    lat: int  # [degE7]
-    lon: int  # [degE7]
-    alt: int  # above mean sea level [mm]
-    vel: Annotated[Vec3, Stored("i8")]  # NED, whole [cm/s]
 
 
 class Jam(Record):
@@ -144,12 +144,33 @@ class GpsFault(Record):
     loss: Float32  # share of the fixes that are lost
 
 
+RECEIVERS = 2
+
+
+class GpsReceiver(Record):
+    """A GPS receiver, and what is wrong with it."""
+
+    present: bool  # the vehicle has it; the first one counts as there anyhow
+    off: bool  # it is switched off
+    jammed: bool  # (SIM_GPS1_JAM)
+    jam_end: int  # tick at which the jammed receiver shows fixes again, however wrong; 0: not jammed so far
+    jam: Jam  # the last wrong one
+    drift: Vec3  # NED, in standard deviations
+    head: int  # fixes taken so far
+    tail: int  # fixes delivered so far
+    fixes: Records[Fix] = repeat(Fix, GPS_RING)  # fix n at n % GPS_RING
+    fault: GpsFault
+
+
 BARO_RING = 50
 """Samples of a barometer that are kept: 1 s at 50 Hz."""
 
 
+BAROMETERS = 2
+
+
 class BaroFault(Record):
-    """What is wrong with a barometer (SIM_BARO_*)."""
+    """What is wrong with a barometer (SIM_BARO_*, SIM_BAR2_*)."""
 
     is_on: bool
     off: bool
@@ -215,14 +236,7 @@ class SensorState(Record):
     gyro_bias: Vec3  # turn-on bias, body [rad/s]
     gyro_walk: Vec3  # in-run bias, body [rad/s]
     gyro_scale: Vec3  # 1 + error, body
-    gps_drift: Vec3  # NED, in standard deviations
-    gps_off: bool  # the receiver is switched off
-    gps_jammed: bool  # (SIM_GPS1_JAM)
-    gps_jam_end: int  # tick at which the jammed receiver shows fixes again, however wrong; 0: not jammed so far
-    gps_jam: Jam  # the last wrong one
-    gps_head: int  # fixes taken so far
-    gps_tail: int  # fixes delivered so far
-    gps_fixes: Records[Fix] = repeat(Fix, GPS_RING)  # fix n at n % GPS_RING
+    gps: Records[GpsReceiver] = repeat(GpsReceiver, RECEIVERS)
     imus_faulty: bool  # one of them, or both
     imu_state: int  # ``sensors.imu_state``
     imus: Records[ImuFault] = repeat(ImuFault, IMUS)
@@ -233,8 +247,8 @@ class SensorState(Record):
     compass_by_current: Vec3  # field, body [gauss/A] (SIM_MAG_MOT)
     baro_drift: float  # in standard deviations
     baro_missing: bool  # none was found at power-on (SIM_BARO_COUNT)
-    gps_fault: GpsFault
-    baro_fault: BaroFault
+    baros: Records[BaroFault] = repeat(BaroFault, BAROMETERS)
+    baros_differ: bool  # in what is wrong with them
     range_fault: RangeFault
     irons: Records[Iron] = repeat(Iron, COMPASSES)
 

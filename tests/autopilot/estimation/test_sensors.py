@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from sitl.autopilot.estimation import aiding, barometer, gps, magnetometer, strapdown
 from sitl.autopilot.estimation.state import Ekf
 from sitl.autopilot.params.estimator import Ekf3
-from sitl.autopilot.state import Sensors
 from sitl.core.algebra import IDENTITY
+from sitl.core.border import GpsReading
 from sitl.core.vectors import Vec3
 from tests.autopilot.estimation import synthetic_flight as sf
 
 
-def _fix() -> Sensors:
-    s = Sensors()
+def _fix() -> GpsReading:
+    s = GpsReading()
     s.gps_fix, s.gps_satellites, s.gps_eph = 3, 10, 121
     s.gps_lat, s.gps_lon, s.gps_alt = -353632620, 1491652370, 584000
     return s
@@ -40,9 +40,8 @@ def test_standard_atmosphere(altitude: float, hpa: float) -> None:
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), 0.0, -5.0, 99.0, 1300.0])
 def test_broken_pressure_is_passed_over(bad: float) -> None:
-    ekf, sensors = Ekf(), Sensors()
-    sensors.baro_count, sensors.abs_pressure = 1, bad
-    barometer.read(ekf, sensors)
+    ekf = Ekf()
+    barometer.read(ekf, 1, bad)
     assert ekf.baro_n == 0 and ekf.baro_seen == 1
 
 

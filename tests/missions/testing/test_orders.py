@@ -179,13 +179,13 @@ def test_faults_come_at_their_times(make: VehicleFactory, tmp_path: Path) -> Non
     copter.fail("baro", "garbage", amount=1.5, at=1.0)
     gps = copter.simulation.v.physics.sensors
     copter.delay(1.95)
-    assert not gps.gps_off and copter.simulation.parameters["SIM_BARO_RND"] == 1.5
+    assert not gps.gps[0].off and copter.simulation.parameters["SIM_BARO_RND"] == 1.5
     with copter.fork():
         copter.restore("")
         copter.delay(0.1)
-        assert not gps.gps_off and copter.parameter("SIM_BARO_RND") == pytest.approx(0.2)
+        assert not gps.gps[0].off and copter.parameter("SIM_BARO_RND") == pytest.approx(0.2)
     copter.delay(0.1)
-    assert gps.gps_off
+    assert gps.gps[0].off
     copter.wait_mode("LAND", timeout=20)
     copter.restore("gps")
     assert copter.parameter("SIM_GPS1_ENABLE") == 1

@@ -16,6 +16,10 @@ from sitl.core import records
 from sitl.core.kernels import jit_disabled
 from sitl.physics.native import truth
 from sitl.physics.native.rover.drive import commanded
+from sitl.physics.native.rover.state import SteeringServo
+from sitl.physics.native.rover.steering import followed
+from sitl.physics.native.tick import TICK_S
+from sitl.vehicle.rover import slow_servo
 
 ROVERS = ["erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover"]
 
@@ -37,6 +41,32 @@ def test_erle_rovers_drive_at_5_rad_s_at_1900_us(rig, frame, speed):
         r.command(0.0, 0.8 * sign)
         r.move(4000)
         assert list(r.p.body.vel) == approx([sign * speed, 0.0, 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 80, 400])
+def test_a_late_servo_repeats_its_commands(delay):
+    servo = SteeringServo()
+    slow_servo(servo, delay, 0.0)
+    assert servo.is_slow == (delay > 0)
+    shown = [followed(servo, float(n)) for n in range(1000)]
+    assert shown == [float(max(n - delay, 0)) for n in range(1000)]
+
+
+@pytest.mark.parametrize("hz", [1.0, 5.0, 20.0])
+def test_the_servos_low_pass_is_of_second_order(hz):
+    """A command of the corner frequency comes out at 0.707 of its size, a quarter turn late; a steady one whole."""
+    servo = SteeringServo()
+    slow_servo(servo, 0, hz)
+    times = np.arange(round(20.0 / hz / TICK_S)) * TICK_S
+    shown = np.array([followed(servo, math.sin(2.0 * math.pi * hz * t)) for t in times])
+    last = times > times[-1] - 10.0 / hz
+    in_phase, late = (2.0 * np.mean(shown[last] * wave(2.0 * math.pi * hz * times[last])) for wave in (np.sin, np.cos))
+    assert math.hypot(in_phase, late) == approx(math.sqrt(0.5), rel=0.02) and math.atan2(late, in_phase) == approx(
+        -0.5 * math.pi, abs=0.03
+    )
+    for _ in range(round(5.0 / hz / TICK_S)):
+        steady = followed(servo, 0.3)
+    assert steady == approx(0.3, abs=1e-3)
 
 
 @pytest.mark.parametrize("throttle", [1.0, 0.3, -0.5])

@@ -8,7 +8,7 @@ from pytest import approx
 from sitl.core.geodesy import METRES_PER_DEGE7
 from sitl.core.rng import Rng, seed
 from sitl.core.vectors import Vec3
-from sitl.physics.native.records import Body, Derived, SensorState
+from sitl.physics.native.records import Body, Derived, GpsReceiver, SensorState
 from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
 from sitl.physics.native.tick import Clock
 from sitl.vehicles.figures.body import Sensors
@@ -97,7 +97,7 @@ def test_a_late_receiver_takes_no_more_fixes_than_can_be_on_their_way(rig):
     """Ten a second, each a second old: eight of them arrive, and later ones as well."""
     r = rig(gps_rate=10.0, gps_fix_time=0.01, gps_start=0.1)
     p, s = r.p, r.v.sensors
-    p.sensors.gps_fault.is_on, p.sensors.gps_fault.delay = True, 400
+    p.sensors.gps[0].fault.is_on, p.sensors.gps[0].fault.delay = True, 400
     arrivals = []
     for tick in range(1, 2001):
         p.body.pos = p.body.pos.replace(x=0.0025 * tick * 10.0)  # 10 m/s north
@@ -126,8 +126,8 @@ def test_gps_errors_have_their_deviation(rig):
     r = rig("erle_copter", gps_fix_time=0.1, gps_drift_horizontal=0.0, gps_drift_vertical=0.0)
     rows = []
     for k in range(600):
-        gps.take(r.p, 10_000 + k, r.v.rng)
-        gps.deliver(r.p.sensors, r.v.sensors, Clock(20_000 + k, 0), r.p.airframe)
+        gps.take(r.p, r.p.sensors.gps[0], 10_000 + k, r.v.rng)
+        gps.deliver(r.p.sensors.gps[0], r.v.sensors, Clock(20_000 + k, 0), r.p.airframe)
         s = r.v.sensors
         north = (int(s.gps_lat) - int(r.p.place.lat)) * METRES_PER_DEGE7
         rows.append((north, s.gps_alt / 1e3 - 584.0, *s.gps_vel))
@@ -175,7 +175,7 @@ def test_without_errors_a_sensor_shows_the_truth():
     assert imu.measure(truth, 2.0 * one, one, 0.0, rng) == 2.0 * truth + one
     body = Body()
     body.pos, body.vel = truth, 2.0 * truth
-    assert gps.measure(SensorState(), body, Sensors(), Derived(), rng) == (truth, 2.0 * truth)
+    assert gps.measure(GpsReceiver(), body, Sensors(), Derived(), rng) == (truth, 2.0 * truth)
     assert barometer.pressure_error(SensorState(), Sensors(), Derived(), rng) == 0.0
 
 
@@ -215,7 +215,7 @@ def jammed(rig, ticks):
     """Fixes of a receiver at rest that is jammed: type, distance from where it is [m], speed [m/s], HDOP."""
     r = rig(gps_fix_time=0.01, gps_start=0.01)
     r.step(400)
-    r.p.sensors.gps_jammed = True
+    r.p.sensors.gps[0].jammed = True
     s, seen, out = r.v.sensors, r.v.sensors.gps_count, []
     for _ in range(ticks):
         r.step(1)
@@ -242,7 +242,7 @@ def test_a_jammed_receiver_falls_silent_and_then_shows_anything(rig):
 
 def test_after_jamming_the_receiver_shows_where_it_is(rig):
     r, _ = jammed(rig, 8000)
-    r.p.sensors.gps_jammed = False
+    r.p.sensors.gps[0].jammed = False
     r.step(800)
     s = r.v.sensors
     assert s.gps_fix == 3 and abs(1e-7 * s.gps_lat - HOME_LAT) < 1e-4 and abs(s.gps_vel.x) < 100

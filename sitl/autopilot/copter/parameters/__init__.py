@@ -78,6 +78,7 @@ class Parameters(shared.Parameters):
     )
     AUTOTUNE: Autotune
     AVOID: Avoid
+    BARO_PRIMARY: float
     BATT: Battery
     CIRCLE: Circle
     COMPASS: Compass
@@ -95,6 +96,10 @@ class Parameters(shared.Parameters):
     FS: Failsafes
     GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 roll, 2 pitch, 4 yaw, 8 vertical", INT16)
     GPS1_DELAY_MS: float
+    GPS2_TYPE: float
+    GPS2_DELAY_MS: float
+    GPS_AUTO_SWITCH: float
+    GPS_PRIMARY: float
     GUID: Guided
     INITIAL_MODE: float
     INS: Inertial

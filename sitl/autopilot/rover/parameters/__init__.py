@@ -32,6 +32,8 @@ class Simulated(simulation.Simulated):
     SERVO_SPEED: float = param(
         0.14, 0.01, 100, "s", "Time in which the steering servo turns by 60 degrees; 0.14: the airframe's"
     )
+    SERVO_DELAY: float = param(0, 0, 1, "s", "By so much the steering servo hears its commands late")
+    SERVO_FILTER: float = param(0, 0, 100, "Hz", "Second-order low-pass of the steering servo's commands; 0: none")
 
 
 class Parameters(shared.Parameters):
@@ -42,6 +44,7 @@ class Parameters(shared.Parameters):
     ARMING: Arming
     ATC: Attitude
     AVOID: Avoid = group(BEHAVE=1)
+    BARO_PRIMARY: float
     BATT: Battery
     CIRC: Circle
     COMPASS: Compass
@@ -56,6 +59,10 @@ class Parameters(shared.Parameters):
     FS: Failsafes
     GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 steering, 2 speed", INT16)
     GPS1_DELAY_MS: float
+    GPS2_TYPE: float
+    GPS2_DELAY_MS: float
+    GPS_AUTO_SWITCH: float
+    GPS_PRIMARY: float
     GUID_OPTIONS: float = param(
         0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
     )

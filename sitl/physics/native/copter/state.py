@@ -25,6 +25,11 @@ class Derived(shared.Derived):
     leg_release: float  # share of an impact that the legs take up in a tick
 
 
+DRIVEN = 1 << 62
+"""Bit of ``Rotors.stuck``: somebody else than the autopilot writes the commands (``sitl.envs.robots.copter``)."""
+ALL_DRIVEN = DRIVEN | (1 << ROTORS_MAX) - 1
+
+
 class Rotors(Record):
     """The rotors."""
 

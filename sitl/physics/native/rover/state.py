@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.records import Record
+from ....core.records import Floats, Int32, Record, array
 from ....core.vectors import Vec2
 from ....vehicles.figures.rover import Figures
 from .. import records as shared
@@ -29,9 +29,29 @@ class Derived(shared.Derived):
     encoder_period: int  # [ticks], 0 no encoder
 
 
+SERVO_RING = 401
+"""Commands of the steering servo that are kept: 1 s and the present one."""
+
+
+class SteeringServo(Record):
+    """What is slow about the steering servo, besides its speed (SIM_SERVO_DELAY, SIM_SERVO_FILTER)."""
+
+    is_slow: bool
+    delay: Int32  # [ticks]
+    kept: int  # commands so far
+    ring: Floats = array(SERVO_RING, stored="f4")  # command n at n % SERVO_RING
+    is_filtered: bool
+    gain: float  # of a second-order low-pass: y = gain (x + 2 x' + x") - a1 y' - a2 y"
+    a1: float
+    a2: float
+    first: float  # its states
+    second: float
+
+
 class Wheels(Record):
     """Wheels and motors."""
 
+    servo: SteeringServo
     angle: float  # of the front wheels, to the right [rad]
     speed: Vec2  # rolling speed that the motors give [m/s]: x of the axle, or x of the left and y of the right side
     distance: Vec2  # rolled by the left (x) and right (y) driven wheel [m]

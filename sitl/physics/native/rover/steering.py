@@ -7,13 +7,32 @@ import math
 
 from ....core.kernels import law
 from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, Figures
-from .state import Derived
+from .state import SERVO_RING, Derived, SteeringServo
 
 
 @law
 def approach(value: float, target: float, step: float) -> float:
     """``value`` a tick later, which goes to ``target`` by at most ``step``."""
     return min(max(target, value - step), value + step)
+
+
+@law
+def low_passed(servo: SteeringServo, command: float) -> float:
+    """A command behind the servo's low-pass."""
+    scaled = servo.gain * command
+    after = scaled + servo.first
+    servo.first = 2.0 * scaled - servo.a1 * after + servo.second
+    servo.second = scaled - servo.a2 * after
+    return after
+
+
+@law
+def followed(servo: SteeringServo, command: float) -> float:
+    """The command [-1 .. 1] that a slow servo turns to in this tick."""
+    servo.ring[servo.kept % SERVO_RING] = command
+    late = float(servo.ring[max(servo.kept - servo.delay, 0) % SERVO_RING])
+    servo.kept += 1
+    return low_passed(servo, late) if servo.is_filtered else late
 
 
 @law

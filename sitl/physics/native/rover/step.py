@@ -15,7 +15,7 @@ from . import encoders
 from .drive import commanded, grip_along, run
 from .motion import Course, hold_back, roll
 from .state import Derived, Physics, Wheels
-from .steering import approach, curvature, grip_across
+from .steering import approach, curvature, followed, grip_across
 
 STEERING_OUTPUT = 0
 """Output of the steering servo, or of the left motors."""
@@ -37,6 +37,8 @@ def drive(wheels: Wheels, figures: Figures, derived: Derived, controls: Floats) 
         wheels.speed = Vec2(left.speed, right.speed)
         wheels.power = 0.5 * (left.power + right.power)
     else:
+        if wheels.servo.is_slow:
+            first = followed(wheels.servo, first)
         wheels.angle = approach(wheels.angle, first * figures.steering_angle, derived.steering_step)
         axle = run(wheels.speed.x, second, figures, derived)
         wheels.speed = Vec2(axle.speed, wheels.speed.y)

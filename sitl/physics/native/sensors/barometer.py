@@ -55,16 +55,24 @@ def spoiled(p: Physics, fault: BaroFault, altitude: float, error: float, rng: Rn
 
 
 @law
+def shown(p: Physics, fault: BaroFault, altitude: float, error: float, rng: Rng) -> float:
+    """Pressure that a barometer shows [Pa]."""
+    return spoiled(p, fault, altitude, error, rng) if fault.is_on else pressure(altitude) + error
+
+
+@law
 def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
-    """Write abs_pressure [hPa] and temperature [degC]."""
-    fault = p.sensors.baro_fault
-    if p.sensors.baro_missing or fault.off:
+    """Write abs_pressure [hPa] and temperature [degC]. Two barometers differ by their faults alone."""
+    s = p.sensors
+    fault = s.baros[0]
+    if s.baro_missing or (fault.off and not s.baros_differ):
         return
     altitude = p.place.alt - p.body.pos.z
-    error = pressure_error(p.sensors, p.airframe, p.derived, rng)
-    if fault.is_on:
-        sensors.abs_pressure = 0.01 * spoiled(p, fault, altitude, error, rng)
-    else:
-        sensors.abs_pressure = 0.01 * (pressure(altitude) + error)
+    error = pressure_error(s, p.airframe, p.derived, rng)
+    if not fault.off:
+        sensors.abs_pressure = 0.01 * shown(p, fault, altitude, error, rng)
+        sensors.baro_count += 1
+    if s.baros_differ and not s.baros[1].off:
+        sensors.abs_pressure2 = 0.01 * shown(p, s.baros[1], altitude, error, rng)
+        sensors.baro2_count += 1
     sensors.temperature = temperature(altitude) - 273.15
-    sensors.baro_count += 1

@@ -11,13 +11,13 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import by_component
-from ....core.border import Sensors
+from ....core.border import GpsReading, Sensors
 from ....core.geodesy import add_offset
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Sensors as SensorFigures
-from ..records import GPS_RING, Body, Derived, Fix, GpsFault, Physics, Place, SensorState
+from ..records import GPS_RING, Body, Derived, Fix, GpsFault, GpsReceiver, Physics, Place
 from ..tick import TICK_S, Clock
 
 UNKNOWN_DOP = 9999
@@ -53,42 +53,42 @@ def _axes(horizontal: float, vertical: float) -> Vec3:
 
 
 @law
-def measure(s: SensorState, body: Body, a: SensorFigures, d: Derived, rng: Rng) -> Measured:
+def measure(r: GpsReceiver, body: Body, a: SensorFigures, d: Derived, rng: Rng) -> Measured:
     """Position and velocity with drift and noise."""
     scale = a.noise_scale
-    s.gps_drift = d.gps_drift_decay * s.gps_drift + d.gps_drift_step * normal_vector(rng)
+    r.drift = d.gps_drift_decay * r.drift + d.gps_drift_step * normal_vector(rng)
     slow = _axes(scale * a.gps_drift_horizontal, scale * a.gps_drift_vertical)
     noise = _axes(scale * a.gps_noise_horizontal, scale * a.gps_noise_vertical)
-    pos = body.pos + by_component(slow, s.gps_drift) + by_component(noise, normal_vector(rng))
+    pos = body.pos + by_component(slow, r.drift) + by_component(noise, normal_vector(rng))
     noise = _axes(scale * a.gps_velocity_noise_horizontal, scale * a.gps_velocity_noise_vertical)
     return Measured(pos, body.vel + by_component(noise, normal_vector(rng)))
 
 
 @law
-def send(s: SensorState, place: Place, found: Measured, due: int, fix_type: int) -> None:
+def send(r: GpsReceiver, place: Place, found: Measured, due: int, fix_type: int) -> None:
     """Send a fix on its way, to be delivered at tick ``due``."""
     pos, vel = found.pos, found.vel
     lat, lon = add_offset(place.lat, place.lon, pos.x, pos.y)
-    fix = s.gps_fixes[s.gps_head % GPS_RING]
-    s.gps_head += 1
-    fix.due, fix.type, fix.jammed = due, fix_type, s.gps_jammed
+    fix = r.fixes[r.head % GPS_RING]
+    r.head += 1
+    fix.due, fix.type, fix.jammed = due, fix_type, r.jammed
     fix.lat, fix.lon = _nearest(lat), _nearest(lon)
     fix.alt = _nearest((place.alt - pos.z) * 1000.0)
     fix.vel = Vec3(_nearest(vel.x * 100.0), _nearest(vel.y * 100.0), _nearest(vel.z * 100.0))
 
 
 @law
-def drift_jammed(s: SensorState, tick: int, rng: Rng) -> int:
+def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
     """A jammed receiver's next fix, as ArduPilot's simulator has it: its type.
 
     At first nothing is received for one to six seconds; then satellites come and go, and place, speed and dilutions
     jump now and again.
     """
-    if s.gps_jam_end == 0:
-        s.gps_jam_end = tick + JAM_SILENT_TICKS + int(uniform(rng) * JAM_SILENT_MORE_TICKS)
-    if tick < s.gps_jam_end:
+    if r.jam_end == 0:
+        r.jam_end = tick + JAM_SILENT_TICKS + int(uniform(rng) * JAM_SILENT_MORE_TICKS)
+    if tick < r.jam_end:
         return NO_FIX
-    jam = s.gps_jam
+    jam = r.jam
     if uniform(rng) < JAM_CHANGES:
         jam.pos = JAM_PLACE * normal_vector(rng)
     if uniform(rng) < JAM_CHANGES:
@@ -116,64 +116,73 @@ def spoil(fix: Fix, fault: GpsFault, time: float) -> None:
 
 
 @law
-def take(p: Physics, tick: int, rng: Rng) -> None:
+def take(p: Physics, r: GpsReceiver, tick: int, rng: Rng) -> None:
     """Take a fix of the true position and send it on its way; while GPS_RING fixes are on their way it takes none."""
-    s, d, fault = p.sensors, p.derived, p.sensors.gps_fault
-    if s.gps_head - s.gps_tail >= GPS_RING:
+    d, fault = p.derived, r.fault
+    if r.head - r.tail >= GPS_RING:
         return
     if fault.is_on and fault.loss > 0.0 and uniform(rng) < fault.loss:
         return
-    found = measure(s, p.body, p.airframe, d, rng)
+    found = measure(r, p.body, p.airframe, d, rng)
     fix_type = FIX_3D if tick >= d.gps_fix else NO_FIX
-    if s.gps_jammed:
-        fix_type = drift_jammed(s, tick, rng)
-        found = Measured(found.pos + s.gps_jam.pos, s.gps_jam.vel)
+    if r.jammed:
+        fix_type = drift_jammed(r, tick, rng)
+        found = Measured(found.pos + r.jam.pos, r.jam.vel)
     else:
-        s.gps_jam_end = 0
+        r.jam_end = 0
     delay = fault.delay if fault.is_on and fault.delay >= 0 else d.gps_delay
-    send(s, p.place, found, tick + delay, fix_type)
+    send(r, p.place, found, tick + delay, fix_type)
     if fault.is_on:
-        spoil(s.gps_fixes[(s.gps_head - 1) % GPS_RING], fault, tick * TICK_S)
+        spoil(r.fixes[(r.head - 1) % GPS_RING], fault, tick * TICK_S)
 
 
 @law
-def deliver(s: SensorState, sensors: Sensors, now: Clock, figures: SensorFigures) -> None:
+def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, figures: SensorFigures) -> None:
     """Hand the oldest fix to the reader when its time has come."""
-    if s.gps_tail == s.gps_head:
+    if r.tail == r.head:
         return
-    fix = s.gps_fixes[s.gps_tail % GPS_RING]
+    fix = r.fixes[r.tail % GPS_RING]
     if fix.due > now.tick:
         return
-    s.gps_tail += 1
-    sensors.gps_count += 1
-    sensors.gps_time_us = now.time_us
-    sensors.gps_fix = fix.type
+    r.tail += 1
+    shown.gps_count += 1
+    shown.gps_time_us = now.time_us
+    shown.gps_fix = fix.type
     if fix.type >= FIX_3D:
-        sensors.gps_lat, sensors.gps_lon, sensors.gps_alt = fix.lat, fix.lon, fix.alt
-        sensors.gps_vel = fix.vel
-        sensors.gps_eph = _nearest(100.0 * figures.gps_hdop)
-        sensors.gps_epv = _nearest(100.0 * figures.gps_vdop)
-        sensors.gps_satellites = int(figures.gps_satellites)
-        if s.gps_fault.is_on and s.gps_fault.satellites >= 0:
-            sensors.gps_satellites = s.gps_fault.satellites
+        shown.gps_lat, shown.gps_lon, shown.gps_alt = fix.lat, fix.lon, fix.alt
+        shown.gps_vel = fix.vel
+        shown.gps_eph = _nearest(100.0 * figures.gps_hdop)
+        shown.gps_epv = _nearest(100.0 * figures.gps_vdop)
+        shown.gps_satellites = int(figures.gps_satellites)
+        if r.fault.is_on and r.fault.satellites >= 0:
+            shown.gps_satellites = r.fault.satellites
         if fix.jammed:
-            sensors.gps_eph, sensors.gps_epv = s.gps_jam.eph, s.gps_jam.epv
+            shown.gps_eph, shown.gps_epv = r.jam.eph, r.jam.epv
     else:
-        sensors.gps_eph = UNKNOWN_DOP
-        sensors.gps_epv = UNKNOWN_DOP
+        shown.gps_eph = UNKNOWN_DOP
+        shown.gps_epv = UNKNOWN_DOP
     if fix.jammed:
-        sensors.gps_satellites = s.gps_jam.satellites
+        shown.gps_satellites = r.jam.satellites
+
+
+@law
+def receive(p: Physics, r: GpsReceiver, shown: GpsReading, now: Clock, rng: Rng) -> None:
+    """Take and deliver fixes as they fall due; a receiver that is switched off is missed at once."""
+    d = p.derived
+    if r.off:
+        r.tail = r.head
+        shown.gps_fix = 0
+        shown.gps_satellites = 0
+        return
+    if now.tick >= d.gps_start and (now.tick - d.gps_start) % d.gps_period == 0:
+        take(p, r, now.tick, rng)
+    deliver(r, shown, now, p.airframe)
 
 
 @law
 def sample(p: Physics, sensors: Sensors, now: Clock, rng: Rng) -> None:
-    """Take and deliver fixes as they fall due; a receiver that is switched off is missed at once."""
-    s, d = p.sensors, p.derived
-    if s.gps_off:
-        s.gps_tail = s.gps_head
-        sensors.gps_fix = 0
-        sensors.gps_satellites = 0
-        return
-    if now.tick >= d.gps_start and (now.tick - d.gps_start) % d.gps_period == 0:
-        take(p, now.tick, rng)
-    deliver(s, sensors, now, p.airframe)
+    """The receiver, and a second one where there is one."""
+    receivers = p.sensors.gps
+    receive(p, receivers[0], sensors, now, rng)
+    if receivers[1].present:
+        receive(p, receivers[1], sensors.gps2, now, rng)
