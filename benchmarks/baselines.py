@@ -1,31 +1,54 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m benchmarks.baselines [NAME...] [--episodes N] [--seed N]``: the table of the shipped policies.
+"""``python -m benchmarks.baselines [NAME...] [--learn] [--faults]``: the figures of the shipped policies.
 
 Each plays the same episodes in its environment on every machine, to the last bit; beside it a policy that draws its
-actions plays them. Intervals are of 95 %: of means by the normal distribution, of shares by Wilson's.
+actions plays them. ``--faults``: those of copters fly episodes in which something fails, too. ``--learn``: policies are
+learnt anew by their recipes first. Figures go to docs/envs/baselines.json, which docs/baselines.md and the pages of
+environments show. Intervals are of 95 %: of means by the normal distribution, of shares by Wilson's.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
-from collections.abc import Sequence
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from sitl.agents import baselines, learnt, recipes
+from sitl.agents import baselines, learnt
 from sitl.agents.evaluate import Evaluation
 from sitl.agents.policies import RANDOM
 from sitl.agents.rollout import rollout
 
+DOCS = Path(__file__).parents[1] / "docs"
+RESULTS = DOCS / "envs" / "baselines.json"
+PAGE = DOCS / "baselines.md"
 Z = 1.96
 """Quantile of the normal distribution for an interval of 95 %."""
+FAULTS: dict[str, dict[str, Any]] = {
+    "none": {},
+    "a motor at 80 %": {"motor:2=0.8": (1, 5)},
+    "GPS lost": {"gps": (1, 5)},
+    "a shove of 5 m/s²": {"shove": (1, 5)},
+    "wind of 8 m/s": {"wind=8": (1, 5)},
+}
+"""What fails in an episode, and between which times [s], by what the table calls it."""
+FAULT_EPISODES = 50
+Row = dict[str, Any]
 
 
-def mean(found: Evaluation) -> str:
-    """Mean reward and its interval."""
+def mean(found: Evaluation) -> tuple[float, float]:
+    """Mean reward, and half of its interval."""
     rewards = np.array([played.reward for played in found.episodes])
-    return f"{rewards.mean():.1f} ± {Z * rewards.std(ddof=1) / math.sqrt(len(rewards)):.1f}"
+    return round(float(rewards.mean()), 1), round(Z * float(rewards.std(ddof=1)) / math.sqrt(len(rewards)), 1)
 
 
 def share(count: int, of: int) -> str:
@@ -36,29 +59,104 @@ def share(count: int, of: int) -> str:
     return f"{100 * p:.1f} % ({low:.1f} .. {min(high, 100.0):.1f})"
 
 
-def row(name: str, episodes: int, seed: int) -> str:
-    """A row of the table."""
-    path = baselines.find(name)
-    config = learnt.load(path).config
-    steps = recipes.load(name).steps or 0
+def learn(name: str) -> float:
+    """Learn a policy by its recipe, and put it in its place; returns the processor time that it took [s]."""
+    recipe, env = baselines.recipe_of(name)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with tempfile.TemporaryDirectory() as folder:
+        run = str(Path(folder) / name)
+        command = [sys.executable, "-m", "sitl"]
+        subprocess.run([*command, "train", env, "--recipe", recipe.name, "--out", run], check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([*command, "export", run, str(baselines.file(name))], check=True)
+    return round(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+
+
+def played(name: str, episodes: int, seed: int) -> Row:
+    """Figures of a policy, and of drawn actions in the same episodes."""
+    path = baselines.file(name)
+    config, (recipe, _) = learnt.load(path).config, baselines.recipe_of(name)
     drawn = rollout(RANDOM, config.env, episodes, seed=seed, max_steps=config.max_steps, options=config.env_options)
-    played = rollout(path, episodes=episodes, seed=seed)
-    solved, crashed = (sum(getattr(one, what) for one in played.episodes) for what in ("reached", "crashed"))
-    cells = (f"`{config.env}`", f"`{name}`", f"{steps:,}", mean(played), share(solved, episodes), crashed, mean(drawn))
-    return f"| {' | '.join(str(cell) for cell in cells)} |"
+    found = rollout(path, episodes=episodes, seed=seed)
+    solved, crashed = (sum(getattr(one, what) for one in found.episodes) for what in ("reached", "crashed"))
+    return {
+        "env": config.env, "recipe": recipe.name, "algorithm": config.algorithm, "steps": recipe.steps or 0,
+        "episodes": episodes, "seed": seed, "reward": mean(found), "solved": solved, "crashed": crashed,
+        "drawn": mean(drawn),
+    }  # fmt: skip
+
+
+def failing(name: str, seed: int) -> dict[str, int]:
+    """Episodes solved of ``FAULT_EPISODES`` with each of ``FAULTS``."""
+    path, out = baselines.file(name), {}
+    for fault, option in FAULTS.items():
+        options = {"faults": option} if option else {}
+        found = rollout(path, episodes=FAULT_EPISODES, seed=seed, options=options)
+        out[fault] = sum(one.reached for one in found.episodes)
+    return out
+
+
+def table(results: Mapping[str, Row]) -> str:
+    """All policies."""
+    heads = ("environment", "name", "algorithm", "steps learnt", "processor time", "reward", "solved", "crashes")
+    lines = [f"| {' | '.join((*heads, 'reward of drawn actions'))} |", "|---|---|---|---:|---:|---:|---:|---:|---:|"]
+    for name, row in results.items():
+        took = f"{row['learnt_s']:.0f} s" if row.get("learnt_s") else ""
+        reward, drawn = ("{} ± {}".format(*row[what]) for what in ("reward", "drawn"))
+        solved = share(row["solved"], row["episodes"])
+        cells = (
+            f"`{row['env']}`", f"`{name}`", row["algorithm"].upper(), f"{row['steps']:,}", took, reward, solved,
+            row["crashed"], drawn,
+        )  # fmt: skip
+        lines.append(f"| {' | '.join(str(cell) for cell in cells)} |")
+    return "\n".join(lines)
+
+
+def faults_table(results: Mapping[str, Row]) -> str:
+    """Those that have flown with faults."""
+    lines = [f"| name | {' | '.join(FAULTS)} |", "|---|" + "---:|" * len(FAULTS)]
+    for name, row in results.items():
+        if "faults" in row:
+            lines.append(f"| `{name}` | {' | '.join(str(row['faults'].get(fault, '')) for fault in FAULTS)} |")
+    return "\n".join(lines)
+
+
+def kept() -> dict[str, Row]:
+    """The figures as they are written."""
+    found: dict[str, Row] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+    return found
+
+
+def write(results: Mapping[str, Row]) -> None:
+    """Keep the figures of policies that there are, and put the tables of them on the page."""
+    there = {name: results[name] for name in baselines.names() if name in results}
+    rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(row)}" for name, row in there.items())
+    RESULTS.write_text("{\n" + rows + "\n}\n", encoding="utf-8")
+    text = PAGE.read_text(encoding="utf-8")
+    for what, made in (("results", table(there)), ("faults", faults_table(there))):
+        between = re.compile(rf"(<!-- {what} -->\n).*?(<!-- /{what} -->)", re.DOTALL)
+        text = between.sub(lambda found, made=made: f"{found[1]}\n{made}\n\n{found[2]}", text)  # type: ignore[misc]
+    PAGE.write_text(text, encoding="utf-8")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.baselines", description=__doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(baselines.names())}; default: all")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="a policy (docs/baselines.md); default: all")
     parser.add_argument("--episodes", type=int, default=200, metavar="N", help="default 200")
     parser.add_argument("--seed", type=int, default=1000, metavar="N", help="of the episodes, default 1000")
+    parser.add_argument("--learn", action="store_true", help="learn them anew first (extra rl)")
+    parser.add_argument("--faults", action="store_true", help="copters: fly with faults, too")
     options = parser.parse_args(arguments)
-    print("| environment | recipe | steps learnt | reward | solved | crashes | reward of drawn actions |")
-    print("|---|---|---:|---:|---:|---:|---:|")
     for name in options.names or baselines.names():
-        print(row(name, options.episodes, options.seed), flush=True)
+        row = kept().get(name, {})
+        if options.learn:
+            row["learnt_s"] = learn(name)
+        row |= played(name, options.episodes, options.seed)
+        if options.faults and name.startswith("copter"):
+            row["faults"] = failing(name, options.seed)
+        print(name, json.dumps(row), flush=True)
+        write({**kept(), name: row})
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import math
 import re
 from pathlib import Path
@@ -24,6 +25,7 @@ TITLES = {
     "CopterWaypoint": ("Fly to a waypoint", "One place, drawn in the arena."),
     "CopterCourse": ("Fly a course of waypoints", "Five places one after another, each drawn anew."),
     "CopterGates": ("Race through gates", "An oval of six gates, in their direction, against the clock."),
+    "CopterRace": ("Race three laps", "The same gates three times; `info` has the times of laps."),
     "CopterTrajectory": ("Follow a figure of eight", "A point moves along a curve at a drawn speed; be where it is."),
     "CopterFollow": ("Follow a moving target", "A target wanders; be where it is."),
     "CopterLand": ("Land on a pad", "Come down softly on a pad beside the start."),
@@ -33,6 +35,9 @@ TITLES = {
     "RoverWaypoint": ("Drive to a waypoint", "One place, drawn in the arena."),
     "RoverCourse": ("Drive a course of waypoints", "Four places one after another, each drawn anew."),
     "RoverLabyrinth": ("Drive through a labyrinth", "One place in a maze, by lidar."),
+    "RoverSlalom": ("Drive a slalom", 'Poles that are passed on alternate sides (`world="slalom:seed=7"`: others).'),
+    "RoverRace": ("Race two laps", 'A track between walls; `info` has laps\' times (`world="track:seed=7"`: others).'),
+    "RoverParking": ("Park in a bay", 'Stand in a free bay between cars (`world="car_park:seed=7"`: others).'),
 }  # fmt: skip
 MANY = 12
 """Columns of one kind beyond which a table has one row for all."""
@@ -79,6 +84,27 @@ def actions(continuous: Any, discrete: Any) -> list[str]:
     return rows
 
 
+def spelling(name: str) -> str:
+    """Of an id's word as policies have it: "copter-hover" for "CopterHover"."""
+    return re.sub(r"(?<!^)([A-Z])", r"-\1", name).lower()
+
+
+def baseline(name: str) -> list[str]:
+    """What the policies that come with the program reach, of both forms."""
+    found = json.loads((HERE / "baselines.json").read_text(encoding="utf-8"))
+    rows = [(key, found[key]) for key in (spelling(name), f"{spelling(name)}-discrete") if key in found]
+    if not rows:
+        return []
+    lines = ["", "## Baseline", "", "| policy | algorithm | steps learnt | reward | solved | reward of drawn actions |"]
+    lines.append("|---|---|---:|---:|---:|---:|")
+    for key, row in rows:
+        reward, drawn = ("{} ± {}".format(*row[what]) for what in ("reward", "drawn"))
+        solved = f"{row['solved']} of {row['episodes']}"
+        lines.append(f"| `{key}` | {row['algorithm'].upper()} | {row['steps']:,} | {reward} | {solved} | {drawn} |")
+    return [*lines, "", f"`sitl rollout {rows[0][0]} --episodes {rows[0][1]['episodes']} --seed {rows[0][1]['seed']}` "
+            "plays them again ([baselines](../baselines.md))."]  # fmt: skip
+
+
 def chosen(task: Any, names: str) -> str:
     """Values of arguments in this environment, as far as the task tells."""
     values = [vars(task).get(name.strip(), vars(task).get(f"_{name.strip()}")) for name in names.split(",")]
@@ -100,7 +126,7 @@ def page(name: str) -> str:
     lines = [
         f"# sitl/{name}-v0, sitl/{name}Discrete-v0: {title[0].lower() + title[1:]}", "",
         "Made by `python docs/make_environment_pages.py`.", "", summary, "",
-        f"![flights of the baseline](images/{name}.png)" if (HERE / "images" / f"{name}.png").exists() else "", "",
+        f"![an episode of the baseline](images/{name}.png)" if (HERE / "images" / f"{name}.png").exists() else "", "",
         "| | |", "|---|---|",
         f"| robot, world | {env.robot.name} in `{env.world.name}` |",
         f"| action space | `{continuous.action_space}` or `{discrete.action_space}`, "
@@ -121,6 +147,7 @@ def page(name: str) -> str:
         *(f"| `{a}` | {chosen(task, a)} | {b.strip().replace('``', '`')} |" for a, _, b in described),
         "", "All [options](../environments.md) of `sitl/Navigate-v0` can be replaced, too: observations, set-points,",
         "worlds, wind, faults, a vehicle at a connection.",
+        *baseline(name),
         "", "## History", "", "v0: the first version.", "",
     ]  # fmt: skip
     continuous.close()

@@ -36,6 +36,7 @@ _STEPS = {
     "copter-waypoint": 200,
     "copter-course": 500,
     "copter-gates": 400,
+    "copter-race": 900,
     "copter-trajectory": 400,
     "copter-follow": 400,
     "copter-land": 300,
@@ -45,6 +46,9 @@ _STEPS = {
     "rover-waypoint": 300,
     "rover-course": 600,
     "rover-labyrinth": 1000,
+    "rover-slalom": 400,
+    "rover-race": 900,
+    "rover-parking": 300,
 }
 
 

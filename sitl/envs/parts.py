@@ -83,6 +83,22 @@ class State:
         out[:] = state[:, self._slice]
 
 
+class Heading:
+    """Cosine and sine of the heading, which do not jump at +-pi as the yaw of "pose" does."""
+
+    columns = ("cosine of the yaw", "sine of the yaw")
+    low, high = (-1.0, -1.0), (1.0, 1.0)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        self._robot = session.robot
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        yaw = self._robot.pose[:, 3]
+        out[:, 0], out[:, 1] = np.cos(yaw), np.sin(yaw)
+
+
 class Told:
     """What a vehicle tells by a message of its own: "acceleration", "battery", "wind", "range_finder" (``REPORTS``)."""
 
@@ -209,8 +225,27 @@ class Path:
         out[:] = self._task.ways(self.count).reshape(out.shape)
 
 
+class GoalHeading:
+    """How the heading that the task wants differs from the robot's."""
+
+    columns = ("cosine of the turn to the goal's heading", "sine of it, counter-clockwise")
+    low, high = (-1.0, -1.0), (1.0, 1.0)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        if not hasattr(session.task, "turns"):
+            raise EnvOptionError(f'observation "goal_heading": task {session.task!r} wants no heading')
+        self._task = session.task
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        turns = self._task.turns()
+        out[:, 0], out[:, 1] = np.cos(turns), np.sin(turns)
+
+
 PARTS: dict[str, Callable[[], Part]] = {
     **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
+    "heading": Heading,
     **{name: lambda name=name: Told(name) for name in REPORTS},  # type: ignore[misc]
     "height": Height,
     "scan": Readings,
@@ -218,6 +253,7 @@ PARTS: dict[str, Callable[[], Part]] = {
     "last_action": LastAction,
     "goal": lambda: Path(1),
     "path": Path,
+    "goal_heading": GoalHeading,
 }
 """By name."""
 

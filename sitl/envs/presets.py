@@ -8,14 +8,17 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import paper
+from .actions import VELOCITY, Continuous, Normalised
 from .ids import NEW
 from .navigate import Navigate
 from .parts import GoalConditioned
 from .session import DETAILS
+from .starts import Near
 from .targets.gates import Gate, Gates
 from .targets.hold import Hold
 from .targets.landing import Land
 from .targets.moving import Follow, Trajectory
+from .targets.parking import Park
 from .targets.waypoints import Waypoints
 from .tasks import Task
 
@@ -70,14 +73,17 @@ WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulen
 _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-hover": lambda: _copter(Hold(), randomise=WIND),
     "copter-reach-goal": lambda: _copter(
-        Hold((5.0, 2.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *SEEN[1:]))
+        Hold((5.0, 2.0), 1.0, is_sparse=True),
+        observation=GoalConditioned(("heading", *SEEN[1:])),
+        action=Normalised(Continuous(VELOCITY, (-5.0, -5.0, -2.0), (5.0, 5.0, 2.0), (0, 1, 2))),  # it does not turn
     ),
     "rover-reach-goal": lambda: _rover(
-        Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("pose", *DRIVEN[1:]))
+        Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("heading", *DRIVEN[1:]))
     ),
     "copter-waypoint": lambda: _copter(Waypoints(1)),
     "copter-course": lambda: _copter(Waypoints(5), ON_A_WAY),
     "copter-gates": lambda: _copter(Gates(TRACK), ON_A_WAY),
+    "copter-race": lambda: _copter(Gates(TRACK, laps=3), ON_A_WAY),
     "copter-trajectory": lambda: _copter(Trajectory("eight", speed=(1.0, 3.0)), ON_A_WAY),
     "copter-follow": lambda: _copter(Follow(), ON_A_WAY),
     "copter-land": lambda: _copter(Land()),
@@ -88,6 +94,16 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
     "rover-labyrinth": lambda: _rover(
         _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60,scale=3"
+    ),
+    "rover-slalom": lambda: _rover(
+        Gates(crash_reward=-20.0), DRIVEN_ON_A_WAY, world="slalom:seed=1", start=Near((0.0, 0.0, 0.0), (1.0, 1.5, 0.4))
+    ),
+    "rover-race": lambda: _rover(Gates(laps=2, crash_reward=-20.0), (*DRIVEN_ON_A_WAY, "scan"), world="track:seed=1"),
+    "rover-parking": lambda: _rover(
+        Park(crash_reward=-20.0),
+        ("goal", "goal_heading", "velocity", "last_action", "scan"),
+        world="car_park:seed=1",
+        start=Near((0.0, 0.0, 0.0), (8.0, 2.0, math.pi)),
     ),
 }
 
@@ -106,8 +122,18 @@ PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
 assert all(listed.preset in PRESETS for listed in NEW.values())
 
 
+def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of a preset, with those that are given in their place; a box that is made for one kind of set-point
+    gives way to the usual one when another kind is asked for."""
+    options = {**PRESETS[preset](), **given}
+    action = options.get("action")
+    if isinstance(action, Normalised) and options.get("setpoint", action.setpoint.name) != action.setpoint.name:
+        options["action"] = "normalised"
+    return options
+
+
 class PresetNavigate(Navigate):
     """An environment of a preset; every option of ``Navigate`` can still be replaced."""
 
     def __init__(self, preset: str, **options: Any) -> None:
-        super().__init__(**{**PRESETS[preset](), **options})
+        super().__init__(**options_of(preset, options))

@@ -16,6 +16,8 @@ from gymnasium.error import DependencyNotInstalled
 from sitl.worlds import Marking, Solid
 
 from .robots.robot import Robot
+from .targets.gates import Gates
+from .targets.places import PlacesTask
 from .tasks import ReachGoal, Task
 
 RENDER_MODES = ["rgb_array", "human"]
@@ -83,6 +85,9 @@ class Renderer:
     def __init__(self, robot: Robot, task: Task, index: int = 0) -> None:
         self._robot, self._task, self._index = robot, task, index
         x0, y0, x1, y1 = robot.world.bounds
+        if isinstance(task, PlacesTask):
+            low, high = task.arena.low, task.arena.high
+            x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
         self._low = (x0 - _BORDER, y0 - _BORDER)
         extent = (x1 - x0 + 2.0 * _BORDER, y1 - y0 + 2.0 * _BORDER)
         self._scale = SIZE / max(extent)
@@ -145,20 +150,37 @@ class Renderer:
         canvas, robot = self._canvas, self._robot
         canvas.blit(self._with_trail, (0, 0))
         if isinstance(self._task, ReachGoal):
-            goal = self._point(*self._task.goals[self._index].tolist())
-            pygame.draw.circle(canvas, _GOAL, goal, max(self._task.radius * self._scale, 3.0), 2)
+            self._draw_place(pygame, *self._task.goals[self._index].tolist())
+        elif isinstance(self._task, Gates):
+            self._draw_gates(pygame, self._task)
+        elif isinstance(self._task, PlacesTask):
+            present = min(int(self._task.at[self._index]), self._task.per_robot - 1)
+            for x, y, _ in self._task.places[self._index, present:].tolist():
+                self._draw_place(pygame, x, y)
         x, y, _, yaw = robot.pose[self._index].tolist()
         middle = self._point(x, y)
         for angle, reading in zip(robot.angles.tolist(), robot.scan[self._index].tolist()):
-            reach = min(reading, robot.range_max)
-            end = self._point(x + reach * math.cos(yaw + angle), y + reach * math.sin(yaw + angle))
-            pygame.draw.aaline(canvas, _RAY, middle, end)
+            if reading <= robot.range_max:  # one that meets nothing would only hide the rest
+                end = self._point(x + reading * math.cos(yaw + angle), y + reading * math.sin(yaw + angle))
+                pygame.draw.aaline(canvas, _RAY, middle, end)
         radius = max(robot.volume.radius * self._scale, 4.0)
         crashed = bool(robot.collided[self._index])
         pygame.draw.circle(canvas, _CRASHED if crashed else _BODY, middle, radius)
         nose = (middle[0] + radius * math.cos(yaw), middle[1] - radius * math.sin(yaw))
         pygame.draw.line(canvas, _NOSE, middle, nose, max(int(0.25 * radius), 1))
         return canvas
+
+    def _draw_place(self, pygame: Any, x: float, y: float) -> None:
+        radius = getattr(self._task, "radius", 0.0)
+        pygame.draw.circle(self._canvas, _GOAL, self._point(x, y), max(radius * self._scale, 3.0), 2)
+
+    def _draw_gates(self, pygame: Any, task: Gates) -> None:
+        """Their lines; that of the next one is thick."""
+        present = int(task.at[self._index]) % len(task.gates)
+        for k, gate in enumerate(task.gates):
+            across = 0.5 * gate.width * np.array([-math.sin(gate.yaw), math.cos(gate.yaw)])
+            ends = [self._point(*(np.array([gate.x, gate.y]) + sign * across).tolist()) for sign in (-1.0, 1.0)]
+            pygame.draw.line(self._canvas, _GOAL, *ends, 5 if k == present else 2)
 
     def picture(self) -> npt.NDArray[np.uint8]:
         """An image, shape (height, width, 3), uint8: by the physics engine's renderer if it has one, else from

@@ -151,6 +151,23 @@ class Turned:
         return (x, y, z, float(rng.uniform(-math.pi, math.pi)))
 
 
+class Near:
+    """Draws poses about one, uniformly.
+
+    Args:
+        pose: the middle: x, y [m], yaw [rad] in the world frame.
+        spread: greatest difference of each.
+    """
+
+    def __init__(self, pose: Sequence[float], spread: Sequence[float]) -> None:
+        self.pose, self.spread = np.array(pose, np.float64), np.array(spread, np.float64)
+
+    def __call__(self, rng: np.random.Generator) -> tuple[float, ...]:
+        """A start pose: x, y [m], yaw [rad] in the world frame."""
+        x, y, yaw = (self.pose + self.spread * rng.uniform(-1.0, 1.0, 3)).tolist()
+        return x, y, math.remainder(yaw, math.tau)
+
+
 class OneOf:
     """Draws one of some poses with equal probability."""
 

@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from .options import EnvOptionError, unknown
-from .presets import PRESETS
+from .presets import options_of
 from .rendering import Renderer, tile
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -87,6 +87,11 @@ class NavigateVector(OfSubEnvironments):
     def robot(self) -> Robot:
         """The robots; ``pose``, ``velocity``, ``scan``, ... have a row for each."""
         return self._session.robot
+
+    @property
+    def session(self) -> Session:
+        """Robots, task, observation and action of this environment."""
+        return self._session
 
     @property
     def task(self) -> Task:
@@ -308,4 +313,4 @@ class PresetNavigateVector(NavigateVector):
     """Many of an environment of a preset (``presets.PRESETS``); every option can still be replaced."""
 
     def __init__(self, preset: str, num_envs: int = 1, **options: Any) -> None:
-        super().__init__(num_envs, **{**PRESETS[preset](), **options})
+        super().__init__(num_envs, **options_of(preset, options))

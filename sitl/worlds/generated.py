@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Worlds that are made from a seed: forests, rooms and labyrinths, as easy or difficult as one likes.
+"""Worlds that are made from a seed, as easy or difficult as one likes.
 
 A text names one: ``"forest"``, ``"labyrinth:seed=7,difficulty=0.8"``. The same text gives the same world everywhere.
 """
@@ -7,17 +7,17 @@ A text names one: ``"forest"``, ``"labyrinth:seed=7,difficulty=0.8"``. The same 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from .shapes import Box, Cylinder, Marking, Solid, Start, WorldError
+from . import courses
+from .making import KEYS, made, wall
+from .shapes import Box, Cylinder, Solid, WorldError
 from .world import World
 
 Door = tuple[bool, float, float, float]
 """Whether its wall stands across x, where the wall stands, where the door begins and ends [m]."""
-WALL = 0.1
-"""Thickness of walls [m]."""
 SMALLEST, LARGEST = 10.0, 200.0
 """Limits of a side [m]."""
 
@@ -43,7 +43,7 @@ def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0, scale: fl
         if len(trees) == wanted:
             break
     solids = [Cylinder((x, y, 4.0), radius, 8.0, f"tree {k}", "brown") for k, (x, y, radius) in enumerate(trees, 1)]
-    return _world("forest", (seed, difficulty, size, scale), solids, f"A forest of {len(trees)} trees.")
+    return made("forest", (seed, difficulty, size, scale), solids, f"A forest of {len(trees)} trees.")
 
 
 def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale: float = 1.0) -> World:
@@ -76,10 +76,10 @@ def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale: flo
         doors.append((along_x, at, gap, gap + door))
         for a, b in ((first, gap), (gap + door, last)):
             begin, end = ((at, a), (at, b)) if along_x else ((a, at), (b, at))
-            solids.append(_wall(begin, end, f"wall {len(solids)}"))
+            solids.append(wall(begin, end, f"wall {len(solids)}"))
         halves = [(x0, y0, at, y1), (at, y0, x1, y1)] if along_x else [(x0, y0, x1, at), (x0, at, x1, y1)]
         todo += halves
-    return _world("rooms", (seed, difficulty, size, scale), solids, "A house of rooms with doors.")
+    return made("rooms", (seed, difficulty, size, scale), solids, "A house of rooms with doors.")
 
 
 def labyrinth(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale: float = 1.0) -> World:
@@ -111,13 +111,15 @@ def labyrinth(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale:
     for i, j, side in kept:
         x, y = cell * (i + (side == 0)) - half, cell * (j + (side == 1)) - half
         end = (x, y + cell) if side == 0 else (x + cell, y)
-        solids.append(_wall((x, y), end, f"wall {len(solids)}"))
-    return _world("labyrinth", (seed, difficulty, size, scale), solids, f"A labyrinth of {n} x {n} cells.")
+        solids.append(wall((x, y), end, f"wall {len(solids)}"))
+    return made("labyrinth", (seed, difficulty, size, scale), solids, f"A labyrinth of {n} x {n} cells.")
 
 
-GENERATORS: dict[str, Callable[..., World]] = {"forest": forest, "rooms": rooms, "labyrinth": labyrinth}
+GENERATORS: dict[str, Callable[..., World]] = {
+    "forest": forest, "rooms": rooms, "labyrinth": labyrinth,
+    "track": courses.track, "slalom": courses.slalom, "car_park": courses.car_park,
+}  # fmt: skip
 """By name."""
-KEYS = {"seed": int, "difficulty": float, "size": float, "scale": float}
 
 
 def is_generated(text: str) -> bool:
@@ -152,24 +154,10 @@ def generate(text: str) -> World:
     return GENERATORS[name.strip().lower().replace("-", "_")](**given)
 
 
-def _world(name: str, figures: tuple[int, float, float, float], solids: Sequence[Solid], description: str) -> World:
-    full = name + ":" + ",".join(f"{key}={value:g}" for key, value in zip(KEYS, figures))
-    size = figures[2]
-    start = Start("middle", (0.0, 0.0, 0.0), 0.0)
-    ground = Marking((0.0, 0.0), size=(size, size), colour="white", name="ground")
-    return World(full, tuple(solids), (start,), description, plan_height=1.0, markings=(ground,))
-
-
 def _around(half: float) -> Iterator[Box]:
     corners = [(-half, -half), (half, -half), (half, half), (-half, half)]
     for k, (a, b) in enumerate(zip(corners, corners[1:] + corners[:1]), 1):
-        yield _wall(a, b, f"outer wall {k}")
-
-
-def _wall(a: tuple[float, float], b: tuple[float, float], name: str) -> Box:
-    """An upright wall of 3 m from one point to another."""
-    length, yaw = math.hypot(b[0] - a[0], b[1] - a[1]), math.atan2(b[1] - a[1], b[0] - a[0])
-    return Box((0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 1.5), (length + WALL, WALL, 3.0), yaw, name)
+        yield wall(a, b, f"outer wall {k}")
 
 
 def _meets_door(doors: list[Door], along_x: bool, at: float, ends: tuple[float, float]) -> bool:

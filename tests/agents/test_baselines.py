@@ -8,23 +8,37 @@ from pathlib import Path
 import pytest
 
 from benchmarks import baselines as table
-from sitl.agents import baselines, learnt, recipes
+from sitl.agents import baselines, learnt
 from sitl.agents.rollout import rollout
-
-DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.parametrize("name", baselines.names())
-def test_it_is_of_the_recipe_of_its_name_and_in_the_table(name: str) -> None:
-    config, recipe = learnt.load(baselines.find(name)).config, recipes.load(name)
-    assert (config.env, config.max_steps, config.algorithm) == (recipe.env, recipe.max_steps, recipe.algorithm)
-    assert f"| `{config.env}` | `{name}` | {recipe.steps:,} |" in (DOCS / "baselines.md").read_text(encoding="utf-8")
+def test_it_is_of_a_recipe_and_in_the_table(name: str) -> None:
+    config, (recipe, env) = learnt.load(baselines.find(name)).config, baselines.recipe_of(name)
+    assert (config.env, config.max_steps, config.algorithm) == (env, recipe.max_steps, recipe.algorithm)
+    row = table.kept()[name]
+    assert (row["env"], row["recipe"], row["steps"]) == (env, recipe.name, recipe.steps)
+    assert row["solved"] + row["crashed"] <= row["episodes"]
 
 
-def test_it_solves_its_environment_and_plays_again_to_the_last_bit() -> None:
-    first, second = (rollout(baselines.find("rover-waypoint"), episodes=16, seed=1000, robots=8) for _ in range(2))
+def test_the_page_shows_what_was_measured() -> None:
+    page, results = table.PAGE.read_text(encoding="utf-8"), table.kept()
+    assert list(results) == list(baselines.names())
+    assert table.table(results) in page and table.faults_table(results) in page
+
+
+@pytest.mark.parametrize("name", ["rover-waypoint", "rover-slalom"])
+def test_it_solves_its_environment_and_plays_again_to_the_last_bit(name: str) -> None:
+    first, second = (rollout(baselines.find(name), episodes=16, seed=1000, robots=8) for _ in range(2))
     assert all(played.reached and not played.crashed for played in first.episodes)
     assert [played.reward for played in first.episodes] == [played.reward for played in second.episodes]
+
+
+def test_a_policy_of_a_table_of_actions_is_of_the_other_forms_recipe() -> None:
+    recipe, env = baselines.recipe_of("copter-hover-discrete")
+    assert (recipe.name, env) == ("copter-hover", "sitl/CopterHoverDiscrete-v0")
+    recipe, env = baselines.recipe_of("copter-hover")
+    assert (recipe.name, env) == ("copter-hover", "sitl/CopterHover-v0")
 
 
 def test_a_path_that_is_there_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -71,3 +71,15 @@ def test_gymnasiums_checker_accepts_the_pictures(monkeypatch, recwarn):
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     check_env(gym.make(CIRCUIT2).unwrapped)
     assert [str(w.message) for w in recwarn] == []
+
+
+@pytest.mark.parametrize("name", ["RoverWaypoint", "RoverSlalom", "RoverParking"])
+def test_places_and_gates_are_drawn_and_the_arena_is_in_the_picture(name):
+    env = gym.make(f"sitl/{name}-v0", render_mode="rgb_array")
+    env.reset(seed=3)
+    picture = env.render()
+    assert (picture == (60, 150, 80)).all(axis=2).sum() > 30
+    places = env.unwrapped.task.places[0, :, :2]
+    box = env.unwrapped.task.arena
+    assert (places >= box.low[:2]).all() and (places <= box.high[:2]).all() and max(picture.shape) == 640
+    env.close()

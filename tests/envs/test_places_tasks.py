@@ -72,17 +72,18 @@ def test_a_snapshot_goes_on_bit_for_bit(name):
 
 
 def test_parts_are_named_and_bounded():
-    env = gym.make("sitl/CopterWaypoint-v0", observation=list(PARTS))
+    names = [name for name in PARTS if name != "goal_heading"]  # which this task does not want
+    env = gym.make("sitl/CopterWaypoint-v0", observation=names)
     seen = env.unwrapped.session.observation
     observation, _ = env.reset(seed=1)
     assert env.observation_space.contains(observation) and observation.dtype == np.float32
-    assert len(seen.columns) == len(observation) and list(seen.slices) == list(PARTS)
+    assert len(seen.columns) == len(observation) and list(seen.slices) == names
     robot = env.unwrapped.robot
     assert np.allclose(observation[seen.slices["pose"]], robot.pose[0], atol=1e-6)
     assert np.allclose(observation[seen.slices["true_pose"]][:3], robot.true_state()[0, :3], atol=1e-6)
     body = robot.view(0).physics.body.pos
     assert np.allclose(robot.true_state()[0, :3], (body[0], -body[1], -body[2]))
-    named = gym.make("sitl/CopterWaypoint-v0", observation="+".join(PARTS))
+    named = gym.make("sitl/CopterWaypoint-v0", observation="+".join(names))
     by_name, _ = named.reset(seed=1)
     assert all(np.array_equal(by_name[name], observation[where]) for name, where in seen.slices.items())
 
@@ -220,3 +221,10 @@ def test_normalised_actions_of_limits_of_ones_own():
     env.reset(seed=1)
     env.step(np.ones(2, np.float32))
     assert sitl.envs.NEW
+
+
+def test_a_box_of_ones_own_gives_way_to_another_set_point():
+    env = gym.make("sitl/CopterReachGoal-v0").unwrapped
+    assert env.action_space.shape == (3,) and env.session.action.columns == [0, 1, 2]
+    env = gym.make("sitl/CopterReachGoal-v0", setpoint="attitude").unwrapped
+    assert env.action_space.shape == (4,) and env.session.action.setpoint.name == "attitude"

@@ -1,19 +1,42 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Policies that come with the program: one for each environment with places, learnt by the recipe of its name."""
+"""Policies that come with the program, for environments with places: each was learnt by the recipe of its name.
+
+"NAME-discrete" is of the environment's form with a table of actions; where there is no recipe of that name, it was
+learnt by that of NAME, which names this form among those that it is good for.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from .. import recipes
+
 _FOLDER = Path(__file__).parent
+DISCRETE = "-discrete"
 
 
 def names() -> tuple[str, ...]:
-    """Their names, which are those of recipes."""
+    """Their names."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.npz")))
 
 
 def find(text: str) -> Path:
     """Where a policy is: that of a shipped one's name, or the path itself; a path that is there comes first."""
     path = Path(text)
-    return _FOLDER / f"{text}.npz" if not path.exists() and text in names() else path
+    return file(text) if not path.exists() and text in names() else path
+
+
+def file(name: str) -> Path:
+    """Where the policy of a name is kept."""
+    return _FOLDER / f"{name}.npz"
+
+
+def recipe_of(name: str) -> tuple[recipes.Recipe, str]:
+    """The recipe that a policy of this name is learnt by, and the id of its environment.
+
+    Raises:
+        AgentError: there is no such recipe.
+    """
+    own = name in recipes.names()
+    recipe = recipes.load(name if own else name.removesuffix(DISCRETE))
+    return recipe, recipe.env if own or not name.endswith(DISCRETE) else recipe.also[0]

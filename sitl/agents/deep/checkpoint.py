@@ -28,7 +28,11 @@ _ABOUT, _STATE, _ARRAYS, _MEMORY = "about.json", "state.json", "state.npz", "mem
 _TENSORS, _SUFFIX = "tensors.pth", ".weights.pth"
 Score = tuple[float, ...]
 """How good a model is, the most important figure first; greater is better."""
-_REMEMBERED = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+_REMEMBERED = ("actions", "rewards", "dones", "timeouts")
+_SEEN = ("observations", "next_observations")
+"""Arrays of a replay buffer; of a goal-conditioned one the latter are arrays by name, and it has those of _EPISODES."""
+_EPISODES = ("ep_start", "ep_length")
+_BEGUN = "_current_ep_start"
 _COUNTED = (
     "num_timesteps", "_total_timesteps", "_num_timesteps_at_start", "_episode_num", "_n_updates", "_n_calls",
     "_current_progress_remaining", "exploration_rate", "_last_obs", "_last_episode_starts", "_last_original_obs",
@@ -229,13 +233,26 @@ def _arrays(arrays: plain.Arrays) -> bytes:
 def _remembered(memory: Any) -> bytes:
     """The filled part of a replay buffer."""
     filled = memory.buffer_size if memory.full else memory.pos
-    rows = {name: getattr(memory, name)[:filled] for name in _REMEMBERED}
+    rows = {name: array[:filled] for name, array in _columns(memory).items()}
+    if hasattr(memory, _BEGUN):
+        rows[_BEGUN] = getattr(memory, _BEGUN)
     return _arrays({"place": np.array([memory.pos, memory.full]), **rows})
+
+
+def _columns(memory: Any) -> plain.Arrays:
+    """The arrays of a replay buffer, by name, a row a step."""
+    out: plain.Arrays = {name: getattr(memory, name) for name in (*_REMEMBERED, *_EPISODES) if hasattr(memory, name)}
+    for name in _SEEN:
+        seen = getattr(memory, name)
+        out |= {f"{name}.{part}": array for part, array in seen.items()} if isinstance(seen, dict) else {name: seen}
+    return out
 
 
 def _remember(memory: Any, content: bytes) -> None:
     with np.load(io.BytesIO(content), allow_pickle=False) as stored:
         memory.pos, memory.full = int(stored["place"][0]), bool(stored["place"][1])
-        for name in _REMEMBERED:
+        for name, array in _columns(memory).items():
             rows = stored[name]
-            getattr(memory, name)[: len(rows)] = rows
+            array[: len(rows)] = rows
+        if hasattr(memory, _BEGUN):
+            getattr(memory, _BEGUN)[:] = stored[_BEGUN]

@@ -19,7 +19,7 @@ from ..runs.config import RunConfig
 from . import checkpoint
 from .actions import Actions
 from .features import Features, Frames
-from .settings import Settings
+from .settings import Settings, learns_by_goal
 
 BEST = "best.zip"
 JITTER = 0.1
@@ -82,12 +82,13 @@ class Checks:
         actions = Actions(env.single_action_space, self._config.algorithm)
         rows = frames.begin(features(self._begun(env)))
         rewards, playing, crashes = np.zeros(self._count), np.ones(self._count, np.bool_), 0
-        by_crashes = self._figures.check_by == "crashes"
+        by_crashes, by_goal = self._figures.check_by == "crashes", learns_by_goal(self._figures)
         most = -self._best[0] if by_crashes and self._best else np.inf
         while playing.any():
             if crashes > most:
                 return (-np.inf,)
-            chosen, _ = model.predict(rows, deterministic=True)
+            seen: Any = features.by_name(rows) if by_goal else rows
+            chosen, _ = model.predict(seen, deterministic=True)
             observations, reward, terminated, truncated, _ = env.step(actions.to_environment(chosen))
             rewards[playing] += reward[playing]
             crashes += int(np.count_nonzero(terminated & playing))
@@ -100,7 +101,8 @@ class Checks:
         if self._env is None:
             listeners = {"gcs": None} if "gcs" in self._config.env_options else {}
             self._env = environments.make_many(self._config, self._count, **listeners)
-            if self._config.env_options.get("start") is None:
+            session = getattr(self._env.unwrapped, "session", None)
+            if self._config.env_options.get("start") is None and (session is None or session.starts.fixed is not None):
                 self._poses = moved_starts(self._env, self._count, SEED, JITTER)
         return self._env
 

@@ -14,6 +14,8 @@ import numpy.typing as npt
 from ..errors import AgentError
 
 Rows = npt.NDArray[np.float32]
+GOALS = ("achieved_goal", "desired_goal")
+"""Parts of goal-conditioned observations, as Gymnasium-Robotics names them."""
 _NEAR = 10.0
 """Distances and coordinates that give a feature of 1 [m]."""
 
@@ -26,7 +28,8 @@ class Features:
     - digits: as a share of the greatest;
     - numbers of either sign: sign(x) log(1 + |x|), which tells centimetres near 0 and does not grow far from it
       (Hafner et al., "Mastering Diverse Domains through World Models", arXiv:2301.04104);
-    - the way to a goal: distance, cosine and sine of the bearing; a pose: x, y, z, cosine and sine of the yaw.
+    - the way to a goal: distance, cosine and sine of the bearing; a pose: x, y, z, cosine and sine of the yaw;
+    - "achieved_goal" and "desired_goal" of goal-conditioned environments: in tens of metres.
 
     Args:
         space: space of one robot's observations.
@@ -48,12 +51,18 @@ class Features:
         one = {k: v[None] for k, v in sample.items()} if isinstance(sample, dict) else sample[None]
         self.width = int(self(one).shape[1])
         """Number of features of a robot."""
+        self.has_goals = set(GOALS) <= {name for name, _ in self._parts}
+        """Whether the environment is goal-conditioned: its observations tell goals, and what of them is achieved."""
+        ends = np.cumsum([make(one if name is None else one[name]).shape[1] for name, make in self._parts]).tolist()
+        self._slices = {str(name): slice(a, b) for (name, _), a, b in zip(self._parts, [0, *ends], ends)}
 
     def _part(self, name: str, space: gym.Space[Any]) -> Callable[[Any], Rows]:
-        if name == "goal":
+        if name == "goal" and space.shape == (2,):
             return _goal
         if name == "pose":
             return _pose
+        if name in GOALS:
+            return lambda goals: np.asarray(goals, np.float32) / np.float32(_NEAR)
         if isinstance(space, gym.spaces.MultiDiscrete):
             highest = np.maximum(space.nvec - 1, 1).astype(np.float32)
             return lambda digits: np.asarray(digits, np.float32) / highest
@@ -72,6 +81,10 @@ class Features:
         rows = [make(observations if name is None else observations[name]) for name, make in self._parts]
         return rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
 
+    def by_name(self, rows: Rows) -> dict[str, Rows]:
+        """Features of each part of a dict of observations, each of shape (count, its width)."""
+        return {name: rows[:, at] for name, at in self._slices.items()}
+
 
 def nearest(scans: Rows, sectors: int) -> Rows:
     """Nearest reading [m] of each of ``sectors`` sectors of equal width; scans have shape (count, readings)."""
@@ -87,6 +100,11 @@ def _either_sign(numbers: Any) -> Rows:
     rows = np.asarray(numbers, np.float32)
     out: Rows = np.sign(rows) * np.log1p(np.abs(rows))
     return out
+
+
+def goals_of(features: Any) -> npt.NDArray[np.float64]:
+    """Goals [m] whose features these are, of the same shape."""
+    return np.asarray(features, np.float64) * _NEAR
 
 
 def _goal(goals: Any) -> Rows:

@@ -8,8 +8,8 @@ from typing import Any
 
 import gymnasium as gym
 
-from .library import algorithm_class
-from .settings import Dqn, OffPolicy, Ppo, Sac, Settings
+from .library import algorithm_class, stable_baselines3
+from .settings import Dqn, OffPolicy, Ppo, Sac, Settings, learns_by_goal
 
 
 def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
@@ -48,8 +48,18 @@ def make(algorithm: str, settings: Settings, robots: Any, seed: int) -> Any:
             "exploration_final_eps": settings.epsilon_end,
         }  # fmt: skip
     if isinstance(settings, Sac):
-        own |= {"tau": settings.tau}
-    return algorithm_class(algorithm)("MlpPolicy", robots, policy_kwargs={"net_arch": arch}, **common, **own)
+        own |= {"tau": settings.tau, "ent_coef": f"auto_{settings.entropy_start}"}
+    if isinstance(settings, OffPolicy) and learns_by_goal(settings):
+        own |= {
+            "replay_buffer_class": stable_baselines3().HerReplayBuffer,
+            "replay_buffer_kwargs": {"n_sampled_goal": settings.hindsight, "goal_selection_strategy": "future"},
+        }
+    kind = _policy_of(robots.observation_space)
+    return algorithm_class(algorithm)(kind, robots, policy_kwargs={"net_arch": arch}, **common, **own)
+
+
+def _policy_of(observations: gym.Space[Any]) -> str:
+    return "MultiInputPolicy" if isinstance(observations, gym.spaces.Dict) else "MlpPolicy"
 
 
 def empty(algorithm: str, net_arch: Any, observations: gym.Space[Any], actions: gym.Space[Any]) -> Any:
@@ -64,7 +74,12 @@ def empty(algorithm: str, net_arch: Any, observations: gym.Space[Any], actions: 
     if algorithm == "sac":
         small["target_entropy"] = 0.0  # by itself it would ask the robots, and there are none
     made = algorithm_class(algorithm)(
-        "MlpPolicy", None, policy_kwargs={"net_arch": net_arch}, device="cpu", _init_setup_model=False, **small
+        _policy_of(observations),
+        None,
+        policy_kwargs={"net_arch": net_arch},
+        device="cpu",
+        _init_setup_model=False,
+        **small,
     )
     made.observation_space, made.action_space, made.n_envs = observations, actions, 1
     made._setup_model()

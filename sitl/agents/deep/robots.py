@@ -16,7 +16,7 @@ stable_baselines3()
 from stable_baselines3.common.vec_env import VecEnv  # noqa: E402 (after the message about the missing extra)
 
 from .actions import Actions  # noqa: E402
-from .features import Features, Frames  # noqa: E402
+from .features import Features, Frames, goals_of  # noqa: E402
 from .training import Tally  # noqa: E402
 
 
@@ -34,6 +34,7 @@ class Robots(VecEnv):
         reward_scale: factor of rewards.
         tally: receives every step.
         seeds: seeds of the first episodes, one a robot.
+        by_goal: observations are dicts of features, as replay with other goals needs them.
     """
 
     def __init__(
@@ -45,18 +46,28 @@ class Robots(VecEnv):
         reward_scale: float,
         tally: Tally,
         seeds: Sequence[int],
+        by_goal: bool = False,
     ) -> None:
         self._env, self._features, self._conversion, self._tally = env, features, actions, tally
         self._frames = Frames(env.num_envs, frames, features.width)
         self._scale, self._first = reward_scale, list(seeds)
         self._actions: Any = None
-        room = gym.spaces.Box(-np.inf, np.inf, (frames * features.width,), np.float32)
+        self._by_goal = by_goal
+        room: gym.Space[Any] = gym.spaces.Box(-np.inf, np.inf, (frames * features.width,), np.float32)
+        if by_goal:
+            parts = features.by_name(np.zeros((1, features.width), np.float32)).items()
+            room = gym.spaces.Dict(
+                {name: gym.spaces.Box(-np.inf, np.inf, row.shape[1:], np.float32) for name, row in parts}
+            )
         super().__init__(env.num_envs, room, actions.space)
 
     def reset(self) -> Any:
         """See ``VecEnv``."""
         observations, _ = self._env.reset(seed=self._first)  # type: ignore[arg-type]
-        return self._frames.begin(self._features(observations)).copy()
+        return self._seen(self._frames.begin(self._features(observations)).copy())
+
+    def _seen(self, rows: Any) -> Any:
+        return self._features.by_name(rows) if self._by_goal else rows
 
     def step_async(self, actions: Any) -> None:
         """See ``VecEnv``."""
@@ -73,14 +84,17 @@ class Robots(VecEnv):
         if finished:
             robots = np.flatnonzero(ended)
             for index, (reward, steps) in zip(robots.tolist(), finished, strict=True):
+                last = rows[index : index + 1].copy()
                 infos[index] = {
-                    "terminal_observation": rows[index].copy(),
+                    "terminal_observation": {name: row[0] for name, row in self._seen(last).items()}
+                    if self._by_goal
+                    else last[0],
                     "TimeLimit.truncated": bool(truncated[index] and not terminated[index]),
                     "episode": {"r": reward, "l": steps, "t": 0.0},
                 }
             observations, _ = self._env.reset(options={"reset_mask": ended})
             rows = self._frames.begin(self._features(observations), robots)
-        return rows.copy(), (rewards * self._scale).astype(np.float32), ended, infos
+        return self._seen(rows.copy()), (rewards * self._scale).astype(np.float32), ended, infos
 
     def memory(self) -> dict[str, Any]:
         """Everything that ``recall`` needs to go on bit for bit; can be pickled."""
@@ -105,9 +119,13 @@ class Robots(VecEnv):
         """See ``VecEnv``: refused."""
         raise NotImplementedError("all robots are one environment: nothing can be set for some")
 
-    def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> list[Any]:
-        """See ``VecEnv``: refused."""
-        raise NotImplementedError("all robots are one environment: no method can be called for some")
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **kwargs: Any) -> list[Any]:
+        """See ``VecEnv``: what goals are worth ("compute_reward", of their features); all else is refused."""
+        if method_name != "compute_reward":
+            raise NotImplementedError("all robots are one environment: no method can be called for some")
+        achieved, desired = (goals_of(goals) for goals in method_args[:2])
+        task = self._env.unwrapped.session.task  # type: ignore[attr-defined]
+        return [self._scale * task.compute_reward(achieved, desired, None)]
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
         """See ``VecEnv``."""

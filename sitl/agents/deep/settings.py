@@ -96,6 +96,10 @@ class OffPolicy(Settings):
     """Steps of each robot between two rounds of learning."""
     gradient_steps: int = 2
     """Number of gradient steps in each round."""
+    hindsight: int = 0
+    """Of goal-conditioned environments: for each step that is replayed as it was, so many are replayed with a goal that
+    was reached later in the episode. 0: none. Source: Andrychowicz et al., "Hindsight Experience Replay",
+    arXiv:1707.01495."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +120,8 @@ class Sac(OffPolicy):
 
     tau: float = 0.005
     """Fraction by which target networks approach the network in a gradient step."""
+    entropy_start: float = 1.0
+    """Weight of exploration at first; learning adjusts it."""
 
 
 _CHOICES = {"check_by": ("reward", "crashes")}
@@ -125,6 +131,8 @@ _LIMITS: dict[str, tuple[float, float]] = {
     "reward_scale": (1e-9, math.inf),
     "learning_rate": (1e-9, 1.0),
     "warm_up": (0, math.inf),
+    "entropy_start": (1e-6, 10.0),
+    "hindsight": (0, 64),
     "check_every": (0, math.inf),
 }
 _OF = {"dqn": Dqn, "ppo": Ppo, "sac": Sac}
@@ -144,3 +152,8 @@ def settings_of(algorithm: str, given: Mapping[str, Any]) -> Settings:
 def as_dict(settings: Settings) -> dict[str, Any]:
     """Names and values."""
     return asdict(settings)
+
+
+def learns_by_goal(settings: Settings) -> bool:
+    """Whether steps are replayed with other goals."""
+    return isinstance(settings, OffPolicy) and settings.hindsight > 0

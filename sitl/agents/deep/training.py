@@ -16,6 +16,7 @@ import numpy.typing as npt
 from sitl.errors import SitlError
 
 from .. import environments
+from ..errors import AgentError
 from ..runs.config import RunConfig
 from ..runs.episodes import Episode
 from ..runs.folder import RunFolder
@@ -27,7 +28,7 @@ from .features import Features
 from .library import LIBRARIES, require, stable_baselines3, torch
 from .network import network_of
 from .policy import DeepPolicy
-from .settings import Settings, as_dict, settings_of
+from .settings import OffPolicy, Settings, as_dict, learns_by_goal, settings_of
 
 
 class Tally:
@@ -106,7 +107,21 @@ def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
 
 def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
     """See ``Algorithm``."""
-    Features(observations, settings_of(config.algorithm, config.settings).sectors)
+    figures = settings_of(config.algorithm, config.settings)
+    seen = Features(observations, figures.sectors)
+    if not (isinstance(figures, OffPolicy) and learns_by_goal(figures)):
+        return
+    episodes = figures.robots * config.max_steps
+    if figures.warm_up < episodes or figures.memory < 3 * episodes:
+        raise AgentError(
+            f"warm_up = {figures.warm_up}, memory = {figures.memory}: with hindsight they must be {episodes} (robots * "
+            f"max_steps) and {3 * episodes} at least, as it replays whole episodes"
+        )
+    if not (seen.has_goals and figures.frames == 1):
+        raise AgentError(
+            f"hindsight = {figures.hindsight}, frames = {figures.frames} in {config.env}: replay with other goals "
+            "needs a goal-conditioned environment (docs/envs/) and frames = 1"
+        )
     Actions(actions, config.algorithm)
 
 
@@ -132,7 +147,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     seeds = [environments.seed_of(config.seed, robot) for robot in range(figures.robots)]
     robots = Robots(
         env, Features(spaces[0], figures.sectors), figures.frames, Actions(spaces[1], config.algorithm),
-        figures.reward_scale, tally, seeds,
+        figures.reward_scale, tally, seeds, learns_by_goal(figures),
     )  # fmt: skip
     model = models.make(config.algorithm, figures, robots, config.seed)
     if path.exists():

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from sitl.core.array_kernels import Flags, IntLine, Kernel, Table
 from sitl.core.kernels import law
 
+from ..arena import flies
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
@@ -59,17 +60,20 @@ def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Fl
 
 
 _cross = Kernel(cross_gates)
+_HIGH = 4.0
+"""Of gates that are marked on the floor [m]."""
 
 
 class Gates(PlacesTask):
     """Fly or drive through gates, round after round.
 
     Gates are seen: "goal" and "path" are the true ways to their middles, and where the robot really is counts.
-    ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time [s], 0 before it. The last
-    round ends the episode, and is success. Who passes beside a gate has to come back and pass it.
+    ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time and ``info["best_lap"]`` the
+    shortest one's [s], 0 before it. The last round ends the episode, and is success. Who passes beside a gate has to
+    come back and pass it.
 
     Args:
-        gates: in their order.
+        gates: in their order; None: those that the world's markings "gate 1", "gate 2", ... show.
         laps: rounds.
         progress: reward for each metre nearer to the middle of the next gate.
         gate_reward: of each gate passed.
@@ -79,7 +83,7 @@ class Gates(PlacesTask):
 
     def __init__(
         self,
-        gates: Sequence[Gate | Sequence[float]],
+        gates: Sequence[Gate | Sequence[float]] | None = None,
         laps: int = 1,
         progress: float = 1.0,
         gate_reward: float = 5.0,
@@ -87,16 +91,33 @@ class Gates(PlacesTask):
         **others: Any,
     ) -> None:
         super().__init__(**others)
+        self._gates = np.zeros((0, 6))
+        if gates is not None:
+            self._take(gates)
+        if not 1 <= laps <= 100:
+            raise EnvOptionError(f"Gates(laps={laps}); it must be 1 .. 100")
+        self.laps, self.progress, self.gate_reward, self.each_second = laps, progress, gate_reward, each_second
+
+    def _take(self, gates: Any) -> None:
         try:
             self._gates = np.array([tuple(Gate(*gate)) for gate in gates], np.float64)
         except (TypeError, ValueError):
             self._gates = np.full((0, 6), np.nan)
         if not len(self._gates) or not np.isfinite(self._gates).all() or not (self._gates[:, 4:] > 0.0).all():
             raise EnvOptionError(f"Gates(gates={gates!r}); it must be (x, y, z, yaw[, width, height]), one at least")
-        if not 1 <= laps <= 100:
-            raise EnvOptionError(f"Gates(laps={laps}); it must be 1 .. 100")
         self._fixed = self._gates[:, :3]
-        self.laps, self.progress, self.gate_reward, self.each_second = laps, progress, gate_reward, each_second
+
+    def _painted(self, robot: Robot) -> list[Gate]:
+        """The gates that are marked on the world's floor."""
+        world = robot.world
+        found = {m.name: m for m in world.markings if m.name.startswith("gate ")}
+        names = [f"gate {k + 1}" for k in range(len(found))]
+        if not found or set(names) != set(found):
+            has = ", ".join(found) or "none"
+            raise EnvOptionError(f'Gates: world {world.name!r} needs markings "gate 1", "gate 2", ...; it has {has}')
+        middle = world.floor_z + 0.5 * _HIGH if flies(robot) else world.start(robot.name).position[2]
+        marked = [found[name] for name in names]
+        return [Gate(*m.centre, middle, m.yaw, m.size[1], _HIGH) for m in marked]
 
     @property
     def gates(self) -> list[Gate]:
@@ -112,12 +133,14 @@ class Gates(PlacesTask):
         """See ``Task``."""
         if not isinstance(robot, SensingRobot):
             raise EnvOptionError(f"task: robot {robot.name!r} does not say where it is")
+        if self._fixed is None:
+            self._take(self._painted(robot))
         super().prepare(robot)
         self._sensing: SensingRobot = robot
         self._before, self._now = np.zeros((robot.count, 3)), np.zeros((robot.count, 3))
         self._passed = np.zeros(robot.count, np.bool_)
-        self._lap = np.zeros((robot.count, 2))
-        """When each robot's round began, and how long its last one took [s]."""
+        self._lap = np.zeros((robot.count, 3))
+        """When each robot's round began, how long its last one took, and its shortest one [s]."""
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
@@ -142,13 +165,17 @@ class Gates(PlacesTask):
         self._before[:] = self._now
         self.at += self._passed
         done = self._passed & (self.at % len(self._gates) == 0)
-        self._lap[done] = np.stack([step.robot.time, step.robot.time - self._lap[:, 0]], axis=1)[done]
+        if done.any():
+            took = step.robot.time - self._lap[:, 0]
+            best = np.where(self._lap[:, 2] > 0.0, np.minimum(self._lap[:, 2], took), took)
+            self._lap[done] = np.stack([step.robot.time, took, best], axis=1)[done]
         self.success = self.at == self.per_robot
         terminated |= self.success
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
-        return {**super().info(step), "passed": self.at.copy(), "lap_time": self._lap[:, 1].copy()}
+        laps = {"lap_time": self._lap[:, 1].copy(), "best_lap": self._lap[:, 2].copy()}
+        return {**super().info(step), "passed": self.at.copy(), **laps}
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Park: be in a bay, in its heading, and stand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..options import EnvOptionError
+from ..rewards import Floats, Step
+from ..robots.robot import Robot
+from .places import PlacesTask
+
+_NEAR = 4.0
+"""Within about so far of the bay the heading counts [m]."""
+
+
+class Park(PlacesTask):
+    """Drive into a bay and stand there in its heading; which bay is drawn for each episode.
+
+    Success, which ends the episode: within ``radius`` of the bay's middle, the heading right to ``angle``, slower than
+    ``speed``. A step pays what it has changed of the distance [m] times ``progress``, and of the error of the heading
+    [rad] times ``turn_progress``, which counts fully in the bay and a half 4 m from it.
+
+    Args:
+        bays: (x, y, yaw) of each [m, rad]; None: the world's markings called "bay ...".
+        radius: distance from its middle that is in the bay [m].
+        angle: error of the heading that is right [rad].
+        speed: below it the robot stands [m/s].
+        progress: reward for each metre nearer.
+        turn_progress: reward for each radian nearer to the heading.
+        each_second: reward of each second.
+        success_reward: of standing in the bay.
+        others: further arguments of ``PlacesTask``.
+    """
+
+    per_robot = 1
+
+    def __init__(
+        self,
+        bays: Sequence[Sequence[float]] | None = None,
+        radius: float = 0.4,
+        angle: float = 0.15,
+        speed: float = 0.2,
+        progress: float = 1.0,
+        turn_progress: float = 2.0,
+        each_second: float = -0.2,
+        success_reward: float = 20.0,
+        **others: Any,
+    ) -> None:
+        super().__init__(**others)
+        self._bays = np.zeros((0, 3)) if bays is None else np.array(bays, np.float64)
+        if bays is not None and not (self._bays.ndim == 2 and self._bays.shape[1] == 3 and len(self._bays)):
+            raise EnvOptionError(f"Park(bays={bays!r}); it must be (x, y, yaw) [m, rad], one at least")
+        for name, value in {"radius": radius, "angle": angle, "speed": speed}.items():
+            if not value > 0.0:
+                raise EnvOptionError(f"Park({name}={value}); it must be above 0")
+        self.radius, self.angle, self.speed = radius, angle, speed
+        self.progress, self.turn_progress = progress, turn_progress
+        self.each_second, self.success_reward = each_second, success_reward
+
+    def prepare(self, robot: Robot) -> None:
+        """See ``Task``."""
+        if not len(self._bays):
+            marked = [m for m in robot.world.markings if m.name.startswith("bay ")]
+            if not marked:
+                raise EnvOptionError(f'Park: world {robot.world.name!r} has no markings "bay 1", "bay 2", ...')
+            self._bays = np.array([(*m.centre, m.yaw) for m in marked])
+        super().prepare(robot)
+        self.headings = np.zeros(robot.count)
+        """Of each robot's bay [rad], shape (count,)."""
+        self._left = np.zeros(robot.count)
+        """What each robot's way is still worth."""
+
+    def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
+        """See ``Task``."""
+        x, y, yaw = self._bays[int(rng.integers(len(self._bays)))].tolist()
+        self.places[index, 0] = x, y, robot.pose[index, 2]
+        self.headings[index], self.at[index], self.success[index] = yaw, 0, False
+        self._left[index] = self._worth(robot.pose)[2][index]
+
+    def turns(self) -> Floats:
+        """How far each robot has to turn to the bay's heading, counter-clockwise, within -pi .. pi [rad]."""
+        return self._turns_from(self._robot.pose)
+
+    def _turns_from(self, pose: Floats) -> Floats:
+        turn = self.headings - pose[:, 3]
+        out: Floats = (turn + math.pi) % math.tau - math.pi
+        return out
+
+    def _worth(self, pose: Floats) -> tuple[Floats, Floats, Floats]:
+        """Distance [m], error of the heading [rad], and what is left to be paid for both."""
+        way = self.places[:, 0, :2] - pose[:, :2]
+        distance = np.sqrt((way * way).sum(axis=1))
+        error = np.abs(self._turns_from(pose))
+        counts = 1.0 / (1.0 + (distance / _NEAR) ** 2)
+        return distance, error, self.progress * distance + self.turn_progress * error * counts
+
+    def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        distance, error, left = self._worth(step.pose)
+        rewards += self._left - left + self.each_second * step.seconds
+        self._left = left
+        stands = np.abs(step.velocity[:, 0]) < self.speed
+        self.success = (distance < self.radius) & (error < self.angle) & stands
+        rewards[self.success] += self.success_reward
+        terminated |= self.success
+
+    def memory(self, index: int) -> Any:
+        """See ``Task``."""
+        return *super().memory(index), float(self.headings[index]), float(self._left[index])
+
+    def recall(self, index: int, memory: Any) -> None:
+        """See ``Task``."""
+        super().recall(index, memory)
+        self.headings[index], self._left[index] = memory[3:5]
