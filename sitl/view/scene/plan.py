@@ -9,6 +9,7 @@ import numpy as np
 
 from ..axes import place
 from ..frame import Frame, Mark, Plan, Points
+from ..shape import cylinder
 
 _PATH, _LEG, _FENCE, _RALLY, _HOME = (120, 120, 130), (240, 150, 20), (214, 48, 49), (22, 160, 133), (40, 40, 48)
 
@@ -28,14 +29,16 @@ class PlanNodes:
         none = np.zeros((0, 2, 3), np.float32)
         self.leg = scene.add_line_segments("/plan/leg", none, _LEG, thickness=0.06 * size)
         self._leg: object = None
-        self.home = scene.add_icosphere("/plan/home", radius=0.12 * size, color=_HOME, visible=False)
+        disc = cylinder(0.35 * size, 0.01 * size, corners=32)
+        self.home = scene.add_mesh_simple("/plan/home", disc.vertices, disc.faces, color=_HOME, opacity=0.6, visible=False)
         self._home_label = scene.add_label("/plan/home/label", "home", anchor="top-center", font_screen_scale=0.8)
 
     def show(self, frame: Frame) -> None:
         """Draw a moment."""
         self.home.visible = frame.home is not None
         if frame.home is not None:
-            self.home.position = place(frame.home)
+            x, y, _ = place(frame.home)
+            self.home.position = (x, y, 0.01 * self._size)  # on the ground, whatever the estimator thinks of its height
         if frame.leg != self._leg:
             self._leg = frame.leg
             ends = np.array([place(end) for end in frame.leg or ()], np.float32)

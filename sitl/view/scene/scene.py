@@ -34,7 +34,7 @@ class Scene:
         self.plan = PlanNodes(scene, size)
         self.estimate = Ghost(scene, "/estimate", stage.shape, _ESTIMATE, 0.35)
         self.set_point = scene.add_icosphere(
-            "/set_point", radius=0.15 * size, color=_WANTED, opacity=0.7, visible=False
+            "/set_point", radius=0.07 * size, color=_WANTED, opacity=0.9, visible=False
         )
         self._wind_node = scene.add_frame("/wind", show_axes=False)
         self._size, self._wind = size, Vec3(0.0, 0.0, 0.0)

@@ -31,7 +31,7 @@ class Trail:
 
     def __init__(self, scene: Any, name: str, size: float) -> None:
         self._scene, self._name = scene, name
-        self._step, self._thickness = 0.08 * size, 0.05 * size
+        self._step, self._thickness = 0.15 * size, 0.03 * size
         self._pieces: deque[Any] = deque()
         self._count = 0
         self._points: list[tuple[float, float, float]] = []
