@@ -133,6 +133,8 @@ class StoppablePacing(Pacing):
 
     is_stopped = False
     """Whether time stands, but for steps."""
+    _step_us = 0
+    """Of the next slice, while time stands."""
 
     def stop(self) -> None:
         """Let time stand from now on."""
@@ -145,7 +147,8 @@ class StoppablePacing(Pacing):
 
     def step(self, us: int) -> None:
         """Let a simulated time [us] go by, then stand."""
-        self.is_stopped, self.slice_us = True, us
+        self.stop()
+        self._step_us = us
 
     def set_speedup(self, speedup: float | None) -> None:
         super().set_speedup(speedup)
@@ -156,6 +159,6 @@ class StoppablePacing(Pacing):
         if not self.is_stopped:
             super().after_slice(simulation)
             return
-        self.slice_us = 0
-        if simulation.bridge.wait(_STOPPED_WALL_S):
+        self.slice_us, self._step_us = self._step_us, 0
+        if self.slice_us == 0 and simulation.bridge.wait(_STOPPED_WALL_S):
             simulation.bridge.receive()

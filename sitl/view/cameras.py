@@ -60,10 +60,8 @@ class Cameras:
             camera.up_direction = (0.0, 0.0, 1.0)
             camera.position = at + away
             camera.look_at = at
-        elif is_new:
+        elif is_new:  # free: it stays where it is, upright
             camera.up_direction = (0.0, 0.0, 1.0)
-            camera.position = at + self._size * np.array([-9.0, 5.0, 5.0])
-            camera.look_at = at
 
 
 def rotated(frame: Frame, axis: tuple[float, float, float]) -> Any:

@@ -34,7 +34,7 @@ def viser() -> Any:
 
 
 def serve(host: str, port: int, title: str) -> Any:
-    """A server of viser. It prints its addresses, whatever it is told: what we print is enough.
+    """A server of viser. It prints its addresses, whatever it is told: not here.
 
     Raises:
         MissingExtra: it is not installed.
@@ -42,3 +42,9 @@ def serve(host: str, port: int, title: str) -> Any:
     module = viser()
     with contextlib.redirect_stdout(io.StringIO()):
         return module.ViserServer(host=host, port=port, label=title, verbose=False)
+
+
+def stop(server: Any) -> None:
+    """Stop a server of viser, which says so, too."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        server.stop()

@@ -157,7 +157,7 @@ class Page:
             self._closed = True
             self._filled.notify_all()
         self._thread.join(timeout=5.0)
-        self.server.stop()
+        library.stop(self.server)
 
 
 def free_port(port: int) -> int:

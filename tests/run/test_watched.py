@@ -73,6 +73,10 @@ def test_stopped_time_stands_while_clients_are_heard(core: Core) -> None:
     left = iter(range(5))
     serve(simulation, pace, running=lambda: next(left, None) is not None)
     assert simulation.time_us == 1_300_000, "one step, then it stands again"
+    orders = iter([lambda: pace.step(2500)])
+    left = iter(range(5))
+    serve(simulation, pace, running=lambda: next(left, None) is not None, on_slice=lambda: next(orders, lambda: None)())
+    assert simulation.time_us == 1_302_500, "asked for between two slices, as the page does"
     pace.set_speedup(None)
     assert pace.slice_us == 0, "another speed does not let it go"
     pace.go_on()

@@ -30,7 +30,9 @@ class PlanNodes:
         self.leg = scene.add_line_segments("/plan/leg", none, _LEG, thickness=0.06 * size)
         self._leg: object = None
         disc = cylinder(0.35 * size, 0.01 * size, corners=32)
-        self.home = scene.add_mesh_simple("/plan/home", disc.vertices, disc.faces, color=_HOME, opacity=0.6, visible=False)
+        self.home = scene.add_mesh_simple(
+            "/plan/home", disc.vertices, disc.faces, color=_HOME, opacity=0.6, visible=False
+        )
         self._home_label = scene.add_label("/plan/home/label", "home", anchor="top-center", font_screen_scale=0.8)
 
     def show(self, frame: Frame) -> None:
