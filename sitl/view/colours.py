@@ -3,7 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
 from zlib import crc32
+
+import numpy as np
+import numpy.typing as npt
 
 Colour = tuple[int, int, int]
 
@@ -47,3 +52,8 @@ def of_severity(severity: int) -> str:
 def css(colour: Colour) -> str:
     """As CSS."""
     return "#{:02x}{:02x}{:02x}".format(*colour)
+
+
+def of_ends(colours: Sequence[Colour]) -> npt.NDArray[Any]:
+    """Colours of the ends of lines, shape (n, 3): a browser takes these for linear light, all others for sRGB."""
+    return np.round(255.0 * (np.asarray(colours, float) / 255.0) ** 2.2).astype(np.uint8)

@@ -16,7 +16,7 @@ from ..errors import SitlError
 from ..run.playback import Player
 from . import horizon, library
 from .cameras import FREE, VIEWS, Cameras
-from .colours import css, of_mode
+from .colours import css, of_ends, of_mode
 from .flights import Flight, Floats
 from .page import LOCAL, free_port
 from .scene import surroundings
@@ -47,7 +47,7 @@ class FlightScene:
             self.vehicles.append(VehicleNodes(scene, f"{name}/vehicle", flight.shape))
             colours: Any = COLOURS[k % len(COLOURS)]
             if len(flights) == 1:
-                each = np.array([of_mode(flight.mode(t)) for t in flight.track.t], np.uint8)
+                each = of_ends([of_mode(flight.mode(t)) for t in flight.track.t])
                 colours = np.stack([each[:-1], each[:-1]], axis=1)
             lines = np.stack([places[:-1], places[1:]], axis=1)
             scene.add_line_segments(f"{name}/way", lines, colours, thickness=2.5, thickness_units="screen")

@@ -48,7 +48,8 @@ def test_the_state_of_any_moment() -> None:
 def test_events_in_their_order() -> None:
     texts = [(event.time, event.text) for event in of_track("one", track()).events()]
     assert texts == [
-        (0.0, "disarmed"), (0.0, "mode GUIDED"), (1.0, "armed"), (4.0, "mode AUTO"), (6.0, "item 2 reached"), (7.0, "Crash"),
+        (0.0, "disarmed"), (0.0, "mode GUIDED"), (1.0, "armed"), (4.0, "mode AUTO"), (6.0, "item 2 reached"),
+        (7.0, "Crash"),
     ]  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.algebra import norm
 from ..axes import place
-from ..colours import of_mode, of_speed
+from ..colours import of_ends, of_mode, of_speed
 from ..frame import Frame
 
 BY_MODE, BY_SPEED = "mode", "speed"
@@ -76,9 +76,9 @@ class Trail:
         points = np.array(self._points, np.float32)
         lines = np.stack([points[:-1], points[1:]], axis=1)
         if self.colours == BY_SPEED:
-            ends = np.array([of_speed(speed) for speed in self._speeds], np.uint8)
+            ends = of_ends([of_speed(speed) for speed in self._speeds])
         else:
-            ends = np.array([of_mode(mode) for mode in self._modes], np.uint8)
+            ends = of_ends([of_mode(mode) for mode in self._modes])
         colours = np.stack([ends[1:], ends[1:]], axis=1)
         if len(self._points) > 2:
             self._pieces[-1].points, self._pieces[-1].colors = lines, colours
