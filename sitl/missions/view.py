@@ -25,7 +25,7 @@ _CURVES = ("position", "cross_track")
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("view", help="show flights that were kept, on a page in the browser")
+    parser = commands.add_parser("view")
     parser.add_argument(
         "flights", nargs="+", type=Path, metavar="FLIGHT", help=".tlog, .bin, recording or golden; several are aligned"
     )
