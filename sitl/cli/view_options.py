@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 
 from ..run.pacing import StoppablePacing
 from ..run.watched import Watched
-from ..simulation import Simulation
+from ..simulation import OptionError, Simulation
 from .options import port
 
 
@@ -25,9 +25,24 @@ def add_view_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+    parser.add_argument(
+        "--view-address", metavar="HOST", help="offer the page to other machines: an address of this one, or 0.0.0.0"
+    )
+    parser.add_argument("--view-token", metavar="TOKEN", help="what they must know for that; nothing is encrypted")
+
+
 def wants_view(options: argparse.Namespace) -> bool:
-    """Whether a page is asked for."""
-    return bool(getattr(options, "view", False) or getattr(options, "view_only", False))
+    """Whether a page is asked for.
+
+    Raises:
+        OptionError: an address for other machines without a token, or without a page.
+    """
+    wanted = bool(options.view or options.view_only)
+    if (options.view_address is None) != (options.view_token is None):
+        raise OptionError("--view-address and --view-token go together: without a token anybody could fly the vehicle")
+    if options.view_address is not None and not wanted:
+        raise OptionError("--view-address is of use with --view or --view-only alone")
+    return wanted
 
 
 @contextlib.contextmanager
@@ -39,19 +54,26 @@ def shown(
     Raises:
         MissingExtra: what draws it is not installed.
         sitl.view.page.PageAddressError: the port is taken.
+        sitl.view.gate.GateError: the address or the token cannot be used.
     """
     if not wants_view(options):
         yield then
         return
+    from ..view.gate import Gate
     from ..view.live_page import LivePage
 
-    page = LivePage(simulation, pace, options.view_port, controls=not options.view_only)
-    try:
-        print(f"page: {page.address}", flush=True)
+    with contextlib.ExitStack() as stack:
+        port_inside = 0 if options.view_address is not None else options.view_port
+        page = LivePage(simulation, pace, port_inside, controls=not options.view_only)
+        stack.callback(page.close)
+        address = page.address
+        if options.view_address is not None:
+            gate = Gate(options.view_address, options.view_port, options.view_token, page.port)
+            stack.callback(gate.close)
+            address = gate.address
+        print(f"page: {address}", flush=True)
         open_browser(page.address)
         yield Watched(page, lambda: simulation.time_us, then)
-    finally:
-        page.close()
 
 
 def open_browser(address: str) -> None:

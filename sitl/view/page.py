@@ -47,7 +47,8 @@ class Page:
         library.require()
         self.source = source
         self.server = library.serve(LOCAL, free_port(port), source.stage.title)
-        self.address = f"http://{LOCAL}:{self.server.get_port()}"
+        self.port = int(self.server.get_port())
+        self.address = f"http://{LOCAL}:{self.port}"
         self.frame: Frame | None = None
         """The last one that was drawn."""
         self._room: Any = None
