@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a viewer looks from: free, along with the vehicle, from its seat, from above. Each browser has its own."""
+"""Where viewers look from: free, along with the vehicle, from its seat, from above.
+
+A camera that is moved thirty times a second cannot be turned by a mouse meanwhile, and browsers move it with a lag. So
+to follow a vehicle it is the *stage*, with everything on it, that is moved, such that the vehicle stays at the origin,
+and cameras are left to who looks.
+"""
 
 from __future__ import annotations
 
@@ -13,55 +18,57 @@ from .frame import Frame
 
 FREE, FOLLOW, FIRST_PERSON, TOP = "free", "follow", "first person", "top"
 VIEWS = (FREE, FOLLOW, FIRST_PERSON, TOP)
+_UP = (0.0, 0.0, 1.0)
 
 
 class Cameras:
-    """The views of all browsers.
+    """The view of a page, and the cameras of all browsers that have it open.
 
     Args:
+        stage: node that everything is on.
         size: of the vehicle [m].
+        view: one of VIEWS.
     """
 
-    def __init__(self, size: float) -> None:
-        self._size = size
-        self.view = FOLLOW
-        """One of VIEWS."""
-        self._fresh: set[int] = set()
+    def __init__(self, stage: Any, size: float, view: str = FOLLOW) -> None:
+        self._stage, self._size = stage, size
+        self.view = view
+        self._ready: set[int] = set()
 
     def choose(self, view: str) -> None:
-        """Look from there from now on."""
+        """Look from there from now on; FREE: the stage and all cameras stay where they are."""
         self.view = view
-        self._fresh.clear()
+        self._ready.clear()
+
+    def shift(self) -> tuple[float, float, float]:
+        """How far the stage is moved [m]."""
+        x, y, z = self._stage.position
+        return (float(x), float(y), float(z))
 
     def show(self, clients: dict[int, Any], frame: Frame) -> None:
-        """Move the cameras of all browsers to where they are at this moment."""
+        """Look at a moment."""
+        if self.view == FREE:
+            return
+        self._stage.position = -np.array(place(frame.pos))
         for number, client in clients.items():
-            with contextlib.suppress(AssertionError, ValueError):  # it has not told yet where its camera is
-                is_new = number not in self._fresh
-                with client.atomic():
-                    self._move(client.camera, frame, is_new)
-                self._fresh.add(number)
-        self._fresh &= set(clients)
+            if self.view == FIRST_PERSON or number not in self._ready:
+                with contextlib.suppress(AssertionError, ValueError), client.atomic():  # it may not have a camera yet
+                    self._place(client.camera, frame)
+                    self._ready.add(number)
+        self._ready &= set(clients)
 
-    def _move(self, camera: Any, frame: Frame, is_new: bool) -> None:
-        at = np.array(place(frame.pos))
+    def _place(self, camera: Any, frame: Frame) -> None:
+        """Put a camera where this view begins."""
+        size = self._size
         if self.view == FIRST_PERSON:
             ahead, up = rotated(frame, (1.0, 0.0, 0.0)), rotated(frame, (0.0, 0.0, 1.0))
-            _put(camera, at + 0.9 * self._size * ahead + 0.35 * self._size * up, ahead, up)
+            eye = size * (0.9 * ahead + 0.35 * up)
+            _put(camera, eye, eye + 5.0 * ahead, tuple(up))
         elif self.view == TOP:
-            height = max(30.0 * self._size, 1.5 * at[2])
-            if is_new or not np.allclose(camera.look_at[:2], at[:2], atol=0.3 * height):
-                above, ahead = at + (-0.02 * height, 0.0, height), np.array([0.02, 0.0, -1.0])
-                _put(camera, above, ahead, (0.0, 0.0, 1.0), height)
-        elif self.view == FOLLOW:
-            away = np.asarray(camera.position) - np.asarray(camera.look_at)
-            if is_new:
-                away = self._size * np.array([-2.6, 1.3, 1.3])
-            camera.up_direction = (0.0, 0.0, 1.0)
-            camera.position = at + away
-            camera.look_at = at
-        elif is_new:  # free: it stays where it is, upright
-            camera.up_direction = (0.0, 0.0, 1.0)
+            height = max(30.0 * size, 1.5 * place(frame.pos)[2])
+            _put(camera, np.array([-0.02 * height, 0.0, height]), np.zeros(3), _UP)
+        else:
+            _put(camera, size * np.array([-2.6, 1.3, 1.3]), np.zeros(3), _UP)
 
 
 def rotated(frame: Frame, axis: tuple[float, float, float]) -> Any:
@@ -71,7 +78,7 @@ def rotated(frame: Frame, axis: tuple[float, float, float]) -> Any:
     return v + 2.0 * np.cross(u, np.cross(u, v) + w * v)
 
 
-def _put(camera: Any, position: Any, ahead: Any, up: Any, distance: float = 5.0) -> None:
-    camera.up_direction = tuple(up)
-    camera.position = position
-    camera.look_at = position + distance * ahead
+def _put(camera: Any, eye: Any, look_at: Any, up: tuple[float, float, float]) -> None:
+    camera.up_direction = up
+    camera.position = eye
+    camera.look_at = look_at

@@ -21,6 +21,7 @@ _WIND = (
 _OFFERED = 60
 """Parameters in the list that a search gives."""
 
+Shift = Callable[[], Sequence[float]]
 Ask = Callable[[Callable[[], None], Any], None]
 """Lets something be done where the vehicle is, for the event of a click."""
 
@@ -33,13 +34,15 @@ class Controls:
         scene: of viser, in which clicks mean places.
         ask: lets something be done where the vehicle is.
         pilot: does it.
+        stage: what is shown.
         pace: of the run; None: its time cannot be stopped here.
+        shift: how far the stage is moved (``cameras``) [m].
     """
 
     def __init__(
-        self, gui: Any, scene: Any, ask: Ask, pilot: Pilot, stage: Stage, pace: StoppablePacing | None
+        self, gui: Any, scene: Any, ask: Ask, pilot: Pilot, stage: Stage, pace: StoppablePacing | None, shift: Shift
     ) -> None:
-        self._ask, self._pilot = ask, pilot
+        self._ask, self._pilot, self._shift = ask, pilot, shift
         with gui.add_folder("Pilot"):
             self._add_pilot(gui, stage)
         if pace is not None:
@@ -83,7 +86,8 @@ class Controls:
     def _clicked(self, event: Any) -> None:
         if not self.clicks.value:
             return
-        place = on_ground(event.ray_origin, event.ray_direction)
+        origin = [at - moved for at, moved in zip(event.ray_origin, self._shift(), strict=True)]
+        place = on_ground(origin, event.ray_direction)
         if place is not None:
             self._ask(lambda: self._pilot.go_to(*place), event)
 

@@ -38,12 +38,14 @@ class FlightScene:
     def __init__(self, server: Any, flights: Sequence[Flight]) -> None:
         scene = server.scene
         scene.set_up_direction("+z")
+        self.stage = scene.add_frame("/stage", show_axes=False)
+        """All of it (``cameras``)."""
         scene.configure_default_lights(cast_shadow=True)
         surroundings.draw(scene, None)
         self.vehicles, self._labels = [], []
         size = flights[0].shape.size
         for k, flight in enumerate(flights):
-            name, places = f"/flights/{k}", flight.places().astype(np.float32)
+            name, places = f"/stage/flights/{k}", flight.places().astype(np.float32)
             self.vehicles.append(VehicleNodes(scene, f"{name}/vehicle", flight.shape))
             colours: Any = COLOURS[k % len(COLOURS)]
             if len(flights) == 1:
@@ -57,8 +59,9 @@ class FlightScene:
                 here = [np.interp(at, flight.track.t, places[:, axis]) for axis in range(3)]
                 scene.add_icosphere(f"{name}/item{seq}", radius=0.12 * size, color=(240, 150, 20), position=here)
                 scene.add_label(f"{name}/item{seq}/label", f"item {seq}", font_screen_scale=0.7)
+        none = np.zeros((0, 2, 3), np.float32)
         self._gap = scene.add_line_segments(
-            "/flights/gap", np.zeros((0, 2, 3), np.float32), (192, 57, 43), thickness=2.0, thickness_units="screen"
+            "/stage/flights/gap", none, (192, 57, 43), thickness=2.0, thickness_units="screen"
         )
         self._flights, self._size = flights, size
 
@@ -96,8 +99,7 @@ class FlightPage:
         self.server = library.serve(LOCAL, free_port(port), title)
         self.address = f"http://{LOCAL}:{self.server.get_port()}"
         self.scene = FlightScene(self.server, flights)
-        self.cameras = Cameras(flights[0].shape.size)
-        self.cameras.choose(FREE)
+        self.cameras = Cameras(self.scene.stage, flights[0].shape.size, FREE)
         self._look_at_all()
         self.length = max(flight.length for flight in flights)
         self.events = [(event.time, f"{flight.name}: {event.text}" if len(flights) > 1 else event.text)

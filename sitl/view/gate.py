@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A way to the page from other machines: a door that asks each connection for a token, before the page's own server.
 
-The server itself stays on 127.0.0.1 and knows nobody. Who opens the address with ``?token=...`` gets it as a cookie that
-no other site's page can use (SameSite=Strict); connections that show it are passed on byte by byte, all others are
+The server itself stays on 127.0.0.1 and knows nobody. Who opens the address with ``?token=...`` gets it as a cookie
+that no other site's page can use (SameSite=Strict); connections that show it are passed on byte by byte, all others are
 turned away. There is no encryption: on a network that is not trusted, tunnel it.
 """
 

@@ -43,7 +43,8 @@ class LivePage(Page):
         gui = self.server.gui
         if controls:
             with self.tabs.add_tab("Control"):
-                self.controls = Controls(gui, self.server.scene, self.ask, self.pilot, source.stage, pace)
+                scene, shift = self.server.scene, self.cameras.shift
+                self.controls = Controls(gui, scene, self.ask, self.pilot, source.stage, pace, shift)
             with self.tabs.add_tab("Faults"):
                 self.weather = Weather(gui, simulation, self.ask, self.pilot)
         with self.tabs.add_tab("Parameters"):

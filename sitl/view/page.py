@@ -59,9 +59,9 @@ class Page:
         gui = self.server.gui
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
         gui.main_panel.dock_right()
-        self.cameras = Cameras(source.stage.shape.size)
-        self.tabs = self._add_instruments(gui)
         self.scene = Scene(self.server, source.stage)
+        self.cameras = Cameras(self.scene.stage, source.stage.shape.size)
+        self.tabs = self._add_instruments(gui)
         self._thread = threading.Thread(target=self._draw_all, name="sitl-view", daemon=True)
         self._thread.start()
 

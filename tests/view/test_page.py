@@ -27,6 +27,7 @@ class Event:
     """A click that nobody in particular made."""
 
     client = None
+    ray_origin = ray_direction = (0.0, 0.0, 0.0)
 
     def __init__(self, target: object = None) -> None:
         self.target = target
@@ -147,6 +148,29 @@ def test_plots_take_signals_by_name(page: LivePage) -> None:
     assert page.plots.names == () and page.frame is not None
     fly(page, 0.1)
     assert page.frame.signals == {}
+
+
+def test_to_follow_the_vehicle_the_stage_is_moved(page: LivePage) -> None:
+    vehicle = Client(page.simulation)
+    vehicle.wait_ready()
+    vehicle.take_off(6.0)
+    fly(page, 0.1)
+    assert page.frame is not None
+    assert page.cameras.shift() == pytest.approx([-each for each in place(page.frame.pos)])
+    page.cameras.choose("free")
+    there = page.cameras.shift()
+    vehicle.set_velocity(3.0, 0.0)
+    vehicle.delay(2.0)
+    fly(page, 0.1)
+    assert page.cameras.shift() == there
+    assert page.controls is not None
+    asked: list[tuple[float, float]] = []
+    page.pilot.go_to = lambda *at: asked.append(at)  # type: ignore[method-assign]
+    click = Event()
+    click.ray_origin, click.ray_direction = (there[0] + 4.0, there[1] + 2.0, there[2] + 9.0), (0.0, 0.0, -1.0)
+    page.controls._clicked(click)
+    page.attend()
+    assert asked == [pytest.approx((4.0, -2.0))], "a click means a place on the moved ground"
 
 
 def test_who_may_only_look_has_no_controls(core: Core) -> None:

@@ -27,13 +27,13 @@ class PlanNodes:
         self._nodes: list[Any] = []
         self._shown: Plan = Plan()
         none = np.zeros((0, 2, 3), np.float32)
-        self.leg = scene.add_line_segments("/plan/leg", none, _LEG, thickness=0.06 * size)
+        self.leg = scene.add_line_segments("/stage/plan/leg", none, _LEG, thickness=0.06 * size)
         self._leg: object = None
         disc = cylinder(0.35 * size, 0.01 * size, corners=32)
         self.home = scene.add_mesh_simple(
-            "/plan/home", disc.vertices, disc.faces, color=_HOME, opacity=0.6, visible=False
+            "/stage/plan/home", disc.vertices, disc.faces, color=_HOME, opacity=0.6, visible=False
         )
-        self._home_label = scene.add_label("/plan/home/label", "home", anchor="top-center", font_screen_scale=0.8)
+        self._home_label = scene.add_label("/stage/plan/home/label", "home", anchor="top-center", font_screen_scale=0.8)
 
     def show(self, frame: Frame) -> None:
         """Draw a moment."""
@@ -56,11 +56,11 @@ class PlanNodes:
         if plan.items:
             places = np.array([place(mark.place) for mark in plan.items], np.float32)
             if len(places) > 1:
-                self._lines("/plan/path", np.stack([places[:-1], places[1:]], axis=1), _PATH, 0.035)
-            self._marks("/plan/item", plan.items, _LEG)
-        self._marks("/plan/rally", plan.rally, _RALLY)
+                self._lines("/stage/plan/path", np.stack([places[:-1], places[1:]], axis=1), _PATH, 0.035)
+            self._marks("/stage/plan/item", plan.items, _LEG)
+        self._marks("/stage/plan/rally", plan.rally, _RALLY)
         for k, outline in enumerate(plan.fences):
-            self._lines(f"/plan/fence{k}", curtain(outline, plan.fence_top), _FENCE, 0.05)
+            self._lines(f"/stage/plan/fence{k}", curtain(outline, plan.fence_top), _FENCE, 0.05)
 
     def _marks(self, name: str, marks: tuple[Mark, ...], colour: tuple[int, int, int]) -> None:
         scene, size = self._scene, self._size

@@ -27,20 +27,22 @@ class Scene:
         scene = server.scene
         size = stage.shape.size
         scene.set_up_direction("+z")
+        self.stage = scene.add_frame("/stage", show_axes=False)
+        """All of it; ``cameras`` moves it below the eyes of who follows the vehicle."""
         scene.configure_default_lights(cast_shadow=True)
         surroundings.draw(scene, stage.world)
-        self.vehicle = VehicleNodes(scene, "/vehicle", stage.shape)
-        self.trail = Trail(scene, "/trail", size)
+        self.vehicle = VehicleNodes(scene, "/stage/vehicle", stage.shape)
+        self.trail = Trail(scene, "/stage/trail", size)
         self.plan = PlanNodes(scene, size)
-        self.estimate = Ghost(scene, "/estimate", stage.shape, _ESTIMATE, 0.35)
+        self.estimate = Ghost(scene, "/stage/estimate", stage.shape, _ESTIMATE, 0.35)
         self.set_point = scene.add_icosphere(
-            "/set_point", radius=0.07 * size, color=_WANTED, opacity=0.9, visible=False
+            "/stage/set_point", radius=0.07 * size, color=_WANTED, opacity=0.9, visible=False
         )
-        self._wind_node = scene.add_frame("/wind", show_axes=False)
+        self._wind_node = scene.add_frame("/stage/wind", show_axes=False)
         self._size, self._wind = size, Vec3(0.0, 0.0, 0.0)
         self._arrow = scene.add_arrows(
-            "/wind/arrow", np.zeros((0, 2, 3), np.float32), _WIND, shaft_radius=0.03 * size, head_radius=0.09 * size,
-            head_length=0.2 * size,
+            "/stage/wind/arrow", np.zeros((0, 2, 3), np.float32), _WIND, shaft_radius=0.03 * size,
+            head_radius=0.09 * size, head_length=0.2 * size,
         )  # fmt: skip
 
     def show(self, frame: Frame) -> None:

@@ -18,10 +18,10 @@ _PLAIN_GROUND, _FLOOR = (214, 219, 208), (222, 222, 226)
 
 
 def draw(scene: Any, world: World | None) -> None:
-    """Draw the ground and a world. A cell of the ground is 1 m wide, a section 10 m."""
+    """Draw the ground and a world below "/stage". A cell of the ground is 1 m wide, a section 10 m."""
     floor = 0.0 if world is None else world.floor_z
     scene.add_grid(
-        "/ground", plane="xy", infinite_grid=True, cell_size=1.0, section_size=10.0, cell_thickness=0.6,
+        "/stage/ground", plane="xy", infinite_grid=True, cell_size=1.0, section_size=10.0, cell_thickness=0.6,
         section_thickness=1.0, cell_color=(176, 184, 172), section_color=(150, 158, 148), fade_distance=250.0,
         position=(0.0, 0.0, floor - 0.005), plane_color=_PLAIN_GROUND if world is None else _FLOOR, plane_opacity=1.0,
         shadow_opacity=0.2,
@@ -37,7 +37,7 @@ def _draw_boxes(scene: Any, solids: list[Box]) -> None:
         return
     unit = box((1.0, 1.0, 1.0))
     scene.add_batched_meshes_simple(
-        "/world/boxes", unit.vertices, unit.faces,
+        "/stage/world/boxes", unit.vertices, unit.faces,
         batched_wxyzs=np.array([about(2, solid.yaw) for solid in solids]),
         batched_positions=np.array([solid.centre for solid in solids]),
         batched_scales=np.array([solid.size for solid in solids], np.float32),
@@ -50,7 +50,7 @@ def _draw_cylinders(scene: Any, solids: list[Cylinder]) -> None:
         return
     unit = cylinder(1.0, 1.0, corners=32)
     scene.add_batched_meshes_simple(
-        "/world/cylinders", unit.vertices, unit.faces,
+        "/stage/world/cylinders", unit.vertices, unit.faces,
         batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(solids), 1)),
         batched_positions=np.array([solid.centre for solid in solids]),
         batched_scales=np.array([(solid.radius, solid.radius, solid.height) for solid in solids], np.float32),
@@ -65,7 +65,7 @@ def _draw_markings(scene: Any, world: World) -> None:
         vertices = np.column_stack([corners, height]).astype(np.float32)
         fan = np.array([(0, j, j + 1) for j in range(1, len(corners) - 1)], np.uint32)
         scene.add_mesh_simple(
-            f"/world/marking{k}", vertices, fan, color=_named(marking.colour), side="double", cast_shadow=False
+            f"/stage/world/marking{k}", vertices, fan, color=_named(marking.colour), side="double", cast_shadow=False
         )
 
 

@@ -32,6 +32,7 @@ class Trail:
     def __init__(self, scene: Any, name: str, size: float) -> None:
         self._scene, self._name = scene, name
         self._step, self._thickness = 0.15 * size, 0.03 * size
+        self._lift = 0.02 * size  # out of the ground
         self._pieces: deque[Any] = deque()
         self._count = 0
         self._points: list[tuple[float, float, float]] = []
@@ -46,7 +47,8 @@ class Trail:
         if frame.time_us < self._time_us:
             self.clear()
         self._time_us = frame.time_us
-        here = place(frame.pos)
+        x, y, z = place(frame.pos)
+        here = (x, y, z + self._lift)
         if self._points:
             moved = float(np.linalg.norm(np.subtract(here, self._points[-1])))
             if moved < self._step:

@@ -47,7 +47,7 @@ class VehicleNodes:
         thickness = 0.012 * shape.size
         self._rays = scene.add_line_segments(f"{name}/rays", none, _RAY, thickness=0.15 * thickness)
         self._hits = scene.add_point_cloud(
-            f"{name}/hits", none[:, 0], _HIT, point_size=4.0 * thickness, point_shape="circle", precision="float32"
+            f"{name}/hits", none[:, 0], _HIT, point_size=2.0 * thickness, point_shape="circle", precision="float32"
         )
         self._scan: object = None
 
