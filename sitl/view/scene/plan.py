@@ -56,7 +56,7 @@ class PlanNodes:
         if plan.items:
             places = np.array([place(mark.place) for mark in plan.items], np.float32)
             if len(places) > 1:
-                self._lines("/stage/plan/path", np.stack([places[:-1], places[1:]], axis=1), _PATH, 0.035)
+                self._lines("/stage/plan/path", np.stack([places[:-1], places[1:]], axis=1), _PATH, 0.02)
             self._marks("/stage/plan/item", plan.items, _LEG)
         self._marks("/stage/plan/rally", plan.rally, _RALLY)
         for k, outline in enumerate(plan.fences):
