@@ -55,7 +55,7 @@ class FlightScene:
             scene.add_line_segments(f"{name}/way", lines, colours, thickness=2.5, thickness_units="screen")
             label = scene.add_label(f"{name}/label", flight.name, anchor="bottom-center", font_screen_scale=0.8)
             self._labels.append(label)
-            for at, seq in flight.track.items:
+            for at, seq in flight.track.items if k == 0 else ():  # others' are in the same places, or in the list
                 here = [np.interp(at, flight.track.t, places[:, axis]) for axis in range(3)]
                 scene.add_icosphere(f"{name}/item{seq}", radius=0.12 * size, color=(240, 150, 20), position=here)
                 scene.add_label(f"{name}/item{seq}/label", f"item {seq}", font_screen_scale=0.7)

@@ -86,7 +86,7 @@ class Trail:
             self._pieces[-1].points, self._pieces[-1].colors = lines, colours
             return
         self._count += 1
-        name = f"{self._name}/{self._count}"
+        name = f"{self._name}/{self._count % (_PIECES + 1)}"  # names come again: the server keeps something for each
         self._pieces.append(self._scene.add_line_segments(name, lines, colours, thickness=self._thickness))
         if len(self._pieces) > _PIECES:
             self._pieces.popleft().remove()
