@@ -107,14 +107,13 @@ class Gate:
 
     async def _pass_on(self, head: bytes, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         inner_reader, inner_writer = await asyncio.open_connection("127.0.0.1", self._target)
+        inner_writer.write(head)
+        inward = asyncio.create_task(_speak(reader, inner_writer))
         try:
-            inner_writer.write(head)
-            both = [asyncio.create_task(_pump(reader, inner_writer)), asyncio.create_task(_pump(inner_reader, writer))]
-            await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
-            for task in both:
-                task.cancel()
-            await asyncio.gather(*both, return_exceptions=True)
+            await _pump(inner_reader, writer)  # the server inside ends it, also when the visitor has said all
         finally:
+            inward.cancel()
+            await asyncio.gather(inward, return_exceptions=True)
             inner_writer.close()
 
 
@@ -122,6 +121,15 @@ async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> N
     while data := await reader.read(1 << 16):
         writer.write(data)
         await writer.drain()
+
+
+async def _speak(visitor: asyncio.StreamReader, inside: asyncio.StreamWriter) -> None:
+    """What the visitor says; then the server inside hears that it was all."""
+    try:
+        await _pump(visitor, inside)
+        inside.write_eof()
+    except OSError:
+        inside.close()
 
 
 def refusal() -> bytes:
