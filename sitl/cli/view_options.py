@@ -23,8 +23,6 @@ def add_view_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--view-port", type=port, default=0, metavar="PORT", help="of the page on this machine (default: a free one)"
     )
-
-
     parser.add_argument(
         "--view-address", metavar="HOST", help="offer the page to other machines: an address of this one, or 0.0.0.0"
     )
