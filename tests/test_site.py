@@ -20,6 +20,8 @@ ROOT = Path(__file__).parents[1]
 TUTORIALS = sorted(page for page in (ROOT / "docs/tutorials").glob("*.md") if page.stem != "index")
 BLOCK = re.compile(r"^```(\w+) ?(\S*)\n(.*?)^```$", re.M | re.S)
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+WALL = re.compile(r" in \d+\.\d+s\b.*")
+"""How long pytest says that it took."""
 
 
 def shell(folder: Path) -> dict[str, str]:
@@ -39,6 +41,7 @@ def shell(folder: Path) -> dict[str, str]:
 
 def agree(line: str, printed: str) -> bool:
     """The same words, and numbers that are near: processors differ in last bits, and flights with them."""
+    line, printed = WALL.sub("", line), WALL.sub("", printed)
     if NUMBER.sub("#", line.strip()) != NUMBER.sub("#", printed.strip()):
         return False
     return [float(n) for n in NUMBER.findall(printed)] == pytest.approx(
