@@ -64,7 +64,7 @@ RUDDER_DISABLED = 524288
 AHRS_TYPE = 1048576
 EKF_FAILSAFE = 2097152
 NO_OUTPUTS = 4194304
-WAYPOINT_SPEED = 8388608
+RECEIVERS = 8388608
 MODE_BY_RUDDER = 67108864
 NO_MISSION = 536870912
 EMERGENCY_STOP = 134217728
@@ -84,7 +84,6 @@ OBSTACLE_SHIFT = 44
 """Nine bits from here on: an obstacle is too near; its sector, and its distance [cm] in the upper six."""
 CALIBRATING_COMPASS, REBOOT_FOR_COMPASS, REBOOT_FOR_ACCELS = 1 << 53, 1 << 54, 1 << 55
 PARACHUTE_RELEASED = 1 << 60
-SECOND_GPS_FIX, GPS_DIFFER, GPS_BLENDING = 1 << 56, 1 << 57, 1 << 58
 ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 
 TEXTS = {
@@ -104,9 +103,7 @@ TEXTS = {
     ATTITUDE: "EKF attitude is bad",
     LEANING: "Leaning",
     GPS_FIX: "GPS 1: Bad fix",
-    SECOND_GPS_FIX: "GPS 2: Bad fix",
-    GPS_DIFFER: "GPS positions differ",
-    GPS_BLENDING: "GPS blending unhealthy",
+    RECEIVERS: "GPS 2: Bad fix",
     WAITING_FOR_HOME: "AHRS: waiting for home",
     NEED_POSITION: "Need Position Estimate",
     NEED_ALTITUDE: "Need Alt Estimate",
@@ -128,7 +125,6 @@ TEXTS = {
     AHRS_TYPE: "AHRS: not using configured AHRS type",
     EKF_FAILSAFE: "EKF failsafe",
     NO_OUTPUTS: "no motor, sail or scripting outputs defined",
-    WAYPOINT_SPEED: "WP_SPEED too low",
     MODE_BY_RUDDER: "Mode not rudder-armable",
     NO_MISSION: "Mode requires mission",
     EMERGENCY_STOP: "Motors Emergency Stopped",
@@ -238,19 +234,23 @@ def sensor_checks(time_us: int, sensors: Sensors, baro_us: int, attitude_ok: boo
 
 @law
 def receiver_checks(sensors: Sensors, params: Parameters) -> int:
-    """Failed checks of two GPS receivers; there is no blending of their fixes."""
+    """``RECEIVERS`` when two GPS receivers cannot be used together; there is no blending of their fixes."""
     if params.GPS2_TYPE == 0.0:
         return 0
-    failed = GPS_BLENDING if params.GPS_AUTO_SWITCH == gps_receivers.BLEND else 0
-    if not gps_receivers.has_fix(1, sensors):
-        return failed | SECOND_GPS_FIX
+    fits = params.GPS_AUTO_SWITCH != gps_receivers.BLEND and gps_receivers.has_fix(1, sensors)
     apart = gps_receivers.has_fix(0, sensors) and gps_receivers.distance(sensors) >= gps_receivers.DIFFERENCE
-    return failed | GPS_DIFFER if apart else failed
+    return RECEIVERS if apart or not fits else 0
 
 
-def differing_gps(sensors: Sensors) -> dict[int, str]:
-    """The text that tells how far the receivers' positions are from each other."""
-    return {GPS_DIFFER: f"GPS positions differ by {gps_receivers.distance(sensors):4.1f}m"}
+def receiver_texts(sensors: Sensors, params: Parameters) -> dict[int, str]:
+    """What is wrong with two receivers: the text of ``RECEIVERS``."""
+    if params.GPS_AUTO_SWITCH == gps_receivers.BLEND:
+        text = "GPS blending unhealthy"
+    elif not gps_receivers.has_fix(1, sensors):
+        text = "GPS 2: Bad fix"
+    else:
+        text = f"GPS positions differ by {gps_receivers.distance(sensors):4.1f}m"
+    return {RECEIVERS: text}
 
 
 @law

@@ -19,6 +19,7 @@ COMMANDS = {
     "exec": Listed("sitl.cli.execute", "run a script in simulated time against a vehicle of its own"),
     "demo": Listed("sitl.cli.demo", "run a MAVSDK example and draw what the vehicle did"),
     "mission": Listed("sitl.missions.cli", "fly mission files, and keep flights as tests"),
+    "view": Listed("sitl.missions.view", "show flights that were kept, on a page in the browser"),
     "train": Listed("sitl.agents.cli.train", "let an agent learn in an environment"),
     "evaluate": Listed("sitl.agents.cli.evaluate", "let what a run has learnt play, and count crashes and laps"),
     "watch": Listed("sitl.agents.cli.watch", "see what a run has learnt, in a window or as a film"),

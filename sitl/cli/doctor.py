@@ -31,6 +31,7 @@ SCRATCH_MB = 500
 EXTRAS = {
     "mavsdk": (("mavsdk",), "sitl demo, and scripts that use MAVSDK"),
     "viz": (("matplotlib", "pygame"), "pictures of flights and worlds, windows of environments"),
+    "view": (("viser",), "the page in the browser: sitl run --view, sitl view"),
     "report": (("matplotlib", "scipy"), "reports on learning"),
     "rl": (("stable_baselines3", "torch"), "sitl train with deep learning"),
     "onnx": (("onnx",), "sitl export to .onnx"),

@@ -11,15 +11,17 @@ from pathlib import Path
 from ..bridge.links import Link, TcpServerLink, UdpInLink, UdpOutLink, open_link
 from ..foreign.choice import choose
 from ..run import runner
-from ..run.pacing import Pacing, parse_speedup
+from ..run.pacing import StoppablePacing, parse_speedup
 from ..run.standstill import serve_lockstep
 from ..run.swarm import SwarmPacing, serve_swarm, serve_swarm_lockstep
-from ..simulation import Simulation
+from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import KINDS
+from ..view import library
 from . import foreign, recordings, swarm
 from .link_options import add_link_options, link_faults
 from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
 from .status import StatusLine
+from .view_options import add_view_options, shown, wants_view
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -31,6 +33,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")
     add_run_options(parser)
     foreign.add_autopilot_options(parser)
+    add_view_options(parser)
     recordings.add_from_option(parser)
     parser.set_defaults(function=run)
 
@@ -108,6 +111,10 @@ def run(options: argparse.Namespace) -> int:
     if choice is not None:
         return foreign.fly(options, choice)
     speedup = parse_speedup(options.speedup)
+    if wants_view(options):
+        if options.count > 1:
+            raise OptionError(f"--view shows one vehicle, --count is {options.count}")
+        library.require()  # before anything is compiled
     if options.count > 1:
         return run_swarm(options, speedup)
     simulation, _, _ = start(options)
@@ -116,9 +123,11 @@ def run(options: argparse.Namespace) -> int:
         signal.signal(number, lambda n, _: stopped.append(n))
     status = StatusLine(simulation, not options.quiet)
     until_us = simulation.time_us + int(options.duration * 1e6) if options.duration else None
-    serve = serve_lockstep if options.lockstep else partial(runner.serve, pace=Pacing(speedup))
+    pace = None if options.lockstep else StoppablePacing(speedup)
+    serve = serve_lockstep if pace is None else partial(runner.serve, pace=pace)
     try:
-        serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=status.refresh)
+        with shown(simulation, options, pace, status.refresh) as on_slice:
+            serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=on_slice)
         recordings.say_why(simulation, signal.Signals(stopped[0]).name if stopped else "--duration")
     finally:
         status.close()

@@ -18,6 +18,8 @@ _SLICE_WALL_S = 0.002
 _SHORTEST_US, _LONGEST_US = TICK_US, 20000
 _CATCH_UP_S = 0.05
 _QUIET_SLICE_WALL_S = 0.001
+_STOPPED_WALL_S = 0.02
+"""While time is stopped, clients and requests are looked at so often [s]."""
 _QUIET = 10
 """A slice is no longer than this part of the simulated time since clients said something."""
 
@@ -124,3 +126,39 @@ class Pacing:
         now = self._clock()
         self._due = max(self._due + self.slice_us * 1e-6 / self.speedup, now - _CATCH_UP_S)
         return max(0.0, self._due - now)
+
+
+class StoppablePacing(Pacing):
+    """Pacing that a user can stop, and let go on by steps. Clients are heard while time stands."""
+
+    is_stopped = False
+    """Whether time stands, but for steps."""
+    _step_us = 0
+    """Of the next slice, while time stands."""
+
+    def stop(self) -> None:
+        """Let time stand from now on."""
+        self.is_stopped, self.slice_us = True, 0
+
+    def go_on(self) -> None:
+        """Let time go on, as fast as before."""
+        self.is_stopped = False
+        self.set_speedup(self.speedup)
+
+    def step(self, us: int) -> None:
+        """Let a simulated time [us] go by, then stand."""
+        self.stop()
+        self._step_us = us
+
+    def set_speedup(self, speedup: float | None) -> None:
+        super().set_speedup(speedup)
+        if self.is_stopped:
+            self.slice_us = 0
+
+    def after_slice(self, simulation: Simulation) -> None:
+        if not self.is_stopped:
+            super().after_slice(simulation)
+            return
+        self.slice_us, self._step_us = self._step_us, 0
+        if self.slice_us == 0 and simulation.bridge.wait(_STOPPED_WALL_S):
+            simulation.bridge.receive()

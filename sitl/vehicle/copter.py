@@ -224,5 +224,6 @@ COPTER = Kind(
         "mavlink": "sitl.bridge.copter.profile:PROFILE",
         "logs": "sitl.logs.dataflash.copter:LOGS",
         "environments": "sitl.envs.robots.copter:ROBOT",
+        "view": "sitl.view.copter:VIEW",
     },
 )  # fmt: skip

@@ -189,5 +189,6 @@ ROVER = Kind(
         "mavlink": "sitl.bridge.rover.profile:PROFILE",
         "logs": "sitl.logs.dataflash.rover:LOGS",
         "environments": "sitl.envs.robots.rover:ROBOT",
+        "view": "sitl.view.rover:VIEW",
     },
 )

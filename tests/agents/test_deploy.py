@@ -46,7 +46,7 @@ def test_a_policy_flies_within_its_guard_and_hands_over_at_the_end(flown):
     assert options_of(policy, {"wait": 3.0}) == ({"wait": 3.0}, ["latency", "randomise"])
     simulation = hovering()
     began = position(simulation)
-    with RealVehicle(simulation) as vehicle:
+    with RealVehicle(simulation, waits=True) as vehicle:
         guard = {"radius": 4.0, "floor": 2.0, "ceiling": 8.0, "late": 60.0}
         url = f"udpout:127.0.0.1:{vehicle.port}"
         done = deploy(policy, url, episodes=2, guard=guard, wait=10.0)
@@ -94,7 +94,7 @@ def raises(error):
 def test_a_policy_that_raises_leaves_the_vehicle_in_a_safe_mode(flown, error):
     policy, simulation, out = learnt.load(flown), hovering(), Deployed()
     acting = policy._replace(policy=Acting(policy.policy, raises(error)))
-    with RealVehicle(simulation) as vehicle, pytest.raises(type(error)):
+    with RealVehicle(simulation, waits=True) as vehicle, pytest.raises(type(error)):
         deploy(acting, f"udpout:127.0.0.1:{vehicle.port}", wait=10.0, guard={"late": 60.0}, out=out)
     assert [deed.what for deed in out.deeds if deed.what != "limited"] == ["taken over", "handed over"]
     simulation.advance(5.0)
@@ -105,7 +105,7 @@ def test_actions_that_are_no_numbers_and_a_policy_that_thinks_too_long_end_it(fl
     policy = learnt.load(flown)
     simulation = hovering()
     acting = policy._replace(policy=Acting(policy.policy, lambda action: np.full_like(action, np.nan)))
-    with RealVehicle(simulation) as vehicle, pytest.raises(gym.error.InvalidAction):
+    with RealVehicle(simulation, waits=True) as vehicle, pytest.raises(gym.error.InvalidAction):
         deploy(acting, f"udpout:127.0.0.1:{vehicle.port}", wait=10.0, guard={"late": 60.0})
     assert mode(simulation) == BRAKE
     clock, simulation = Clock(), hovering()
@@ -116,7 +116,7 @@ def test_actions_that_are_no_numbers_and_a_policy_that_thinks_too_long_end_it(fl
         return action
 
     acting = policy._replace(policy=Acting(policy.policy, late))
-    with RealVehicle(simulation) as vehicle:
+    with RealVehicle(simulation, waits=True) as vehicle:
         done = deploy(acting, f"udpout:127.0.0.1:{vehicle.port}", wait=10.0, episodes=3)
     assert done.handed_over == "the agent is late: 1.50 s since its last step" and len(done.episodes) == 1
     assert mode(simulation) == BRAKE
@@ -129,7 +129,7 @@ def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     words = [sys.executable, "-m", "sitl", "deploy", str(flown), "--episodes", "1000", "--guard", "late=60",
              "--guard", "floor=2"]  # fmt: skip
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    with RealVehicle(simulation) as vehicle:
+    with RealVehicle(simulation, waits=True) as vehicle:
         words += ["--connection", f"udpout:127.0.0.1:{vehicle.port}"]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=paths) as process:
             while vehicle.count("SET_POSITION_TARGET_LOCAL_NED") < 20 and process.poll() is None:
@@ -146,7 +146,7 @@ def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
 
 def test_a_vehicle_without_a_lidar_flies_what_reads_none(flown):
     policy, simulation = learnt.load(flown), hovering()
-    with RealVehicle(simulation, unsent=("OBSTACLE_DISTANCE", "DEBUG_FLOAT_ARRAY")) as vehicle:
+    with RealVehicle(simulation, unsent=("OBSTACLE_DISTANCE", "DEBUG_FLOAT_ARRAY"), waits=True) as vehicle:
         url = f"udpout:127.0.0.1:{vehicle.port}"
         done = deploy(policy, url, guard={"late": 60.0}, wait=10.0)
         assert not done.handed_over and done.episodes[0].steps == 30
@@ -171,7 +171,7 @@ def test_a_copter_that_has_landed_flies_back_and_lands_again(flown):
 
 def test_the_command_says_what_happened(flown, capsys):
     simulation = hovering()
-    with RealVehicle(simulation) as vehicle:
+    with RealVehicle(simulation, waits=True) as vehicle:
         words = ["deploy", str(flown), "--connection", f"udpout:127.0.0.1:{vehicle.port}", "--max-steps", "5",
                  "--guard", "radius=5", "--guard", "hand_over=LOITER", "--guard", "late=60"]  # fmt: skip
         assert cli.main(words) == 0

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot import gps_receivers as receivers
-from sitl.autopilot.arming_checks import GPS_BLENDING, GPS_DIFFER, SECOND_GPS_FIX, differing_gps, receiver_checks
+from sitl.autopilot.arming_checks import RECEIVERS, receiver_checks, receiver_texts
 from sitl.autopilot.copter.parameters import TABLE, Parameters
 from sitl.core.border import Sensors
 
@@ -74,13 +74,15 @@ def test_a_silent_receiver_is_left() -> None:
 
 
 def test_checks_before_arming() -> None:
-    assert receiver_checks(sensors(second=1), params()) == SECOND_GPS_FIX
-    assert receiver_checks(sensors(second=1), params(GPS2_TYPE=0)) == 0
-    assert receiver_checks(sensors(), params()) == 0
-    assert receiver_checks(sensors(), params(GPS_AUTO_SWITCH=2)) == GPS_BLENDING
+    def said(s, p) -> str | None:
+        return receiver_texts(s, p)[RECEIVERS] if receiver_checks(s, p) == RECEIVERS else None
+
+    assert said(sensors(second=1), params()) == "GPS 2: Bad fix"
+    assert said(sensors(second=1), params(GPS2_TYPE=0)) is None
+    assert said(sensors(), params()) is None
+    assert said(sensors(), params(GPS_AUTO_SWITCH=2)) == "GPS blending unhealthy"
     s = sensors()
     s.gps2.gps_lat += 4000  # 44.5 m
-    assert receiver_checks(s, params()) == 0
+    assert said(s, params()) is None
     s.gps2.gps_alt += 30000
-    assert receiver_checks(s, params()) == GPS_DIFFER
-    assert differing_gps(s)[GPS_DIFFER] == "GPS positions differ by 53.7m"
+    assert said(s, params()) == "GPS positions differ by 53.7m"

@@ -42,6 +42,7 @@ def height(simulation: Simulation) -> float:
 
 
 _STEP_US = 20_000
+_SILENCE_US = 200_000
 
 
 class RealVehicle:
@@ -51,13 +52,20 @@ class RealVehicle:
         simulation: the vehicle as it is now, armed and in the air, say.
         hidden: whether its SIM_ parameters are kept from clients.
         unsent: messages that it does not send at an interval.
-        step_us: time from one look at the socket to the next [us]; looks take a millisecond of wall time, or more.
+        step_us: time from one look at the socket to the next [us]; a look takes a millisecond of wall time, or more.
+        waits: while its client is silent for longer than a step of an environment, time goes on no faster than the wall
+            clock, so that a client that flies is not late where the machine is busy.
     """
 
     def __init__(
-        self, simulation: Simulation, hidden: bool = True, unsent: tuple[str, ...] = (), step_us: int = _STEP_US
+        self,
+        simulation: Simulation,
+        hidden: bool = True,
+        unsent: tuple[str, ...] = (),
+        step_us: int = _STEP_US,
+        waits: bool = False,
     ) -> None:
-        self.simulation, self.hidden, self._step_us = simulation, hidden, step_us
+        self.simulation, self.hidden, self._step_us, self._waits = simulation, hidden, step_us, waits
         self._unsent = {message(name).id for name in unsent}
         self.received: list[tuple[str, Any]] = []
         """Name and fields of each message that came from the client."""
@@ -65,7 +73,6 @@ class RealVehicle:
         simulation.bridge.add_link(self._client.link)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", 0))
-        self._socket.settimeout(0.001)
         self.port = self._socket.getsockname()[1]
         self._stop, self._came = threading.Event(), threading.Event()
         self._refusals: list[bytes] = []
@@ -81,10 +88,13 @@ class RealVehicle:
         self._socket.close()
 
     def _serve(self) -> None:
-        peer = None
+        peer, heard_us = None, self.simulation.time_us
         while not self._stop.is_set():
+            is_silent = self._waits and self.simulation.time_us - heard_us > _SILENCE_US
+            self._socket.settimeout(self._step_us * 1e-6 if is_silent else 0.001)
             with contextlib.suppress(TimeoutError):
                 data, peer = self._socket.recvfrom(1 << 16)
+                heard_us = self.simulation.time_us
                 for frame in self._splitter.feed(data):
                     self._take(frame)
             self.simulation.advance_to(self.simulation.time_us + self._step_us)

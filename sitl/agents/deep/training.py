@@ -109,6 +109,7 @@ def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[An
     """See ``Algorithm``."""
     figures = settings_of(config.algorithm, config.settings)
     seen = Features(observations, figures.sectors)
+    Actions(actions, config.algorithm)
     if not (isinstance(figures, OffPolicy) and learns_by_goal(figures)):
         return
     episodes = figures.robots * config.max_steps
@@ -122,7 +123,6 @@ def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[An
             f"hindsight = {figures.hindsight}, frames = {figures.frames} in {config.env}: replay with other goals "
             "needs a goal-conditioned environment (docs/envs/) and frames = 1"
         )
-    Actions(actions, config.algorithm)
 
 
 def train(folder: RunFolder, watch: Watch) -> None:

@@ -116,5 +116,5 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
 
 def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
     """Status texts of failed checks, each after ``prefix``."""
-    own = {**TEXTS, **arming_checks.differing_gps(v.sensors)}
+    own = {**TEXTS, **arming_checks.receiver_texts(v.sensors, v.autopilot.params)}
     return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix, own)

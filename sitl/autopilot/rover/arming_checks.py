@@ -23,7 +23,6 @@ from ..arming_checks import (
     NO_OUTPUTS,
     NOT_INITIALISED,
     RUDDER_DISABLED,
-    WAYPOINT_SPEED,
     battery_checks,
     calibration_checks,
     proximity_checks,
@@ -44,6 +43,9 @@ from .modes.table import allows_arming, allows_arming_by_stick, requires_positio
 from .parameters import Parameters
 from .state import Vehicle
 
+WAYPOINT_SPEED = 1 << 17
+"""A bit that is another check of copters."""
+TEXTS = {WAYPOINT_SPEED: "WP_SPEED too low"}
 CALIBRATED = {ROLL: "Steer", THROTTLE: "Throttle"}
 """Sticks that must be calibrated: their names in status texts."""
 _ROLL_OFF, _THROTTLE_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[THROTTLE]

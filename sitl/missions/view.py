@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl view``: flights that were kept, on a page in the browser or in a file."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import threading
+from pathlib import Path
+
+from sitl.cli.options import port
+from sitl.cli.progress import CompileProgress
+from sitl.cli.view_options import open_browser
+from sitl.errors import OptionError
+from sitl.recording.entries import RecordingError
+from sitl.view import library
+from sitl.view.flight_page import FlightPage, Series
+from sitl.view.flights import Flight, of_track
+
+from .comparison import alignment, flight
+
+_CURVES = ("position", "cross_track")
+"""Differences that are drawn of two flights: at the same time, and from the other's way."""
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser("view")
+    parser.add_argument(
+        "flights", nargs="+", type=Path, metavar="FLIGHT", help=".tlog, .bin, recording or golden; several are aligned"
+    )
+    parser.add_argument(
+        "--align", choices=("auto", "AUTO", "armed", "start"), default="auto", help="the moment that they share"
+    )
+    parser.add_argument("--frame", metavar="NAME", help="airframe that is drawn (default: the usual one of its kind)")
+    parser.add_argument("--system", type=int, metavar="N", help="system id of the vehicle in a .tlog that has several")
+    parser.add_argument("--save", type=Path, metavar="FILE.html", help="write one file that opens from disk, and end")
+    parser.add_argument(
+        "--view-port", type=port, default=0, metavar="PORT", help="of the page on this machine (default: a free one)"
+    )
+    parser.set_defaults(function=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Show the flights until Ctrl-C, or write the file."""
+    library.require()
+    try:
+        with CompileProgress() as progress:
+            found = [flight.read(path, options.system, progress) for path in options.flights]
+    except RecordingError as error:
+        raise OptionError(str(error)) from None
+    flights, curves = together(found, options.align, options.frame)
+    page = FlightPage(flights, curves, options.view_port)
+    try:
+        if options.save is not None:
+            page.save(options.save)
+            print(f"page: {options.save}")
+            return 0
+        print(f"page: {page.address}", flush=True)
+        stopped = threading.Event()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda n, _: stopped.set())
+        open_browser(page.address)
+        stopped.wait()
+    finally:
+        page.close()
+    return 0
+
+
+def together(found: list[flight.Flight], align: str = "auto", frame: str | None = None) -> tuple[list[Flight], Series]:
+    """Flights with a common clock, and how far the second is from the first.
+
+    Args:
+        found: as they were read; the first is the one that others are aligned with.
+        align: what they have in common, as a tolerance has it.
+        frame: airframe that is drawn; None: the usual one.
+
+    Raises:
+        sitl.missions.comparison.alignment.AlignmentError: they have nothing in common.
+    """
+    names = [Path(each.name).stem for each in found]
+    if len(found) == 1:
+        if len(found[0].track) < 2:
+            raise OptionError(f"{found[0].name}: no samples: its estimator never had an origin")
+        return [of_track(names[0], found[0].track, frame)], {}
+    pairs = [alignment.pair(found[0].track, each.track, align, found[0].coarse or each.coarse) for each in found[1:]]
+    tracks = [pairs[0].golden, *(each.new for each in pairs)]
+    measured = flight_differences(pairs[0])
+    return [of_track(name, track, frame) for name, track in zip(names, tracks, strict=True)], measured
+
+
+def flight_differences(pair: alignment.Pair) -> Series:
+    """Curves of the distance of two flights."""
+    differences = flight.measure(pair)
+    return {f"{differences[name].title} [m]": (differences[name].t, differences[name].size) for name in _CURVES}

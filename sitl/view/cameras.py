@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where viewers look from: free, along with the vehicle, from its seat, from above.
+
+A camera that is moved thirty times a second cannot be turned by a mouse meanwhile, and browsers move it with a lag. So
+to follow a vehicle it is the *stage*, with everything on it, that is moved, such that the vehicle stays at the origin,
+and cameras are left to who looks.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import numpy as np
+
+from .axes import place, turn
+from .frame import Frame
+
+FREE, FOLLOW, FIRST_PERSON, TOP = "free", "follow", "first person", "top"
+VIEWS = (FREE, FOLLOW, FIRST_PERSON, TOP)
+_UP = (0.0, 0.0, 1.0)
+
+
+class Cameras:
+    """The view of a page, and the cameras of all browsers that have it open.
+
+    Args:
+        stage: node that everything is on.
+        size: of the vehicle [m].
+        view: one of VIEWS.
+    """
+
+    def __init__(self, stage: Any, size: float, view: str = FOLLOW) -> None:
+        self._stage, self._size = stage, size
+        self.view = view
+        self._ready: set[int] = set()
+
+    def choose(self, view: str) -> None:
+        """Look from there from now on; FREE: the stage and all cameras stay where they are."""
+        self.view = view
+        self._ready.clear()
+
+    def shift(self) -> tuple[float, float, float]:
+        """How far the stage is moved [m]."""
+        x, y, z = self._stage.position
+        return (float(x), float(y), float(z))
+
+    def show(self, clients: dict[int, Any], frame: Frame) -> None:
+        """Look at a moment."""
+        if self.view == FREE:
+            return
+        self._stage.position = -np.array(place(frame.pos))
+        for number, client in clients.items():
+            if self.view == FIRST_PERSON or number not in self._ready:
+                with contextlib.suppress(AssertionError, ValueError), client.atomic():  # it may not have a camera yet
+                    self._place(client.camera, frame)
+                    self._ready.add(number)
+        self._ready &= set(clients)
+
+    def _place(self, camera: Any, frame: Frame) -> None:
+        """Put a camera where this view begins."""
+        size = self._size
+        if self.view == FIRST_PERSON:
+            ahead, up = rotated(frame, (1.0, 0.0, 0.0)), rotated(frame, (0.0, 0.0, 1.0))
+            eye = size * (0.9 * ahead + 0.35 * up)
+            _put(camera, eye, eye + 5.0 * ahead, tuple(up))
+        elif self.view == TOP:
+            height = max(30.0 * size, 1.5 * place(frame.pos)[2])
+            _put(camera, np.array([-0.02 * height, 0.0, height]), np.zeros(3), _UP)
+        else:
+            _put(camera, size * np.array([-2.6, 1.3, 1.3]), np.zeros(3), _UP)
+
+
+def rotated(frame: Frame, axis: tuple[float, float, float]) -> Any:
+    """An axis of the vehicle (forward, left, up) in the scene."""
+    w, x, y, z = turn(frame.q)
+    v, u = np.array(axis), np.array([x, y, z])
+    return v + 2.0 * np.cross(u, np.cross(u, v) + w * v)
+
+
+def _put(camera: Any, eye: Any, look_at: Any, up: tuple[float, float, float]) -> None:
+    camera.up_direction = up
+    camera.position = eye
+    camera.look_at = look_at

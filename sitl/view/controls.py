@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page's controls: what a pilot's ground station has, time, wind and faults, and parameters by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from html import escape
+from typing import Any
+
+from ..autopilot.params.parameter import Parameter
+from ..run.pacing import MAX, StoppablePacing
+from ..simulation import Simulation
+from .frame import Stage
+from .pilot import Pilot
+
+SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5", "10", "50", "200", MAX)
+_STEP_S = 0.1
+_WIND = (
+    ("SIM_WIND_SPD", "Wind [m/s]", 25.0), ("SIM_WIND_DIR", "From [deg]", 360.0), ("SIM_WIND_TURB", "Gusts [m/s]", 10.0),
+)  # fmt: skip
+_OFFERED = 60
+"""Parameters in the list that a search gives."""
+
+Shift = Callable[[], Sequence[float]]
+Ask = Callable[[Callable[[], None], Any], None]
+"""Lets something be done where the vehicle is, for the event of a click."""
+
+
+class Controls:
+    """The widgets, and what they ask for.
+
+    Args:
+        gui: of the page.
+        scene: of viser, in which clicks mean places.
+        ask: lets something be done where the vehicle is.
+        pilot: does it.
+        stage: what is shown.
+        pace: of the run; None: its time cannot be stopped here.
+        shift: how far the stage is moved (``cameras``) [m].
+    """
+
+    def __init__(
+        self, gui: Any, scene: Any, ask: Ask, pilot: Pilot, stage: Stage, pace: StoppablePacing | None, shift: Shift
+    ) -> None:
+        self._ask, self._pilot, self._shift = ask, pilot, shift
+        with gui.add_folder("Pilot"):
+            self._add_pilot(gui, stage)
+        if pace is not None:
+            with gui.add_folder("Time"):
+                self._add_time(gui, pace)
+        scene.on_click()(self._clicked)
+
+    def _button(self, gui: Any, label: str, act: Callable[[], None], hint: str = "") -> Any:
+        button = gui.add_button(label, hint=hint or None)
+        button.on_click(lambda event: self._ask(act, event))
+        return button
+
+    def _add_pilot(self, gui: Any, stage: Stage) -> None:
+        pilot = self._pilot
+        self.arm = self._button(gui, "Arm", pilot.arm)
+        self.disarm = self._button(gui, "Disarm", pilot.disarm)
+        if stage.flies:
+            self.height = gui.add_number("Height", 10.0, min=0.5, max=500.0, step=0.5, hint="above home [m]")
+            self.take_off = self._button(gui, "Take off", lambda: pilot.take_off(float(self.height.value)))
+        self.mode = gui.add_dropdown("Mode", stage.modes, initial_value=stage.modes[0])
+        self.set_mode = self._button(gui, "Set mode", lambda: pilot.set_mode(self.mode.value))
+        self.clicks = gui.add_checkbox("Click on the ground to go there", True, hint="GUIDED, at the present height")
+
+    def _add_time(self, gui: Any, pace: StoppablePacing) -> None:
+        now = "1" if pace.speedup == 1.0 else MAX if pace.speedup is None else f"{pace.speedup:g}"
+        speeds = SPEEDS if now in SPEEDS else (now, *SPEEDS)
+        self.speed = gui.add_dropdown("Speed", speeds, initial_value=now, hint="simulated seconds a second")
+
+        def set_speed(event: Any) -> None:
+            text = event.target.value
+            self._ask(lambda: pace.set_speedup(None if text == MAX else float(text)), event)
+
+        self.speed.on_update(set_speed)
+        self.pause = self._button(gui, "Stop time", pace.stop)
+        self.go_on = self._button(gui, "Go on", pace.go_on)
+        self.step_s = gui.add_number("Step", _STEP_S, min=0.0025, max=60.0, step=0.0025, hint="[s]")
+        self.step = self._button(gui, "One step", lambda: pace.step(round(float(self.step_s.value) * 1e6)))
+        self.keep = self._button(gui, "Keep this moment", self._pilot.keep)
+        self.go_back = self._button(gui, "Back to it", self._pilot.go_back)
+
+    def _clicked(self, event: Any) -> None:
+        if not self.clicks.value:
+            return
+        origin = [at - moved for at, moved in zip(event.ray_origin, self._shift(), strict=True)]
+        place = on_ground(origin, event.ray_direction)
+        if place is not None:
+            self._ask(lambda: self._pilot.go_to(*place), event)
+
+
+class ParameterControls:
+    """Parameters, searched by part of their name or meaning; wind and faults, which are some of them.
+
+    Args:
+        gui: of the page.
+        simulation: whose table it is; values are read where the vehicle is.
+        ask, pilot: as of ``Controls``.
+        may_set: False: they are only shown.
+    """
+
+    def __init__(self, gui: Any, simulation: Simulation, ask: Ask, pilot: Pilot, may_set: bool) -> None:
+        self._simulation, self._ask, self._pilot = simulation, ask, pilot
+        self._table = simulation.firmware.table
+        self.search = gui.add_text("Search", "", hint="part of a name or of a meaning")
+        self.choice = gui.add_dropdown("Parameter", ("-",))
+        self.about = gui.add_html("")
+        self.value = gui.add_number("Value", 0.0, step=0.0001, disabled=not may_set)
+        self.search.on_update(lambda event: self._offer())
+        self.choice.on_update(lambda event: self._ask(self._read, event))
+        if may_set:
+            self.set = gui.add_button("Set it")
+            self.set.on_click(lambda event: self._ask(self._set, event))
+
+    def _offer(self) -> None:
+        self.choice.options = tuple(p.name for p in found(tuple(self._table), self.search.value)) or ("-",)
+
+    def _read(self) -> None:
+        name = self.choice.value
+        if name in self._table:
+            parameter, value = self._table[name], float(self._simulation.parameters[name])
+            self.value.value = value
+            self.about.content = describe(parameter, value)
+
+    def _set(self) -> None:
+        self._pilot.set_parameter(self.choice.value, float(self.value.value))
+
+
+class Weather:
+    """Wind, and what fails."""
+
+    def __init__(self, gui: Any, simulation: Simulation, ask: Ask, pilot: Pilot) -> None:
+        self.sliders = {}
+        for name, label, high in _WIND:
+            now = min(float(simulation.parameters[name]), high)
+            slider = gui.add_slider(label, min=0.0, max=high, step=0.1, initial_value=now, hint=name)
+            slider.on_update(_setter(ask, pilot, name))
+            self.sliders[name] = slider
+        self.fault = gui.add_text("Fault", "gps", hint="UNIT[/TYPE][:N][=AMOUNT][@FROM[..TO]], docs/faults.md")
+        self.fail = gui.add_button("Let it fail")
+        self.fail.on_click(lambda event: ask(lambda: pilot.fail(self.fault.value), event))
+        self.repair = gui.add_button("Repair all")
+        self.repair.on_click(lambda event: ask(pilot.repair, event))
+
+
+def _setter(ask: Ask, pilot: Pilot, name: str) -> Callable[[Any], None]:
+    def set_it(event: Any) -> None:
+        value = float(event.target.value)
+        ask(lambda: pilot.set_parameter(name, value), event)
+
+    return set_it
+
+
+def on_ground(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
+    """North, east [m] where a ray of the scene meets the ground; None: it goes to the sky."""
+    if direction[2] >= -1e-6 or origin[2] <= 0.0:
+        return None
+    share = -origin[2] / direction[2]
+    return (float(origin[0] + share * direction[0]), -float(origin[1] + share * direction[1]))
+
+
+def found(parameters: Sequence[Parameter], text: str) -> list[Parameter]:
+    """Parameters that have all words of a search in name or meaning; those whose name begins with it come first."""
+    words = text.strip().lower().split()
+    if not words:
+        return []
+    hits = [p for p in parameters if all(word in f"{p.name} {p.doc}".lower() for word in words)]
+    first = words[0]
+    hits.sort(key=lambda p: (not p.name.lower().startswith(first), first not in p.name.lower(), not p.has_effect))
+    return hits[:_OFFERED]
+
+
+def describe(p: Parameter, value: float) -> str:
+    """A parameter's meaning, range, default and value as HTML."""
+    unit = f" {p.unit}" if p.unit else ""
+    limits = f"{p.low:g} .. {p.high:g}{unit}" if p.low > -1e9 or p.high < 1e9 else "any number"
+    effect = "" if p.has_effect or p.doc else "<div>It has no effect here.</div>"
+    return (
+        f'<div style="font-size:0.8em;padding:0 0.6em"><b>{escape(p.name)}</b> = {value:g}{escape(unit)}'
+        f"<div>{escape(p.doc)}</div>"
+        f'<div style="color:#888">range {escape(limits)}, default {p.default:g}</div>{effect}</div>'
+    )

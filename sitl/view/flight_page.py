@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of flights that were kept, one or several: a time bar, events to jump to, modes as a band, plots."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from html import escape
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import SitlError
+from ..run.playback import Player
+from . import horizon, library
+from .cameras import FREE, VIEWS, Cameras
+from .colours import css, of_ends, of_mode
+from .flights import Flight, Floats
+from .page import LOCAL, free_port
+from .scene import surroundings
+from .scene.vehicle import VehicleNodes
+
+COLOURS = ((46, 134, 222), (230, 126, 34), (39, 174, 96), (192, 57, 43), (142, 68, 173), (22, 160, 133))
+SPEEDS = ("0.1", "0.5", "1", "2", "5", "10", "50")
+_PLOTTED = (("height [m]", "down", -1.0), ("north [m]", "north", 1.0), ("east [m]", "east", 1.0))
+_SAVED_FRAMES = 1200
+"""Of a saved page, at most."""
+_SAVED_RATE = 10.0
+"""Frames a second of a saved page while that is few enough."""
+Series = Mapping[str, tuple[Floats, Floats]]
+
+
+class FlightScene:
+    """Flights in the scene: the whole way of each, and where it is at a moment."""
+
+    def __init__(self, server: Any, flights: Sequence[Flight]) -> None:
+        scene = server.scene
+        scene.set_up_direction("+z")
+        self.stage = scene.add_frame("/stage", show_axes=False)
+        """All of it (``cameras``)."""
+        scene.configure_default_lights(cast_shadow=True)
+        surroundings.draw(scene, None)
+        self.vehicles, self._labels = [], []
+        size = flights[0].shape.size
+        for k, flight in enumerate(flights):
+            name, places = f"/stage/flights/{k}", flight.places().astype(np.float32)
+            self.vehicles.append(VehicleNodes(scene, f"{name}/vehicle", flight.shape))
+            colours: Any = COLOURS[k % len(COLOURS)]
+            if len(flights) == 1:
+                each = of_ends([of_mode(flight.mode(t)) for t in flight.track.t])
+                colours = np.stack([each[:-1], each[:-1]], axis=1)
+            lines = np.stack([places[:-1], places[1:]], axis=1)
+            scene.add_line_segments(f"{name}/way", lines, colours, thickness=2.5, thickness_units="screen")
+            label = scene.add_label(f"{name}/label", flight.name, anchor="bottom-center", font_screen_scale=0.8)
+            self._labels.append(label)
+            for at, seq in flight.track.items if k == 0 else ():  # others' are in the same places, or in the list
+                here = [np.interp(at, flight.track.t, places[:, axis]) for axis in range(3)]
+                scene.add_icosphere(f"{name}/item{seq}", radius=0.12 * size, color=(240, 150, 20), position=here)
+                scene.add_label(f"{name}/item{seq}/label", f"item {seq}", font_screen_scale=0.7)
+        none = np.zeros((0, 2, 3), np.float32)
+        self._gap = scene.add_line_segments(
+            "/stage/flights/gap", none, (192, 57, 43), thickness=2.0, thickness_units="screen"
+        )
+        self._flights, self._size = flights, size
+
+    def show(self, time: float) -> list[Any]:
+        """Draw a moment [s]; gives the frames of it."""
+        frames = [flight.frame(min(time, flight.length)) for flight in self._flights]
+        for flight, nodes, label, frame in zip(self._flights, self.vehicles, self._labels, frames, strict=True):
+            nodes.show(frame)
+            x, y, z = nodes.body.position
+            label.position = (x, y, z + 0.8 * self._size)
+            label.text = f"{flight.name}  {time:.1f} s  {frame.mode}"
+        if len(frames) > 1:
+            places = [nodes.body.position for nodes in self.vehicles[:2]]
+            self._gap.points = np.array([places], np.float32)
+        return frames
+
+
+class FlightPage:
+    """A page of one or more flights with a common clock.
+
+    Args:
+        flights: the first is the one that others are compared with.
+        differences: curves besides: name -> (times [s], values).
+        port: on this machine; 0: a free one.
+
+    Raises:
+        MissingExtra: the library that draws it is not installed.
+        sitl.view.page.PageAddressError: the port is taken.
+    """
+
+    def __init__(self, flights: Sequence[Flight], differences: Series | None = None, port: int = 0) -> None:
+        library.require()
+        self.flights = flights
+        title = flights[0].name if len(flights) == 1 else f"{len(flights)} flights"
+        self.server = library.serve(LOCAL, free_port(port), title)
+        self.address = f"http://{LOCAL}:{self.server.get_port()}"
+        self.scene = FlightScene(self.server, flights)
+        self.cameras = Cameras(self.scene.stage, flights[0].shape.size, FREE)
+        self._look_at_all()
+        self.length = max(flight.length for flight in flights)
+        self.events = [(event.time, f"{flight.name}: {event.text}" if len(flights) > 1 else event.text)
+                       for flight in flights for event in flight.events()]  # fmt: skip
+        self.events.sort()
+        self.frames: list[Any] = []
+        """What is shown, of each flight."""
+        self._add_widgets(differences or {})
+        self._moves_bar = False
+        self.player = Player(self.length, self._show)
+        self.player.go_to(0.0)
+
+    def _look_at_all(self) -> None:
+        """Browsers begin with a view of the whole way."""
+        places = self.flights[0].places()
+        low, high = places.min(axis=0), places.max(axis=0)
+        middle, far = 0.5 * (low + high), float((high - low).max()) + 4.0 * self.flights[0].shape.size
+        camera = self.server.initial_camera
+        camera.position = tuple(middle + far * np.array([-0.7, 0.5, 0.5]))
+        camera.look_at = tuple(middle)
+
+    def _add_widgets(self, differences: Series) -> None:
+        gui = self.server.gui
+        gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
+        gui.main_panel.dock_right()
+        self.bar = gui.add_slider("Time [s]", min=0.0, max=max(self.length, 0.1), step=0.05, initial_value=0.0)
+        self._band = gui.add_html(band(self.flights, self.length))
+        self.play = gui.add_button("Play")
+        self.stop = gui.add_button("Stop")
+        self.speed = gui.add_dropdown("Speed", SPEEDS, initial_value="1")
+        names = tuple(f"{t:.1f} s  {text}" for t, text in self.events) or ("none",)
+        self.event = gui.add_dropdown("Jump to", names, initial_value=names[0])
+        view = gui.add_dropdown("Camera", VIEWS, initial_value=self.cameras.view)
+        self._state = gui.add_html("")
+        self._add_plots(gui, differences)
+        self.bar.on_update(self._bar_moved)
+        self.play.on_click(lambda event: self.player.play())
+        self.stop.on_click(lambda event: self.player.stop())
+        self.speed.on_update(lambda event: setattr(self.player, "speed", float(event.target.value)))
+        self.event.on_update(lambda event: self.jump(names.index(event.target.value)))
+        view.on_update(lambda event: self._look(event.target.value))
+
+    def _add_plots(self, gui: Any, differences: Series) -> None:
+        for title, column, sign in _PLOTTED:
+            t = self.flights[0].track.t
+            rows = [sign * np.interp(t, each.track.t, each.track[column], right=np.nan) for each in self.flights]
+            series = [{"label": each.name, "stroke": css(COLOURS[k % len(COLOURS)]), "width": 1.5}
+                      for k, each in enumerate(self.flights)]  # fmt: skip
+            self._plot(gui, title, (t, *rows), series)
+        for name, (t, values) in differences.items():
+            self._plot(gui, name, (t, values), [{"label": name, "stroke": "#c0392b", "width": 1.5}])
+
+    @staticmethod
+    def _plot(gui: Any, title: str, data: tuple[Floats, ...], series: list[dict[str, Any]]) -> None:
+        scales = {"x": {"time": False, "auto": True}, "y": {"auto": True}}
+        gui.add_uplot(data, series=({"label": "t"}, *series), scales=scales, title=title, height=150)
+
+    def _bar_moved(self, event: Any) -> None:
+        if not self._moves_bar:
+            self.player.go_to(float(self.bar.value))
+
+    def _look(self, view: str) -> None:
+        self.cameras.choose(view)
+        if self.frames:
+            self.cameras.show(self.server.get_clients(), self.frames[0])
+
+    def jump(self, number: int) -> None:
+        """Go to an event by its number in ``events``."""
+        if self.events:
+            self.player.go_to(self.events[number][0])
+
+    def _show(self, time: float) -> None:
+        with self.server.atomic():
+            self.frames = self.scene.show(time)
+        self._state.content = state(self.flights, self.frames, time)
+        if abs(self.bar.value - time) > 0.025:
+            self._moves_bar = True
+            self.bar.value = round(time, 2)
+            self._moves_bar = False
+        self.cameras.show(self.server.get_clients(), self.frames[0])
+
+    def save(self, path: Path) -> None:
+        """Write the scene and its course as one file that a browser opens from disk: no server, no network.
+
+        Raises:
+            SitlError: the file cannot be written.
+        """
+        step = max(1.0 / _SAVED_RATE, self.length / _SAVED_FRAMES)
+        self.scene.show(0.0)
+        serializer = self.server.get_scene_serializer()
+        for time in np.arange(step, self.length, step):
+            serializer.insert_sleep(step)
+            self.scene.show(float(time))
+        text = serializer.as_html()
+        try:
+            path.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise SitlError(f"page {str(path)!r} cannot be written: {error.strerror or error}") from None
+
+    def close(self) -> None:
+        """Close the page."""
+        self.player.close()
+        library.stop(self.server)
+
+
+def band(flights: Sequence[Flight], length: float) -> str:
+    """Modes over time as coloured bars, a row a flight, with marks where items were reached."""
+    rows = []
+    for k, flight in enumerate(flights):
+        modes = [*flight.track.modes, (flight.length, "")]
+        for (begin, mode), (end, _) in pairwise(modes):
+            x, w = 100.0 * max(begin, 0.0) / length, 100.0 * (min(end, length) - max(begin, 0.0)) / length
+            if w > 0.0:
+                rows.append(
+                    f'<rect x="{x:.2f}%" y="{14 * k}" width="{w:.2f}%" height="12" fill="{css(of_mode(mode))}">'
+                    f"<title>{escape(flight.name)}: {escape(mode)} from {begin:.1f} s</title></rect>"
+                )
+        rows += [
+            f'<rect x="{100.0 * t / length:.2f}%" y="{14 * k}" width="1.5" height="12" fill="#fff"/>'
+            for t, _ in flight.track.items
+        ]
+    used = sorted({mode for flight in flights for _, mode in flight.track.modes})
+    spans = (f'<span style="color:{css(of_mode(m))};margin-right:0.8em">&#9632; {escape(m)}</span>' for m in used)
+    legend = "".join(spans)
+    return (
+        f'<div style="padding:0 0.6em"><svg width="100%" height="{14 * len(flights)}">{"".join(rows)}</svg>'
+        f'<div style="font-size:0.75em">{legend}</div></div>'
+    )
+
+
+def state(flights: Sequence[Flight], frames: Sequence[Any], time: float) -> str:
+    """The flights at a moment, as HTML."""
+    rows = []
+    for k, (flight, frame) in enumerate(zip(flights, frames, strict=True)):
+        speed = math.hypot(frame.vel.x, frame.vel.y)
+        colour = css(COLOURS[k % len(COLOURS)]) if len(flights) > 1 else css(of_mode(frame.mode))
+        rows.append(
+            f'<tr><td style="color:{colour}">&#9632; {escape(flight.name)}</td><td>{escape(frame.mode)}</td>'
+            f"<td>{'armed' if frame.armed else 'disarmed'}</td><td>{-frame.pos.z:.1f} m</td>"
+            f"<td>{speed:.1f} m/s</td></tr>"
+        )
+    gap = ""
+    if len(frames) > 1:
+        gap = f"<div>{math.dist(frames[0].pos, frames[1].pos):.2f} m apart at {time:.1f} s</div>"
+    return (
+        f'<div style="padding:0 0.6em;font-size:0.8em"><table style="width:100%">{"".join(rows)}</table>{gap}'
+        f"{horizon.draw(frames[0])}</div>"
+    )

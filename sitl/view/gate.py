@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A way to the page from other machines: a door that asks each connection for a token, before the page's own server.
+
+The server itself stays on 127.0.0.1 and knows nobody. Who opens the address with ``?token=...`` gets it as a cookie
+that no other site's page can use (SameSite=Strict); connections that show it are passed on byte by byte, all others are
+turned away. There is no encryption: on a network that is not trusted, tunnel it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import threading
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qs, urlsplit
+
+from ..errors import SitlError
+
+COOKIE = "sitl_view"
+LEAST = 8
+"""Characters of a token."""
+_HEAD_BYTES = 1 << 14
+_HEAD_S = 10.0
+"""Wall time that a connection has to say what it wants [s]."""
+
+
+class GateError(SitlError, ValueError):
+    """An address that the page cannot be offered at, or a token that is none."""
+
+
+class Gate:
+    """Listens at an address of this machine.
+
+    Args:
+        host: of an interface; "0.0.0.0" for all.
+        port: 0 takes a free one.
+        token: what a visitor must know.
+        target: port of the page on 127.0.0.1.
+
+    Raises:
+        GateError: the token is too short, or the address cannot be had.
+    """
+
+    def __init__(self, host: str, port: int, token: str, target: int) -> None:
+        if len(token) < LEAST or not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
+            raise GateError(f"--view-token: {LEAST} characters or more are needed, of letters, digits, - and _")
+        self._token, self._target = token, target
+        self._loop = asyncio.new_event_loop()
+        try:
+            self._server = self._loop.run_until_complete(asyncio.start_server(self._visit, host, port))
+        except OSError as error:
+            self._loop.close()
+            raise GateError(f"--view-address {host}:{port} cannot be had: {error.strerror or error}") from None
+        self.port = int(self._server.sockets[0].getsockname()[1])
+        self.address = f"http://{host}:{self.port}/?token={token}"
+        """What visitors open."""
+        self._thread = threading.Thread(target=self._loop.run_forever, name="sitl-view-gate", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Let nobody in any more, and end all visits."""
+        asyncio.run_coroutine_threadsafe(self._shut(), self._loop).result(timeout=5.0)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(timeout=5.0)
+        self._loop.close()
+
+    async def _shut(self) -> None:
+        self._server.close()
+        visits = [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
+        for task in visits:
+            task.cancel()
+        await asyncio.gather(*visits, return_exceptions=True)
+
+    async def _visit(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        try:
+            head = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), _HEAD_S)
+            answer = self.judge(head) if len(head) <= _HEAD_BYTES else refusal()
+            if answer is None:
+                await self._pass_on(head, reader, writer)
+            else:
+                writer.write(answer)
+                await writer.drain()
+        except (OSError, TimeoutError, asyncio.IncompleteReadError, asyncio.LimitOverrunError):
+            pass  # it left, or never said anything
+        finally:
+            writer.close()
+
+    def judge(self, head: bytes) -> bytes | None:
+        """What to answer to the head of a request; None: let it pass."""
+        lines = head.decode("latin-1").split("\r\n")
+        words = lines[0].split(" ")
+        if len(words) != 3:
+            return refusal()
+        url = urlsplit(words[1])
+        if self._is_right(*parse_qs(url.query).get("token", [""])):
+            cookie = f"{COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/"
+            return _answer("303 See Other", "", f"Location: {url.path or '/'}\r\nSet-Cookie: {cookie}\r\n")
+        shown = [line.partition(":")[2].strip() for line in lines[1:] if line.lower().startswith("cookie:")]
+        try:
+            cookies = SimpleCookie("; ".join(shown))
+        except CookieError:
+            return refusal()
+        return None if COOKIE in cookies and self._is_right(cookies[COOKIE].value) else refusal()
+
+    def _is_right(self, token: str, *more: str) -> bool:
+        return not more and hmac.compare_digest(token.encode(), self._token.encode())
+
+    async def _pass_on(self, head: bytes, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        inner_reader, inner_writer = await asyncio.open_connection("127.0.0.1", self._target)
+        inner_writer.write(head)
+        inward = asyncio.create_task(_speak(reader, inner_writer))
+        try:
+            await _pump(inner_reader, writer)  # the server inside ends it, also when the visitor has said all
+        finally:
+            inward.cancel()
+            await asyncio.gather(inward, return_exceptions=True)
+            inner_writer.close()
+
+
+async def _pump(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    while data := await reader.read(1 << 16):
+        writer.write(data)
+        await writer.drain()
+
+
+async def _speak(visitor: asyncio.StreamReader, inside: asyncio.StreamWriter) -> None:
+    """What the visitor says; then the server inside hears that it was all."""
+    try:
+        await _pump(visitor, inside)
+        inside.write_eof()
+    except OSError:
+        inside.close()
+
+
+def refusal() -> bytes:
+    """To who has no token."""
+    return _answer("403 Forbidden", "This page needs the token that sitl run --view-token was given: /?token=...\n")
+
+
+def _answer(status: str, text: str, headers: str = "") -> bytes:
+    return (
+        f"HTTP/1.1 {status}\r\n{headers}Content-Type: text/plain\r\nContent-Length: {len(text)}\r\n"
+        f"Connection: close\r\n\r\n{text}"
+    ).encode()

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames of a simulation in this process, from copies of its record: it is never waited for, and nothing in it changes.
+
+``capture`` is called between two advances and copies bytes; ``frame`` makes sense of them, in the page's thread.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..autopilot import rally
+from ..autopilot.fence.state import CIRCLE, CIRCLE_IN, CIRCLE_OUT
+from ..autopilot.mission.mission import Mission
+from ..autopilot.mission.place import point
+from ..autopilot.modes import shown
+from ..client.commands import command_name
+from ..core.geodesy import offset_ne
+from ..core.vectors import Vec3
+from ..simulation import Simulation
+from . import kind
+from .frame import Frame, Mark, Plan, Points, Stage, Text
+from .signals import Signals
+
+_CORNERS = 48
+"""Of the outline of a circle."""
+_NAV_LAST = 95
+"""MAV_CMD_NAV_LAST: commands from here on are not flown to."""
+_FENCES = ("greatest height", "circle", "areas", "least height")
+_GLITCH = "GPS glitch"
+
+
+class Captured(NamedTuple):
+    """A moment of a simulation."""
+
+    time_us: int
+    record: bytes
+    mission: Mission
+    texts: tuple[Text, ...]
+
+
+class LiveSource:
+    """A simulation as the page sees it. It listens to what the vehicle says to its pilot until it is closed."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._fleet = simulation.kind.record.fleet(1)
+        self._bytes = self._fleet.view("u1")
+        self._v = simulation.kind.record.of(self._fleet, 0)
+        self._view = kind.of(simulation.kind)
+        self._names = simulation.firmware.mode_names
+        self._texts: list[Text] = []
+        self._scan: tuple[int, Points | None] = (-1, None)
+        self._plan: tuple[object, Plan] = (None, Plan())
+        self._signals: Signals | None = None
+        self._read = dict[str, float]
+        self.stage = Stage(
+            simulation.airframe.name,
+            self._view.shape(simulation.v.physics.airframe),
+            simulation.world,
+            tuple(self._names[number] for number in sorted(self._names)),
+            simulation.kind.flies,
+        )
+        simulation.bridge.listeners.append(self)
+
+    def said(self, severity: int, text: str) -> None:
+        """The vehicle says a text (``sitl.bridge.bridge.Bridge.listeners``)."""
+        self._texts.append(Text(self._simulation.time_us, severity, text))
+
+    def reached(self, seq: int) -> None:
+        """A mission's item is reached: frames show it."""
+
+    def parameter_set(self, name: str) -> None:
+        """A parameter was set: whoever wants to see it asks for it."""
+
+    def close(self) -> None:
+        """Listen no longer."""
+        listeners = self._simulation.bridge.listeners
+        listeners[:] = [each for each in listeners if each is not self]
+
+    # ------------------------------------------------------------------ where the vehicle is
+
+    def capture(self) -> Captured:
+        """The vehicle as it is now."""
+        simulation = self._simulation
+        texts, self._texts = tuple(self._texts), []
+        record = simulation.fleet[simulation.index : simulation.index + 1].tobytes()
+        return Captured(simulation.time_us, record, simulation.mission, texts)
+
+    # ------------------------------------------------------------------ where the page is
+
+    def signal_names(self) -> list[str]:
+        """What can be plotted."""
+        return self._find_signals().names
+
+    def choose_signals(self, names: tuple[str, ...]) -> None:
+        """Frames have these signals from now on.
+
+        Raises:
+            sitl.view.signals.SignalError: there is no such signal; those before stay.
+        """
+        self._read = self._find_signals().reader(names)  # type: ignore[assignment]
+
+    def _find_signals(self) -> Signals:
+        if self._signals is None:
+            self._signals = Signals(self._simulation.kind, self._fleet, self._v)
+        return self._signals
+
+    def frame(self, captured: Captured) -> Frame:
+        """What the page shows of a moment."""
+        self._bytes[:] = np.frombuffer(captured.record, np.uint8)
+        v = self._v
+        ap, body, gps = v.autopilot, v.physics.body, v.sensors
+        estimate, modes, battery = ap.estimate, ap.modes, ap.battery
+        offset = self._origin()
+        is_placed = estimate.position_ok or estimate.origin_set
+        target = self._view.set_point(v) if ap.arming.armed else None
+        leg = modes.nav.current
+        is_on_leg = ap.arming.armed and leg.segments > 0 and v.time_us - modes.nav.active_us < 100_000
+        rotors, steering, rolled = self._view.motion(v)
+        return Frame(
+            time_us=captured.time_us,
+            pos=body.pos, q=body.q, vel=body.vel,
+            estimate_pos=estimate.pos + offset if is_placed else None,
+            estimate_q=estimate.q if estimate.attitude_ok else None,
+            set_point=None if target is None else target + offset,
+            leg=(leg.origin + offset, leg.origin + leg.unit * leg.length + offset) if is_on_leg else None,
+            home=ap.home.pos + offset if ap.home.is_set else None,
+            mode=self._names.get(int(shown(modes)), "?"), armed=bool(ap.arming.armed), ready=bool(ap.arming.prearm_ok),
+            voltage=battery.voltage, current=battery.current, charge_left=battery.remaining_pct,
+            satellites=int(gps.gps_satellites), fix=int(gps.gps_fix),
+            failsafes=self._failsafes(), mission_current=int(modes.nav.mission_current),
+            rotors=rotors, steering=steering, rolled=rolled,
+            scan=self._scanned(), wind=v.physics.wind.vel,
+            plan=self._planned(captured.mission, offset), texts=captured.texts,
+            signals=self._read(),
+        )  # fmt: skip
+
+    def _origin(self) -> Vec3:
+        """The estimator's origin in the scene [m]."""
+        estimate, place = self._v.autopilot.estimate, self._v.physics.place
+        if not estimate.origin_set:
+            return Vec3(0.0, 0.0, 0.0)
+        flat = offset_ne(place.lat, place.lon, estimate.origin_lat, estimate.origin_lon)
+        return Vec3(flat.x, flat.y, place.alt - estimate.origin_alt)
+
+    def _failsafes(self) -> tuple[str, ...]:
+        ap = self._v.autopilot
+        f = ap.modes.failsafe
+        found = [name for name, on in (("radio", f.radio), ("GCS", f.gcs), ("EKF", f.ekf), (_GLITCH, f.glitch)) if on]
+        if f.battery:
+            found.append("battery critical" if f.battery > 1 else "battery low")
+        found += [f"fence: {name}" for k, name in enumerate(_FENCES) if int(ap.fence.breached) >> k & 1]
+        return tuple(found)
+
+    def _scanned(self) -> Points | None:
+        """What the lidar met, on the body [m]."""
+        sensors, figures = self._v.sensors, self._v.physics.airframe
+        count = int(sensors.lidar_samples)
+        if count == 0 or sensors.lidar_count == 0:
+            return None
+        if self._scan[0] != sensors.lidar_count:
+            ranges = np.asarray(sensors.lidar_ranges[:count], float)
+            half = 0.5 * sensors.lidar_fov
+            angles = np.linspace(-half, half, count)  # counter-clockwise from the right
+            met = np.isfinite(ranges) & (ranges < sensors.lidar_max)
+            ranges, angles = ranges[met], angles[met]
+            rays = np.stack([ranges * np.cos(angles), -ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
+            self._scan = (int(sensors.lidar_count), rays + np.array(figures.lidar_at))
+        return self._scan[1]
+
+    def _planned(self, mission: Mission, offset: Vec3) -> Plan:
+        """Mission, fences and rally points; the same object while none of them changes."""
+        ap = self._v.autopilot
+        fence, params = ap.fence, ap.params
+        key = (
+            mission, offset, ap.home.pos, fence.on, fence.shapes, bytes(fence.kind[:]), bytes(fence.north[:]),
+            bytes(fence.east[:]), bytes(fence.radius[:]), params.FENCE.RADIUS, self._top(), params.RALLY.TOTAL,
+            bytes(ap.rally.lat[:]), bytes(ap.rally.lon[:]), bytes(ap.rally.alt[:]),
+        )  # fmt: skip
+        if key != self._plan[0]:
+            items, fences, rally_points = self._items(mission, offset), self._fences(offset), self._rally(offset)
+            self._plan = (key, Plan(items, fences, self._top(), rally_points))
+        return self._plan[1]
+
+    def _items(self, mission: Mission, offset: Vec3) -> tuple[Mark, ...]:
+        ap, marks, at = self._v.autopilot, [], self._v.autopilot.home.pos
+        if not ap.estimate.origin_set:
+            return ()
+        for number, item in enumerate(mission.items):
+            if number == 0 or item.command >= _NAV_LAST or (item.no_place and item.z == 0.0):
+                continue
+            at = point(ap, item, at)
+            name = command_name(item.command).removeprefix("NAV_").replace("_", " ").lower()
+            marks.append(Mark(f"{number} {name}", at + offset, number))
+        return tuple(marks)
+
+    def _top(self) -> float:
+        """Greatest height that the fence allows; a vehicle on the ground has no such limit [m]."""
+        return float(getattr(self._v.autopilot.params.FENCE, "ALT_MAX", 1.0))
+
+    def _fences(self, offset: Vec3) -> tuple[Points, ...]:
+        ap, found = self._v.autopilot, []
+        fence, home = ap.fence, ap.home.pos
+        turn = np.linspace(0.0, 2.0 * math.pi, _CORNERS, endpoint=False)
+        ring = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        if fence.on & CIRCLE and ap.home.is_set:
+            found.append(ring * float(ap.params.FENCE.RADIUS) + (home.x, home.y))
+        if fence.is_placed:
+            for k in range(int(fence.shapes)):
+                first, count = int(fence.first[k]), int(fence.count[k])
+                corners = np.stack([fence.north[first : first + count], fence.east[first : first + count]], axis=1)
+                if int(fence.kind[k]) in (CIRCLE_IN, CIRCLE_OUT):
+                    corners = ring * float(fence.radius[k]) + corners[0]
+                found.append(corners)
+        return tuple(np.asarray(each, float) + (offset.x, offset.y) for each in found)
+
+    def _rally(self, offset: Vec3) -> tuple[Mark, ...]:
+        ap = self._v.autopilot
+        if not ap.estimate.origin_set:
+            return ()
+        count = min(int(ap.params.RALLY.TOTAL), len(ap.rally.lat))
+        places = [rally.position(ap.rally, k, ap.estimate, ap.home) + offset for k in range(count)]
+        return tuple(Mark(f"rally {k}", place, k) for k, place in enumerate(places))

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""All of the scene for one vehicle: the truth, estimate and set-point beside it, plan, trail, wind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...core.algebra import norm
+from ...core.vectors import Quat, Vec3
+from ..axes import place
+from ..frame import Frame, Stage
+from . import surroundings
+from .plan import PlanNodes
+from .trail import Trail
+from .vehicle import Ghost, VehicleNodes
+
+_ESTIMATE, _WANTED, _WIND = (52, 152, 219), (39, 174, 96), (90, 170, 230)
+_LEVEL = Quat(1.0, 0.0, 0.0, 0.0)
+
+
+class Scene:
+    """The nodes of a vehicle and of what is around it."""
+
+    def __init__(self, server: Any, stage: Stage) -> None:
+        scene = server.scene
+        size = stage.shape.size
+        scene.set_up_direction("+z")
+        self.stage = scene.add_frame("/stage", show_axes=False)
+        """All of it; ``cameras`` moves it below the eyes of who follows the vehicle."""
+        scene.configure_default_lights(cast_shadow=True)
+        surroundings.draw(scene, stage.world)
+        self.vehicle = VehicleNodes(scene, "/stage/vehicle", stage.shape)
+        self.trail = Trail(scene, "/stage/trail", size)
+        self.plan = PlanNodes(scene, size)
+        self.estimate = Ghost(scene, "/stage/estimate", stage.shape, _ESTIMATE, 0.35)
+        self.set_point = scene.add_icosphere(
+            "/stage/set_point", radius=0.07 * size, color=_WANTED, opacity=0.9, visible=False
+        )
+        self._wind_node = scene.add_frame("/stage/wind", show_axes=False)
+        self._size, self._wind = size, Vec3(0.0, 0.0, 0.0)
+        self._arrow = scene.add_arrows(
+            "/stage/wind/arrow", np.zeros((0, 2, 3), np.float32), _WIND, shaft_radius=0.03 * size,
+            head_radius=0.09 * size, head_length=0.2 * size,
+        )  # fmt: skip
+
+    def show(self, frame: Frame) -> None:
+        """Draw a moment."""
+        self.vehicle.show(frame)
+        self.trail.show(frame)
+        self.plan.show(frame)
+        self.estimate.show(frame.estimate_pos, frame.estimate_q or _LEVEL)
+        self.set_point.visible = frame.set_point is not None
+        if frame.set_point is not None:
+            self.set_point.position = place(frame.set_point)
+        self._show_wind(frame)
+
+    def _show_wind(self, frame: Frame) -> None:
+        x, y, z = place(frame.pos)
+        self._wind_node.position = (x, y, z + 1.2 * self._size)
+        if norm(frame.wind - self._wind) > 0.05:
+            self._wind = frame.wind
+            tip = np.array(place(frame.wind)) * 0.35 * self._size  # a metre a second is about a third of the vehicle
+            self._arrow.points = np.array([[-0.5 * tip, 0.5 * tip]], np.float32)
