@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint docs bench clean
 
 demo: $(VENV)/demo.stamp
 	$(BIN)/sitl demo copter
@@ -18,6 +18,10 @@ lint: $(VENV)/dev.stamp
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: $(VENV)/docs.stamp
+	$(BIN)/python -m sphinx -b html -E -n -W --keep-going -q docs build/docs
+	@echo build/docs/index.html
 
 bench: $(VENV)/dev.stamp
 	$(BIN)/python -m benchmarks
@@ -35,6 +39,10 @@ $(VENV)/dev.stamp: pyproject.toml $(VENV)/bin/python
 	$(BIN)/pip install -q -e '.[dev]' $$(command -v cc gcc clang >/dev/null || echo ziglang)
 	$(BIN)/pip install -q --only-binary :all: -e '.[pybullet]' || echo "no pybullet for this Python here: its tests are skipped"
 	$(BIN)/pip install -q --only-binary :all: -e '.[jsbsim]' || echo "no jsbsim for this Python here: its tests are skipped"
+	@touch $@
+
+$(VENV)/docs.stamp: $(VENV)/dev.stamp
+	$(BIN)/pip install -q -e '.[docs]'
 	@touch $@
 
 clean:

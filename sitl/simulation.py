@@ -325,8 +325,8 @@ class Simulation:
         """Faults are over, those to come too: parameters are what they would be without them.
 
         Args:
-            unit: as "gps" or "gps/wrong", or a SIM_ parameter; "": all that has failed; or a fault with its amount or
-                time, "motor:2=0.5@20.0..30.0": that one.
+            unit: as "gps" or "gps/wrong", or a ``SIM_`` parameter; "": all that has failed; or a fault with its amount
+                or time, "motor:2=0.5@20.0..30.0": that one.
             instance: which one, from 1; 0: all.
 
         Raises:
@@ -415,7 +415,7 @@ class Simulation:
         self._reboot = True
 
     def parameter_changed(self, name: str) -> None:
-        """A parameter was set over MAVLink: the simulated world follows the SIM_ ones."""
+        """A parameter was set over MAVLink: the simulated world follows the ``SIM_`` ones."""
         if self.firmware.table[name].has_effect and sim_parameters.acts_on_the_world(name):
             self.plant.parameter_changed(name)
 

@@ -428,7 +428,7 @@ class Session:
         """Send a command and wait until it is accepted; it is sent again while it is not answered.
 
         Args:
-            name: as MAVLink has it, with or without "MAV_CMD_" ("DO_SET_MODE"), or its number.
+            name: as MAVLink has it, with or without ``MAV_CMD_`` ("DO_SET_MODE"), or its number.
             params: its first parameters.
             subject: what it is about, for errors.
             named: parameters by MAVLink's labels in snake case (``custom_mode=4``) or ``param1`` .. ``param7``; a text

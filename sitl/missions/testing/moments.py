@@ -136,7 +136,7 @@ class Forking(client.Client):
         self.script.said.append(Said(self.simulation.time_us, b"", faults))
 
     def order_fault(self, text: str) -> None:
-        """Let something fail or be repaired now: ``Simulation.order_fault``. Another autopilot gets SIM_ parameters."""
+        """Let something fail or be repaired now: ``Simulation.order_fault``. Another autopilot gets ``SIM_`` ones."""
         if self.connection.simulation is None:
             self._set_fault(text)
             return

@@ -55,7 +55,7 @@ class Faulty(Forking):
         """Let something fail, until ``restore(what)``, ``.repair()`` of what this gives, or for a ``with`` block.
 
         Args:
-            what: a unit or a SIM_ parameter of docs/faults.md ("gps", "motor", "SIM_WIND_SPD"); besides "station": no
+            what: a unit or a ``SIM_`` parameter of docs/faults.md ("gps", "motor", "SIM_WIND_SPD"); "station": no
                 heartbeat of this ground station any more, and "link": the link to it has ``faults`` (None: it is cut).
             type: how, as "off"; "": the unit's first type.
             instance: which one, from 1; 0: all.
