@@ -118,7 +118,7 @@ def test_another_name_is_refused() -> None:
 
 
 def test_importing_it_loads_nothing_else() -> None:
-    code = "import sys, importlib, typing; before = set(sys.modules); import sitl; dir(sitl); "
+    code = "import sys, importlib, typing, __future__; before = set(sys.modules); import sitl; dir(sitl); "
     code += "print(sorted(set(sys.modules) - before))"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
