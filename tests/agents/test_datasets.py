@@ -130,7 +130,7 @@ def test_what_cannot_be_is_refused():
         ({"env": "sitl/CopterWaypint-v0"}, "sitl/CopterWaypint"),
         ({"env": ID, "options": {"worl": "open"}}, "worl"),
         ({"env": ID, "expert": "gided"}, "none of guided, auto, baseline, random"),
-        ({"env": "sitl/CopterFollow-v0", "expert": "baseline"}, "no policy of sitl/CopterFollow-v0"),
+        ({"env": "sitl/Navigate-v0", "expert": "baseline"}, "no policy of sitl/Navigate-v0"),
         ({"env": ID, "dataset": "no version"}, "no version"),
     ):
         with pytest.raises(AgentError, match=needed):
