@@ -79,7 +79,7 @@ def test_a_tutorial_runs_as_it_stands(page: Path, tmp_path: Path) -> None:
             typed += 1
         elif language == "text":
             assert matches(text.rstrip().splitlines(), printed), "\n".join(["printed:", *printed, "the page:", text])
-    assert typed >= 2
+    assert typed >= 1
 
 
 def test_outputs_are_compared_by_their_words_and_numbers() -> None:
