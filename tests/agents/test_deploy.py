@@ -122,6 +122,11 @@ def test_actions_that_are_no_numbers_and_a_policy_that_thinks_too_long_end_it(fl
     assert mode(simulation) == BRAKE
 
 
+def _heed_ctrl_c():
+    """In the child: tests that run in the background have inherited that SIGINT is passed over."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
 def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
@@ -131,11 +136,15 @@ def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with RealVehicle(simulation, waits=True) as vehicle:
         words += ["--connection", f"udpout:127.0.0.1:{vehicle.port}"]
-        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=paths) as process:
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=paths, preexec_fn=_heed_ctrl_c)
+        try:
             while vehicle.count("SET_POSITION_TARGET_LOCAL_NED") < 20 and process.poll() is None:
                 vehicle.wait()
             process.send_signal(number)
             said, _ = process.communicate(timeout=60)
+        finally:
+            process.kill()
+            process.wait()
     assert ("handed over: closed" in said) == (number != signal.SIGKILL)
     assert not {DISARM, REBOOT} & vehicle.commands()
     simulation.advance(8.0)
