@@ -123,20 +123,22 @@ def receive(rc: Radio, sensors: Sensors, params: Parameters, time_us: int, throt
         throttle: pulse [us] of the throttle stick at rest in the simulated transmitter.
         timeout: silence that counts as lost [s].
     """
-    overridden, is_real = False, sensors.rc_count > 0
+    overridden, is_real, has_receiver = False, sensors.rc_count > 0, rc.has_receiver
+    stuck = rc.stuck if rc.is_faulty else 0
+    duration = params.RC_OVERRIDE_TIME
     for k in range(18):
-        if rc.is_faulty and rc.stuck >> k & 1:
+        if stuck >> k & 1:
             continue
-        if is_overridden(rc, k, time_us, params.RC_OVERRIDE_TIME):
+        if is_overridden(rc, k, time_us, duration):
             rc.channels[k] = rc.override[k]
             overridden = True
-        elif rc.has_receiver and is_real:
+        elif has_receiver and is_real:
             rc.channels[k] = sensors.rc_channels[k] if k < RC_INPUTS else 0
-        elif rc.has_receiver:
+        elif has_receiver:
             rc.channels[k] = throttle if k == THROTTLE else RECEIVER_PULSES[k] if k < 8 else 0
     if rc.is_faulty:
         spoil(rc, params, overridden)
-    if overridden or (rc.has_receiver and not is_real):
+    if overridden or (has_receiver and not is_real):
         rc.receiver_us = time_us
     elif rc.has_receiver:
         rc.receiver_us = max(rc.receiver_us, min(sensors.rc_time_us, time_us))

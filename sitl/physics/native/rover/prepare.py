@@ -59,6 +59,7 @@ def prepare(a: Figures, d: Derived) -> None:
         d.circle_scale = 2.0 / (a.turning_diameter * math.sin(a.steering_angle))
     else:
         d.inverse_track = 1.0 / (a.track * a.track_slip)
+    d.bend, d.bend_angle = 0.0, 0.0  # straight on, whatever the figures
     d.power_by_accel = 0.0
     if a.efficiency > 0.0:
         d.power_by_accel = a.mass / a.efficiency

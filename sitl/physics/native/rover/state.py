@@ -24,6 +24,8 @@ class Derived(shared.Derived):
     steering_step: float  # largest turn of the front wheels a tick [rad]
     inverse_wheelbase: float  # STEERING_FRONT_WHEELS [1/m]
     circle_scale: float  # STEERING_TURNING_CIRCLE: curvature by sine of the angle [1/m]
+    bend: float  # curvature that front wheels at ``bend_angle`` ask for [1/m]: worked out when they turn
+    bend_angle: float  # [rad]
     inverse_track: float  # STEERING_SKID: yaw rate by difference of the sides' speeds [1/m]
     power_by_accel: float  # battery power by acceleration and speed at no load [W/(m/s^2)/(m/s)]
     encoder_period: int  # [ticks], 0 no encoder

@@ -44,6 +44,14 @@ def curvature(angle: float, figures: Figures, derived: Derived) -> float:
 
 
 @law
+def bend(angle: float, figures: Figures, derived: Derived) -> float:
+    """The same; kept while the wheels keep their angle, since tangent and sine cost a good part of a rover's tick."""
+    if angle != derived.bend_angle:
+        derived.bend, derived.bend_angle = curvature(angle, figures, derived), angle
+    return derived.bend
+
+
+@law
 def grip_across(wanted: float, speed: float, accel: float, grip: float) -> float:
     """Yaw rate [rad/s] that tyres of a grip [m/s^2] give of the one wanted, while they accelerate the vehicle, of this
     speed [m/s], along [m/s^2]: beyond the friction circle it runs wide (understeer).

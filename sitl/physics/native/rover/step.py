@@ -15,7 +15,7 @@ from . import encoders
 from .drive import commanded, grip_along, run
 from .motion import Course, hold_back, roll
 from .state import Derived, Physics, Wheels
-from .steering import approach, curvature, followed, grip_across
+from .steering import approach, bend, followed, grip_across
 
 STEERING_OUTPUT = 0
 """Output of the steering servo, or of the left motors."""
@@ -56,7 +56,7 @@ def move(wheels: Wheels, body: Body, figures: Figures, derived: Derived, control
     if skids:
         wanted = (left - right) * derived.inverse_track
     else:
-        wanted = pull.speed * curvature(wheels.angle, figures, derived)
+        wanted = pull.speed * bend(wheels.angle, figures, derived)
     held = grip_across(wanted, pull.speed, pull.accel, derived.grip)
     yaw_rate = approach(body.rates.z, held, derived.yaw_step)
     roll(body, Course(before, pull.speed, yaw_rate), figures.rear_axle)
