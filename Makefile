@@ -10,7 +10,9 @@ export PIP_DISABLE_PIP_VERSION_CHECK = 1
 demo: $(VENV)/demo.stamp
 	$(BIN)/sitl demo copter
 
+# The core is compiled first, on all processors: test processes would wait for each other's parts of it.
 test: $(VENV)/dev.stamp
+	$(BIN)/sitl cache build
 	$(BIN)/python -m pytest -n 2 -m "not slow"
 	$(BIN)/python -m pytest -n 2 -m slow
 

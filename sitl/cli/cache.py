@@ -32,7 +32,7 @@ def cache(options: argparse.Namespace) -> int:
         print(f"deleted {code_cache.clear_cache()} compiled units from {code_cache.cache_folder()}")
     elif options.action == "build":
         with CompileProgress() as progress:
-            took = sum(compiler.build(entries(kind), kind.record_path, progress) for kind in KINDS.values())
+            took = sum(compiler.build(all_entries(kind), kind.record_path, progress) for kind in KINDS.values())
         print(f"built in {took:.1f} s")
     elif options.json:
         rows = [{"vehicle": kind, "unit": unit, "ready": ready} for kind, unit, ready in units()]
@@ -62,3 +62,19 @@ def entries(kind: Kind) -> tuple[Callable[..., None], ...]:
 
     units = load_profile(kind.name).core
     return units.run, units.hear
+
+
+def all_entries(kind: Kind) -> tuple[Callable[..., None], ...]:
+    """Every unit of a kind of vehicle that is called from outside the core: those of a run, of fleets, of moves, of
+    several vehicles in one world, and of physics engines besides the native one."""
+    from ..physics.native import ranging
+
+    found = [*entries(kind), kind.fly, kind.step, kind.move, kind.meet, ranging.list_near]
+    if kind.pieces is not None:
+        found += [kind.pieces.begin, kind.pieces.load, kind.pieces.sense, ranging.aim_sensor, ranging.finish_scan]
+    if "mavlink" in kind.parts:
+        from ..bridge.profile import load as load_profile
+
+        units = load_profile(kind.name).core
+        found += [units.tell, units.run_all]
+    return tuple(dict.fromkeys(unit for unit in found if unit is not None))

@@ -25,7 +25,7 @@ ENTRY = "sitl_unit_entry"
 """Name of the function in each source file."""
 _SOURCE = "unit.py"
 _BUILT = "built"
-_KEEP_VERSIONS = 4
+_KEEP_VERSIONS = 16
 
 
 class BuildError(SitlError, RuntimeError):

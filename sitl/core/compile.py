@@ -12,24 +12,32 @@ import contextlib
 import importlib
 import os
 import platform
+import queue
+import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
+from .build_work import BuildWork
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
 from .fingerprint import fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import law_options
 from .records import Record
 
-Progress = Callable[[str, int, int], None]
-"""Called as ``progress(unit name, units done, units to build)``."""
+Progress = Callable[[str, float, float], None]
+"""Called as ``progress(unit name, work done, work of all)``, several times a second, in estimated seconds of work."""
+_TOLD_S = 0.2
+"""Progress is told at least so often [s]."""
+_START_S, _BYTES_A_SECOND = 1.0, 5000.0
+"""From measured units: what each takes, and how fast source is compiled."""
 
 _fingerprints: dict[tuple[str, str], str] = {}
 """(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
@@ -184,54 +192,77 @@ def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress |
     start = time.monotonic()
     with build_lock():
         entry_of = {unit: entry for entry in entries for unit in missing(entry, path)}
-        todo = sorted(entry_of, key=lambda u: -_weight(u))
-        jobs = jobs or min(len(todo), os.cpu_count() or 1)
-        running: list[tuple[Unit, subprocess.Popen[str]]] = []
-        done, total = 0, len(todo)
-        try:
-            while todo or running:
-                while todo and len(running) < jobs:
-                    unit = todo.pop(0)
-                    if progress:
-                        progress(unit.name, done, total)
-                    running.append((unit, _start_worker(entry_of[unit], path, unit)))
-                running[0][1].poll()
-                finished = [(u, p) for u, p in running if p.poll() is not None]
-                if not finished:
-                    with contextlib.suppress(subprocess.TimeoutExpired):
-                        running[0][1].wait(0.05)
-                    continue
-                for unit, process in finished:
-                    running.remove((unit, process))
-                    if process.returncode != 0:
-                        raise BuildError(f"compiling unit {unit.name} failed:\n{process.communicate()[1][-4000:]}")
-                    done += 1
-                    if progress:
-                        progress(unit.name, done, total)
-        finally:  # a failure or Ctrl-C leaves no compiler behind
-            for _, process in running:
-                process.kill()
-                process.communicate()
-        if total:
+        todo = sorted(entry_of, key=lambda u: -_weight(u))  # the longest first
+        if todo:
+            tasks = [f"{entry_of[unit].__module__}:{unit.name}" for unit in todo]
+            work = BuildWork({unit.name: _weight(unit) for unit in todo})
+            with _workers(path, jobs or min(len(todo), os.cpu_count() or 1), tasks) as process:
+                _follow(process, work, progress)
             drop_old_versions()
     return time.monotonic() - start
 
 
-def _weight(unit: Unit) -> int:
-    """A guess at the compile time: the source reached, in bytes."""
+def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress | None) -> None:
+    """Tell of the progress of workers until all units are compiled.
+
+    Raises:
+        BuildError: one failed.
+    """
+    assert process.stdout is not None and process.stderr is not None
+    steps: queue.SimpleQueue[str] = queue.SimpleQueue()
+    said: list[str] = []
+
+    def listen(lines: Iterable[str], take: Callable[[str], object]) -> threading.Thread:
+        thread = threading.Thread(target=lambda: [take(line) for line in lines], daemon=True)
+        thread.start()
+        return thread
+
+    listeners = [listen(process.stdout, steps.put), listen(process.stderr, said.append)]
+    failed, name = "", ""
+    while any(thread.is_alive() for thread in listeners) or not steps.empty():
+        try:
+            step, _, name = steps.get(timeout=_TOLD_S).strip().partition(" ")
+        except queue.Empty:
+            step = ""
+        now = time.monotonic()
+        if step == "begin":
+            work.begin(name, now)
+        elif step == "end":
+            work.end(name, now)
+        elif step == "fail":
+            failed = name
+        if progress and name:
+            progress(name, work.done(now), work.total)
+    if process.wait() != 0:
+        what = f"unit {failed}" if failed else "the core"
+        raise BuildError(f"compiling {what} failed:\n{''.join(said)[-4000:]}")
+
+
+def _weight(unit: Unit) -> float:
+    """A guess at the time that it takes to compile [s], from the source that it reaches."""
     from .fingerprint import _walk
 
     lines: list[str] = []
     _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)  # type: ignore[arg-type]
-    return sum(len(line) for line in lines)
+    return _START_S + sum(len(line) for line in lines) / _BYTES_A_SECOND
 
 
-def _start_worker(entry: Callable[..., Any], record: str, unit: Unit) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "sitl.core.worker", entry.__module__, record, unit.name]
+@contextlib.contextmanager
+def _workers(path: str, jobs: int, tasks: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+    """The process that compiles, ended with all that it has started when the context ends."""
+    command = [sys.executable, "-m", "sitl.core.worker", path, str(jobs), *tasks]
     root = str(Path(__file__).resolve().parents[2])
-    path = os.pathsep.join(p for p in (root, *sys.path) if p)  # modes of other packages are found, too
-    environment = {**os.environ, "PYTHONPATH": path}
-    return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    found = os.pathsep.join(p for p in (root, *sys.path) if p)  # modes of other packages are found, too
+    environment = {**os.environ, "PYTHONPATH": found, "OPENBLAS_NUM_THREADS": "1"}
+    process = subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    try:
+        yield process
+    finally:  # a failure or Ctrl-C leaves no compiler behind
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
 
 
 def build_missing(entries: Sequence[Callable[..., Any]], path: str, progress: Progress | None = None) -> None:

@@ -1,26 +1,96 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.core.worker MODULE RECORD UNIT``: compile one unit (started by ``compile.build``)."""
+"""``python -m sitl.core.worker RECORD JOBS MODULE:UNIT ...``: compile units side by side (started by ``build``).
+
+The units' modules and Numba are loaded once; each unit is compiled by a copy of this process, because what is compiled
+in one process is compiled in one way. One line on standard output for each step: "begin UNIT", "end UNIT" or
+"fail UNIT". Where a process cannot be copied, each unit has a process of its own.
+"""
 
 from __future__ import annotations
 
 import importlib
+import os
+import subprocess
 import sys
+import traceback
+import warnings
+from collections.abc import Callable, Sequence
+
+FORKS = sys.platform == "linux"
+"""Copies of a process that has loaded Numba work there."""
 
 
-def main() -> int:
-    """Compile the unit named on the command line."""
+def compile_one(path: str, name: str) -> None:
+    """Compile a unit, whose module is loaded, for the record type at ``path``."""
     import llvmlite.binding
 
     from .compile import load_unit, symbol
     from .kernels import UNITS
 
-    module, path, name = sys.argv[1:4]
-    importlib.import_module(module)  # registers its units
     for unit in UNITS.values():
         if unit.name != name:  # never called here: any address lets the linker finish
             llvmlite.binding.add_symbol(symbol(unit, path), 1)
     load_unit(UNITS[name], path)
+
+
+def fork(path: str, name: str) -> int:
+    """Start a copy of this process that compiles a unit, and return its id."""
+    with warnings.catch_warnings():  # libraries have threads that wait, and hold no lock
+        warnings.simplefilter("ignore", DeprecationWarning)
+        pid = os.fork()
+    if pid:
+        return pid
+    code = 1
+    try:
+        compile_one(path, name)
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stderr.flush()
+        os._exit(code)
+
+
+def spawn(path: str, task: str) -> int:
+    """Start a process of its own for a unit, and return its id."""
+    return subprocess.Popen([sys.executable, "-m", "sitl.core.worker", path, "0", task]).pid
+
+
+def compile_all(path: str, jobs: int, tasks: Sequence[str]) -> int:
+    """Compile them side by side, in this order; returns 1 after the first that fails."""
+    start: Callable[[str], int]
+    if FORKS:
+        import numba.core.registry
+
+        for task in tasks:
+            importlib.import_module(task.partition(":")[0])
+        numba.core.registry.cpu_target.target_context.refresh()
+        start = lambda task: fork(path, task.partition(":")[2])  # noqa: E731
+    else:
+        start = lambda task: spawn(path, task)  # noqa: E731
+    waiting, running = list(tasks), dict[int, str]()
+    while waiting or running:
+        while waiting and len(running) < jobs:
+            task = waiting.pop(0)
+            print("begin", task.partition(":")[2], flush=True)
+            running[start(task)] = task.partition(":")[2]
+        pid, status = os.wait()
+        name = running.pop(pid)
+        print("fail" if status else "end", name, flush=True)
+        if status:
+            return 1
     return 0
+
+
+def main() -> int:
+    """Compile the units of the command line."""
+    path, jobs, *tasks = sys.argv[1:]
+    if jobs == "0":
+        module, _, name = tasks[0].partition(":")
+        importlib.import_module(module)
+        compile_one(path, name)
+        return 0
+    return compile_all(path, int(jobs), tasks)
 
 
 if __name__ == "__main__":

@@ -155,6 +155,30 @@ def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:
     assert "nothing" in result.stderr
 
 
+def test_progress_is_told_in_work_and_ends_complete(toy: Toy) -> None:
+    told = "lambda *step: built.append(step)"
+    (toy.folder / "run.py").write_text(
+        RUN.replace("lambda name, done, total: built.append(name)", told).replace("sorted(set(built))", "built")
+    )
+    steps = toy.run("compiled")["built"]
+    done = [step[1] for step in steps]
+    assert done == sorted(done) and done[0] < 0.1 * steps[0][2]
+    assert done[-1] == pytest.approx(steps[-1][2]) and len({step[2] for step in steps}) == 1
+
+
+def test_nothing_is_left_of_a_build_that_is_interrupted(toy: Toy) -> None:
+    (toy.folder / "run.py").write_text(
+        RUN.replace("lambda name, done, total: built.append(name)", "stop").replace(
+            "built = []", "built = []\ndef stop(*step):\n    raise KeyboardInterrupt"
+        )
+    )
+    root = str(Path(__file__).parents[2])
+    env = {**os.environ, "SITL_CACHE_DIR": str(toy.folder / "cache")}
+    env["PYTHONPATH"] = os.pathsep.join([str(toy.folder), root])
+    result = subprocess.run([sys.executable, "run.py", "x"], cwd=toy.folder, env=env, capture_output=True, text=True)
+    assert "KeyboardInterrupt" in result.stderr  # and communicate() has seen both pipes closed: nobody holds them
+
+
 KERNEL_LAWS = """
 from sitl.core.kernels import law
 @law

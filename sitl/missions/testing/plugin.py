@@ -107,7 +107,7 @@ class _Compiling:
     def __init__(self, config: pytest.Config) -> None:
         self._config, self._said = config, False
 
-    def __call__(self, unit: str, done: int, total: int) -> None:
+    def __call__(self, unit: str, done: float, total: float) -> None:
         if self._said:
             return
         self._said = True
