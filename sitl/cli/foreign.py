@@ -28,6 +28,7 @@ from .link_options import link_faults
 from .options import open_folder, scenario_of
 from .progress import CompileProgress
 from .status import PlantStatus
+from .view_options import shown
 
 
 def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +100,8 @@ def fly(options: argparse.Namespace, choice: Choice) -> int:
         for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
             signal.signal(number, lambda n, _: stopped.append(n))
         clock = flown.plant.vehicle.reader.field("time_us")
-        flown.session.serve(lambda: not stopped and clock() < until_us, flown.status.refresh)
+        with shown(flown.plant, options, then=flown.status.refresh) as on_turn:
+            flown.session.serve(lambda: not stopped and clock() < until_us, on_turn)
     return 0
 
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 
 from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, lines, ticks
-from ..bridge.ardupilot_json.servos import Controls, is_frame
+from ..bridge.ardupilot_json.servos import actuators_writer, is_frame
 from ..core.constants import TICK_US
 from ..errors import OptionError
 from ..plants.json_link import LOCAL, PORT, WAIT_S, parse_address, wait_in_kernel
@@ -69,7 +69,8 @@ class JsonHost:
         self.plant = plant
         self._lines = BodyLines(plant.vehicle)
         self._clock: Callable[[], int] = plant.vehicle.reader.field("time_us")
-        self._controls = Controls(plant.vehicle.kind.has_reversible_outputs)
+        vehicle = plant.vehicle
+        self._put = actuators_writer(vehicle.fleet, vehicle.index, vehicle.kind.has_reversible_outputs)
 
     @property
     def address(self) -> tuple[str, int]:
@@ -144,9 +145,7 @@ class JsonHost:
             self.before_boot_us += self._clock()
             restart(plant)
             self.boots += 1
-        actuators = plant.vehicle.v.actuators
-        actuators.controls[:] = self._controls.of(servos.pulses)
-        actuators.pwm[:] = servos.pulses[:16]
+        self._put(servos.pulses)
         count = ticks(servos.rate)
         if until_us is not None:
             count = min(count, max((until_us - self._clock()) // TICK_US, 1))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import socket
 import subprocess
+from pathlib import Path
 
 import gymnasium as gym
 import numpy as np
@@ -19,7 +20,9 @@ from sitl.envs.mavlink.foreign import physics_port
 from sitl.envs.mavlink.preparation import set_intervals
 from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.autopilot import AutopilotRobot
+from sitl.envs.robots.foreign import unlogged
 from sitl.errors import LinkLostError
+from sitl.foreign.choice import Choice
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 
@@ -55,11 +58,19 @@ def test_a_rover_of_ardupilots_drives_the_maze(ardurover):
 def test_a_copter_of_another_maker_flies_the_office(program, request):
     path = request.getfixturevalue(program)
     kind = "px4" if program == "px4" else "ardupilot"
-    env = gym.make(COPTER, autopilot=f"{kind}:{path}", setpoint="velocity")
+    seen = ["scan", "pose", "true_pose", "true_wind"]
+    env = gym.make(COPTER, autopilot=f"{kind}:{path}", setpoint="velocity", observation=seen, info=["true_pose"])
     env.reset(seed=1)
     robot = env.unwrapped.robot
     before = robot.pose[0].copy()
     times, _ = drive(env, 15, 0)
+    observation, *_, info = env.step(0)
+    body = robot.link(0).plant.vehicle.v.physics.body.pos
+    slices = env.unwrapped.session.observation.slices
+    assert np.allclose(info["true_pose"][:3], (body[0], -body[1], -body[2]))
+    assert np.allclose(observation[slices["true_pose"]][:3], info["true_pose"][:3], atol=1e-6)
+    assert observation[slices["true_wind"]].tolist() == [0.0, 0.0, 0.0]
+    assert 0.0 < np.abs(observation[slices["pose"]][:3] - info["true_pose"][:3]).max() < 1.0  # what it believes
     assert robot.pose[0, 2] == pytest.approx(1.0, abs=0.3)
     assert np.hypot(*(robot.pose[0, :2] - before[:2])) > 0.2
     assert np.allclose(np.diff(times)[1:], np.diff(times)[1], atol=1e-6)
@@ -87,7 +98,7 @@ def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, 
     command = [ardurover, *words, "--home", "-35.363262,149.165237,584,0", "--speedup", 1000]
     with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL) as program:
         try:
-            env = gym.make(ROVER, autopilot=f"ardupilot:tcp:127.0.0.1:{mavlink}")
+            env = gym.make(ROVER, autopilot=f"ardupilot:tcp:127.0.0.1:{mavlink}", patience=60.0)  # it has to start
             first, second = env.reset(seed=1)[0], None
             drive(env, 10, 0)
             second = env.reset(seed=1)[0]
@@ -96,6 +107,13 @@ def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, 
             env.close()
         finally:
             program.kill()
+
+
+def test_an_ardupilot_keeps_no_log_in_episodes_unless_it_is_told_to():
+    ours, theirs = Choice("ardupilot", Path("arducopter")), Choice("px4", Path("px4"))
+    assert unlogged(ours, {"WPNAV_SPEED": 300.0}) == {"LOG_BACKEND_TYPE": 0.0, "WPNAV_SPEED": 300.0}
+    assert unlogged(ours, {"LOG_BACKEND_TYPE": 1.0}) == {"LOG_BACKEND_TYPE": 1.0}
+    assert unlogged(theirs, {"MC_ROLL_P": 6.0}) == {"MC_ROLL_P": 6.0}
 
 
 class Refusing(Connection):

@@ -8,12 +8,14 @@ import math
 import re
 import struct
 
+import numpy as np
 import pytest
 
 from sitl.bridge.ardupilot_json.motion import MotionError, extra
 from sitl.bridge.ardupilot_json.motion import decode as decode_motion
 from sitl.bridge.ardupilot_json.motion import encode as encode_motion
-from sitl.bridge.ardupilot_json.servos import Controls, ServoError, Servos, decode, encode
+from sitl.bridge.ardupilot_json.servos import Controls, ServoError, Servos, actuators_writer, decode, encode
+from sitl.vehicle.kinds import KINDS
 
 
 @pytest.mark.parametrize(("pulses", "magic", "size"), [(16, 18458, 40), (32, 29569, 72)])
@@ -56,6 +58,20 @@ def test_a_pulse_is_a_rotors_or_a_servos_control(pulse, rotor, servo):
 
 def test_the_border_takes_sixteen_of_32_pulses():
     assert Controls(False).of((1500,) * 16 + (2000,) * 16) == [0.5] * 16
+
+
+@pytest.mark.parametrize("kind", ["copter", "rover"])
+def test_pulses_are_written_into_the_actuators_of_their_vehicle_alone(kind):
+    record, is_reversible = KINDS[kind].record, KINDS[kind].has_reversible_outputs
+    fleet = record.fleet(3)
+    before = np.frombuffer(bytearray(fleet.tobytes()), fleet.dtype)  # with the padding, which a copy may leave out
+    pulses = (*range(1000, 2000, 100), 0, 900, 2100, 1500, 1501, 65535, *(1234,) * 16)
+    actuators_writer(fleet, 1, is_reversible)(pulses)
+    assert fleet[1]["actuators"]["pwm"].tolist() == list(pulses[:16])
+    wanted = np.float32(Controls(is_reversible).of(pulses))
+    assert fleet[1]["actuators"]["controls"].tolist() == wanted.tolist()
+    before[1]["actuators"]["pwm"], before[1]["actuators"]["controls"] = pulses[:16], wanted
+    assert fleet.tobytes() == before.tobytes()  # nothing else
 
 
 MOTION = (1.25, 0.1, -0.2, 0.3, 0.0, 0.0, -9.80665, 10.5, -20.25, -3.125, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, -0.5)

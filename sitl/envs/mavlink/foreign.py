@@ -22,6 +22,7 @@ from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
+from sitl.foreign.one_core import OneCore
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
@@ -110,6 +111,7 @@ class Foreign(Connection):
         if isinstance(inbox, StepTelemetry):
             inbox.scans_by_mavlink, inbox.longest_interval_us = False, 20_000
         self.host, self.process = host, process
+        self._one_core = OneCore(None if process is None else process.pid)
         self.patience, self._connection = patience, connection
         self._use(plant)
         self.tap: Callable[[bytes], None] = lambda data: None
@@ -217,14 +219,15 @@ class Foreign(Connection):
         if self.stream is not None:
             self.stream.flush()
         turns = 0
-        while host.time_us < goal and host.boots == boots:
-            self._await()
-            host.step(goal)
-            turns += 1
-            if turns % _TURNS == 0:
-                self._hear()
-        if us > 0:
-            self._await()
+        with self._one_core:
+            while host.time_us < goal and host.boots == boots:
+                self._await()
+                host.step(goal)
+                turns += 1
+                if turns % _TURNS == 0:
+                    self._hear()
+            if us > 0:
+                self._await()
         self._hear()
         self._look()
 
