@@ -9,6 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+__all__ = [
+    "LinkLostError", "MissingExtra", "NotASimulatorError", "NotReadyError", "OptionError", "SitlError", "VehicleError",
+]  # fmt: skip
+
 
 class SitlError(Exception):
     """The base of every error of this package; the message says what is wrong, and what is allowed."""
