@@ -9,10 +9,12 @@ from typing import Any
 
 import gymnasium as gym
 
+from sitl.view import library
 from sitl.worlds import World
 
+from .boxes import GoalConditioned
 from .options import unknown
-from .parts import GoalConditioned
+from .page.watchers import Directly, Watcher, opened
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
@@ -23,7 +25,8 @@ class Navigate(gym.Env[Any, Any]):
     """A robot that navigates by lidar.
 
     Args:
-        render_mode: "rgb_array", "human" or None.
+        render_mode: "rgb_array"; "human", the page in the browser where the extra ``view`` is installed, else a window;
+            "window"; or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
             randomise, latency, faults, info, and options of the robot's class.
 
@@ -43,7 +46,10 @@ class Navigate(gym.Env[Any, Any]):
         self.observation_space = session.observation_space
         self.action_space = session.action.space
         self.render_mode = render_mode
-        self._renderer = None if render_mode is None else Renderer(session.robot, session.task)
+        self._watcher: Watcher | None = None
+        self._is_on_page = render_mode == "human" and library.is_installed()
+        draws = render_mode is not None and not self._is_on_page
+        self._renderer = Renderer(session.robot, session.task) if draws else None
         self._is_begun = False
         self._bind()
 
@@ -90,7 +96,19 @@ class Navigate(gym.Env[Any, Any]):
         if self._renderer is not None:
             self._renderer.start()
             self._show()
+        if self._is_on_page and self._watcher is None:
+            self.watch(Directly(opened(self._session, self._title), self._session.seconds))
+        if self._watcher is not None:
+            self._watcher.started(0)
         return self._observation(), {}
+
+    def watch(self, watcher: Watcher) -> None:
+        """Let somebody look at all episodes and steps from the next reset on, until the environment is closed."""
+        self._watcher = watcher
+
+    @property
+    def _title(self) -> str:
+        return self.spec.id if self.spec is not None else f"{self.robot.name} in {self.world.name}"
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """See ``gymnasium.Env.step``. It is truncated only when the agent is not in charge of a vehicle at a connection
@@ -117,10 +135,12 @@ class Navigate(gym.Env[Any, Any]):
         if self._renderer is not None:
             self._renderer.note()
             self._show()
-        return self._observation(), float(session.rewards[0]), terminated, truncated, info
+        return self._observation(self._watcher), float(session.rewards[0]), terminated, truncated, info
 
-    def _observation(self) -> Any:
+    def _observation(self, watcher: Watcher | None = None) -> Any:
         rows = self._observe(self._session.robot)
+        if watcher is not None:
+            watcher.stepped(rows)
         if self._is_dict:
             return {name: value[0] for name, value in rows.items()}
         return rows[0]
@@ -153,8 +173,9 @@ class Navigate(gym.Env[Any, Any]):
         return self._observation()
 
     def render(self) -> Any:
-        """An image from above, shape (height, width, 3), uint8; None in "human" mode, where ``step`` draws into a
-        window."""
+        """An image from above, shape (height, width, 3), uint8; None in the other modes, where ``step`` shows it."""
+        if self._is_on_page:
+            return None
         if self._renderer is None:
             gym.logger.warn(
                 "render() without a render mode: make the environment with "
@@ -164,18 +185,21 @@ class Navigate(gym.Env[Any, Any]):
         return self._renderer.picture() if self.render_mode == "rgb_array" else self._renderer.show()
 
     def _show(self) -> None:
-        if self.render_mode == "human" and self._renderer is not None:
+        if self.render_mode in ("human", "window") and self._renderer is not None:
             self._renderer.show()
 
     def close(self) -> None:
-        """Close the window and the robot's connections; may be called twice."""
+        """Close the window or the page, and the robot's connections; may be called twice."""
+        if self._watcher is not None:
+            self._watcher.close()
+            self._watcher = None
         if self._renderer is not None:
             self._renderer.close()
         self._session.robot.close()
 
     def __getstate__(self) -> dict[str, Any]:
         bound = ("_check", "_actions", "_advance", "_observe", "_info", "_over")
-        return {name: value for name, value in vars(self).items() if name not in bound}
+        return {**{name: value for name, value in vars(self).items() if name not in bound}, "_watcher": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)

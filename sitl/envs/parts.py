@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
-import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
@@ -16,7 +15,7 @@ from .observations import Digits
 from .options import EnvOptionError, unknown
 from .pictures import PICTURES
 from .robots.robot import Robot
-from .senses import FAR, REPORTS, SENSES, TRUE, ReportingRobot, SensingRobot, reads_scan
+from .senses import FAR, REPORTS, SENSES, TRUE, TRUE_REPORTS, ReportingRobot, SensingRobot
 
 Narrow = npt.NDArray[np.float32]
 
@@ -25,6 +24,7 @@ class Surroundings(Protocol):
     """What parts look at besides the robot: see ``sitl.envs.session.Session``."""
 
     robot: Robot
+    seconds: float
     task: Any
     action: Any
     actions: npt.NDArray[Any]
@@ -125,20 +125,50 @@ class Told:
         out[:] = self._robot.reports[:, self._slice]
 
 
+class TrueReport:
+    """What a vehicle would tell by a message, as it really is: "true_acceleration", "true_battery", "true_wind"."""
+
+    reads_scan = False
+
+    def __init__(self, name: str) -> None:
+        self._name, self._report = name, TRUE_REPORTS[name]
+        self.columns, self.low, self.high = self._report.columns, self._report.low, self._report.high
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        robot = session.robot
+        if not isinstance(robot, ReportingRobot):
+            raise EnvOptionError(
+                f"observation {self._name!r}: robot {robot.name!r} has none; vehicles with an autopilot do"
+            )
+        self._robot, first = robot, self._report.first
+        self._slice = slice(first, first + len(self.columns))
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        out[:] = self._robot.true_reports()[:, self._slice]
+
+
 class Height:
-    """Height above the world's floor [m], as the robot believes."""
+    """Height above the world's floor [m], as the robot believes, or as it really is."""
 
     reads_scan = False
     columns = ("height [m]",)
     low, high = (-FAR,), (FAR,)
 
+    def __init__(self, is_true: bool = False) -> None:
+        self._is_true = is_true
+
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
-        self._robot = session.robot
+        self._robot: Any = session.robot
+        if self._is_true and not isinstance(session.robot, SensingRobot):
+            raise EnvOptionError(f"observation 'true_height': robot {session.robot.name!r} does not know it")
 
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
-        out[:, 0] = self._robot.pose[:, 2] - self._robot.world.floor_z
+        pose = self._robot.true_state() if self._is_true else self._robot.pose
+        out[:, 0] = pose[:, 2] - self._robot.world.floor_z
 
 
 class Readings:
@@ -247,7 +277,9 @@ PARTS: dict[str, Callable[[], Part]] = {
     **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
     "heading": Heading,
     **{name: lambda name=name: Told(name) for name in REPORTS},  # type: ignore[misc]
+    **{name: lambda name=name: TrueReport(name) for name in TRUE_REPORTS},  # type: ignore[misc]
     "height": Height,
+    "true_height": lambda: Height(is_true=True),
     "scan": Readings,
     "digits": DigitReadings,
     "last_action": LastAction,
@@ -258,90 +290,12 @@ PARTS: dict[str, Callable[[], Part]] = {
 """By name."""
 
 
-class Parts:
-    """One box of float32: the numbers of all parts, one after another.
-
-    Args:
-        parts: names (``PARTS``) or parts.
+def part_of(part: str | Part) -> Part:
+    """A part by its name, or the part itself.
 
     Raises:
         EnvOptionError: no such part.
     """
-
-    def __init__(self, parts: Sequence[str | Part]) -> None:
-        if not parts:
-            raise EnvOptionError(f"observation {list(parts)!r} has no parts; there are {', '.join(PARTS)}")
-        self.names = tuple(part if isinstance(part, str) else type(part).__name__ for part in parts)
-        self._parts: list[Part] = [_part(part) for part in parts]
-        self.reads_scan = any(reads_scan(part) for part in self._parts)
-
-    def prepare(self, session: Surroundings) -> None:
-        """Called once, when robot, action and task are there."""
-        for part in self._parts:
-            part.prepare(session)
-        self.columns = tuple(column for part in self._parts for column in part.columns)
-        """Name and unit of each number."""
-        ends = np.cumsum([0, *(len(part.columns) for part in self._parts)]).tolist()
-        self.slices = {name: slice(a, b) for name, a, b in zip(self.names, ends, ends[1:])}
-        """Where the numbers of each part are."""
-        self._low = np.array([bound for part in self._parts for bound in part.low], np.float32)
-        self._high = np.array([bound for part in self._parts for bound in part.high], np.float32)
-
-    def space(self, robot: Robot) -> gym.Space[Any]:
-        """See ``Observation``."""
-        return gym.spaces.Box(self._low, self._high, dtype=np.float32)
-
-    def observe(self, robot: Robot) -> Any:
-        """See ``Observation``."""
-        out = np.empty((robot.count, len(self.columns)), np.float32)
-        for part, where in zip(self._parts, self.slices.values()):
-            part.write(out[:, where])
-        return np.clip(out, self._low, self._high, out=out)
-
-
-class NamedParts(Parts):
-    """The same as a dict: an array of float32 for each part, by its name."""
-
-    def space(self, robot: Robot) -> gym.Space[Any]:
-        """See ``Observation``."""
-        boxes: dict[str, gym.Space[Any]] = {
-            name: gym.spaces.Box(self._low[at], self._high[at], dtype=np.float32) for name, at in self.slices.items()
-        }
-        return gym.spaces.Dict(boxes)
-
-    def observe(self, robot: Robot) -> Any:
-        """See ``Observation``."""
-        numbers = super().observe(robot)
-        return {name: numbers[:, where].copy() for name, where in self.slices.items()}
-
-
-class GoalConditioned(Parts):
-    """The same for goal-conditioned learning: a dict of "observation", "achieved_goal" (x, y, z of the robot [m]) and
-    "desired_goal" (of its target), as Gymnasium-Robotics has it; ``compute_reward`` of the environment tells what they
-    are worth. The task needs a target, and the parts should not tell it."""
-
-    def prepare(self, session: Surroundings) -> None:
-        """See ``Parts``."""
-        super().prepare(session)
-        if not hasattr(session.task, "compute_reward"):
-            raise EnvOptionError(f"observation: task {session.task!r} has no goal that counts alone")
-        self._task, self._robot = session.task, session.robot
-
-    def space(self, robot: Robot) -> gym.Space[Any]:
-        """See ``Observation``."""
-        place = gym.spaces.Box(-FAR, FAR, (3,), np.float32)
-        return gym.spaces.Dict({"observation": super().space(robot), "achieved_goal": place, "desired_goal": place})
-
-    def observe(self, robot: Robot) -> Any:
-        """See ``Observation``."""
-        return {
-            "observation": super().observe(robot),
-            "achieved_goal": self._task.achieved().astype(np.float32),
-            "desired_goal": self._task.targets.astype(np.float32),
-        }
-
-
-def _part(part: str | Part) -> Part:
     if isinstance(part, str):
         if part in PICTURES:
             raise EnvOptionError(

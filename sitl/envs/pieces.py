@@ -9,9 +9,10 @@ from typing import Any
 
 import gymnasium as gym
 
+from .boxes import NamedParts, Parts
 from .observations import Observation
 from .options import EnvOptionError, unknown
-from .parts import PARTS, NamedParts, Parts, Surroundings
+from .parts import PARTS, Surroundings
 from .pictures import PICTURES, Picture
 from .robots.robot import Robot
 from .senses import reads_scan
@@ -28,8 +29,8 @@ class Pieces:
         if not pieces:
             raise EnvOptionError("observation {} has no entries")
         self.pieces = {name: _piece(name, piece) for name, piece in pieces.items()}
-        self.pictures = tuple(p for piece in self.pieces.values() for p in getattr(piece, "pictures", ()))
-        """Those among them that are pictures."""
+        self.remembers = tuple(p for piece in self.pieces.values() for p in getattr(piece, "remembers", ()))
+        """What of them remembers the last steps."""
         self.reads_scan = any(reads_scan(piece) for piece in self.pieces.values())
 
     def prepare(self, session: Surroundings) -> None:

@@ -9,11 +9,12 @@ from typing import Any
 
 from . import paper
 from .actions import VELOCITY, Continuous, Normalised
+from .boxes import GoalConditioned
 from .ids import NEW
 from .navigate import Navigate
-from .parts import GoalConditioned
 from .session import DETAILS
 from .starts import Near
+from .targets.among import Among
 from .targets.gates import Gate, Gates
 from .targets.hold import Hold
 from .targets.landing import Land
@@ -25,16 +26,25 @@ from .tasks import Task
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
 ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
 AMONG = (*SEEN, "scan")
+INDOORS = (*AMONG, "pose", "heading")
 DRIVEN = ("goal", "velocity", "last_action")
 DRIVEN_ON_A_WAY = ("path", "velocity", "last_action")
 COPTER_MOVES = {
     "stay": (0.0, 0.0, 0.0, 0.0),
-    "forward": (1.5, 0.0, 0.0, 0.0),
-    "back": (-1.5, 0.0, 0.0, 0.0),
-    "left": (0.0, 1.5, 0.0, 0.0),
-    "right": (0.0, -1.5, 0.0, 0.0),
-    "up": (0.0, 0.0, 0.7, 0.0),
-    "down": (0.0, 0.0, -0.7, 0.0),
+    "forward": (3.0, 0.0, 0.0, 0.0),
+    "forward left": (3.0, 3.0, 0.0, 0.0),
+    "left": (0.0, 3.0, 0.0, 0.0),
+    "back left": (-3.0, 3.0, 0.0, 0.0),
+    "back": (-3.0, 0.0, 0.0, 0.0),
+    "back right": (-3.0, -3.0, 0.0, 0.0),
+    "right": (0.0, -3.0, 0.0, 0.0),
+    "forward right": (3.0, -3.0, 0.0, 0.0),
+    "slowly forward": (0.8, 0.0, 0.0, 0.0),
+    "slowly left": (0.0, 0.8, 0.0, 0.0),
+    "slowly back": (-0.8, 0.0, 0.0, 0.0),
+    "slowly right": (0.0, -0.8, 0.0, 0.0),
+    "up": (0.0, 0.0, 0.8, 0.0),
+    "down": (0.0, 0.0, -0.8, 0.0),
 }
 ROVER_MOVES = {
     "forward": (1.2, 0.0, 0.0, 0.0),
@@ -66,7 +76,12 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
 
 def _among(**others: Any) -> Task:
     """One place among solids; touching one is a crash."""
-    return Waypoints(1, reachable=True, apart=8.0, crash_reward=-20.0, **others)
+    return Among(crash_reward=-20.0, **others)
+
+
+def _slow() -> Normalised:
+    """Velocities of a copter among solids, which stops within what its lidar sees."""
+    return Normalised(Continuous(VELOCITY, (-2.0, -2.0, -1.0, -1.5), (2.0, 2.0, 1.0, 1.5)))
 
 
 WIND = {"wind_speed": (0.0, 5.0), "wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
@@ -88,12 +103,12 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-follow": lambda: _copter(Follow(), ON_A_WAY),
     "copter-land": lambda: _copter(Land()),
     "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_WAY),
-    "copter-forest": lambda: _copter(_among(), AMONG, world="forest:seed=1", take_off=1.5),
-    "copter-rooms": lambda: _copter(_among(), AMONG, world="rooms:seed=1", take_off=1.5),
+    "copter-forest": lambda: _copter(_among(ceiling=3.0), AMONG, world="forest:seed=1", take_off=1.5, action=_slow()),
+    "copter-rooms": lambda: _copter(_among(ceiling=3.0), INDOORS, world="rooms:seed=1", take_off=1.5, action=_slow()),
     "rover-waypoint": lambda: _rover(Waypoints(1)),
     "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
     "rover-labyrinth": lambda: _rover(
-        _among(crash_range=0.0), ("goal", "velocity", "last_action", "scan"), world="labyrinth:seed=1,size=60,scale=3"
+        _among(), (*DRIVEN, "scan", "pose", "heading"), world="labyrinth:seed=1,size=60,scale=3"
     ),
     "rover-slalom": lambda: _rover(
         Gates(crash_reward=-20.0), DRIVEN_ON_A_WAY, world="slalom:seed=1", start=Near((0.0, 0.0, 0.0), (1.0, 1.5, 0.4))

@@ -6,6 +6,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
+import numpy as np
+import numpy.typing as npt
+
 from .mavlink import reports
 from .robots.robot import Floats
 
@@ -46,6 +49,15 @@ REPORTS = {
     "range_finder": Report(("range below [m]",), (0.0,), (601.0,), reports.RANGE, "RANGEFINDER"),
 }  # fmt: skip
 """By name."""
+
+
+_WIND = REPORTS["wind"]
+TRUE_REPORTS = {
+    "true_acceleration": REPORTS["acceleration"]._replace(first=0, message=""),
+    "true_battery": REPORTS["battery"]._replace(first=3, message=""),
+    "true_wind": Report((*_WIND.columns, "wind up [m/s]"), 3 * (-_GALE,), 3 * (_GALE,), 6, ""),
+}
+"""By name; columns are those of ``ReportingRobot.true_reports``."""
 
 
 class Sense(NamedTuple):
@@ -95,13 +107,39 @@ class ReportingRobot(Protocol):
     """A robot that tells more when it is asked to: a vehicle with an autopilot."""
 
     reports: Floats
-    """What ``REPORTS`` says, shape (count, 9); zeros where it was not asked for."""
+    """What ``REPORTS`` says and whether it has landed (``mavlink.reports``), shape (count, 10); zeros where it was not
+    asked for."""
 
     def ask_for(self, message: str) -> None:
         """Let it send a message of MAVLink with each step; before the first reset.
 
         Raises:
             EnvOptionError: the robot does not have what the message tells.
+        """
+
+    def true_reports(self) -> Floats:
+        """What it would measure without errors, shape (count, 9): see ``robots.truth.write_true_reports``.
+
+        Raises:
+            EnvOptionError: nobody knows, of a vehicle in another process.
+        """
+
+
+@runtime_checkable
+class LandingRobot(ReportingRobot, Protocol):
+    """A robot that knows when it stands on the ground: a vehicle with an autopilot that flies."""
+
+    def has_landed(self) -> npt.NDArray[np.bool_]:
+        """Whether its autopilot says so, shape (count,).
+
+        False until it is asked for EXTENDED_SYS_STATE (``ask_for``).
+        """
+
+    def let_down(self, height: float) -> bool:
+        """Whether it is a vehicle that runs elsewhere, whose true height nobody knows; before the first ``reset``.
+
+        Such a one is put down level by its autopilot, instead of flown by the agent, as soon as it believes that it is
+        lower than ``height`` above the floor [m].
         """
 
 

@@ -26,7 +26,7 @@ from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
 from .options import COMMON, EnvOptionError, unknown
 from .parts import Part
-from .pictures import Film, Picture
+from .past import Film, Remembering
 from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
@@ -61,7 +61,7 @@ class Snapshot:
     action: Any = None
     """The episode's last action; None: there was none."""
     films: tuple[Film, ...] = ()
-    """Of the observation's pictures."""
+    """Of what the observation remembers: pictures, parts that are seen late."""
     fault: tuple[int, float] | None = None
     """Number and time of the episode's fault; None: there are no faults."""
 
@@ -172,7 +172,7 @@ class Session:
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
-        self._knows_truth = isinstance(self.robot, SensingRobot) and getattr(self.robot, "camera_mount", None)
+        self._knows_truth = isinstance(self.robot, SensingRobot) and getattr(self.robot, "knows_truth", False)
         self.task.prepare(self.robot)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
@@ -181,8 +181,8 @@ class Session:
         if prepare is not None:
             prepare(self)
         self.observation_space = self.observation.space(self.robot)
-        self.pictures: tuple[Picture, ...] = tuple(getattr(self.observation, "pictures", ()))
-        """What the observation has of pictures."""
+        self.remembers: tuple[Remembering, ...] = tuple(getattr(self.observation, "remembers", ()))
+        """Pieces of the observation that remember the last steps."""
         if isinstance(self.robot, AskedRobot):
             self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
             if self.robot.is_live:
@@ -260,12 +260,19 @@ class Session:
         if self.faults is not None:
             self.faults.begin(index, rng)
         self.task.start(index, self.robot, rng)
-        for picture in self.pictures:
-            picture.start(index, seed)
+        for k, piece in enumerate(self.remembers):
+            piece.start(index, seed + (k << 32))  # noise of its own
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Read the lidars of these robots (None: all) after ``reset``; ``rows`` has shape (count,)."""
         self.robot.look(rows)
+        self.begin(rows)
+
+    def begin(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
+        """What the observation remembers begins anew for these robots (None: all), whose lidars have been read after
+        ``reset``; ``look`` does this, too."""
+        for piece in self.remembers:
+            piece.begin(rows)
 
     def advance(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Advance these robots (None: all) by one step; fills ``rewards`` and ``terminated``, shapes (count,)."""
@@ -276,11 +283,11 @@ class Session:
             self.robot.advance(self.seconds, rows)
         else:
             self._advance_late(self.latency, rows)
-        for picture in self.pictures:
-            picture.note(rows)
         if "rewards" in self.details:
             self.step.terms = {}
         self.task.judge(self.step, self.rewards, self.terminated)
+        for piece in self.remembers:
+            piece.note(rows)
 
     def _advance_late(self, latency: Latency, rows: npt.NDArray[np.bool_] | None) -> None:
         latency.post(self.commands, rows)
@@ -316,7 +323,7 @@ class Session:
         return Snapshot(
             self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault,
             action=np.copy(self.actions[index]) if self.acted[index] else None,
-            films=tuple(picture.memory(index) for picture in self.pictures),
+            films=tuple(piece.memory(index) for piece in self.remembers),
         )  # fmt: skip
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
@@ -331,16 +338,17 @@ class Session:
             raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has a latency")
         if (snapshot.fault is None) != (self.faults is None):
             raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has faults")
-        if len(snapshot.films) != len(self.pictures):
-            raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has other pictures")
+        if len(snapshot.films) != len(self.remembers):
+            raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has other pictures or "
+                                 "parts that are seen late")  # fmt: skip
         self.task.recall(index, snapshot.task)
         self.robot.restore(index, snapshot.robot)
         if self.latency is not None and snapshot.late is not None:
             self.latency.recall(index, snapshot.late)
         if self.faults is not None and snapshot.fault is not None:
             self.faults.recall(index, snapshot.fault)
-        for picture, film in zip(self.pictures, snapshot.films):
-            picture.recall(index, film)
+        for piece, film in zip(self.remembers, snapshot.films):
+            piece.recall(index, film)
         self.acted[index] = snapshot.action is not None
         if snapshot.action is not None:
             self.actions[index] = snapshot.action

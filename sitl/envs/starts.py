@@ -67,9 +67,10 @@ class ReachableCells:
     Args:
         robot: robot whose world, start pose and volume are used.
         crash_range: a reading below it is a crash [m]; None: the robot's.
+        most: above so many cells, cells are made larger.
     """
 
-    def __init__(self, robot: Robot, crash_range: float | None = None) -> None:
+    def __init__(self, robot: Robot, crash_range: float | None = None, most: int = _MAX_CELLS) -> None:
         self._world, self._volume = robot.world, robot.volume
         crash_range = robot.crash_range if crash_range is None else crash_range
         self.margin = _MARGIN + max(crash_range - robot.volume.radius, 0.0)
@@ -78,15 +79,19 @@ class ReachableCells:
         self.z = start.position[2]
         x0, y0, x1, y1 = robot.world.bounds
         reach = robot.volume.radius + self.margin
-        self._low = np.array([x0 - reach, y0 - reach])
-        extent = np.array([x1 + reach, y1 + reach]) - self._low
+        self.low = np.array([x0 - reach, y0 - reach])
+        """x, y of the first cell's corner [m]."""
+        extent = np.array([x1 + reach, y1 + reach]) - self.low
         largest = 1.9 * reach  # even the thinnest wall makes a band of twice the reach that no middle of a cell is in
-        self.cell = max(CELL, min(math.sqrt(float(extent[0] * extent[1]) / _MAX_CELLS), largest))
+        self.cell = max(CELL, min(math.sqrt(float(extent[0] * extent[1]) / most), largest))
+        """Side of a cell [m]."""
         rows, columns = (math.ceil(length / self.cell) for length in extent.tolist())
+        self.shape = rows, columns
+        """Cells along x and y."""
         if rows * columns > _CELL_LIMIT:
             size = f"{extent[0]:.0f} x {extent[1]:.0f} m"
             raise EnvOptionError(f"random places in world {self._world.name!r}: {size} is too large; say where instead")
-        first = ((np.array(start.position[:2]) - self._low) / self.cell).astype(int).tolist()
+        first = ((np.array(start.position[:2]) - self.low) / self.cell).astype(int).tolist()
         free = self._free(rows, columns)
         self.cells = np.array(self._flood(first, free))
         """Indices of the cells along x and y, shape (n, 2)."""
@@ -96,7 +101,7 @@ class ReachableCells:
 
     def _free(self, rows: int, columns: int) -> npt.NDArray[np.int64]:
         out = np.empty((rows, columns), np.int64)
-        x, y = (self._low + 0.5 * self.cell).tolist()
+        x, y = (self.low + 0.5 * self.cell).tolist()
         north, east, down = to_ned(x, y, self.z)
         v = self._volume
         geometry = self._world.geometry
@@ -130,7 +135,7 @@ class ReachableCells:
         """A random reachable position: x, y [m] in the world frame."""
         while True:
             cell = self.cells[rng.integers(len(self.cells))]
-            x, y = (self._low + self.cell * (cell + rng.random(2))).tolist()
+            x, y = (self.low + self.cell * (cell + rng.random(2))).tolist()
             if self.is_free(x, y):
                 return x, y
 

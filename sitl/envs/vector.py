@@ -14,7 +14,10 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from sitl.view import library
+
 from .options import EnvOptionError, unknown
+from .page.watchers import Directly, Watcher, opened
 from .presets import options_of
 from .rendering import Renderer, tile
 from .robots.robot import Robot
@@ -22,7 +25,7 @@ from .session import NavigateOptions, Session, Snapshot
 from .sub_environment import OfSubEnvironments, row_of
 from .tasks import Task
 
-VECTOR_RENDER_MODES = ["rgb_array"]
+VECTOR_RENDER_MODES = ["rgb_array", "human"]
 Flags = npt.NDArray[np.bool_]
 
 
@@ -35,7 +38,7 @@ class NavigateVector(OfSubEnvironments):
     Args:
         num_envs: number of robots.
         max_episode_steps: number of steps after which an episode is truncated; None: never.
-        render_mode: "rgb_array" or None.
+        render_mode: "rgb_array"; "human", all robots on the page in the browser (extra ``view``); or None.
         autoreset_mode: when a robot whose episode has ended is reset: "NextStep", by the next ``step``, which ignores
             its action; "SameStep", by the step that ended the episode, whose last observation and info are then
             ``infos["final_obs"]`` and ``infos["final_info"]``; "Disabled", by ``reset`` only.
@@ -81,7 +84,11 @@ class NavigateVector(OfSubEnvironments):
         self._steps = np.zeros(num_envs, np.int64)
         self._ended, self._all = np.zeros(num_envs, np.bool_), np.ones(num_envs, np.bool_)
         self._over: Flags | None = getattr(session.robot, "over", None)
-        self._renderers = [Renderer(session.robot, session.task, i) for i in range(num_envs)] if render_mode else []
+        draws = render_mode == "rgb_array"
+        if render_mode == "human":
+            library.require()
+        self._watcher: Watcher | None = None
+        self._renderers = [Renderer(session.robot, session.task, i) for i in range(num_envs)] if draws else []
 
     @property
     def robot(self) -> Robot:
@@ -126,6 +133,9 @@ class NavigateVector(OfSubEnvironments):
         if len(seeds) != self.num_envs:
             raise ValueError(f"{len(seeds)} seeds for num_envs = {self.num_envs}")
         rows, poses = self._reset_mask(options), self._poses(options)
+        if self.render_mode == "human" and self._watcher is None:
+            name = self.spec.id if self.spec is not None else self.robot.name
+            self.watch(Directly(opened(self._session, f"{self.num_envs} of {name}"), self._session.seconds))
         for index in np.flatnonzero(rows).tolist():
             if seeds[index] is not None or self.generators[index] is None:
                 self.generators[index], self.seeds[index] = seeding.np_random(seeds[index])
@@ -158,6 +168,12 @@ class NavigateVector(OfSubEnvironments):
         self._session.reset(index, self.generator(index), options)
         if self._renderers:
             self._renderers[index].start()
+        if self._watcher is not None:
+            self._watcher.started(index)
+
+    def watch(self, watcher: Watcher) -> None:
+        """Let somebody look at all episodes and steps from now on, until the environment is closed."""
+        self._watcher = watcher
 
     # ------------------------------------------------------------------ steps
 
@@ -179,6 +195,7 @@ class NavigateVector(OfSubEnvironments):
         self._steps += 1
         rewards, terminated = session.rewards.copy(), session.terminated.copy()
         if again:
+            session.begin(ended)
             self._steps[ended], rewards[ended], terminated[ended] = 0, 0.0, False
         limit = self.max_episode_steps
         truncated = np.zeros(self.num_envs, np.bool_) if limit is None else self._steps >= limit
@@ -193,6 +210,8 @@ class NavigateVector(OfSubEnvironments):
             observations, infos = self._end_within(ended)
         else:
             observations, infos = self.observe(), self._infos(moved)
+        if self._watcher is not None:
+            self._watcher.stepped(observations)
         return observations, rewards, terminated, truncated, infos
 
     def _start_again(self, ended: Flags) -> None:
@@ -298,6 +317,10 @@ class NavigateVector(OfSubEnvironments):
 
     def close_extras(self, **kwargs: Any) -> None:
         """See ``gymnasium.vector.VectorEnv.close``."""
+        watcher = getattr(self, "_watcher", None)
+        if watcher is not None:
+            watcher.close()
+            self._watcher = None
         if hasattr(self, "_session"):  # older Gymnasiums close what was refused while it was made, too
             self._session.robot.close()
 

@@ -8,6 +8,7 @@ A solid is tested only for the pixels of the rectangle that its corners span in 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,21 @@ from ..core.algebra import conjugate, rotate
 from ..core.array_kernels import ByteLine, IntLine, Kernel, Line, NarrowLine, Table
 from ..core.kernels import inlined, law
 from ..core.vectors import Quat, Vec2, Vec3
-from .geometry import BOTTOM, COS, EAST, FLOOR, HALF_LENGTH, HALF_WIDTH, NORTH, RADIUS, SIN, TOP, Floats, Solids
+from .geometry import (
+    BOTTOM,
+    COS,
+    EAST,
+    FLOOR,
+    HALF_LENGTH,
+    HALF_WIDTH,
+    NORTH,
+    RADIUS,
+    SIN,
+    SOLID_FIGURES,
+    TOP,
+    Floats,
+    Solids,
+)
 from .planar import to_box, to_cylinder, to_floor
 from .raycast import face, ray, turn_rays
 from .shapes import Marking, to_heading, to_ned
@@ -262,6 +277,10 @@ def write_colours(solids: Solids, paint: Paint, places: Table, camera: Camera, r
 
 _depths = Kernel(write_depths)
 _colours = Kernel(write_colours)
+DISC = 5
+"""Numbers of an upright disc that moves about: north, east of its axis, radius, down coordinates of its top and of its
+bottom [m]."""
+DISC_COLOUR = "orange"
 
 
 class Photographer:
@@ -270,6 +289,8 @@ class Photographer:
     Args:
         world: what is seen.
         camera: of all.
+
+    Methods take ``discs``: what each camera sees besides, as other vehicles, shape (m, n, ``DISC``); None: nothing.
     """
 
     def __init__(self, world: World, camera: Camera) -> None:
@@ -282,17 +303,34 @@ class Photographer:
         rays = np.ascontiguousarray(np.stack([np.ones(u.size), u.ravel(), v.ravel()]))
         self._room = Room(rays, np.empty_like(rays), np.zeros(u.size), np.zeros(u.size, np.int64))
 
-    def depths(self, places: Floats) -> npt.NDArray[np.float32]:
+    def depths(self, places: Floats, discs: Floats | None = None) -> npt.NDArray[np.float32]:
         """Depths along the camera's axis [m], shape (m, height, width), of cameras at ``places`` (``write_depths``)."""
         out = np.empty((len(places), self.camera.height, self.camera.width), np.float32)
-        _depths(self._solids, places, self.camera, self._room, out.reshape(-1))
+        for some, solids, _ in self._looks(len(places), discs):
+            _depths(solids, places[some], self.camera, self._room, out[some].reshape(-1))
         return out
 
-    def colours(self, places: Floats) -> npt.NDArray[np.uint8]:
+    def colours(self, places: Floats, discs: Floats | None = None) -> npt.NDArray[np.uint8]:
         """Red, green, blue, shape (m, height, width, 3)."""
         out = np.empty((len(places), self.camera.height, self.camera.width, 3), np.uint8)
-        _colours(self._solids, self._paint, places, self.camera, self._room, out.reshape(-1))
+        for some, solids, paint in self._looks(len(places), discs):
+            _colours(solids, paint, places[some], self.camera, self._room, out[some].reshape(-1))
         return out
+
+    def _looks(self, count: int, discs: Floats | None) -> Iterator[tuple[slice, Solids, Paint]]:
+        """Which cameras see which solids."""
+        if discs is None or discs.shape[1] == 0:
+            yield slice(count), self._solids, self._paint
+            return
+        colour = np.tile(COLOURS[DISC_COLOUR], (discs.shape[1], 1))
+        fixed, coloured = np.asarray(self._solids.rows), np.asarray(self._paint.solids)
+        paint = self._paint._replace(solids=np.concatenate((coloured, colour)))
+        for i in range(count):
+            rows = np.zeros((discs.shape[1], SOLID_FIGURES))
+            rows[:, (NORTH, EAST, RADIUS, TOP, BOTTOM)] = discs[i]
+            rows[:, COS] = 1.0
+            solids = self._solids._replace(rows=np.concatenate((fixed, rows)))
+            yield slice(i, i + 1), solids, paint
 
 
 def paint_of(world: World) -> Paint:

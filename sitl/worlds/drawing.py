@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import MissingExtra
@@ -41,6 +42,16 @@ def summary(world: World) -> str:
     return "\n".join(lines)
 
 
+def check_installed() -> None:
+    """Check that pictures can be drawn.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    if find_spec("matplotlib") is None:
+        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'")
+
+
 def draw(world: World, path: str | Path, height: float | None = None) -> None:
     """Write the plan (PNG, SVG or PDF by the name's ending), cut at a height [m] (the world's own when None).
 
@@ -50,11 +61,10 @@ def draw(world: World, path: str | Path, height: float | None = None) -> None:
         MissingExtra: matplotlib is not installed.
         OSError: the picture cannot be written.
     """
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'") from None
+    check_installed()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(9, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
     plan(figure.add_subplot(), world, world.plan_height if height is None else height)

@@ -35,7 +35,7 @@ def test_picture_shows_walls_robot_and_trail():
 
 def test_window_works_without_a_screen(monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    env = gym.make(CIRCUIT2, render_mode="human")
+    env = gym.make(CIRCUIT2, render_mode="window")
     env.reset()
     env.step(0)
     assert env.render() is None
@@ -82,4 +82,14 @@ def test_places_and_gates_are_drawn_and_the_arena_is_in_the_picture(name):
     places = env.unwrapped.task.places[0, :, :2]
     box = env.unwrapped.task.arena
     assert (places >= box.low[:2]).all() and (places <= box.high[:2]).all() and max(picture.shape) == 640
+    env.close()
+
+
+@pytest.mark.parametrize("name", ["CopterRace", "RoverSlalom"])
+def test_a_whole_track_is_in_the_picture(name):
+    env = gym.make(f"sitl/{name}-v0", render_mode="rgb_array")
+    env.reset(seed=3)
+    green = (env.render() == (60, 150, 80)).all(axis=2)
+    edges = np.concatenate([green[:8].ravel(), green[-8:].ravel(), green[:, :8].ravel(), green[:, -8:].ravel()])
+    assert green.sum() > 100 and not edges.any()
     env.close()

@@ -5,15 +5,18 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
+from sitl.core.algebra import euler_of
 from sitl.envs import EnvOptionError, NotReadyError
 from sitl.envs.actions import ATTITUDE, POSITION, RATES, VELOCITY
 from sitl.envs.mavlink.guard import Guard, Watch, guard_of
+from sitl.envs.targets.landing import Land
 from tests.envs.test_reset_of_real_vehicles import COPTER, DISARM, REBOOT, RealVehicle, height, hovering
 
 BRAKE, LOITER = 17, 5
@@ -70,6 +73,70 @@ def test_return_flies_back_to_where_the_first_episode_began():
         assert math.dist(position(simulation), began) < 1.5
         env.close()
     assert not {DISARM, REBOOT} & vehicle.commands()
+
+
+def asked_lean(simulation):
+    """[deg]"""
+    lean = euler_of(simulation.v.autopilot.control.attitude.target_q)
+    return math.degrees(math.hypot(lean.roll, lean.pitch))
+
+
+def test_return_takes_off_from_the_ground_where_velocities_asked_for_have_wound_up_a_lean():
+    simulation = hovering()
+    with RealVehicle(simulation, hidden=False, waits=True) as vehicle:
+        env = environment(vehicle, reset="return", guard={"late": 60.0, "floor": -5.0}, wait=30.0)
+        env.reset(seed=1)
+        began = position(simulation)
+        for _ in range(400):
+            env.step(np.array([0.3, 0.0, -0.4, 0.0], np.float32))
+            if asked_lean(simulation) > 15.0 and position(simulation)[2] < 0.05:
+                break
+        arming = simulation.v.autopilot.arming
+        assert position(simulation)[2] < 0.05 and asked_lean(simulation) > 15.0 and not arming.landed
+        env.reset()
+        assert arming.armed and math.dist(position(simulation), began) < 1.5
+        env.close()
+    assert not {DISARM, REBOOT} & vehicle.commands()
+
+
+def test_a_height_that_has_drifted_is_right_again_after_the_copter_has_stood_on_the_ground():
+    simulation = hovering()
+    with RealVehicle(simulation, hidden=False, waits=True) as vehicle:
+        env = environment(vehicle, reset="return", guard={"late": 60.0, "floor": -5.0}, wait=30.0)
+        env.reset(seed=1)
+        vehicles = env.robot._vehicles
+        drifted = (*vehicles._origin[:2], vehicles._origin[2] - 0.6)  # as if it were higher by so much
+        vehicles._origin, env.robot._states[0] = drifted, replace(env.robot._states[0], origin=drifted)
+        env.step(STILL)
+        assert env.robot.pose[0, 2] - position(simulation)[2] == pytest.approx(0.6, abs=0.2)
+        for _ in range(400):
+            env.step(np.array([0.0, 0.0, -0.5, 0.0], np.float32))
+            if position(simulation)[2] < 0.05:
+                break
+        env.reset()
+        env.step(STILL)
+        assert env.robot.pose[0, 2] - position(simulation)[2] == pytest.approx(0.0, abs=0.2)
+        env.close()
+
+
+@pytest.mark.parametrize("error", [0.25, -0.25])
+def test_a_landing_ends_on_the_ground_whatever_the_error_of_the_height(error):
+    simulation = hovering()
+    with RealVehicle(simulation, hidden=False, waits=True) as vehicle:
+        env = environment(vehicle, task=Land(offset=0.0, pad=3.0), guard={"late": 60.0, "floor": -5.0})
+        env.reset(seed=1)
+        state = env.robot._states[0]
+        origin = (*state.origin[:2], state.origin[2] - error)
+        env.robot._vehicles._origin, env.robot._states[0] = origin, replace(state, origin=origin)
+        for _ in range(400):
+            down = -0.5 if env.robot.pose[0, 2] > 0.2 else 0.0  # an agent that does not insist
+            _, _, terminated, _, info = env.step(np.array([0.0, 0.0, down, 0.0], np.float32))
+            if terminated:
+                break
+        assert terminated and info["is_success"]
+        assert simulation.v.autopilot.arming.landed and position(simulation)[2] < 0.03
+        assert "put down" in [deed.what for deed in env.robot.watch.deeds]
+        env.close()
 
 
 def test_what_is_not_ready_is_waited_for_and_said():

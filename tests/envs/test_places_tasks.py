@@ -129,6 +129,42 @@ def test_landing_is_judged_by_where_the_copter_really_is():
     assert terminated and not info["is_success"] and total < 0.0
 
 
+@pytest.mark.parametrize("options", [{}, {"gcs": "udpout:127.0.0.1:9"}])
+def test_a_copter_that_is_asked_says_when_it_has_landed(options):
+    env = gym.make("sitl/CopterLand-v0", task=Land(offset=0.0), **options).unwrapped
+    env.reset(seed=1)
+    robot = env.robot
+    assert robot.has_landed().tolist() == [False]
+    robot.apply(VELOCITY, np.array([[0.0, 0.0, -1.0, 0.0]]))
+    for _ in range(200):
+        robot.advance(0.1)
+        if robot.has_landed()[0]:
+            break
+    assert robot.has_landed().tolist() == [True] and robot.true_state()[0, 2] < 0.05
+    assert robot.view(0).autopilot.arming.landed
+    env.reset(seed=2)
+    assert robot.has_landed().tolist() == [False]
+    env.close()
+
+
+def test_one_that_is_not_asked_does_not():
+    env = gym.make("sitl/CopterHover-v0").unwrapped
+    env.reset(seed=1)
+    env.robot.apply(VELOCITY, np.array([[0.0, 0.0, -1.0, 0.0]]))
+    for _ in range(200):
+        env.robot.advance(0.1)
+    assert env.robot.view(0).autopilot.arming.landed and env.robot.has_landed().tolist() == [False]
+
+
+def test_an_autopilot_that_says_that_it_has_landed_ends_a_landing(monkeypatch):
+    env = gym.make("sitl/CopterLand-v0", task=Land(offset=0.0, pad=2.0)).unwrapped
+    env.reset(seed=1)
+    assert not env.step(np.zeros(4, np.float32))[2]
+    monkeypatch.setattr(env.robot, "has_landed", lambda: np.array([True]))  # as where telemetry's height is wrong
+    _, _, terminated, _, info = env.step(np.zeros(4, np.float32))
+    assert terminated and info["is_success"]
+
+
 def test_leaving_the_arena_ends_an_episode():
     env = gym.make("sitl/CopterWaypoint-v0", task=Waypoints(reach=3.0))
     env.reset(seed=1)

@@ -120,8 +120,9 @@ def test_what_cannot_be_is_refused() -> None:
             SwarmEnv(**options)  # type: ignore[arg-type]
 
 
-def test_the_example_of_the_page_runs() -> None:
-    _, example = blocks(ROOT / "docs/swarm.md", "python")
+def test_the_examples_of_the_page_run() -> None:
+    _, example, sights = blocks(ROOT / "docs/swarm.md", "python")
+    exec(compile(sights, "docs/swarm.md", "exec"), {})
     scope: dict[str, Any] = {}
     exec(compile(example, "docs/swarm.md", "exec"), scope)
     assert not scope["env"].agents and set(scope["rewards"]) == set(scope["infos"]) != set()

@@ -74,7 +74,7 @@ class Deed(NamedTuple):
     time: float
     """Of the vehicle, since its boot [s]."""
     what: str
-    """"taken over", "limited" or "handed over"."""
+    """"taken over", "limited", "take-off", "put down" or "handed over"."""
     why: str
 
 

@@ -18,7 +18,8 @@ from typing import Any
 from sitl.client.connection import ACCEPTED, PROOF, TRIES, Connection
 from sitl.errors import NotASimulatorError, NotReadyError
 
-from .telemetry import ATTITUDE, GLOBAL, ORIGIN, POSITION, SCAN, SECTORS
+from .reports import LANDED
+from .telemetry import ATTITUDE, GLOBAL, LANDED_STATE, ORIGIN, POSITION, SCAN, SECTORS
 
 FORCE = 21196
 """Second parameter of arming: even in the air."""
@@ -236,6 +237,20 @@ def height_above_home(link: Connection) -> float:
                 return float(inbox.height)
             link.pause(0 if link.is_exact else _LOOK)
     raise NotReadyError(f"{link.name}: the vehicle does not send GLOBAL_POSITION_INT, so its height is not known")
+
+
+def has_landed(link: Connection) -> bool:
+    """Whether the vehicle says now that it is on the ground; False of one that does not say."""
+    told = link.inbox.reports
+    told[LANDED] = 0.0  # unknown
+    for _ in range(TRIES):
+        if link.command("REQUEST_MESSAGE", LANDED_STATE.id) != ACCEPTED:
+            return False
+        for _ in range(1 if link.is_exact else _ANSWER_LOOKS):
+            if told[LANDED] != 0.0:
+                return bool(link.inbox.landed)
+            link.pause(0 if link.is_exact else _LOOK)
+    return False
 
 
 def until(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a vehicle tells besides where it is: acceleration, battery, wind, range-finder. Asked for only where an
-observation needs it (``sitl.envs.senses.REPORTS``).
+"""What a vehicle tells besides where it is: acceleration, battery, wind, range-finder, whether it has landed. Asked for
+only where an observation (``sitl.envs.senses.REPORTS``) or a task needs it.
 
 The laws read one message each, from a record in the core or from a decoded message of ``sitl.bridge.dialect``.
 """
@@ -19,11 +19,11 @@ from sitl.core.array_kernels import Line, Table
 from sitl.core.kernels import law
 from sitl.core.memory import record_at
 
-ACCELERATION, BATTERY, WIND, RANGE = 0, 3, 6, 8
+ACCELERATION, BATTERY, WIND, RANGE, LANDED = 0, 3, 6, 8, 9
 """Columns of what is told: specific force forward, left, up [m/s^2]; voltage [V], current [A], share that is left
 [0, 1]; where the wind blows to, north and east here, forward and left in ``RobotArrays.reports`` [m/s]; range of the
-range-finder that looks down [m]."""
-REPORTED = 9
+range-finder that looks down [m]; MAV_LANDED_STATE."""
+REPORTED = 10
 """Number of these."""
 
 
@@ -34,7 +34,16 @@ class Wind(Message, name="WIND"):
     speed: float
 
 
+class LandedState(Message, name="EXTENDED_SYS_STATE"):
+    """MAV_LANDED_STATE: 0 unknown, 1 on the ground, 2 in the air, 3 taking off, 4 landing."""
+
+    landed_state: int
+
+
+ON_GROUND = 1
+"""MAV_LANDED_STATE_ON_GROUND"""
 IMU_, STATUS_, WIND_, RANGE_ = ScaledImu.kind.id, SysStatus.kind.id, Wind.kind.id, RangeFinder.kind.id
+LANDED_ = LandedState.kind.id
 _UNKNOWN = 65535
 """Voltage of SYS_STATUS when nothing measures it [mV]."""
 
@@ -70,6 +79,12 @@ def read_range(told: Line, m: RangeFinder) -> None:
 
 
 @law
+def read_landed(told: Line, m: LandedState) -> None:
+    """EXTENDED_SYS_STATE."""
+    told[LANDED] = float(m.landed_state)
+
+
+@law
 def read_report(told: Line, number: int, payload: int) -> None:
     """The message ``number`` whose payload is at an address; others are left alone."""
     if number == IMU_:
@@ -80,6 +95,8 @@ def read_report(told: Line, number: int, payload: int) -> None:
         read_wind(told, record_at(Wind, payload))
     elif number == RANGE_:
         read_range(told, record_at(RangeFinder, payload))
+    elif number == LANDED_:
+        read_landed(told, record_at(LandedState, payload))
 
 
 @law
@@ -92,7 +109,9 @@ def show_report(told: Line, heading: float, reports: Table, i: int) -> None:
     reports[i, WIND + 1] = told[WIND] * s - told[WIND + 1] * c
 
 
-_READERS: dict[int, Any] = {IMU_: read_imu, STATUS_: read_battery, WIND_: read_wind, RANGE_: read_range}
+_READERS: dict[int, Any] = {
+    IMU_: read_imu, STATUS_: read_battery, WIND_: read_wind, RANGE_: read_range, LANDED_: read_landed
+}  # fmt: skip
 
 
 def note_report(told: Any, kind: MessageType, payload: bytes) -> None:

@@ -15,11 +15,12 @@ from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
 from sitl.client.endpoint import AUTOPILOT, HEARTBEAT, TEXT, Inbox
 
-from .reports import REPORTED, note_report
+from .reports import LANDED, ON_GROUND, REPORTED, LandedState, note_report
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
 ORIGIN, GLOBAL = message("GPS_GLOBAL_ORIGIN"), message("GLOBAL_POSITION_INT")
+LANDED_STATE = LandedState.kind
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
@@ -84,6 +85,11 @@ class StepTelemetry(Inbox):
         """The vehicle's clock, by its last position and attitude: both are so new [ms]."""
         return int(min(self.position[0], self.attitude[0]))
 
+    @property
+    def landed(self) -> bool:
+        """Whether the vehicle has said last that it is on the ground (EXTENDED_SYS_STATE, where that was asked for)."""
+        return bool(self.reports[LANDED] == ON_GROUND)
+
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
         for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
@@ -139,6 +145,8 @@ class StepTelemetry(Inbox):
             self._sectors(fields)
         elif kind is GLOBAL:
             self.height = 0.001 * fields.relative_alt
+        elif kind is LANDED_STATE:
+            note_report(self.reports, kind, payload)
         elif kind is ORIGIN:
             self.origin = (fields.latitude, fields.longitude, fields.altitude)
         elif kind is TEXT and fields.text.startswith(HIT):

@@ -12,6 +12,8 @@ from typing import ClassVar
 from gymnasium import logger
 
 from sitl.client.connection import ACCEPTED, Connection, Lockstep, connect
+from sitl.core.algebra import quat_from_euler
+from sitl.core.vectors import Euler
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.vehicle.kinds import KINDS
 from sitl.worlds.shapes import from_ned, to_ned
@@ -23,13 +25,15 @@ from ..mavlink.preparation import (
     CUSTOM_MODE_ENABLED,
     NONE,
     RETURN,
+    has_landed,
     height_above_home,
     is_simulator,
     join,
     reboot,
     refusal,
 )
-from ..mavlink.setpoints import LOCAL, LOCAL_NED, PLACE_ONLY, VELOCITY_ONLY, YAWS_IGNORED
+from ..mavlink.reports import LANDED
+from ..mavlink.setpoints import ATTITUDE_ALONE, LOCAL, LOCAL_NED, PLACE_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
@@ -40,6 +44,11 @@ NEAR = 1.0
 """A vehicle that goes back is back at such a distance [m]."""
 _SINKING = 0.3
 """Speed at which a copter on the ground is to sink until it knows that it has landed [m/s]."""
+_SINKING_THRUST = 0.4
+"""The same as the thrust of an attitude: 0.5 is no climb, 0 the greatest speed of sinking."""
+_PAUSE_US, _PAUSES = 200_000, 5
+"""Wall time from one such set-point to the next, much less than GUID_TIMEOUT at four times real time, too [us]; number
+of them in a second."""
 Origin = tuple[float, float, float]
 
 
@@ -65,6 +74,9 @@ class SocketVehicles(Vehicles):
         self._height = 0.0
         """How high that was above its home [m]."""
         self._heard_ms = -1000
+        self._is_put_down = False
+        self._may_sink_level: bool | None = None
+        """Whether ``sink_level`` does what it says, once that is known."""
 
     @staticmethod
     def _mode_of(guard: Guard, setup: VehicleSetup) -> int:
@@ -90,8 +102,8 @@ class SocketVehicles(Vehicles):
                 f"{self.where}: the vehicle starts where it was started: all episodes begin at one pose; "
                 f"start={name!r} (sitl evaluate --option start={name}, which moves no starts)"
             )
-        self._pose = pose
-        link = self.links[0]
+        self._pose, self._is_put_down = pose, False
+        link, was_open = self.links[0], self.links[0] is not None
         if link is None:
             try:
                 link = connect(self._connection, self.setup.inbox(), self.options.patience, warn=logger.warn)
@@ -99,13 +111,15 @@ class SocketVehicles(Vehicles):
                 raise EnvOptionError(str(error)) from None
             link.inbox.scans_used = self.scans_used
             self.links[0] = link
-        else:
-            if self.watch is not None and self.watch.in_charge and link.inbox.mode == self.setup.kind.guided:
-                self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
-            link.is_simulator = is_simulator(link)
+        elif self.watch is not None and self.watch.in_charge and link.inbox.mode == self.setup.kind.guided:
+            self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
         if self.options.reset in (NONE, RETURN):
-            origin = self._joined(link, pose)
+            origin = self._joined(link, pose)  # at once: a copter that has landed disarms after DISARM_DELAY
+            if was_open:
+                link.is_simulator = is_simulator(link)
         else:
+            if was_open:
+                link.is_simulator = is_simulator(link)
             if not link.is_simulator and self.options.reset != BY_FORCE:
                 self.close()
                 raise refusal(link)
@@ -114,6 +128,8 @@ class SocketVehicles(Vehicles):
             if isinstance(link, Lockstep):
                 link.reseed(seed)
         self._guard(link, origin)
+        if self.lets_down:
+            self._sinks_level(link)
         return self.begun(0, origin)
 
     def _joined(self, link: Connection, pose: Pose) -> Origin:
@@ -135,15 +151,23 @@ class SocketVehicles(Vehicles):
         """A copter that has landed and is still armed takes off. Before it knows that it has landed, it refuses: until
         then it is to sink."""
         inbox = link.inbox
-        for _ in range(max(round(self.options.wait), 1)):
+        sinks_level = self._sinks_level(link)
+        for _ in range(_PAUSES * max(round(self.options.wait), 1)):
             if not inbox.armed or inbox.mode != self.setup.kind.guided:
                 return
-            if link.command("NAV_TAKEOFF", altitude=self._height) == ACCEPTED:
+            stands, down = has_landed(link), inbox.position[3]
+            may_stand = stands or inbox.reports[LANDED] == 0.0  # some do not say
+            if may_stand and link.command("NAV_TAKEOFF", altitude=self._height) == ACCEPTED:
+                if stands:
+                    self._stands(down)
                 if self.watch is not None:
                     self.watch.note(1e-3 * inbox.time_ms, "take-off", "it flies back")
                 break
-            self._stop(link, sinking=_SINKING)
-            link.pause(1_000_000)
+            if sinks_level:
+                self.sink_level(link)
+            else:
+                self._stop(link, sinking=_SINKING)
+            link.pause(_PAUSE_US)
         for _ in range(max(round(self.options.wait), 1)):
             if height_above_home(link) > self._height - NEAR:
                 return
@@ -155,21 +179,59 @@ class SocketVehicles(Vehicles):
         fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "vx": 0, "vy": 0, "vz": sinking}
         link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=link.inbox.system, **fields))
 
+    def _stands(self, down: float) -> None:
+        """The vehicle is on the floor and believes that it is at ``down`` [m]: its height, which drifts with the air
+        pressure by decimetres in minutes, counts from there from now on."""
+        if self._origin is None or self._pose is None:
+            return
+        floor = to_ned(*self._pose[:3])[2]
+        self._origin = (*self._origin[:2], floor - down)
+        self._first = (*self._first[:2], down - self._height)
+
+    def _sinks_level(self, link: Connection) -> bool:
+        """Whether thrust is a climb rate to the vehicle; where it is a thrust, ``sink_level`` would be a fall."""
+        if self._may_sink_level is None:
+            name, bit = self.setup.kind.parameters["thrust"]
+            self._may_sink_level = not int(link.parameter(name) or 0) & bit
+        return self._may_sink_level
+
+    def puts_down(self, height: float) -> bool:
+        """Whether the vehicle, at this height above the floor [m], is put down from now on instead of flown."""
+        link = self.links[0]
+        assert link is not None
+        if not self._is_put_down and height < self.lets_down and self._may_sink_level:
+            self._is_put_down = True
+            if self.watch is not None:
+                self.watch.note(1e-3 * link.inbox.time_ms, "put down", f"at a height of {height:.2f} m")
+        return self._is_put_down
+
+    def sink_level(self, link: Connection) -> None:
+        """Ask for no lean and for sinking, in GUIDED.
+
+        An autopilot that is asked for velocities on the ground cannot have them, and its integrators ask for ever more
+        lean. With that it does not know that it has landed (more than 15 degrees speak for flight), refuses to take
+        off, and after some seconds thinks that it has crashed.
+        """
+        inbox = link.inbox
+        level = quat_from_euler(Euler(0.0, 0.0, inbox.attitude[3]))
+        fields = {"type_mask": ATTITUDE_ALONE, "q": level, "thrust": _SINKING_THRUST}
+        link.endpoint.send_payload(TARGET, TARGET.payload(target_system=inbox.system, target_component=1, **fields))
+
     def _go_back(self, link: Connection) -> None:
-        """In GUIDED, if the vehicle still is."""
-        inbox, place = link.inbox, self._first
+        """In GUIDED, if the vehicle still is; of one that is not, or is disarmed, ``join`` says so."""
+        inbox = link.inbox
         if not inbox.armed or inbox.mode != self.setup.kind.guided:
             return
-        if self.setup.kind.takes_off and height_above_home(link) < AIRBORNE:
+        if self.setup.kind.takes_off and (has_landed(link) or height_above_home(link) < AIRBORNE):
             self._lift_off(link)
-        x, y, z = place
+        x, y, z = place = self._first
         mask = PLACE_ONLY | YAWS_IGNORED
         for _ in range(max(round(self.options.wait), 1)):
             fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
             link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=inbox.system, **fields))
             link.pause(1_000_000)
             away = math.dist(inbox.position[1:4], place)
-            if away < NEAR or inbox.mode != self.setup.kind.guided:
+            if away < NEAR or not inbox.armed or inbox.mode != self.setup.kind.guided:
                 return
         raise NotReadyError(f"{link.name}: the vehicle is still {away:.1f} m away from where the first episode began")
 

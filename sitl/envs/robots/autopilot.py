@@ -33,9 +33,9 @@ from sitl.worlds.shapes import from_heading, from_ned
 
 from ..actions import MOTORS, Action, Continuous, Setpoint
 from ..mavlink.compiled import robot_arrays
-from ..mavlink.guard import Watch
+from ..mavlink.guard import GUARDED, Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
-from ..mavlink.reports import show_report
+from ..mavlink.reports import LANDED, ON_GROUND, show_report
 from ..options import COMMON, EnvOptionError, unknown
 from .at_connection import SocketVehicles
 from .foreign import ForeignVehicles
@@ -44,6 +44,7 @@ from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
 from .moves import BEGINS
 from .robot import Floats, Pose
+from .truth import TRUE_REPORT
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
 
 _TRIES = 20
@@ -108,7 +109,7 @@ class AutopilotRobot:
         arrays: Any = robot_arrays(count, readings)
         self.scan, self.state, self.collided, self.time, self._began_us, self.reports = arrays
         self.pose, self.velocity = self.state[:, :4], self.state[:, 4:8]
-        self._truth = np.zeros_like(self.state)
+        self._truth, self._true_reports = np.zeros_like(self.state), np.zeros((count, TRUE_REPORT))
         self._setup = setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
         is_driven = isinstance(made, FleetVehicles) and kind.drive is not None
@@ -260,8 +261,9 @@ class AutopilotRobot:
         if wait_us < us:
             if watch is not None:
                 row = watch.limited(setpoint, row, self.pose[index].tolist(), 1e-3 * inbox.time_ms)
-            kind, payload = self.kind.encode[setpoint.name](row, inbox, now.origin)
-            link.endpoint.send_payload(kind, payload)
+            if not self._puts_down(index, link):
+                kind, payload = self.kind.encode[setpoint.name](row, inbox, now.origin)
+                link.endpoint.send_payload(kind, payload)
             link.run(us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
@@ -338,10 +340,43 @@ class AutopilotRobot:
         self._vehicles.true_states(self._base_along, self._truth)
         return self._truth
 
+    def has_landed(self) -> npt.NDArray[np.bool_]:
+        """See ``sitl.envs.senses.LandingRobot``."""
+        landed: npt.NDArray[np.bool_] = self.reports[:, LANDED] == ON_GROUND
+        return landed
+
+    def let_down(self, height: float) -> bool:
+        """See ``sitl.envs.senses.LandingRobot``."""
+        if self._vehicles.simulates:
+            return False
+        self._vehicles.lets_down = height
+        return True
+
+    def _puts_down(self, index: int, link: Connection) -> bool:
+        """Whether the vehicle gets the set-point of ``let_down`` in place of the agent's."""
+        vehicles = self._vehicles
+        if vehicles.lets_down <= 0.0 or not isinstance(vehicles, SocketVehicles) or self._setpoint not in GUARDED:
+            return False
+        if not vehicles.puts_down(float(self.pose[index, 2] - self.world.floor_z)):
+            return False
+        vehicles.sink_level(link)
+        return True
+
+    def true_reports(self) -> Floats:
+        """See ``sitl.envs.senses.ReportingRobot``; the array is written anew by each call."""
+        self._vehicles.true_reports(self._true_reports)
+        return self._true_reports
+
+    @property
+    def knows_truth(self) -> bool:
+        """Whether ``true_state`` and ``true_reports`` are known: the physics is in this process."""
+        return self._vehicles.simulates
+
     @property
     def camera_mount(self) -> tuple[float, float, float, float] | None:
         """Where a camera is unless told otherwise: forward, left, up of the body's origin [m], as the lidar; and how
-        far the robot's base lies ahead of that origin [m]. None: nobody knows where the vehicle really is."""
+        far the robot's base lies ahead of that origin [m]. None: a vehicle in another process, or with a foreign
+        autopilot, has none."""
         if not self._vehicles.has_snapshots:
             return None
         forward, right, down = self.airframe.value("lidar_at")

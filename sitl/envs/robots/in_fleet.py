@@ -61,7 +61,7 @@ from ..options import EnvOptionError
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
-from .truth import true_states
+from .truth import true_reports, true_states
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
@@ -131,7 +131,8 @@ class FleetVehicles(InProcessVehicles):
         origins: Any = Origins(self._origins, *fleet.clocks)
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
         self._ranges = fleet.records["sensors"]["lidar_ranges"]
-        self._bodies = fleet.records["physics"]["body"]
+        self._physics = fleet.records["physics"]
+        self._bodies = self._physics["body"]
 
     # ------------------------------------------------------------------ episodes
 
@@ -319,6 +320,9 @@ class FleetVehicles(InProcessVehicles):
 
     def true_states(self, ahead: float, out: Floats) -> None:
         true_states(self._bodies, ahead, out)
+
+    def true_reports(self, out: Floats) -> None:
+        true_reports(self._physics, out)
 
     def photograph(self, index: int, width: int, height: int) -> Any:
         return None

@@ -99,6 +99,9 @@ class Turtlebot:
         """See ``sitl.envs.senses.SensingRobot``."""
         return self.state
 
+    knows_truth = True
+    """See ``AutopilotRobot.knows_truth``."""
+
     @property
     def camera_mount(self) -> tuple[float, float, float, float]:
         """See ``AutopilotRobot.camera_mount``."""

@@ -28,7 +28,7 @@ from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
-from .truth import true_states
+from .truth import true_reports, true_states
 
 INPROCESS = "inprocess"
 _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
@@ -148,7 +148,7 @@ class Vehicles(ABC):
     """
 
     simulates: ClassVar[bool] = True
-    """Whether the physics is ours, so that figures can be changed."""
+    """Whether the physics is in this process, so that figures can be changed and the truth is known."""
     has_snapshots: ClassVar[bool] = False
     takes_threads: ClassVar[bool] = False
     min_step: ClassVar[float] = 0.005
@@ -173,6 +173,8 @@ class Vehicles(ABC):
         """The guard of a vehicle that runs elsewhere."""
         self.scans_used = True
         """Whether anything reads the lidars."""
+        self.lets_down = 0.0
+        """Height below which a vehicle that runs elsewhere is put down; 0: it is not [m]."""
         self.base: Pose | None = None
         """Where a vehicle is prepared that is moved to other starts; None: at the world's start pose."""
 
@@ -230,15 +232,38 @@ class Vehicles(ABC):
         return self.simulation(index).v
 
     def true_states(self, ahead: float, out: Floats) -> None:
-        """Write where the vehicles really are: see ``truth.write_truth``.
+        """Write where the vehicles really are: see ``truth.write_truth``. Rows of vehicles without an episode may be
+        left alone.
 
         Raises:
-            EnvOptionError: a vehicle is in another process.
+            EnvOptionError: the physics of a vehicle is in another process.
         """
         for index in range(self.setup.count):
-            simulation = self.simulation(index)
-            body = simulation.fleet[simulation.index : simulation.index + 1]["physics"]["body"]
-            true_states(body, ahead, out[index : index + 1])
+            physics = self.physics(index)
+            if physics is not None:
+                true_states(physics["body"], ahead, out[index : index + 1])
+
+    def true_reports(self, out: Floats) -> None:
+        """Write what the vehicles would measure without errors: see ``truth.write_true_reports``. Rows of vehicles
+        without an episode may be left alone.
+
+        Raises:
+            EnvOptionError: the physics of a vehicle is in another process.
+        """
+        for index in range(self.setup.count):
+            physics = self.physics(index)
+            if physics is not None:
+                true_reports(physics, out[index : index + 1])
+
+    def physics(self, index: int) -> Any:
+        """The physics of one vehicle (``sitl.physics.native.records.Physics``), to be read only: an array of one
+        record; None before it is needed.
+
+        Raises:
+            EnvOptionError: it is in another process.
+        """
+        simulation = self.simulation(index)
+        return simulation.fleet[simulation.index : simulation.index + 1]["physics"]
 
     def fail(self, index: int, failure: Failure) -> None:
         """Let something fail in one vehicle; times count from the beginning of its next step."""

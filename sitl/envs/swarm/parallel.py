@@ -21,6 +21,7 @@ from ...client.swarm import clients_of
 from ...errors import MissingExtra
 from ...swarm import Swarm, SwarmSnapshot
 from ..options import EnvOptionError
+from .sight import SCAN_MESSAGE, Sight
 from .tasks import HEIGHT, TASKS, Floats, Scene, Task
 
 try:
@@ -31,7 +32,7 @@ except ImportError:
 Narrow = npt.NDArray[np.float32]
 VELOCITY_ONLY = {True: 0x5C7, False: 0xDC7}
 """Type masks: what flies keeps its heading, a rover turns to where it is to go."""
-TELEMETRY, TELEMETRY_HZ = "GLOBAL_POSITION_INT", 20
+TELEMETRY, TELEMETRY_HZ, SCAN_HZ = "GLOBAL_POSITION_INT", 20, 10
 FASTEST = {True: (3.0, 3.0, 1.5), False: (2.0, 2.0)}
 """North, east and, of what flies, up [m/s] of an action of 1."""
 FAR, SPEEDY = 100.0, 20.0
@@ -52,6 +53,9 @@ class SwarmEnv(ParallelEnv):
         count: number of vehicles; None: the task's own.
         step: simulated time of a step [s], whole ticks of 2.5 ms.
         steps: after which episodes are truncated.
+        observation: "state", as above; "scan" (of the lidar [m], the last one of 10 a second), "depth", "camera",
+            "grey" (``sitl.envs.pictures``); names joined by "+", or a dict of names and pictures, give a dict. Scans
+            and pictures show the other vehicles, too.
         options: as of ``sitl.Swarm``: params (wind), world, home ....
 
     Raises:
@@ -65,6 +69,7 @@ class SwarmEnv(ParallelEnv):
         *,
         step: float = 0.2,
         steps: int = 200,
+        observation: Any = "state",
         **options: Any,
     ) -> None:
         if isinstance(task, str):
@@ -76,7 +81,7 @@ class SwarmEnv(ParallelEnv):
         assert not isinstance(task, str)
         if not (step > 0.0 and round(step * 400) == step * 400):
             raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
-        self._given = {"step": step, "steps": steps, **options}
+        self._given = {"step": step, "steps": steps, "observation": observation, **options}
         self.task, self.step_us, self.steps = task, round(step * 1e6), steps
         self.metadata = {"name": "sitl_swarm_v0", "render_modes": [], "is_parallelizable": True}
         self.render_mode = None
@@ -90,13 +95,18 @@ class SwarmEnv(ParallelEnv):
         n = len(kinds)
         high = np.array([SPEEDY] * 3 + [FAR] * 3 + ([FAR] * 3 + [SPEEDY] * 3) * (n - 1), np.float32)
         self._observation_space = gym.spaces.Box(-high, high)
+        try:
+            self._sight = Sight(observation, self.swarm, step, self._observation_space)
+        except EnvOptionError:
+            self.swarm.close()
+            raise
         self._ready: SwarmSnapshot | None = None
         self._rng = np.random.default_rng()
 
     @functools.cache  # noqa: B019 - the interface wants the same object each time
-    def observation_space(self, agent: str) -> gym.spaces.Box:
+    def observation_space(self, agent: str) -> gym.Space[Any]:
         """Of an agent."""
-        return gym.spaces.Box(self._observation_space.low, self._observation_space.high)
+        return self._sight.space(self._number[agent])
 
     @functools.cache  # noqa: B019
     def action_space(self, agent: str) -> gym.spaces.Box:
@@ -107,7 +117,7 @@ class SwarmEnv(ParallelEnv):
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, Narrow], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         """Begin an episode: copters hover at 5 m over their starts, rovers stand on theirs, all in GUIDED.
 
         Args:
@@ -130,6 +140,7 @@ class SwarmEnv(ParallelEnv):
         self._listen()
         self.task.begin(self._true_places(), self._rng)
         goals = self.task.goals(self._true_places(), 0.0)
+        self._sight.start(noise)
         return self._observe(goals), {agent: {} for agent in self.agents}
 
     def _prepared(self) -> SwarmSnapshot:
@@ -147,12 +158,14 @@ class SwarmEnv(ParallelEnv):
         for client in clients:
             for name in RATES_HZ:
                 client.set_rate(name, TELEMETRY_HZ if name == TELEMETRY else 1)
+            if self._sight.reads_scan:
+                client.set_rate(SCAN_MESSAGE, SCAN_HZ)
         self.swarm.advance(5.0)
         return self.swarm.snapshot()
 
     def step(
         self, actions: dict[str, Narrow]
-    ) -> tuple[dict[str, Narrow], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
         """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives."""
         acting = self.agents
         before = self._true_places()
@@ -169,6 +182,7 @@ class SwarmEnv(ParallelEnv):
         was_hit = hits > self._hits
         self._hits = hits
         too_long = self._count >= self.steps
+        self._sight.note()
         observations = self._observe(goals)
         numbers = {agent: self._number[agent] for agent in acting}
         terminations = {agent: bool(over or was_hit[k]) for agent, k in numbers.items()}
@@ -204,6 +218,8 @@ class SwarmEnv(ParallelEnv):
                     north = (m.lat * 1e-7 - lat0) * metres
                     east = (m.lon * 1e-7 - lon0) * metres * math.cos(math.radians(lat0))
                     self._told[k] = north, east, alt0 - m.alt * 1e-3, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01
+                elif name == SCAN_MESSAGE:
+                    self._sight.hear(k, m)
 
     def _true_places(self) -> Floats:
         return np.array([tuple(vehicle.v.physics.body.pos) for vehicle in self.swarm.vehicles])
@@ -211,14 +227,14 @@ class SwarmEnv(ParallelEnv):
     def _hit_counts(self) -> npt.NDArray[np.int64]:
         return np.array([vehicle.v.physics.obstacles.hit_count for vehicle in self.swarm.vehicles])
 
-    def _observe(self, goals: Floats) -> dict[str, Narrow]:
+    def _observe(self, goals: Floats) -> dict[str, Any]:
         told = self._told
         found = {}
         for agent, k in self._number.items():
             others = np.delete(told - told[k], k, axis=0).ravel()
             row = np.concatenate((told[k, 3:], goals[k] - told[k, :3], others)).astype(np.float32)
             space = self._observation_space
-            found[agent] = np.clip(row, space.low, space.high)
+            found[agent] = self._sight.observe(k, np.clip(row, space.low, space.high))
         return found
 
     # ------------------------------------------------------------------ copies
@@ -228,7 +244,10 @@ class SwarmEnv(ParallelEnv):
         begun = self._ready is not None
         return {
             "task": self.task, "given": self._given, "rng": self._rng, "agents": self.agents,
-            "begun": (self.swarm.snapshot(), self._told, self._count, self._hits, [end.sequence for end in self._ends])
+            "begun": (
+                self.swarm.snapshot(), self._told, self._count, self._hits, [end.sequence for end in self._ends],
+                self._sight.memory(),
+            )
             if begun
             else None,
         }  # fmt: skip
@@ -238,8 +257,9 @@ class SwarmEnv(ParallelEnv):
         self._rng, self.agents = state["rng"], list(state["agents"])
         if state["begun"] is not None:
             self._ready = self._prepared()  # it is the same each time
-            now, told, self._count, self._hits, sequences = state["begun"]
+            now, told, self._count, self._hits, sequences, seen = state["begun"]
             self.swarm.restore(now)
+            self._sight.recall(seen)
             self._told = told.copy()
             for endpoint, sequence in zip(self._ends, sequences, strict=True):
                 endpoint.link.receive()

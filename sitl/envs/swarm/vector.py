@@ -10,10 +10,11 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space
+from gymnasium.vector.utils import batch_space, create_empty_array
 
 from ..options import EnvOptionError
-from .parallel import Narrow, SwarmEnv
+from ..sub_environment import row_of
+from .parallel import SwarmEnv
 from .tasks import Task
 
 Flags = npt.NDArray[np.bool_]
@@ -66,11 +67,14 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         """Names of the agents of each swarm."""
         self._widths = [first.action_space(agent).shape[0] for agent in agents]
         self.num_envs = swarms * len(agents)
-        self.single_observation_space = first.observation_space(agents[0])
+        self.single_observation_space = space = first.observation_space(agents[0])
+        if any(first.observation_space(agent) != space for agent in agents):
+            self.close_extras()
+            raise EnvOptionError(f"task {task!r}: agents do not observe the same, as rows of a vector do")
         self.single_action_space = gym.spaces.Box(-1.0, 1.0, (max(self._widths),), np.float32)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
-        self._seen = np.zeros(self.observation_space.shape or (), np.float32)
+        self._seen: Any = create_empty_array(self.single_observation_space, self.num_envs)
 
     @property
     def envs(self) -> list[Agent]:
@@ -79,7 +83,7 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
 
     def reset(  # type: ignore[override]
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Narrow, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Begin an episode of all swarms.
 
         Args:
@@ -99,16 +103,20 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         for k, (swarm, its_seed) in enumerate(zip(self.swarms, seeds, strict=True)):
             observations, _ = swarm.reset(seed=its_seed)
             self._see(k, observations)
-        return self._seen.copy(), {}
+        return _copy(self._seen), {}
 
-    def _see(self, k: int, observations: dict[str, Narrow]) -> None:
-        first = k * len(self.agents)
-        for row, agent in enumerate(self.agents, first):
-            self._seen[row] = observations[agent]
+    def _see(self, k: int, observations: dict[str, Any]) -> None:
+        for row, agent in enumerate(self.agents, k * len(self.agents)):
+            seen = observations[agent]
+            if isinstance(seen, dict):
+                for name, value in seen.items():
+                    self._seen[name][row] = value
+            else:
+                self._seen[row] = seen
 
     def step(
         self, actions: npt.NDArray[Any]
-    ) -> tuple[Narrow, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
+    ) -> tuple[Any, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """Velocities of all agents for a step: see ``gymnasium.vector.VectorEnv.step``.
 
         Args:
@@ -144,13 +152,13 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         ended = terminated | truncated
         return self._seen_after(ended), rewards, terminated, truncated, self._infos(told, ended)
 
-    def _seen_after(self, ended: Flags) -> Narrow:
+    def _seen_after(self, ended: Flags) -> Any:
         """Observations, of the next episode where one has ended; keeps the last ones of those."""
-        self._last = self._seen.copy()
+        self._last = _copy(self._seen)
         for k in np.flatnonzero(ended[:: len(self.agents)]).tolist():
             observations, _ = self.swarms[k].reset()
             self._see(k, observations)
-        return self._seen.copy()
+        return _copy(self._seen)
 
     def _infos(self, told: dict[str, Any], ended: Flags) -> dict[str, Any]:
         """In Gymnasium's form of "SameStep": what the last step of an episode told is in "final_info"."""
@@ -158,7 +166,7 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         if ended.any():
             last = np.full(self.num_envs, None, object)
             for row in np.flatnonzero(ended).tolist():
-                last[row] = self._last[row]
+                last[row] = row_of(self._last, row)
             final = _masked(told, ended)
             infos |= {"final_obs": last, "_final_obs": ended, "final_info": final, "_final_info": ended.copy()}
         return infos
@@ -167,6 +175,10 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
         """Let go of all vehicles."""
         for swarm in self.swarms:
             swarm.close()
+
+
+def _copy(seen: Any) -> Any:
+    return {name: values.copy() for name, values in seen.items()} if isinstance(seen, dict) else seen.copy()
 
 
 def _masked(told: dict[str, Any], rows: Flags) -> dict[str, Any]:

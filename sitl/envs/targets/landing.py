@@ -12,13 +12,19 @@ import numpy.typing as npt
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from ..senses import SensingRobot
+from ..senses import LandingRobot, SensingRobot
 from .moving import MovingTask
 
 SLOW, GENTLE = 0.5, 1.0
 """Greatest horizontal speed relative to the pad, and speed of sinking, of a landing that is success [m/s]."""
 DOWN = 0.12
-"""The robot has touched down when its base is so little above the floor [m]."""
+"""The robot has touched down when its base is so little above the floor [m], or when its autopilot says so."""
+LET_DOWN = 0.35
+"""Height below which a vehicle that runs elsewhere is put down by its autopilot [m].
+
+Its own idea of its height is wrong by decimetres: an agent that has learnt to touch down does so above the ground, or
+stands on it and goes on flying.
+"""
 
 
 class Land(MovingTask):
@@ -27,7 +33,9 @@ class Land(MovingTask):
     The pad is a beacon that the robot sees: "goal" and "path" are the true way to it, and the landing is judged by
     where the robot really is. Each step pays what it has come nearer [m] times ``progress``; touching the floor ends
     the episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking
-    slower than 1 m/s; else with ``crash_reward``.
+    slower than 1 m/s; else with ``crash_reward``. Of a vehicle that runs elsewhere nobody knows the true height: on a
+    pad that stands still its autopilot puts it down from 0.35 m on, and the episode ends when it says that it has
+    landed (EXTENDED_SYS_STATE).
 
     Args:
         offset: the pad is drawn so far from the start, horizontally [m].
@@ -65,7 +73,12 @@ class Land(MovingTask):
         super().prepare(robot)
         if not self.flies:
             raise EnvOptionError(f"task: robot {robot.name!r} does not fly, so it cannot land")
+        if not isinstance(robot, LandingRobot):
+            raise EnvOptionError(f"task: robot {robot.name!r} does not say when it has landed")
+        robot.ask_for("EXTENDED_SYS_STATE")
         self._sensing: SensingRobot = robot
+        self._landing: LandingRobot = robot
+        self._lets_down = self.speed == 0.0 and robot.let_down(LET_DOWN)
         self._limits = self._limits._replace(low=(*self._limits.low[:2], -math.inf))
         self._velocity = np.zeros((robot.count, 3))
         """Of each robot's pad at first [m/s]."""
@@ -101,7 +114,9 @@ class Land(MovingTask):
         gain, spent = self.progress * (self._distance - distance), self.each_second * step.seconds
         rewards += gain + spent
         self._distance = distance
-        down = (state[:, 2] - step.robot.world.floor_z < DOWN) & ~terminated
+        height = state[:, 2] - step.robot.world.floor_z
+        touches = (height < DOWN) & (not self._lets_down)
+        down = (touches | self._landing.has_landed()) & ~terminated
         turned = np.where(time % 20.0 < 10.0, 1.0, -1.0)[:, None]
         c, s = np.cos(state[:, 3]), np.sin(state[:, 3])
         east = np.stack([state[:, 4] * c - state[:, 5] * s, state[:, 4] * s + state[:, 5] * c], axis=1)
@@ -113,7 +128,8 @@ class Land(MovingTask):
         landing = self.success_reward * self.success + self.crash_reward * (down & ~self.success)
         step.note(progress=gain, time=spent, landing=landing)
         terminated |= down
-        self._sinking = 0.0 - state[:, 6]
+        is_agents = height > (LET_DOWN if self._lets_down else -math.inf)
+        self._sinking = np.where(is_agents, 0.0 - state[:, 6], self._sinking)
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -126,12 +126,16 @@ class Waypoints(PlacesTask):
         pose = np.ascontiguousarray(step.pose)
         places = self.places.reshape(-1, 3)
         _pass(pose, places, self.radius, self.at, self._distance, self._gain, self._passed)
-        gain, places_paid = self.progress * self._gain, self.place_reward * self._passed
+        gain, places_paid = self.progress * self._nearer(pose), self.place_reward * self._passed
         time = self.each_second * step.seconds
         rewards += gain + places_paid + time
         step.note(progress=gain, places=places_paid, time=time)
         self.success = self.at == self._count
         terminated |= self.success
+
+    def _nearer(self, pose: Floats) -> Floats:
+        """How much nearer each robot has come to its place [m], shape (count,)."""
+        return self._gain
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Observations made of parts: one box, a dict of boxes, and what goal-conditioned learning needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from itertools import pairwise
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from .options import EnvOptionError
+from .parts import PARTS, Part, Surroundings, part_of
+from .robots.robot import Robot
+from .sensed import Sensed
+from .senses import FAR, reads_scan
+
+
+class Parts:
+    """One box of float32: the numbers of all parts, one after another.
+
+    Args:
+        parts: names (``PARTS``), parts, or arguments of ``Sensed`` by name (data, as recipes have it).
+
+    Raises:
+        EnvOptionError: no such part.
+    """
+
+    def __init__(self, parts: Sequence[str | Part | Mapping[str, Any]]) -> None:
+        if not parts:
+            raise EnvOptionError(f"observation {list(parts)!r} has no parts; there are {', '.join(PARTS)}")
+        self._parts: list[Part] = [_chosen(part) for part in parts]
+        self.names = tuple(
+            given if isinstance(given, str) else getattr(part, "name", type(part).__name__)
+            for given, part in zip(parts, self._parts)
+        )
+        self.remembers = tuple(part for part in self._parts if isinstance(part, Sensed))
+        """Those of them that remember the last steps."""
+        self.reads_scan = any(reads_scan(part) for part in self._parts)
+
+    def prepare(self, session: Surroundings) -> None:
+        """Called once, when robot, action and task are there."""
+        for part in self._parts:
+            part.prepare(session)
+        self.columns = tuple(column for part in self._parts for column in part.columns)
+        """Name and unit of each number."""
+        ends = np.cumsum([0, *(len(part.columns) for part in self._parts)]).tolist()
+        self._places = [slice(a, b) for a, b in pairwise(ends)]
+        self.slices = dict(zip(self.names, self._places))
+        """Where the numbers of each part are."""
+        self._low = np.array([bound for part in self._parts for bound in part.low], np.float32)
+        self._high = np.array([bound for part in self._parts for bound in part.high], np.float32)
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        return gym.spaces.Box(self._low, self._high, dtype=np.float32)
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        out = np.empty((robot.count, len(self.columns)), np.float32)
+        for part, where in zip(self._parts, self._places):
+            part.write(out[:, where])
+        return np.clip(out, self._low, self._high, out=out)
+
+
+class NamedParts(Parts):
+    """The same as a dict: an array of float32 for each part, by its name."""
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        boxes: dict[str, gym.Space[Any]] = {
+            name: gym.spaces.Box(self._low[at], self._high[at], dtype=np.float32) for name, at in self.slices.items()
+        }
+        return gym.spaces.Dict(boxes)
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        numbers = super().observe(robot)
+        return {name: numbers[:, where].copy() for name, where in self.slices.items()}
+
+
+class GoalConditioned(Parts):
+    """The same for goal-conditioned learning: a dict of "observation", "achieved_goal" (x, y, z of the robot [m]) and
+    "desired_goal" (of its target), as Gymnasium-Robotics has it; ``compute_reward`` of the environment tells what they
+    are worth. The task needs a target, and the parts should not tell it."""
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Parts``."""
+        super().prepare(session)
+        if not hasattr(session.task, "compute_reward"):
+            raise EnvOptionError(f"observation: task {session.task!r} has no goal that counts alone")
+        self._task, self._robot = session.task, session.robot
+
+    def space(self, robot: Robot) -> gym.Space[Any]:
+        """See ``Observation``."""
+        place = gym.spaces.Box(-FAR, FAR, (3,), np.float32)
+        return gym.spaces.Dict({"observation": super().space(robot), "achieved_goal": place, "desired_goal": place})
+
+    def observe(self, robot: Robot) -> Any:
+        """See ``Observation``."""
+        return {
+            "observation": super().observe(robot),
+            "achieved_goal": self._task.achieved().astype(np.float32),
+            "desired_goal": self._task.targets.astype(np.float32),
+        }
+
+
+def _chosen(part: str | Part | Mapping[str, Any]) -> Part:
+    if not isinstance(part, Mapping):
+        return deepcopy(part_of(part))
+    try:
+        return Sensed(**part)
+    except TypeError as error:
+        raise EnvOptionError(f"observation: {dict(part)!r}: {error}") from None

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Go to places among solids."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..free_ways import FreeWays
+from ..options import EnvOptionError
+from ..rewards import Floats, Step
+from ..robots.robot import Robot
+from .waypoints import Waypoints
+
+
+class Among(Waypoints):
+    """Pass places among solids one after another; the last one ends the episode, and is success.
+
+    As ``Waypoints`` with places that can be reached, at the height of the start; but a step pays what the shortest free
+    way round the solids, seen from above, has become shorter [m] times ``progress``: what leads into a dead end pays
+    nothing in the end.
+
+    Args:
+        count: how many are drawn in the arena for each episode.
+        apart: least distance between one and the next, straight [m].
+        ceiling: above this height over the floor a robot that flies is outside of the arena: it does not get over the
+            walls [m]. None: the arena's.
+        others: further arguments of ``Waypoints``.
+    """
+
+    def __init__(self, count: int = 1, apart: float = 8.0, ceiling: float | None = None, **others: Any) -> None:
+        super().__init__(count, **{"reachable": True, **others}, apart=apart)
+        if ceiling is not None and not ceiling > 0.0:
+            raise EnvOptionError(f"Among(ceiling={ceiling}); it must be above 0 m")
+        self.ceiling = ceiling
+
+    def prepare(self, robot: Robot) -> None:
+        """See ``Task``."""
+        super().prepare(robot)
+        if self.ceiling is not None and self.flies:
+            x, y, _ = self._limits.high
+            self._limits = self._limits._replace(high=(x, y, robot.world.floor_z + self.ceiling))
+        self._ways = FreeWays(robot, self.limit)
+        self._left = np.zeros(robot.count)
+        """How long each robot's free way to its place is [m]."""
+
+    def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
+        """See ``Task``."""
+        super().start(index, robot, rng)
+        self._aim(index)
+
+    def _aim(self, index: int) -> None:
+        x, y, _ = self.places[index, min(self.at[index], self.per_robot - 1)].tolist()
+        self._ways.aim(index, x, y)
+        self._left[index] = self._ways.lengths(self._robot.pose)[index]
+
+    def _nearer(self, pose: Floats) -> Floats:
+        left = self._ways.lengths(pose).copy()
+        gain = self._left - left
+        self._left = left
+        return gain
+
+    def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
+        super()._judge(step, rewards, terminated)
+        for index in np.flatnonzero(self._passed & ~self.success).tolist():
+            self._aim(index)
+
+    def recall(self, index: int, memory: Any) -> None:
+        """See ``Task``."""
+        super().recall(index, memory)
+        self._aim(index)
+        self._left[index] = memory[4]
+
+    def memory(self, index: int) -> Any:
+        """See ``Task``."""
+        return *super().memory(index), float(self._left[index])

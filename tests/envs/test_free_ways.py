@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Free ways: how far it is to a goal around a world's solids, and the task that is paid by them."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+from sitl.core.algebra import ZERO2
+from sitl.envs.free_ways import FreeWays
+from sitl.envs.options import EnvOptionError
+from sitl.envs.targets.among import Among
+from sitl.worlds.contact import Volume
+from sitl.worlds.making import wall
+from sitl.worlds.shapes import Start
+from sitl.worlds.world import World
+
+RADIUS = 0.3
+TEE = [wall((0.0, -10.0), (0.0, 4.0), "wall"), *(
+    wall(a, b, f"outer {k}")
+    for k, (a, b) in enumerate([
+        ((-10.0, -10.0), (10.0, -10.0)), ((10.0, -10.0), (10.0, 10.0)),
+        ((10.0, 10.0), (-10.0, 10.0)), ((-10.0, 10.0), (-10.0, -10.0)),
+    ])
+)]  # fmt: skip
+"""A square with a wall from below that leaves a passage above y = 4 m."""
+
+
+def robot_in(solids, count=2, start=(-5.0, -5.0, 0.0)):
+    """What free ways look at of a robot."""
+    world = World("tee", tuple(solids), (Start("here", start, 0.0),), "", plan_height=1.0)
+    return SimpleNamespace(
+        world=world, name="disc", count=count, crash_range=0.0, volume=Volume(ZERO2, 0.5, 0.0, RADIUS),
+        pose=np.zeros((count, 4)),
+    )  # fmt: skip
+
+
+def test_the_way_leads_round_the_end_of_a_wall():
+    ways = FreeWays(robot_in(TEE))
+    ways.aim(0, 5.0, -5.0)
+    ways.aim(1, -5.0, 5.0)
+    around, straight = ways.lengths(np.array([[-5.0, -5.0], [-5.0, -5.0]])).tolist()
+    corner = 4.05 + RADIUS + 0.1  # of the wall's end, with the room that the robot keeps
+    expected = 2.0 * math.hypot(5.0 - 0.45, 5.0 + corner) + 2.0 * 0.45
+    assert around == pytest.approx(expected, rel=0.03)
+    assert straight == pytest.approx(10.0, rel=0.01)
+
+
+def test_without_solids_between_it_is_the_straight_distance():
+    ways = FreeWays(robot_in(TEE[1:], count=1))
+    ways.aim(0, 3.0, 4.0)
+    rng = np.random.default_rng(0)
+    for x, y in rng.uniform(-9.0, 9.0, (50, 2)):
+        assert ways.lengths(np.array([[x, y]]))[0] == pytest.approx(math.hypot(x - 3.0, y - 4.0), rel=0.03, abs=0.15)
+
+
+def test_it_falls_towards_the_goal_from_everywhere():
+    ways = FreeWays(robot_in(TEE, count=1))
+    ways.aim(0, 5.0, -5.0)
+    place, step = np.array([-5.0, -5.0]), 0.1
+    for _ in range(400):
+        tries = [place + step * np.array([math.cos(a), math.sin(a)]) for a in np.linspace(0.0, math.tau, 16)]
+        lengths = [float(ways.lengths(p[None])[0]) for p in tries]
+        place = tries[int(np.argmin(lengths))]
+        if math.hypot(place[0] - 5.0, place[1] + 5.0) < 0.3:
+            return
+    pytest.fail(f"the steepest way ends at {place}")
+
+
+def test_places_without_room_are_as_far_as_the_nearest_with_room():
+    ways = FreeWays(robot_in(TEE, count=1))
+    ways.aim(0, -5.0, -5.0)
+    beside, inside = (float(ways.lengths(np.array([[x, -5.0]]))[0]) for x in (-1.0, -0.3))
+    assert inside == pytest.approx(beside + 0.7, abs=0.15)
+    ways.aim(0, -0.3, -5.0)
+    assert float(ways.lengths(np.array([[-5.0, -5.0]]))[0]) == pytest.approx(4.7, abs=0.2)
+
+
+def make(**options):
+    return gym.make("sitl/RoverLabyrinth-v0", world="labyrinth:seed=1,size=20,scale=2,difficulty=0.2", **options)
+
+
+def test_a_step_pays_what_the_free_way_is_shorter():
+    with make() as env:
+        env.reset(seed=3)
+        task = env.unwrapped.session.task
+        before = float(task._ways.lengths(task._robot.pose)[0])
+        assert before >= float(task._distance[0]) - 0.5
+        for _ in range(5):
+            *_, terminated, _, info = env.step(np.array([0.5, 0.0], np.float32))
+            now = float(task._ways.lengths(task._robot.pose)[0])
+            assert not terminated and info["reward_progress"] == pytest.approx(before - now, abs=1e-9)
+            before = now
+
+
+def test_places_that_are_passed_give_the_next_ones_way():
+    near = [(0.4, 0.0, 0.0), (2.5, 0.0, 0.0)]
+    with gym.make(
+        "sitl/RoverWaypoint-v0", task=Among(places=near, radius=1.0), world="labyrinth:seed=1,size=60,scale=3"
+    ) as env:
+        env.reset(seed=0)
+        task = env.unwrapped.session.task
+        *_, info = env.step(np.array([0.0, 0.0], np.float32))
+        assert info["passed"] == 1
+        x, y = task._robot.pose[0, :2].tolist()
+        assert float(task._left[0]) == pytest.approx(math.hypot(2.5 - x, y), abs=0.2)
+
+
+def test_a_ceiling_ends_the_episode_of_a_copter():
+    with gym.make("sitl/CopterRooms-v0") as env:
+        env.reset(seed=0)
+        for _ in range(60):
+            _, reward, terminated, _, info = env.step(np.array([0.0, 0.0, 1.0, 0.0], np.float32))
+            if terminated:
+                break
+        assert terminated and not info["crashed"] and reward < -9.0
+        assert env.unwrapped.session.robot.pose[0, 2] == pytest.approx(3.0, abs=0.2)
+
+
+def test_mistakes_are_told():
+    with pytest.raises(EnvOptionError, match=r"Among\(ceiling=0.0\); it must be above 0 m"):
+        Among(ceiling=0.0)
