@@ -74,8 +74,8 @@ def record(
     Args:
         env: id of the environment.
         dataset: id of the dataset, "namespace/name-v0"; None: "sitl/ENV/EXPERT-v0".
-        expert: "guided", "auto" (see ``experts``), "baseline" (the policy that comes with the program), "random", the
-            folder of a run, or the file of a policy.
+        expert: "guided", "auto", "pilot" (see ``experts``), "baseline" (the policy that comes with the program),
+            "random", the folder of a run, or the file of a policy.
         episodes: how many.
         seed: of all; that of episode k is ``environments.seed_of(seed, k)``.
         options: of the environment.

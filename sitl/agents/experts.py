@@ -9,7 +9,7 @@ environment itself, and can be done again.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,8 @@ from sitl.worlds.shapes import from_heading, from_ned, to_ned
 
 from . import learnt
 from .errors import AgentError
+from .expert import Expert, Shown, named
+from .pilot import Pilot
 
 Floats = npt.NDArray[np.float64]
 AHEAD_S, AHEAD_OF_ROWS_S = 0.5, 2.0
@@ -41,57 +43,29 @@ LONGEST_S = 600.0
 """A flight in AUTO is given up after this [s]."""
 
 
-class Expert(ABC):
-    """Chooses the actions of an environment's episodes."""
-
-    name: str
-    """What it is called in a dataset."""
-    about: str
-    """What it does, for the dataset's description."""
-
-    @abstractmethod
-    def begin(self, seed: int) -> None:
-        """An episode has begun, whose reset had this seed."""
-
-    @abstractmethod
-    def act(self, observation: Any) -> Any:
-        """The next action."""
-
-
 class _Autopilot(Expert):
     """What both experts that are autopilots need of an environment."""
 
     def __init__(self, env: gym.Env[Any, Any]) -> None:
         navigate = env.unwrapped
         if not isinstance(navigate, Navigate) or not isinstance(navigate.robot, AutopilotRobot):
-            raise AgentError(f"expert {self.name!r}: {_named(env)} has no vehicle with an autopilot")
+            raise AgentError(f"expert {self.name!r}: {named(env)} has no vehicle with an autopilot")
         session, robot = navigate.session, navigate.robot
         if session.action.setpoint is not VELOCITY or not hasattr(session.action, "nearest"):
             raise AgentError(
-                f"expert {self.name!r}: actions of {_named(env)} are {session.action.setpoint.name!r} set-points; it "
+                f"expert {self.name!r}: actions of {named(env)} are {session.action.setpoint.name!r} set-points; it "
                 f"shows velocities: setpoint={VELOCITY.name!r}"
             )
         if not hasattr(session.task, "places"):
-            raise AgentError(f"expert {self.name!r}: task {type(session.task).__name__} of {_named(env)} has no places")
+            raise AgentError(f"expert {self.name!r}: task {type(session.task).__name__} of {named(env)} has no places")
         if POSITION not in robot.setpoints or not robot.has_snapshots:
-            raise AgentError(f"expert {self.name!r}: {_named(env)} needs a vehicle in process with our autopilot")
-        self._robot, self._action = robot, session.action
+            raise AgentError(f"expert {self.name!r}: {named(env)} needs a vehicle in process with our autopilot")
+        self._robot = robot
         self._task: Any = session.task
         self._seconds = session.seconds
-        self._owed = np.zeros(4)
-        """Forward, left, up [m/s], turn [rad/s]."""
+        self._shown = Shown(session.action)
         ahead = AHEAD_OF_ROWS_S if isinstance(session.action, Discrete) else AHEAD_S
         self._steps = max(round(ahead / session.seconds), 1)
-
-    def _action_for(self, velocity: Floats) -> Any:
-        """The action that asks for a velocity; what a row of a table gives less or more is made good by the next."""
-        action: Any = self._action
-        if not isinstance(action, Discrete):
-            return action.nearest(velocity)
-        wanted = velocity + self._owed
-        chosen = action.nearest(wanted)
-        self._owed = np.clip(wanted - action.table[chosen], -1.0, 1.0)
-        return chosen
 
     def _seen(self) -> Floats:
         """Where the present place is for the autopilot, which flies by its estimate: where the agent sees it, x, y, z
@@ -110,7 +84,7 @@ class Guided(_Autopilot):
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""
-        self._owed[:] = 0.0
+        self._shown.begin()
         self._yaw = float(self._robot.pose[0, 3])
 
     def act(self, observation: Any) -> Any:
@@ -122,7 +96,7 @@ class Guided(_Autopilot):
             robot.advance(self._seconds)
         velocity = robot.velocity[0].copy()
         robot.restore(0, now)
-        return self._action_for(velocity)
+        return self._shown.action_for(velocity)
 
 
     def _aim(self) -> Floats:
@@ -146,7 +120,7 @@ class Auto(_Autopilot):
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""
-        self._owed[:] = 0.0
+        self._shown.begin()
         self._flight = self._flown()
         self._k = 0
 
@@ -205,7 +179,8 @@ class Auto(_Autopilot):
         x, y = velocity[:2] + GAIN * (at[:2] - here[:2])
         c, s = math.cos(here[3]), math.sin(here[3])
         turn = velocity[3] + GAIN * math.remainder(at[3] - here[3], math.tau)
-        return self._action_for(np.array([x * c + y * s, y * c - x * s, velocity[2] + GAIN * (at[2] - here[2]), turn]))
+        up = velocity[2] + GAIN * (at[2] - here[2])
+        return self._shown.action_for(np.array([x * c + y * s, y * c - x * s, up, turn]))
 
 
 class Learnt(Expert):
@@ -232,9 +207,5 @@ def _believed(estimate: Any) -> Floats:
     return np.array([*from_ned(*pos), from_heading(heading), *from_ned(*vel), -estimate.rates[2]])
 
 
-AUTOPILOTS: dict[str, type[_Autopilot]] = {"guided": Guided, "auto": Auto}
+AUTOPILOTS: dict[str, Callable[[gym.Env[Any, Any]], Expert]] = {"guided": Guided, "auto": Auto, "pilot": Pilot}
 """By name."""
-
-
-def _named(env: gym.Env[Any, Any]) -> str:
-    return "the environment" if env.spec is None else env.spec.id

@@ -129,7 +129,7 @@ def test_what_cannot_be_is_refused():
     for arguments, needed in (
         ({"env": "sitl/CopterWaypint-v0"}, "sitl/CopterWaypint"),
         ({"env": ID, "options": {"worl": "open"}}, "worl"),
-        ({"env": ID, "expert": "gided"}, "none of guided, auto, baseline, random"),
+        ({"env": ID, "expert": "gided"}, "none of guided, auto, pilot, baseline, random"),
         ({"env": "sitl/Navigate-v0", "expert": "baseline"}, "no policy of sitl/Navigate-v0"),
         ({"env": ID, "dataset": "no version"}, "no version"),
     ):

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The expert "pilot": leads a vehicle by velocities, around what stands in its way; the autopilot flies them in GUIDED.
+
+Where there are places, he knows the world: ways are planned around its solids. Where there are none, as in the paper's
+environments, he sees the lidar only, and turns to where there is room.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from sitl.envs.actions import VELOCITY, Discrete
+from sitl.envs.arena import REACH
+from sitl.envs.navigate import Navigate
+from sitl.envs.senses import SensingRobot
+from sitl.envs.targets.hold import Hold
+from sitl.envs.targets.landing import Land
+from sitl.envs.targets.moving import AHEAD_S, MovingTask
+from sitl.envs.targets.parking import Park
+
+from .errors import AgentError
+from .expert import Expert, Shown, named
+from .ways import Ways
+
+Floats = npt.NDArray[np.float64]
+GAIN = 1.2
+"""Velocity for each metre to go [1/s]."""
+TRACKING_GAIN = 1.5
+"""The same of what moves, whose velocity of three quarters of a second later is added: so late is the vehicle [1/s]."""
+FAST, AMONG = 4.0, 1.2
+"""Greatest speed of a copter in the open, and among solids [m/s]."""
+LOOK, LOOK_DRIVING = 1.2, 2.5
+"""So far ahead on its way a copter, a rover is led [m]."""
+BEHIND = 2.0
+"""A way through a gate begins so far before it, and ends so far behind it [m]."""
+CIRCLE = 2.2
+"""Radius that a rover turns in [m]; of a place within, it backs first."""
+ASTRAY = 1.5
+"""A way is planned anew when the vehicle is so far beside it [m]."""
+REPLAN = 10
+"""Steps between two plans for the same place, at least."""
+APPROACH = 5.0
+"""A bay is approached along its heading from so far before it [m]."""
+SINK, LOW = 0.6, 1.5
+"""Down onto a pad [m/s]; below this height the vehicle must be over it [m]."""
+COMFORT, COMFORT_DRIVING = 0.8, 2.0
+"""Room that he likes a copter, a rover to have [m]."""
+SIGHT, CONE, SIDE, ROOMY = 5.0, math.radians(15.0), math.radians(100.0), 1.2
+"""Readings count up to this [m]; what is beside him, from .. to; half of the lane that he needs, in crash ranges."""
+STRAIGHT = math.radians(12.0)
+"""A gap within this is straight on."""
+
+
+class Pilot(Expert):
+    """See the module."""
+
+    name = "pilot"
+    about = "a pilot who leads the autopilot by velocities along ways that he plans around the world's solids"
+
+    def __init__(self, env: gym.Env[Any, Any]) -> None:
+        navigate = env.unwrapped
+        if not isinstance(navigate, Navigate):
+            raise AgentError(f"expert {self.name!r}: {named(env)} has no robot of ours")
+        session = navigate.session
+        self._robot: Any = navigate.robot
+        self._turns: dict[int, Any] | None = None
+        self._plans: Ways | None = None
+        self._way: Floats = np.zeros((0, 2))
+        """x, y [m] of the way that was planned, for the place of number ``_of``; ``_at`` of it he is, ``_since`` so
+        many steps it has been there."""
+        self._of, self._at, self._since = -1, 0, 0
+        self._backs = False
+        """Whether a rover backs, because it could not turn to the place ahead."""
+        self._task: Any = session.task
+        if not hasattr(self._task, "ways"):
+            self._turns = _table_of_turns(env, session.action)
+            return
+        if session.action.setpoint is not VELOCITY or not hasattr(session.action, "nearest"):
+            raise AgentError(
+                f"expert {self.name!r}: actions of {named(env)} are {session.action.setpoint.name!r} set-points; it "
+                f"shows velocities: setpoint={VELOCITY.name!r}"
+            )
+        self._shown = Shown(session.action)
+        self._flies = bool(getattr(self._task, "flies", False))
+        if self._robot.world.solids or not self._flies:
+            self._plans = Ways(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
+
+    def begin(self, seed: int) -> None:
+        """See ``Expert``."""
+        if self._turns is None:
+            self._shown.begin()
+            self._way, self._of, self._at, self._since = np.zeros((0, 2)), -1, 0, 0
+            self._backs = False
+
+    def act(self, observation: Any) -> Any:
+        """See ``Expert``."""
+        if self._turns is not None:
+            return self._turns[self._gap()]
+        ways = self._task.ways(3)[0]
+        return self._shown.action_for(self._flown(ways) if self._flies else self._driven(ways[0]))
+
+    # ------------------------------------------------------------------ copters
+
+    def _flown(self, ways: Floats) -> Floats:
+        """Velocity forward, left, up [m/s], turn [rad/s]: after what moves, around what stands."""
+        way, task = ways[0], self._task
+        if isinstance(task, MovingTask):
+            velocity = TRACKING_GAIN * way + (ways[2] - ways[1]) / AHEAD_S
+            if isinstance(task, Land):
+                is_over = math.hypot(way[0], way[1]) < 0.7 * task.pad
+                velocity[2] = -SINK if is_over or -way[2] > LOW else 0.0
+            return np.append(velocity, 0.0)
+        fast = FAST
+        if getattr(task, "gates", ()):
+            way = self._turned(self._through() - self._here()[:3])
+        elif self._plans is not None and math.hypot(way[0], way[1]) > LOOK:
+            here = self._here()
+            there = here[:2] + self._unturned(way)[:2]
+            way, fast = self._turned(np.append(self._ahead(here[:2], [there], LOOK) - here[:2], way[2])), AMONG
+        velocity = GAIN * way
+        return np.append(velocity * min(1.0, fast / max(float(np.linalg.norm(velocity)), 1e-9)), 0.0)
+
+    def _through(self) -> Floats:
+        """A place behind the present gate, or before it as long as the vehicle is too far beside: x, y, z [m]."""
+        here, k = self._here()[:3], int(self._task.at[0])
+        yaw = self._task.gates[k % len(self._task.gates)].yaw
+        place, along = here + self._unturned(self._task.ways(1)[0, 0]), np.array([math.cos(yaw), math.sin(yaw), 0.0])
+        way = place - here
+        before = float(way @ along)
+        beside = math.sqrt(max(float(way @ way) - before * before, 0.0))
+        out: Floats = place + (BEHIND if beside < 0.3 * before else -BEHIND) * along
+        return out
+
+    # ------------------------------------------------------------------ rovers
+
+    def _driven(self, way: Floats) -> Floats:
+        """Velocity of a rover: towards a place ahead on its way, along an arc."""
+        here, task = self._here(), self._task
+        there = here[:2] + self._unturned(way)[:2]
+        ahead = self._ahead(here[:2], self._stations(there), LOOK_DRIVING)
+        forward, left, _ = self._turned(np.append(ahead - here[:2], 0.0))
+        bearing, away, left_over = math.atan2(left, forward), math.hypot(forward, left), math.hypot(way[0], way[1])
+        speed = 1.2 if abs(bearing) < 0.6 else 0.8
+        if isinstance(task, Park | Hold):
+            if left_over < 0.5 * task.radius:
+                return np.zeros(4)
+            speed = min(speed, 0.5 * left_over)
+        within = 2.0 * CIRCLE * abs(math.sin(bearing)) - away
+        self._backs = within > (-1.0 if self._backs else -0.2) and abs(bearing) > (0.3 if self._backs else 0.6)
+        if self._backs:
+            return np.array([-0.8, 0.0, 0.0, math.copysign(0.4, bearing)])
+        turn = 2.0 * speed * math.sin(bearing) / max(away, 0.5)
+        if abs(bearing) > 0.5 * math.pi:
+            turn = math.copysign(0.6, bearing)
+        return np.array([speed, 0.0, 0.0, turn])
+
+    def _stations(self, there: Floats) -> list[Floats]:
+        """Places (x, y [m]) that a way of a rover leads over: through gates, into a bay along its heading."""
+        task, gates = self._task, getattr(self._task, "gates", ())
+        if isinstance(task, Park):
+            yaw = float(task.headings[0])
+            return [there - APPROACH * np.array([math.cos(yaw), math.sin(yaw)]), there]
+        if not gates:
+            return [there]
+        found = []
+        for k in range(int(task.at[0]), min(int(task.at[0]) + 2, task.per_robot)):
+            place = there if k == int(task.at[0]) else task.places[0, k, :2]
+            yaw = gates[k % len(gates)].yaw
+            along = np.array([math.cos(yaw), math.sin(yaw)])
+            found += [place - BEHIND * along, place + BEHIND * along]
+        return found
+
+    # ------------------------------------------------------------------ ways
+
+    def _here(self) -> Floats:
+        """Where the vehicle really is, by which it is led around solids: x, y, z [m], yaw [rad]."""
+        robot = self._robot
+        state: Floats = robot.judged_state() if isinstance(robot, SensingRobot) else robot.pose
+        return state[0, :4]
+
+    def _ahead(self, here: Floats, stations: list[Floats], look: float) -> Floats:
+        """A place ``look`` [m] ahead on the way over stations; it is planned where there is none that leads there."""
+        k = int(self._task.at[0])
+        self._since += 1
+        if self._of == k and len(self._way):
+            away = np.sqrt(((self._way - here) ** 2).sum(axis=1))
+            self._at += int(away[self._at : self._at + 40].argmin())
+            is_astray = away[self._at] > ASTRAY
+            is_over = self._at >= len(self._way) - 2 and len(stations) > 1  # and the gate has not been passed
+            if self._since < REPLAN or not (is_astray or is_over):
+                return self._beyond(here, look)
+        assert self._plans is not None
+        legs, last = [], here
+        for station in stations:
+            legs.append(self._plans.way(last, station))
+            last = station
+        self._way, self._of, self._at, self._since = np.concatenate(legs), k, 0, 0
+        return self._beyond(here, look)
+
+    def _beyond(self, here: Floats, look: float) -> Floats:
+        out: Floats = self._way[-1]
+        for place in self._way[self._at :]:
+            if math.dist(place, here) >= look:
+                return np.asarray(place)
+        return out
+
+    def _turned(self, way: Floats) -> Floats:
+        """x, y, z of the world as forward, left, up."""
+        yaw = float(self._here()[3])
+        c, s = math.cos(yaw), math.sin(yaw)
+        return np.array([way[0] * c + way[1] * s, way[1] * c - way[0] * s, way[2]])
+
+    def _unturned(self, way: Floats) -> Floats:
+        yaw = float(self._here()[3])
+        c, s = math.cos(yaw), math.sin(yaw)
+        return np.array([way[0] * c - way[1] * s, way[0] * s + way[1] * c, way[2]])
+
+    # ------------------------------------------------------------------ without places
+
+    def _gap(self) -> int:
+        """Where the most room is: 0 straight on, 1 to the left, -1 to the right."""
+        angles, robot = self._robot.angles, self._robot
+        scan = np.minimum(robot.scan[0], SIGHT).astype(np.float64)
+        half = max(ROOMY * robot.crash_range, 1.2 * robot.volume.radius) + 0.1
+        tried = np.linspace(-1.6, 1.6, 33)
+        turned = angles - tried[:, None]
+        forward, aside = scan * np.cos(turned), np.abs(scan * np.sin(turned))
+        room = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
+        side = [scan[(way * angles > CONE) & (way * angles < SIDE)].min(initial=SIGHT) for way in (1.0, -1.0)]
+        centred = (min(side[0], 2.0 * half) - min(side[1], 2.0 * half)) * tried
+        best = float(tried[int(np.argmax(room - 0.3 * np.abs(tried) + centred))])
+        return 0 if abs(best) <= STRAIGHT else 1 if best > 0.0 else -1
+
+
+def _table_of_turns(env: gym.Env[Any, Any], action: Any) -> dict[int, Any]:
+    """Of a table with "forward", "left" and "right": the action for 0, 1 and -1."""
+    names = action.names if isinstance(action, Discrete) else ()
+    if not {"forward", "left", "right"} <= set(names):
+        raise AgentError(
+            f"expert {Pilot.name!r}: the task of {named(env)} has no places; then it needs a table of actions with "
+            f'"forward", "left" and "right": action="discrete"'
+        )
+    return {turn: np.int64(names.index(name)) for turn, name in ((0, "forward"), (1, "left"), (-1, "right"))}
