@@ -35,6 +35,7 @@ from .scenario import Options, Scenario
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
 from .vehicle.faults import Failure
+from .vehicle.kind import load
 from .vehicles import Airframe, AirframeError
 from .worlds import World, heights
 
@@ -347,6 +348,21 @@ class Simulation:
     def _note_fault(self, text: str) -> None:
         if self.bridge.board.journal is not None:
             self.bridge.board.journal.failed(text)
+
+    def view(self, height: int = 480, port: int = 0) -> Any:
+        """Show the vehicle on a page of the browser, in a notebook as the cell's output, while it is advanced.
+
+        Args:
+            height: of the cell's output [pixels].
+            port: of the page on this machine; 0: a free one.
+
+        Returns:
+            ``sitl.view.inline.InlineView``; its ``close`` ends it, ``page.address`` is where a browser finds it.
+
+        Raises:
+            MissingExtra: the extra ``view`` is not installed.
+        """
+        return load("sitl.view.inline:InlineView")(self, height, port)
 
     def snapshot(self) -> Snapshot:
         """A copy of everything in the vehicle; later restores leave it as it is."""

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a run has learnt, shown: in a window, or as a film (a GIF, or an MP4 where the program ffmpeg is installed)."""
+"""What a run has learnt, shown: on the page in the browser, in a window, or as a film (a GIF, or an MP4 where the
+program ffmpeg is installed)."""
 
 from __future__ import annotations
 
+import itertools
 import math
 import shutil
 import subprocess
@@ -16,6 +18,7 @@ import gymnasium as gym
 from gymnasium.error import DependencyNotInstalled
 
 from sitl.errors import MissingExtra
+from sitl.view import library
 
 from . import environments
 from .algorithms import Policy, policy_of
@@ -206,6 +209,39 @@ def film(run: RunFolder, path: Path, episodes: int, seed: int, speed: float, end
         env.close()
 
 
+def can_be_on_page(run: RunFolder, **options: Any) -> bool:
+    """Whether the environment of a run is one of this package, which know the page, and the page is installed."""
+    return library.is_installed() and _has_window(run, **options)
+
+
+def _has_window(run: RunFolder, **options: Any) -> bool:
+    env = environments.make(run.config, **options)
+    env.close()
+    return "window" in env.metadata["render_modes"]
+
+
+def page(run: RunFolder, episodes: int | None, seed: int, speed: float, ended: Ended, **options: Any) -> None:
+    """Show episodes on the page in the browser; arguments as in ``film``, ``episodes`` None: until an interrupt.
+
+    Raises:
+        AgentError: no model.
+        MissingExtra: the library that draws the page is not installed.
+    """
+    library.require()
+    policy = policy_of(run)
+    env = environments.make(run.config, render_mode="human", **options)
+    pace = Pace(_step_s(env) / speed)
+    try:
+        for first in itertools.count() if episodes is None else range(1):
+            count = 1 if episodes is None else episodes
+            play(env, policy, count, seed + first, lambda shown: pace(), ended)
+    except KeyboardInterrupt:
+        if episodes is not None:
+            raise
+    finally:
+        env.close()
+
+
 def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended, **options: Any) -> None:
     """Show episodes in a window until it is closed; arguments as in ``film``.
 
@@ -213,7 +249,7 @@ def window(run: RunFolder, episodes: int, seed: int, speed: float, ended: Ended,
         AgentError: no model, or no screen.
     """
     policy = policy_of(run)
-    env = environments.make(run.config, render_mode="human", **options)
+    env = environments.make(run.config, render_mode="window" if _has_window(run, **options) else "human", **options)
     pace = Pace(_step_s(env) / speed)
 
     def after(shown: Any) -> bool:

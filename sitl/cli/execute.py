@@ -26,6 +26,7 @@ from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
 from . import foreign, recordings, run, swarm
 from .status import StatusLine
+from .view_options import DEFAULT_TEXT, shown, wants_view
 
 DEFAULT_SPEEDUP = "20"
 
@@ -45,13 +46,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.set_defaults(function=execute)
 
 
-def add_speedup(parser: argparse.ArgumentParser, default: str = DEFAULT_SPEEDUP) -> None:
-    """The option that says how fast a script's clock goes."""
+def add_speedup(parser: argparse.ArgumentParser, default: str | None = DEFAULT_SPEEDUP) -> None:
+    """The option that says how fast a script's clock goes; None: as ``view_options.default_speedup`` says."""
     parser.add_argument(
         "--speedup",
         default=default,
         metavar="K|max",
-        help=f"simulated seconds a second (default {default}); max: as fast as stays faithful",
+        help=f"simulated seconds a second (default {default or DEFAULT_TEXT}); max: as fast as stays faithful",
     )
 
 
@@ -63,6 +64,7 @@ def execute(options: argparse.Namespace) -> int:
     if shutil.which(command[0]) is None:
         raise OptionError(f"command {command[0]!r} is not found or cannot be run")
     parse_speedup(options.speedup)
+    wants_view(options)  # refuses what cannot be before anything is compiled
     choice = choose(options.autopilot, options.vehicle)
     if choice is not None:
         return _execute_foreign(options, choice, command)
@@ -72,7 +74,8 @@ def execute(options: argparse.Namespace) -> int:
     command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
     try:
-        code = run_script(simulation, command, options.speedup, options.duration, status.refresh)
+        with shown(simulation, options, then=status.refresh) as on_slice:
+            code = run_script(simulation, command, options.speedup, options.duration, on_slice)
         recordings.say_why(simulation, f"script ended with exit code {code}")
         return code
     finally:
@@ -84,7 +87,8 @@ def _execute_swarm(options: argparse.Namespace, command: list[str]) -> int:
     """``execute`` with several vehicles in one world."""
     with swarm.opened(options) as (vehicles, tcp_port, status):
         command = [word.replace("{tcp}", str(tcp_port)) for word in command]
-        return run_script(vehicles, command, options.speedup, options.duration, status.refresh)
+        with shown(vehicles, options, then=status.refresh) as on_slice:
+            return run_script(vehicles, command, options.speedup, options.duration, on_slice)
 
 
 def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[str]) -> int:
@@ -95,7 +99,8 @@ def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[
     with foreign.opened(options, choice, None, is_relayed_by_slice=True) as flown:
         assert isinstance(flown.session, ArduPilotSession)
         command = [word.replace("{tcp}", str(flown.tcp_port)) for word in command]
-        return run_script(flown.session, command, options.speedup, options.duration, flown.status.refresh)
+        with shown(flown.plant, options, then=flown.status.refresh) as on_slice:
+            return run_script(flown.session, command, options.speedup, options.duration, on_slice)
 
 
 class ScriptPace:

@@ -15,6 +15,7 @@ from ..plants.local import LocalPlant, stand_alone
 from ..vehicle.kinds import KINDS
 from . import options as shared
 from .progress import CompileProgress
+from .view_options import add_view_options, shown, wants_view
 
 Serve = Callable[[LocalPlant, str, int, Callable[[str], None], Callable[[], bool]], None]
 """``serve(plant, address, instance, say, running)``: listens at the address until ``running()`` is false."""
@@ -44,6 +45,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
     parser.add_argument("--start", type=shared.start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
+    add_view_options(parser)
     parser.set_defaults(function=physics)
 
 
@@ -53,6 +55,7 @@ def physics(options: argparse.Namespace) -> int:
     Raises:
         OptionError: an option that cannot be taken.
     """
+    wants_view(options)  # refuses what cannot be before anything is compiled
     kind, _, address = options.listen.partition(":")
     if kind not in LISTENERS:
         raise OptionError(f"--listen {options.listen!r}: {kind!r} is not known; it is one of {', '.join(LISTENERS)}")
@@ -66,7 +69,13 @@ def physics(options: argparse.Namespace) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
         signal.signal(number, lambda n, _: stopped.append(n))
     try:
-        serve(plant, address, options.instance, lambda text: print(text, flush=True), lambda: not stopped)
+        with shown(plant, options) as on_turn:
+
+            def running() -> bool:
+                on_turn()
+                return not stopped
+
+            serve(plant, address, options.instance, lambda text: print(text, flush=True), running)
     finally:
         plant.close()
     return 0

@@ -14,9 +14,8 @@ from ..run import runner
 from ..run.pacing import StoppablePacing, parse_speedup
 from ..run.standstill import serve_lockstep
 from ..run.swarm import SwarmPacing, serve_swarm, serve_swarm_lockstep
-from ..simulation import OptionError, Simulation
+from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
-from ..view import library
 from . import foreign, recordings, swarm
 from .link_options import add_link_options, link_faults
 from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
@@ -33,7 +32,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")
     add_run_options(parser)
     foreign.add_autopilot_options(parser)
-    add_view_options(parser)
     recordings.add_from_option(parser)
     parser.set_defaults(function=run)
 
@@ -46,7 +44,10 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         "--instance", type=instance, default=0, metavar="N", help="adds 10 N to every default port and N to MAV_SYSID"
     )
     parser.add_argument(
-        "--out", action="append", metavar="udp:HOST:PORT", help=f"send there (repeatable; default {ports}; or 'none')"
+        "--out",
+        action="append",
+        metavar="udp:HOST:PORT",
+        help=f"send there; tcp:PORT and udpin:PORT listen (repeatable; default {ports}; or 'none')",
     )
     parser.add_argument(
         "--tcp",
@@ -68,6 +69,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     recordings.add_recording_option(parser)
     add_vehicle_options(parser)
     swarm.add_swarm_options(parser)
+    add_view_options(parser)
     add_link_options(parser)
 
 
@@ -93,10 +95,17 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
         simulation.bridge.add_link(link)
         if isinstance(link, (UdpInLink, UdpOutLink)) and options.streamrate >= 0:
             runner.stream_everything(simulation, link, options.streamrate)
-        print(f"MAVLink on {link.name}")
+        print(f"MAVLink on {link.name}{_role(link, servers)}")
     log = runner.open_log(simulation, folder, f"{simulation.airframe.name}-{options.instance}")
     print(f"log: {log}", flush=True)
     return simulation, servers[0].local_address[1], log
+
+
+def _role(link: Link, servers: list[TcpServerLink]) -> str:
+    """What a link of ``--out`` does that its name may not tell: some expect it to connect."""
+    if isinstance(link, TcpServerLink) and link not in servers:
+        return " (listens: clients connect to it)"
+    return " (listens for datagrams)" if isinstance(link, UdpInLink) else ""
 
 
 def open_servers(options: argparse.Namespace) -> list[TcpServerLink]:
@@ -107,14 +116,11 @@ def open_servers(options: argparse.Namespace) -> list[TcpServerLink]:
 
 def run(options: argparse.Namespace) -> int:
     """Serve the vehicle until Ctrl-C, SIGTERM or the end of ``--duration``."""
+    wants_view(options)  # refuses what cannot be before anything is compiled
     choice = choose(options.autopilot, options.vehicle)
     if choice is not None:
         return foreign.fly(options, choice)
     speedup = parse_speedup(options.speedup)
-    if wants_view(options):
-        if options.count > 1:
-            raise OptionError(f"--view shows one vehicle, --count is {options.count}")
-        library.require()  # before anything is compiled
     if options.count > 1:
         return run_swarm(options, speedup)
     simulation, _, _ = start(options)
@@ -142,6 +148,8 @@ def run_swarm(options: argparse.Namespace, speedup: float | None) -> int:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda n, _: stopped.append(n))
         until_us = int(options.duration * 1e6) if options.duration else None
-        serve = serve_swarm_lockstep if options.lockstep else partial(serve_swarm, pace=SwarmPacing(speedup))
-        serve(vehicles, until_us=until_us, running=lambda: not stopped, on_slice=status.refresh)
+        pace = None if options.lockstep else StoppablePacing(speedup)
+        serve = serve_swarm_lockstep if pace is None else partial(serve_swarm, pace=SwarmPacing(pace))
+        with shown(vehicles, options, pace, status.refresh) as on_slice:
+            serve(vehicles, until_us=until_us, running=lambda: not stopped, on_slice=on_slice)
     return 0

@@ -9,11 +9,19 @@ import os
 import sys
 import webbrowser
 from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING
 
-from ..run.pacing import StoppablePacing
+from ..plants.local import LocalPlant
+from ..run.pacing import MAX, StoppablePacing
 from ..run.watched import Watched
 from ..simulation import OptionError, Simulation
+from ..swarm import Swarm
+from ..view import library
 from .options import port
+
+if TYPE_CHECKING:
+    from ..view.page import Page
 
 
 def add_view_options(parser: argparse.ArgumentParser) -> None:
@@ -29,25 +37,49 @@ def add_view_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--view-token", metavar="TOKEN", help="what they must know for that; nothing is encrypted")
 
 
+DEFAULT_TEXT = f"{MAX}, with --view 1"
+
+
+def default_speedup(options: argparse.Namespace) -> str:
+    """Of commands that go as fast as they can: somebody who looks wants to see it.
+
+    Raises:
+        OptionError, MissingExtra: as of ``wants_view``.
+    """
+    return "1" if wants_view(options) else MAX
+
+
 def wants_view(options: argparse.Namespace) -> bool:
     """Whether a page is asked for.
 
     Raises:
         OptionError: an address for other machines without a token, or without a page.
+        MissingExtra: what draws it is not installed.
     """
     wanted = bool(options.view or options.view_only)
     if (options.view_address is None) != (options.view_token is None):
         raise OptionError("--view-address and --view-token go together: without a token anybody could fly the vehicle")
     if options.view_address is not None and not wanted:
         raise OptionError("--view-address is of use with --view or --view-only alone")
+    if wanted:
+        library.require()
     return wanted
 
 
 @contextlib.contextmanager
 def shown(
-    simulation: Simulation, options: argparse.Namespace, pace: StoppablePacing | None, then: Callable[[], None]
+    subject: Simulation | Swarm | LocalPlant,
+    options: argparse.Namespace,
+    pace: StoppablePacing | None = None,
+    then: Callable[[], None] = lambda: None,
 ) -> Iterator[Callable[[], None]]:
     """The page that the options ask for, while the block runs; gives what is to be called after each slice.
+
+    Args:
+        subject: a vehicle, several, or the physics of one whose autopilot is elsewhere: that one has no controls.
+        options: of the command.
+        pace: lets its time pass; None: nobody can stop it on the page.
+        then: called after each slice, too.
 
     Raises:
         MissingExtra: what draws it is not installed.
@@ -57,12 +89,30 @@ def shown(
     if not wants_view(options):
         yield then
         return
-    from ..view.gate import Gate
     from ..view.live_page import LivePage
+    from ..view.page import Page
+    from ..view.plant import PlantSource
+
+    port_inside = 0 if options.view_address is not None else options.view_port
+    clock: Callable[[], int]
+    page: Page
+    if isinstance(subject, LocalPlant):
+        clock = subject.vehicle.reader.field("time_us")
+        page = Page(PlantSource(subject), port_inside)
+    else:
+        vehicles = subject if isinstance(subject, Simulation) else subject.vehicles
+        page = LivePage(vehicles, pace, port_inside, controls=not options.view_only)
+        clock = partial(getattr, subject, "time_us")
+    with offered(page, options):
+        yield Watched(page, clock, then)
+
+
+@contextlib.contextmanager
+def offered(page: Page, options: argparse.Namespace) -> Iterator[None]:
+    """Say where a page is, and open a browser; it is closed at the end."""
+    from ..view.gate import Gate
 
     with contextlib.ExitStack() as stack:
-        port_inside = 0 if options.view_address is not None else options.view_port
-        page = LivePage(simulation, pace, port_inside, controls=not options.view_only)
         stack.callback(page.close)
         address = page.address
         if options.view_address is not None:
@@ -71,7 +121,7 @@ def shown(
             address = gate.address
         print(f"page: {address}", flush=True)
         open_browser(page.address)
-        yield Watched(page, lambda: simulation.time_us, then)
+        yield
 
 
 def open_browser(address: str) -> None:

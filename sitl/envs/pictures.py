@@ -8,7 +8,7 @@ the ends of steps, so rate and latency are whole numbers of steps.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -18,24 +18,17 @@ from sitl.core.algebra import multiply, quat_from_euler, rotate
 from sitl.core.array_kernels import Kernel, Line, Table
 from sitl.core.kernels import law
 from sitl.core.vectors import Euler, Vec3
+from sitl.worlds.camera import DISC, Photographer
 from sitl.worlds.camera import Camera as Optics
-from sitl.worlds.camera import Photographer
 from sitl.worlds.shapes import to_heading, to_ned
 
 from .options import EnvOptionError
+from .past import Film, Past, Remembering
 from .robots.robot import Floats, Robot
 
 MOST_PIXELS = 1_000_000
-
-
-class Film(NamedTuple):
-    """What one robot's pictures need to go on, for a snapshot."""
-
-    steps: int
-    """Since the episode began."""
-    seed: int
-    places: Floats
-    """Of the camera at the last steps."""
+PLACE = 7
+"""Numbers of a place: NED [m], attitude (w, x, y, z)."""
 
 
 @law
@@ -104,7 +97,7 @@ class Picture:
             raise self._refused(f"at = {at!r}; it must be forward, left, up: three finite numbers [m]")
         self._optics = Optics(width, height, math.tan(0.5 * math.radians(field_of_view)), float(reach))
         self._at, self._pitch, self._rate, self._latency, self._noise = at, math.radians(pitch), rate, latency, noise
-        self.pictures: tuple[Picture, ...] = (self,)
+        self.remembers: tuple[Remembering, ...] = (self,)
 
     def _refused(self, why: str) -> EnvOptionError:
         return EnvOptionError(f"observation {self.name!r}: {why}")
@@ -125,52 +118,41 @@ class Picture:
         if self._at is not None:
             forward, left, up = self._at
         self._mount = np.array([forward, -left, -up, self._pitch])
-        self._every = self._steps("1 / rate", 1.0 / self._rate if self._rate else seconds, seconds)
-        self._age = self._steps("latency", self._latency, seconds) if self._latency else 0
-        self._robot = robot
+        self._robot, self._others = robot, getattr(robot, "others", None)
+        discs = 0 if self._others is None else self._others().shape[1]
+        self._past = Past(self.name, robot.count, PLACE + DISC * discs, seconds, self._rate, self._latency)
+        """Where the camera was, and what moved about, at the ends of the last steps."""
         self._photographer = Photographer(robot.world, self._optics)
-        self._now = np.zeros((robot.count, 7))
-        self._past = np.zeros((robot.count, self._every + self._age, 7))
-        """Where the camera was at the end of a step, by its number."""
-        self._count, self._seeds = np.zeros((2, robot.count), np.int64)
-
-    def _steps(self, what: str, wanted: float, seconds: float) -> int:
-        steps = round(wanted / seconds)
-        if steps < 1 or abs(steps * seconds - wanted) > 1e-6:
-            raise self._refused(f"{what} = {wanted:g} s is not a whole number of steps of {seconds:g} s")
-        return steps
+        self._places = np.zeros((robot.count, PLACE))
 
     # ------------------------------------------------------------------ episodes
 
     def start(self, index: int, seed: int) -> None:
-        """An episode of one robot begins."""
-        self._look()
-        self._count[index], self._seeds[index] = 0, seed
-        self._past[index] = self._now[index]
+        """See ``Remembering``."""
+        self._past.start(index, seed)
 
-    def note(self, rows: npt.NDArray[np.bool_] | None) -> None:
-        """These robots (None: all) have gone on by a step."""
-        self._look()
-        which = np.arange(len(self._count)) if rows is None else np.flatnonzero(rows)
-        self._count[which] += 1
-        self._past[which, self._count[which] % self._past.shape[1]] = self._now[which]
+    def begin(self, which: npt.NDArray[np.bool_] | None) -> None:
+        """See ``Remembering``."""
+        self._past.begin(self._look(), which)
 
-    def _look(self) -> None:
-        _places(self._robot.true_state(), self._ahead, self._mount, self._now)
+    def note(self, which: npt.NDArray[np.bool_] | None) -> None:
+        """See ``Remembering``."""
+        self._past.note(self._look(), which)
+
+    def _look(self) -> Floats:
+        """What the pictures of now need, a row a robot."""
+        _places(self._robot.true_state(), self._ahead, self._mount, self._places)
+        if self._others is None:
+            return self._places
+        return np.concatenate((self._places, self._others().reshape(len(self._places), -1)), axis=1)
 
     def memory(self, index: int) -> Film:
-        """For a snapshot of one robot."""
-        return Film(int(self._count[index]), int(self._seeds[index]), self._past[index].copy())
+        """See ``Remembering``."""
+        return self._past.memory(index)
 
     def recall(self, index: int, film: Film) -> None:
-        """Go on as from a ``memory``.
-
-        Raises:
-            EnvOptionError: it is of pictures with another rate or latency.
-        """
-        if np.shape(film.places) != self._past[index].shape:
-            raise EnvOptionError(f"snapshot cannot be restored: {self.name!r} had another rate or latency")
-        self._count[index], self._seeds[index], self._past[index] = film
+        """See ``Remembering``."""
+        self._past.recall(index, film)
 
     # ------------------------------------------------------------------ pictures
 
@@ -180,16 +162,14 @@ class Picture:
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
-        taken = np.maximum((self._count - self._age) // self._every * self._every, 0)
-        rows = np.arange(len(taken))
-        out = self._take(np.ascontiguousarray(self._past[rows, taken % self._past.shape[1]]))
+        seen = self._past.seen()
+        out = self._take(np.ascontiguousarray(seen[:, :PLACE]), seen[:, PLACE:].reshape(len(seen), -1, DISC))
         if self._noise > 0.0:
-            for i in rows.tolist():
-                rng = np.random.default_rng((int(self._seeds[i]), int(taken[i])))
+            for i, rng in enumerate(self._past.generators()):
                 out[i] = self._spoilt(out[i] + self._noise * rng.standard_normal(out[i].shape, np.float32))
         return out
 
-    def _take(self, places: Floats) -> npt.NDArray[Any]:
+    def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
         raise NotImplementedError
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
@@ -206,8 +186,8 @@ class Depth(Picture):
         """See ``Observation``."""
         return gym.spaces.Box(0.0, self._optics.reach, (self._optics.height, self._optics.width), np.float32)
 
-    def _take(self, places: Floats) -> npt.NDArray[Any]:
-        return self._photographer.depths(places)
+    def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+        return self._photographer.depths(places, discs)
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
         return np.clip(noisy, 0.0, self._optics.reach)
@@ -228,8 +208,8 @@ class Camera(Picture):
         channels = 1 if self._grey else 3
         return gym.spaces.Box(0, 255, (self._optics.height, self._optics.width, channels), np.uint8)
 
-    def _take(self, places: Floats) -> npt.NDArray[Any]:
-        colours = self._photographer.colours(places)
+    def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+        colours = self._photographer.colours(places, discs)
         if not self._grey:
             return colours
         shares = np.array([77, 150, 29], np.uint32)  # of 256: luma of ITU-R BT.601

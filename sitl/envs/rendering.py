@@ -20,13 +20,15 @@ from .targets.gates import Gates
 from .targets.places import PlacesTask
 from .tasks import ReachGoal, Task
 
-RENDER_MODES = ["rgb_array", "human"]
+RENDER_MODES = ["rgb_array", "human", "window"]
 SIZE = 640
 """Longer side of an image [pixels]."""
 PHOTOGRAPH = (640, 480)
 """Width and height of an image by a physics engine's renderer [pixels]."""
 _BORDER = 0.5
 """Margin around the world [m]."""
+_ROUND_GATES = 2.5
+"""Room round the middle of a gate, for the turns of who passes it [m]."""
 _PAPER, _WALL, _LOW_WALL = (250, 250, 247), (62, 68, 76), (190, 194, 198)
 _RAY, _TRAIL, _BODY, _CRASHED, _NOSE = (222, 168, 90), (70, 130, 180), (40, 90, 160), (200, 50, 40), (255, 255, 255)
 _GOAL = (60, 150, 80)
@@ -50,7 +52,7 @@ def _check_screen() -> None:
     """
     if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in _SCREENS):
         raise DependencyNotInstalled(
-            'render_mode "human" finds no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); "rgb_array" needs none'
+            'render_mode "window" finds no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); "rgb_array" needs none'
         )
 
 
@@ -88,6 +90,9 @@ class Renderer:
         if isinstance(task, PlacesTask):
             low, high = task.arena.low, task.arena.high
             x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
+        for gate in task.gates if isinstance(task, Gates) else ():
+            x0, y0 = min(x0, gate.x - _ROUND_GATES), min(y0, gate.y - _ROUND_GATES)
+            x1, y1 = max(x1, gate.x + _ROUND_GATES), max(y1, gate.y + _ROUND_GATES)
         self._low = (x0 - _BORDER, y0 - _BORDER)
         extent = (x1 - x0 + 2.0 * _BORDER, y1 - y0 + 2.0 * _BORDER)
         self._scale = SIZE / max(extent)
@@ -202,7 +207,7 @@ class Renderer:
                 self._window = pygame.display.set_mode(self._shape)
             except pygame.error as error:
                 raise DependencyNotInstalled(
-                    f'render_mode "human" finds no screen ({error}); "rgb_array" needs none'
+                    f'render_mode "window" finds no screen ({error}); "rgb_array" needs none'
                 ) from None
             pygame.display.set_caption(f"{self._robot.name} in {self._robot.world.name}")
         self._window.blit(self._draw(), (0, 0))

@@ -155,10 +155,10 @@ class StoppablePacing(Pacing):
         if self.is_stopped:
             self.slice_us = 0
 
-    def after_slice(self, simulation: Simulation) -> None:
+    def listen(self, listener: Listener) -> None:
         if not self.is_stopped:
-            super().after_slice(simulation)
+            super().listen(listener)
             return
         self.slice_us, self._step_us = self._step_us, 0
-        if self.slice_us == 0 and simulation.bridge.wait(_STOPPED_WALL_S):
-            simulation.bridge.receive()
+        if self.slice_us == 0 and listener.wait(_STOPPED_WALL_S):
+            listener.receive()

@@ -15,10 +15,14 @@ _WAITS_A_HEARTBEAT = 5
 
 
 class SwarmPacing:
-    """As ``Pacing``, for a swarm."""
+    """As ``Pacing``, for a swarm.
 
-    def __init__(self, speedup: float | None) -> None:
-        self._pacing = Pacing(speedup)
+    Args:
+        pacing: how fast; or the speed-up itself, None: as fast as it can.
+    """
+
+    def __init__(self, pacing: Pacing | float | None) -> None:
+        self._pacing = pacing if isinstance(pacing, Pacing) else Pacing(pacing)
         self.slice_us = self._pacing.slice_us
 
     def after_slice(self, simulation: Swarm) -> None:

@@ -23,6 +23,16 @@ def turn(q: Quat) -> tuple[float, float, float, float]:
     return (q.w, q.x, -q.y, -q.z)
 
 
+def places(ned: Floats) -> Floats:
+    """Many places, shape (n, 3)."""
+    return ned * FLIP
+
+
+def turns(q: Floats) -> Floats:
+    """Many attitudes, shape (n, 4)."""
+    return q * (1.0, 1.0, -1.0, -1.0)
+
+
 def about(axis: int, angle: float) -> tuple[float, float, float, float]:
     """Quaternion of a turn [rad] about axis 0, 1 or 2."""
     q = [float(np.cos(0.5 * angle)), 0.0, 0.0, 0.0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from html import escape
-from typing import Any
+from typing import Any, TypeVar
 
 from ..autopilot.params.parameter import Parameter
 from ..run.pacing import MAX, StoppablePacing
@@ -21,7 +21,10 @@ _WIND = (
 _OFFERED = 60
 """Parameters in the list that a search gives."""
 
+T = TypeVar("T")
 Shift = Callable[[], Sequence[float]]
+Chosen = Callable[[], T]
+"""Gives what belongs to the vehicle that is chosen."""
 Ask = Callable[[Callable[[], None], Any], None]
 """Lets something be done where the vehicle is, for the event of a click."""
 
@@ -33,21 +36,22 @@ class Controls:
         gui: of the page.
         scene: of viser, in which clicks mean places.
         ask: lets something be done where the vehicle is.
-        pilot: does it.
+        pilot: gives who does it: the one of the vehicle that is chosen.
         stage: what is shown.
         pace: of the run; None: its time cannot be stopped here.
         shift: how far the stage is moved (``cameras``) [m].
     """
 
     def __init__(
-        self, gui: Any, scene: Any, ask: Ask, pilot: Pilot, stage: Stage, pace: StoppablePacing | None, shift: Shift
-    ) -> None:
+        self, gui: Any, scene: Any, ask: Ask, pilot: Chosen[Pilot], stage: Stage, pace: StoppablePacing | None,
+        shift: Shift,
+    ) -> None:  # fmt: skip
         self._ask, self._pilot, self._shift = ask, pilot, shift
         with gui.add_folder("Pilot"):
             self._add_pilot(gui, stage)
         if pace is not None:
             with gui.add_folder("Time"):
-                self._add_time(gui, pace)
+                self._add_time(gui, pace, not stage.company)
         scene.on_click()(self._clicked)
 
     def _button(self, gui: Any, label: str, act: Callable[[], None], hint: str = "") -> Any:
@@ -57,16 +61,16 @@ class Controls:
 
     def _add_pilot(self, gui: Any, stage: Stage) -> None:
         pilot = self._pilot
-        self.arm = self._button(gui, "Arm", pilot.arm)
-        self.disarm = self._button(gui, "Disarm", pilot.disarm)
+        self.arm = self._button(gui, "Arm", lambda: pilot().arm())
+        self.disarm = self._button(gui, "Disarm", lambda: pilot().disarm())
         if stage.flies:
             self.height = gui.add_number("Height", 10.0, min=0.5, max=500.0, step=0.5, hint="above home [m]")
-            self.take_off = self._button(gui, "Take off", lambda: pilot.take_off(float(self.height.value)))
+            self.take_off = self._button(gui, "Take off", lambda: pilot().take_off(float(self.height.value)))
         self.mode = gui.add_dropdown("Mode", stage.modes, initial_value=stage.modes[0])
-        self.set_mode = self._button(gui, "Set mode", lambda: pilot.set_mode(self.mode.value))
+        self.set_mode = self._button(gui, "Set mode", lambda: pilot().set_mode(self.mode.value))
         self.clicks = gui.add_checkbox("Click on the ground to go there", True, hint="GUIDED, at the present height")
 
-    def _add_time(self, gui: Any, pace: StoppablePacing) -> None:
+    def _add_time(self, gui: Any, pace: StoppablePacing, is_alone: bool) -> None:
         now = "1" if pace.speedup == 1.0 else MAX if pace.speedup is None else f"{pace.speedup:g}"
         speeds = SPEEDS if now in SPEEDS else (now, *SPEEDS)
         self.speed = gui.add_dropdown("Speed", speeds, initial_value=now, hint="simulated seconds a second")
@@ -80,8 +84,12 @@ class Controls:
         self.go_on = self._button(gui, "Go on", pace.go_on)
         self.step_s = gui.add_number("Step", _STEP_S, min=0.0025, max=60.0, step=0.0025, hint="[s]")
         self.step = self._button(gui, "One step", lambda: pace.step(round(float(self.step_s.value) * 1e6)))
-        self.keep = self._button(gui, "Keep this moment", self._pilot.keep)
-        self.go_back = self._button(gui, "Back to it", self._pilot.go_back)
+        if is_alone:  # a snapshot is of one vehicle: those that share its world would be at another time
+            self._add_snapshot(gui)
+
+    def _add_snapshot(self, gui: Any) -> None:
+        self.keep = self._button(gui, "Keep this moment", lambda: self._pilot().keep())
+        self.go_back = self._button(gui, "Back to it", lambda: self._pilot().go_back())
 
     def _clicked(self, event: Any) -> None:
         if not self.clicks.value:
@@ -89,7 +97,7 @@ class Controls:
         origin = [at - moved for at, moved in zip(event.ray_origin, self._shift(), strict=True)]
         place = on_ground(origin, event.ray_direction)
         if place is not None:
-            self._ask(lambda: self._pilot.go_to(*place), event)
+            self._ask(lambda: self._pilot().go_to(*place), event)
 
 
 class ParameterControls:
@@ -97,14 +105,13 @@ class ParameterControls:
 
     Args:
         gui: of the page.
-        simulation: whose table it is; values are read where the vehicle is.
+        simulation: gives whose table it is; values are read where the vehicle is.
         ask, pilot: as of ``Controls``.
         may_set: False: they are only shown.
     """
 
-    def __init__(self, gui: Any, simulation: Simulation, ask: Ask, pilot: Pilot, may_set: bool) -> None:
+    def __init__(self, gui: Any, simulation: Chosen[Simulation], ask: Ask, pilot: Chosen[Pilot], may_set: bool) -> None:
         self._simulation, self._ask, self._pilot = simulation, ask, pilot
-        self._table = simulation.firmware.table
         self.search = gui.add_text("Search", "", hint="part of a name or of a meaning")
         self.choice = gui.add_dropdown("Parameter", ("-",))
         self.about = gui.add_html("")
@@ -116,23 +123,24 @@ class ParameterControls:
             self.set.on_click(lambda event: self._ask(self._set, event))
 
     def _offer(self) -> None:
-        self.choice.options = tuple(p.name for p in found(tuple(self._table), self.search.value)) or ("-",)
+        table = tuple(self._simulation().firmware.table)
+        self.choice.options = tuple(p.name for p in found(table, self.search.value)) or ("-",)
 
     def _read(self) -> None:
-        name = self.choice.value
-        if name in self._table:
-            parameter, value = self._table[name], float(self._simulation.parameters[name])
+        name, simulation = self.choice.value, self._simulation()
+        if name in simulation.firmware.table:
+            parameter, value = simulation.firmware.table[name], float(simulation.parameters[name])
             self.value.value = value
             self.about.content = describe(parameter, value)
 
     def _set(self) -> None:
-        self._pilot.set_parameter(self.choice.value, float(self.value.value))
+        self._pilot().set_parameter(self.choice.value, float(self.value.value))
 
 
 class Weather:
     """Wind, and what fails."""
 
-    def __init__(self, gui: Any, simulation: Simulation, ask: Ask, pilot: Pilot) -> None:
+    def __init__(self, gui: Any, simulation: Simulation, ask: Ask, pilot: Chosen[Pilot]) -> None:
         self.sliders = {}
         for name, label, high in _WIND:
             now = min(float(simulation.parameters[name]), high)
@@ -141,15 +149,15 @@ class Weather:
             self.sliders[name] = slider
         self.fault = gui.add_text("Fault", "gps", hint="UNIT[/TYPE][:N][=AMOUNT][@FROM[..TO]], docs/faults.md")
         self.fail = gui.add_button("Let it fail")
-        self.fail.on_click(lambda event: ask(lambda: pilot.fail(self.fault.value), event))
+        self.fail.on_click(lambda event: ask(lambda: pilot().fail(self.fault.value), event))
         self.repair = gui.add_button("Repair all")
-        self.repair.on_click(lambda event: ask(pilot.repair, event))
+        self.repair.on_click(lambda event: ask(lambda: pilot().repair(), event))
 
 
-def _setter(ask: Ask, pilot: Pilot, name: str) -> Callable[[Any], None]:
+def _setter(ask: Ask, pilot: Chosen[Pilot], name: str) -> Callable[[Any], None]:
     def set_it(event: Any) -> None:
         value = float(event.target.value)
-        ask(lambda: pilot.set_parameter(name, value), event)
+        ask(lambda: pilot().set_parameter(name, value), event)
 
     return set_it
 

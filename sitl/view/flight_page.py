@@ -181,13 +181,17 @@ class FlightPage:
             self._moves_bar = False
         self.cameras.show(self.server.get_clients(), self.frames[0])
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, frames: int = _SAVED_FRAMES) -> None:
         """Write the scene and its course as one file that a browser opens from disk: no server, no network.
+
+        Args:
+            path: of the file.
+            frames: moments in it, at most.
 
         Raises:
             SitlError: the file cannot be written.
         """
-        step = max(1.0 / _SAVED_RATE, self.length / _SAVED_FRAMES)
+        step = max(1.0 / _SAVED_RATE, self.length / frames)
         self.scene.show(0.0)
         serializer = self.server.get_scene_serializer()
         for time in np.arange(step, self.length, step):

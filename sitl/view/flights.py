@@ -15,7 +15,6 @@ from ..core.algebra import quat_from_euler
 from ..core.vectors import Euler, Vec3
 from ..logs.track import Track
 from ..vehicle.kinds import KINDS
-from ..vehicles.airframe import apply
 from . import kind
 from .frame import Frame
 from .shape import ROTOR, Shape
@@ -101,9 +100,7 @@ def of_track(name: str, track: Track, frame: str | None = None) -> Flight:
         track: with its clock.
         frame: name of the airframe; None: the usual one of its kind.
     """
-    of = KINDS[track.kind]
-    v = of.record.of(of.record.fleet(1), 0)
-    apply(vehicles.load(frame or of.default_frame), v)
+    shape = kind.shape_of(vehicles.load(frame or KINDS[track.kind].default_frame))
     speed = np.hypot(track["vn"], track["ve"])
     rolled = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(track.t))])
-    return Flight(name, track, kind.of(of).shape(v.physics.airframe), rolled)
+    return Flight(name, track, shape, rolled)

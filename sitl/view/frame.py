@@ -34,6 +34,10 @@ class Stage:
     """Names of all modes, those that a client can ask for."""
     flies: bool = True
     """It can leave the ground."""
+    company: tuple[Shape, ...] = ()
+    """Shape of each vehicle, where there are several; the first frame's chosen one is ``shape``."""
+    copies: Points | None = None
+    """Places at which the world stands, in the scene's axes [m], shape (n, 3); None: once, at the origin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +72,18 @@ class Text:
     severity: int
     """MAV_SEVERITY: 0 emergency .. 7 debug."""
     text: str
+
+
+@dataclass(frozen=True, eq=False)
+class Company:
+    """All vehicles of a page that shows several, at one moment."""
+
+    pos: Points
+    """NED [m], shape (n, 3)."""
+    q: Points
+    """Body to NED, shape (n, 4)."""
+    chosen: int = 0
+    """The vehicle that the frame is of."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -120,6 +136,10 @@ class Frame:
     """Since the frame before."""
     signals: dict[str, float] = field(default_factory=dict)
     """Values of the signals that are plotted."""
+    company: Company | None = None
+    """All vehicles, this one too; None: it is alone."""
+    facts: tuple[tuple[str, str], ...] = ()
+    """Names and texts that the state shows instead of an autopilot's."""
 
 
 class Source(Protocol):
@@ -138,3 +158,10 @@ class Source(Protocol):
 
     def choose_signals(self, names: tuple[str, ...]) -> None:
         """Frames have these signals from now on."""
+
+
+class CompanyOfSources(Source, Protocol):
+    """Frames of several vehicles."""
+
+    def choose(self, number: int) -> None:
+        """Show another one in full from the next frame on."""

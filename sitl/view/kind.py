@@ -9,6 +9,10 @@ from typing import Any, NamedTuple
 
 from ..core.vectors import Vec3
 from ..vehicle.kind import Kind, MissingPartError
+from ..vehicle.kinds import KINDS
+from ..vehicles.airframe import Airframe, apply
+from ..vehicles.turtlebot import TurtlebotAirframe
+from . import turtlebot
 from .shape import Shape, plain
 
 
@@ -39,6 +43,16 @@ def _outline(figures: Any) -> Shape:
 
 PLAIN = KindView(_outline, lambda v: Motion(), lambda v: None)
 """Of a kind that has no part of its own."""
+
+
+def shape_of(airframe: Airframe) -> Shape:
+    """What an airframe looks like, whatever flies it."""
+    if isinstance(airframe, TurtlebotAirframe):
+        return turtlebot.shape(airframe)
+    kind = KINDS[airframe.kind]
+    v = kind.record.of(kind.record.fleet(1), 0)
+    apply(airframe, v)
+    return of(kind).shape(v.physics.airframe)
 
 
 def of(kind: Kind) -> KindView:

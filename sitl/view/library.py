@@ -11,13 +11,18 @@ from typing import Any
 from ..errors import MissingExtra
 
 
+def is_installed() -> bool:
+    """Whether the library is there."""
+    return find_spec("viser") is not None
+
+
 def require() -> None:
     """Check that the library is installed, without importing it.
 
     Raises:
         MissingExtra: it is not.
     """
-    if find_spec("viser") is None:
+    if not is_installed():
         raise MissingExtra("the page in the browser needs viser: pip install 'gym-sitl[view]'")
 
 

@@ -20,9 +20,8 @@ from ..client.commands import command_name
 from ..core.geodesy import offset_ne
 from ..core.vectors import Vec3
 from ..simulation import Simulation
-from . import kind
-from .frame import Frame, Mark, Plan, Points, Stage, Text
-from .signals import Signals
+from .frame import Frame, Mark, Plan, Points, Text
+from .record import RecordSource
 
 _CORNERS = 48
 """Of the outline of a circle."""
@@ -41,28 +40,18 @@ class Captured(NamedTuple):
     texts: tuple[Text, ...]
 
 
-class LiveSource:
+class LiveSource(RecordSource):
     """A simulation as the page sees it. It listens to what the vehicle says to its pilot until it is closed."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._fleet = simulation.kind.record.fleet(1)
-        self._bytes = self._fleet.view("u1")
-        self._v = simulation.kind.record.of(self._fleet, 0)
-        self._view = kind.of(simulation.kind)
-        self._names = simulation.firmware.mode_names
-        self._texts: list[Text] = []
-        self._scan: tuple[int, Points | None] = (-1, None)
-        self._plan: tuple[object, Plan] = (None, Plan())
-        self._signals: Signals | None = None
-        self._read = dict[str, float]
-        self.stage = Stage(
-            simulation.airframe.name,
-            self._view.shape(simulation.v.physics.airframe),
-            simulation.world,
-            tuple(self._names[number] for number in sorted(self._names)),
-            simulation.kind.flies,
+        self._names = names = simulation.firmware.mode_names
+        modes = tuple(names[number] for number in sorted(names))
+        super().__init__(
+            simulation.kind, simulation.fleet, simulation.index, simulation.airframe.name, simulation.world, modes
         )
+        self._texts: list[Text] = []
+        self._plan: tuple[object, Plan] = (None, Plan())
         simulation.bridge.listeners.append(self)
 
     def said(self, severity: int, text: str) -> None:
@@ -86,43 +75,22 @@ class LiveSource:
         """The vehicle as it is now."""
         simulation = self._simulation
         texts, self._texts = tuple(self._texts), []
-        record = simulation.fleet[simulation.index : simulation.index + 1].tobytes()
-        return Captured(simulation.time_us, record, simulation.mission, texts)
+        return Captured(simulation.time_us, self._copy(), simulation.mission, texts)
 
     # ------------------------------------------------------------------ where the page is
 
-    def signal_names(self) -> list[str]:
-        """What can be plotted."""
-        return self._find_signals().names
-
-    def choose_signals(self, names: tuple[str, ...]) -> None:
-        """Frames have these signals from now on.
-
-        Raises:
-            sitl.view.signals.SignalError: there is no such signal; those before stay.
-        """
-        self._read = self._find_signals().reader(names)  # type: ignore[assignment]
-
-    def _find_signals(self) -> Signals:
-        if self._signals is None:
-            self._signals = Signals(self._simulation.kind, self._fleet, self._v)
-        return self._signals
-
     def frame(self, captured: Captured) -> Frame:
         """What the page shows of a moment."""
-        self._bytes[:] = np.frombuffer(captured.record, np.uint8)
-        v = self._v
-        ap, body, gps = v.autopilot, v.physics.body, v.sensors
+        v = self._take(captured.record)
+        ap, gps = v.autopilot, v.sensors
         estimate, modes, battery = ap.estimate, ap.modes, ap.battery
         offset = self._origin()
         is_placed = estimate.position_ok or estimate.origin_set
         target = self._view.set_point(v) if ap.arming.armed else None
         leg = modes.nav.current
         is_on_leg = ap.arming.armed and leg.segments > 0 and v.time_us - modes.nav.active_us < 100_000
-        rotors, steering, rolled = self._view.motion(v)
         return Frame(
             time_us=captured.time_us,
-            pos=body.pos, q=body.q, vel=body.vel,
             estimate_pos=estimate.pos + offset if is_placed else None,
             estimate_q=estimate.q if estimate.attitude_ok else None,
             set_point=None if target is None else target + offset,
@@ -132,10 +100,7 @@ class LiveSource:
             voltage=battery.voltage, current=battery.current, charge_left=battery.remaining_pct,
             satellites=int(gps.gps_satellites), fix=int(gps.gps_fix),
             failsafes=self._failsafes(), mission_current=int(modes.nav.mission_current),
-            rotors=rotors, steering=steering, rolled=rolled,
-            scan=self._scanned(), wind=v.physics.wind.vel,
-            plan=self._planned(captured.mission, offset), texts=captured.texts,
-            signals=self._read(),
+            plan=self._planned(captured.mission, offset), texts=captured.texts, **self._moment(),
         )  # fmt: skip
 
     def _origin(self) -> Vec3:
@@ -154,22 +119,6 @@ class LiveSource:
             found.append("battery critical" if f.battery > 1 else "battery low")
         found += [f"fence: {name}" for k, name in enumerate(_FENCES) if int(ap.fence.breached) >> k & 1]
         return tuple(found)
-
-    def _scanned(self) -> Points | None:
-        """What the lidar met, on the body [m]."""
-        sensors, figures = self._v.sensors, self._v.physics.airframe
-        count = int(sensors.lidar_samples)
-        if count == 0 or sensors.lidar_count == 0:
-            return None
-        if self._scan[0] != sensors.lidar_count:
-            ranges = np.asarray(sensors.lidar_ranges[:count], float)
-            half = 0.5 * sensors.lidar_fov
-            angles = np.linspace(-half, half, count)  # counter-clockwise from the right
-            met = np.isfinite(ranges) & (ranges < sensors.lidar_max)
-            ranges, angles = ranges[met], angles[met]
-            rays = np.stack([ranges * np.cos(angles), -ranges * np.sin(angles), np.zeros(len(ranges))], axis=1)
-            self._scan = (int(sensors.lidar_count), rays + np.array(figures.lidar_at))
-        return self._scan[1]
 
     def _planned(self, mission: Mission, offset: Vec3) -> Plan:
         """Mission, fences and rally points; the same object while none of them changes."""

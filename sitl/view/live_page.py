@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of a simulation that runs: ``sitl.run.watched`` gives it frames, and time to do what users ask for."""
+"""The page of simulations that run, one or several: ``sitl.run.watched`` gives it frames, and time to do what users ask
+for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from queue import Empty, SimpleQueue
 from typing import Any
 
 from ..errors import SitlError
 from ..run.pacing import StoppablePacing
 from ..simulation import Simulation
+from .company import CompanySource
 from .controls import Controls, ParameterControls, Weather
 from .live import LiveSource
 from .page import Page
@@ -19,36 +21,57 @@ Request = Callable[[], None]
 
 
 class LivePage(Page):
-    """A page of a simulation.
+    """A page of a simulation, or of several that share a world: one of these is chosen, shown in full and commanded.
 
     Args:
-        simulation: the vehicle.
+        vehicles: what is shown.
         pace: lets its time pass; None: nobody can stop it here.
         port: on this machine; 0: a free one.
-        controls: whether the page may do anything to the vehicle.
+        controls: whether the page may do anything to a vehicle.
     """
 
     def __init__(
-        self, simulation: Simulation, pace: StoppablePacing | None = None, port: int = 0, controls: bool = True
+        self,
+        vehicles: Simulation | Sequence[Simulation],
+        pace: StoppablePacing | None = None,
+        port: int = 0,
+        controls: bool = True,
     ) -> None:
         self._requests: SimpleQueue[tuple[Request, Any]] = SimpleQueue()
-        self.simulation = simulation
-        source = LiveSource(simulation)
+        self._vehicles = [vehicles] if isinstance(vehicles, Simulation) else list(vehicles)
+        self._live = source = LiveSource(vehicles) if isinstance(vehicles, Simulation) else CompanySource(vehicles)
+        self._pilots: dict[int, Pilot] = {}
         super().__init__(source, port)
-        self._live = source
-        self.pilot = Pilot(simulation, self.notify)
         self.controls: Controls | None = None
         """What users can do; None: they only look."""
         self.weather: Weather | None = None
         gui = self.server.gui
         if controls:
             with self.tabs.add_tab("Control"):
-                scene, shift = self.server.scene, self.cameras.shift
-                self.controls = Controls(gui, scene, self.ask, self.pilot, source.stage, pace, shift)
+                scene, shift, of = self.server.scene, self.cameras.shift, source.stage
+                self.controls = Controls(gui, scene, self.ask, lambda: self.pilot, of, pace, shift)
             with self.tabs.add_tab("Faults"):
-                self.weather = Weather(gui, simulation, self.ask, self.pilot)
+                self.weather = Weather(gui, self.simulation, self.ask, lambda: self.pilot)
         with self.tabs.add_tab("Parameters"):
-            self.parameters = ParameterControls(gui, simulation, self.ask, self.pilot, controls)
+            self.parameters = ParameterControls(gui, lambda: self.simulation, self.ask, lambda: self.pilot, controls)
+
+    @property
+    def chosen(self) -> int:
+        """Number of the vehicle that is shown in full."""
+        return self._live.chosen if isinstance(self._live, CompanySource) else 0
+
+    @property
+    def simulation(self) -> Simulation:
+        """The vehicle that is shown in full."""
+        return self._vehicles[self.chosen]
+
+    @property
+    def pilot(self) -> Pilot:
+        """Commands that vehicle."""
+        number = self.chosen
+        if number not in self._pilots:
+            self._pilots[number] = Pilot(self._vehicles[number], self.notify)
+        return self._pilots[number]
 
     def ask(self, request: Request, event: Any = None) -> None:
         """Let something be done to the vehicle, by its own thread; called from the page's."""
@@ -65,7 +88,8 @@ class LivePage(Page):
                 request()
             except SitlError as error:
                 self.notify(str(error), client)
-        self.pilot.listen()
+        for pilot in self._pilots.values():
+            pilot.listen()
 
     def close(self) -> None:
         super().close()

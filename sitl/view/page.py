@@ -9,20 +9,23 @@ from __future__ import annotations
 
 import socket
 import threading
+import time
 import traceback
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 from ..errors import SitlError
 from . import library
 from .cameras import VIEWS, Cameras
-from .frame import Frame, Source
+from .frame import CompanyOfSources, Frame, Source
 from .panel import Panel
 from .plots import Plots
 from .scene.scene import Scene
 from .scene.trail import BY_MODE, BY_SPEED
 
 LOCAL = "127.0.0.1"
+SHARE = 0.05
+"""Of a processor's time that drawing may take: where drawing is slow, there are fewer frames."""
 _PANEL_EVERY = 3
 """Instruments and plots are sent with every third frame: ten times a second."""
 
@@ -59,11 +62,21 @@ class Page:
         gui = self.server.gui
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
         gui.main_panel.dock_right()
+        self._add_choice(gui, len(source.stage.company))
         self.scene = Scene(self.server, source.stage)
         self.cameras = Cameras(self.scene.stage, source.stage.shape.size)
         self.tabs = self._add_instruments(gui)
         self._thread = threading.Thread(target=self._draw_all, name="sitl-view", daemon=True)
         self._thread.start()
+
+    def _add_choice(self, gui: Any, count: int) -> None:
+        """How one of several vehicles is chosen."""
+        if count == 0:
+            return
+        number = gui.add_number("Vehicle", 1, min=1, max=count, step=1, hint=f"1 to {count}: shown in full")
+        source = cast(CompanyOfSources, self.source)
+        number.on_update(self.guarded(lambda event: source.choose(int(number.value) - 1)))
+        self.vehicle_number = number
 
     def _add_instruments(self, gui: Any) -> Any:
         tabs = gui.add_tab_group()
@@ -76,10 +89,14 @@ class Page:
             colours.on_update(lambda event: setattr(self.scene.trail, "colours", event.target.value))
             clear = gui.add_button("Forget the trail")
             clear.on_click(lambda event: self.scene.trail.clear())
+            self._add_looks(gui)
         with tabs.add_tab("Plots"):
             self.plots = Plots(gui, self.source, self.guarded)
         self.view = view
         return tabs
+
+    def _add_looks(self, gui: Any) -> None:
+        """Further widgets of the tab Look, of some pages."""
 
     # ------------------------------------------------------------------ from the vehicle's thread
 
@@ -92,6 +109,9 @@ class Page:
     def is_free(self) -> bool:
         """All that it was given is drawn."""
         return self._room is None
+
+    def attend(self) -> None:
+        """Do what users have asked for (``sitl.run.watched.Viewer``): of this page, nothing."""
 
     def capture(self, factor: float) -> None:
         """Take what the source has now; ``factor``: simulated time by wall time."""
@@ -109,14 +129,21 @@ class Page:
                 if self._closed:
                     return
                 captured, factor = self._room, self._factor
-            try:
-                self.show(self.source.frame(captured), factor)
-            except Exception:  # the flight is more than its picture: say it, and go on
-                traceback.print_exc()
-            finally:
-                with self._filled:
+            spent = self.show_safely(captured, factor)
+            with self._filled:
+                self._filled.wait_for(lambda: self._closed, timeout=spent * (1.0 / SHARE - 1.0))
+                if self._room is captured:  # else there is something newer already
                     self._room = None
-                    self._filled.notify_all()
+                self._filled.notify_all()
+
+    def show_safely(self, captured: Any, factor: float) -> float:
+        """Draw what was captured, whatever becomes of it; returns the processor's time that it took [s]."""
+        begin = time.thread_time()
+        try:
+            self.show(self.source.frame(captured), factor)
+        except Exception:  # the flight is more than its picture: say it, and go on
+            traceback.print_exc()
+        return time.thread_time() - begin
 
     def show(self, frame: Frame, factor: float = 1.0) -> None:
         """Draw a moment."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from html import escape
 from typing import Any
 
@@ -63,6 +64,8 @@ def _row(text: Text) -> str:
 def state(frame: Frame, speed: str) -> str:
     """The state as HTML: what the vehicle is doing, and what is wrong."""
     armed = _badge("ARMED", "#c0392b") if frame.armed else _badge("disarmed", "#27ae60" if frame.ready else "#7f8c8d")
+    if frame.facts:
+        return f'<div style="padding:0.4em 0.6em 0.2em">{_badge(frame.mode, "#2e86de")}{_grid(frame.facts)}</div>'
     mode = _badge(frame.mode or "-", css(of_mode(frame.mode)))
     ready = "" if frame.armed or frame.ready else '<span style="color:#888">not ready to arm</span>'
     fix = _FIXES[min(frame.fix, len(_FIXES) - 1)]
@@ -79,12 +82,17 @@ def state(frame: Frame, speed: str) -> str:
         ("place", f"{north:.1f} N, {east:.1f} E"), ("climb", f"{-frame.vel.z:.1f} m/s"),
         ("wind", f"{wind:.1f} m/s from {calls:.0f}°" if wind > 0.05 else "none"), ("item", str(frame.mission_current)),
     ]  # fmt: skip
-    grid = "".join(f'<div style="color:#888">{name}</div><div>{escape(value)}</div>' for name, value in cells)
     alarms = "".join(_badge(name, "#c0392b") for name in frame.failsafes)
     return (
-        f'<div style="padding:0.4em 0.6em 0.2em">{mode}{armed}{ready}{alarms}'
-        f'<div style="display:grid;grid-template-columns:auto 1fr auto 1fr;gap:0.1em 0.7em;font-size:0.78em;'
-        f'margin-top:0.5em">{grid}</div></div>'
+        f'<div style="padding:0.4em 0.6em 0.2em">{mode}{armed}{ready}{alarms}{_grid(cells)}</div>'
+    )
+
+
+def _grid(cells: Sequence[tuple[str, str]]) -> str:
+    rows = "".join(f'<div style="color:#888">{escape(name)}</div><div>{escape(value)}</div>' for name, value in cells)
+    return (
+        '<div style="display:grid;grid-template-columns:auto 1fr auto 1fr;gap:0.1em 0.7em;font-size:0.78em;'
+        f'margin-top:0.5em">{rows}</div>'
     )
 
 

@@ -203,18 +203,21 @@ def test_telemetry_and_record_are_the_same_bits_with_a_page(core: Core) -> None:
     assert run(True) == run(False)
 
 
-def test_the_trails_memory_is_limited(page: LivePage) -> None:
+def test_the_trails_memory_is_limited(page: LivePage, monkeypatch: pytest.MonkeyPatch) -> None:
     from dataclasses import replace
 
     from sitl.core.vectors import Vec3
+    from sitl.view.scene import trail
 
+    monkeypatch.setattr(trail, "_PIECES", 5)
+    monkeypatch.setattr(trail, "_PIECE", 40)
     fly(page, 0.1)
     frame = page.frame
     assert frame is not None
-    for k in range(30_000):
+    for k in range(1000):
         page.scene.trail.show(replace(frame, time_us=frame.time_us + k, pos=Vec3(0.2 * k, 0.0, 0.0)))
-    lines = sum(len(piece.points) for piece in page.scene.trail._pieces)
-    assert 5_000 < lines < 15_000
+    lines = [len(piece.points) for piece in page.scene.trail._pieces]
+    assert len(lines) == 5 and 150 < sum(lines) <= 200
 
 
 def test_a_port_that_is_taken_is_named() -> None:

@@ -12,7 +12,7 @@ from ..recipes.recipe import check_all, runs_of
 from ..rehearsal import plan as plans
 from ..rehearsal.rehearse import PLAIN, recipes_of
 from ..rehearsal.report import write_report
-from ..report import curves, environments, paper
+from ..report import environments, paper
 from ..report.driven import Driven
 from ..report.environments import Dish
 from ..report.group import Group
@@ -22,7 +22,7 @@ from ..runs.bar import Bar
 from ..runs.config import EPISODES
 from ..runs.folder import RunFolder
 from ..runs.training import is_done, train_all
-from .options import add_jobs, positive, workers
+from .options import add_jobs, check_report_libraries, positive, workers
 from .rehearse import with_bar
 
 _SEEDS = 10
@@ -58,6 +58,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run_paper(options: argparse.Namespace) -> int:
     """Run ``sitl benchmark paper``."""
+    check_report_libraries()
     out, seeds, pool = options.out, range(options.seeds), workers(options)
     wanted: list[tuple[str, list[RunFolder]]] = []
     main: dict[tuple[str, str], int] = {}
@@ -110,7 +111,7 @@ def run_environments(options: argparse.Namespace) -> int:
     pool = workers(options)
     chosen = [recipes.load(name) for name in options.only or recipes.names()]
     check_all(chosen, options.seeds)
-    curves.figure()  # before hours are spent, see that pictures can be drawn
+    check_report_libraries()
     runs = [runs_of(options.out, recipe, options.seeds) for recipe in chosen]
     todo = [one for group in runs for one in group if not is_done(one)]
     items = [(one.path, recipe) for recipe, group in zip(chosen, runs) for one in group]
@@ -161,7 +162,7 @@ def run_rehearsal(options: argparse.Namespace) -> int:
     plans.check_names(chosen)
     trained = {plan.name: recipes_of(plan, options.steps) for plan in chosen}
     check_all([recipe for pair in trained.values() for recipe in pair.values()], options.seeds)
-    curves.figure()  # before much is trained, see that pictures can be drawn
+    check_report_libraries()
     runs = {
         plan: {title: runs_of(options.out, recipe, options.seeds) for title, recipe in pair.items()}
         for plan, pair in trained.items()

@@ -9,6 +9,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..errors import AgentError
+from ..report import curves
+from ..report.statistics import scipy_stats
 from ..runs.backends import BACKENDS, Workers
 
 
@@ -79,3 +81,13 @@ def workers(options: argparse.Namespace) -> Workers:
         MissingExtra: Ray is not installed.
     """
     return Workers(options.jobs, options.backend, options.address)
+
+
+def check_report_libraries() -> None:
+    """Before hours are spent: what a report needs at the end is installed.
+
+    Raises:
+        MissingExtra: matplotlib or SciPy is not installed.
+    """
+    curves.figure()
+    scipy_stats()

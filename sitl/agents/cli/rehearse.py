@@ -21,7 +21,7 @@ from ..report.group import Group, unique_names
 from ..runs.backends import Workers
 from ..runs.files import make_folder
 from ..runs.plan import EvaluationPlan
-from .options import add_jobs, positive, whole, workers
+from .options import add_jobs, check_report_libraries, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -51,6 +51,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Run the command."""
+    check_report_libraries()
     pool = workers(options)
     groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
     environments = {group.config.env for group in groups}

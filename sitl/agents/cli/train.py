@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from sitl.cli.view_options import add_view_options, wants_view
 from sitl.errors import MissingExtra
 
 from .. import algorithms, environments, recipes
@@ -18,12 +19,14 @@ from ..report.statistics import scipy_stats
 from ..report.sweep import write_table
 from ..runs import folder as folders
 from ..runs import sweep as sweeps
+from ..runs.backends import BACKENDS
 from ..runs.bar import Bar
 from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
 from ..runs.sweep import OPTION, Sweep, is_sweep
 from ..runs.training import is_done, train_all
 from .options import add_jobs, assignment, assignments, positive, workers
+from .showing_training import shown_training
 
 
 def add_recipe(parser: argparse.ArgumentParser) -> None:
@@ -155,6 +158,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=maze"
     )
     add_sweep(parser)
+    add_view_options(parser)
     parser.add_argument("--out", type=Path, metavar="RUN", help="folder (default: runs/ENV-ALGO, runs/RECIPE)")
     parser.add_argument(
         "--resume", nargs="?", const="", metavar="RUN", help="go on with a run: this one, or that of ENV and --out"
@@ -165,14 +169,16 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def train(options: argparse.Namespace) -> int:
     """Run the command."""
     pool = workers(options)
+    if wants_view(options) and (pool.jobs > 1 or options.backend != BACKENDS[0]):
+        raise AgentError("--view shows a run that is trained in this process: leave --jobs and --backend out")
     path, runs = _runs(options)
     if all(is_done(run) for run in runs):
         if is_sweep(path):
             tell_sweep(path)
         print(f"{path} is done; --episodes or --steps lets it go on")
         return 0
-    with Bar(runs) as bar:
-        done = train_all([run.path for run in runs], pool.jobs, bar, pool.each)
+    with Bar(runs) as bar, shown_training(options) as shows:
+        done = train_all([run.path for run in runs], pool.jobs, bar, pool.each, shows)
         summary = f"{bar.steps:,} steps in {bar.wall_s:.1f} s: {bar.speed()}"
     for folder, group in _groups(path, runs).items():
         _draw(folder, group)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl watch``: what a run has learnt, in a window or as a film."""
+"""``sitl watch``: what a run has learnt, on the page in the browser, in a window or as a film."""
 
 from __future__ import annotations
 
@@ -18,11 +18,15 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "watch",
-        description="Plays what a run has learnt, without learning and exploring: in a window, or onto a film.",
+        description="Plays what a run has learnt, without learning and exploring: on the page in the browser "
+        "(docs/view.md), in a window, or onto a film.",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run; of several, the first is shown")
-    parser.add_argument("--out", type=Path, metavar="FILE", help=".gif, or .mp4 by ffmpeg; default: a window")
-    parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="default 1")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=".gif, or .mp4 by ffmpeg")
+    parser.add_argument("--window", action="store_true", help="a window, also where the page (extra view) is installed")
+    parser.add_argument(
+        "--episodes", type=positive, metavar="N", help="default 1; on the page: one after another until Ctrl-C"
+    )
     parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run)")
     parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
     parser.add_argument(
@@ -42,10 +46,14 @@ def watch(options: argparse.Namespace) -> int:
     changes = assignments(options.option)
     if "render_mode" in changes:
         raise AgentError("render_mode is chosen by --out: with it a film, without it a window")
-    if options.out is None:
-        showing.window(run, options.episodes, options.seed, options.speed, _tell, **changes)
+    episodes = options.episodes or 1
+    if options.out is None and not options.window and showing.can_be_on_page(run, **changes):
+        showing.page(run, options.episodes, options.seed, options.speed, _tell, **changes)
         return 0
-    pictures = showing.film(run, options.out, options.episodes, options.seed, options.speed, _tell, **changes)
+    if options.out is None:
+        showing.window(run, episodes, options.seed, options.speed, _tell, **changes)
+        return 0
+    pictures = showing.film(run, options.out, episodes, options.seed, options.speed, _tell, **changes)
     print(f"{options.out}: {pictures} pictures")
     return 0
 

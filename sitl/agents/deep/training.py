@@ -132,6 +132,7 @@ def train(folder: RunFolder, watch: Watch) -> None:
     figures = settings_of(config.algorithm, config.settings)
     torch(figures.threads)
     env = environments.make_many(config, figures.robots)
+    watch.shows(env)
     try:
         _train(folder, watch, figures, env)
     finally:

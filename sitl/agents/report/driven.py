@@ -12,7 +12,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from sitl.envs.parts import Parts
+from sitl.envs.boxes import Parts
 from sitl.worlds import World
 from sitl.worlds.shapes import from_ned
 

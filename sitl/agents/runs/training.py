@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +12,18 @@ from .. import algorithms
 from .episodes import Episode
 from .folder import RunFolder
 from .local import OnProgress, SendProgress, Stopped, each
-from .watch import Watch
+from .watch import Shows, Watch
 
 
-def train_one(path: Path, send_progress: SendProgress, stopped: Stopped) -> bool:
-    """Train the run in a folder; returns True when it is complete, False when it was interrupted."""
+def train_one(path: Path, send_progress: SendProgress, stopped: Stopped, shows: Shows | None = None) -> bool:
+    """Train the run in a folder; returns True when it is complete, False when it was interrupted.
+
+    Args:
+        path: the folder.
+        send_progress, stopped, shows: see ``Watch``.
+    """
     folder = RunFolder(path)
-    watch = Watch(send_progress, stopped)
+    watch = Watch(send_progress, stopped) if shows is None else Watch(send_progress, stopped, shows)
     algorithms.load(folder.config.algorithm).train(folder, watch)
     return is_done(folder)
 
@@ -27,6 +33,7 @@ def train_all(
     jobs: int = 1,
     on_progress: OnProgress = lambda index, rows: None,
     do: Callable[..., list[Any]] = each,
+    shows: Shows | None = None,
 ) -> bool:
     """Train several runs, ``jobs`` at a time in processes of their own; returns whether all are complete.
 
@@ -35,8 +42,10 @@ def train_all(
         jobs: number of runs at a time.
         on_progress: called with the index of a run and its new episodes.
         do: runs the work, as ``local.each`` does.
+        shows: see ``Watch``; of one run at a time, in this process.
     """
-    return all(do(train_one, list(paths), jobs, _without_repeats(on_progress)))
+    work = train_one if shows is None else partial(train_one, shows=shows)
+    return all(do(work, list(paths), jobs, _without_repeats(on_progress)))
 
 
 def _without_repeats(on_progress: OnProgress) -> OnProgress:

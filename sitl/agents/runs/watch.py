@@ -11,6 +11,13 @@ from typing import Any
 from .episodes import Episode
 
 OnProgress = Callable[[list[Episode]], None]
+Shows = Callable[[Any], Callable[[], bool]]
+
+
+def _never() -> bool:
+    return False
+
+
 
 
 class Watch:
@@ -19,12 +26,17 @@ class Watch:
     Args:
         on_progress: called with new episodes.
         stopped: whether the run shall pause here, to be resumed later.
+        shows: is given the environment that is learnt in, to show it; gives what says whether the next episode should
+            be made step by step for that.
     """
 
     def __init__(
-        self, on_progress: OnProgress = lambda rows: None, stopped: Callable[[], bool] = lambda: False
+        self,
+        on_progress: OnProgress = lambda rows: None,
+        stopped: Callable[[], bool] = lambda: False,
+        shows: Shows = lambda env: _never,
     ) -> None:
-        self.on_progress, self._stopped = on_progress, stopped
+        self.on_progress, self._stopped, self.shows = on_progress, stopped, shows
 
     @property
     def stop(self) -> bool:

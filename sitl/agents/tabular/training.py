@@ -169,7 +169,8 @@ def train(folder: RunFolder, watch: Watch) -> None:
     learner = Learner(config.algorithm, Settings.of(config.settings), table, config.seed)
     done, steps = _resume(folder, learner)
     seconds = environments.step_time(env)
-    episode_of = loop_of(env, learner)
+    episode_of, by_steps = loop_of(env, learner), partial(learn_episode, env, learner)
+    wants_steps = watch.shows(env)
     checks = Checks(env, learner, folder.path / BEST)
 
     def checkpoint() -> None:
@@ -181,7 +182,7 @@ def train(folder: RunFolder, watch: Watch) -> None:
         while not _is_done(config.episodes, done) and not _is_done(config.steps, steps) and not watch.stop:
             start = time.perf_counter()
             learner.begin(done)
-            outcome = episode_of(environments.seed_of(config.seed, done))
+            outcome = (by_steps if wants_steps() else episode_of)(environments.seed_of(config.seed, done))
             checks.after(done + 1)
             row = Episode(
                 done, outcome.steps, outcome.reward, learner.epsilon, int(outcome.terminated),

@@ -5,16 +5,15 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
+from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, default_speedup, shown, wants_view
 from sitl.errors import OptionError
 from sitl.run import runner
-from sitl.run.pacing import Pacing, parse_speedup
-from sitl.simulation import Simulation
+from sitl.run.pacing import StoppablePacing, parse_speedup
 from sitl.vehicle.kinds import DEFAULT, KINDS
 from sitl.vehicles import load as load_airframe
 
@@ -32,7 +31,7 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser = actions.add_parser("fly", help="fly a mission file from power-on to its end")
     parser.add_argument("mission", metavar="FILE|NAME", help=".plan, .waypoints, or a mission of the library")
     parser.add_argument("--vehicle", choices=sorted(KINDS), help="default: what the file is made for, or a copter")
-    parser.add_argument("--speedup", default="max", metavar="K|max", help="simulated seconds a second (default max)")
+    parser.add_argument("--speedup", metavar="K|max", help=f"simulated seconds a second (default {DEFAULT_TEXT})")
     parser.add_argument(
         "--time-limit", type=seconds, default=LIMIT_S, metavar="SIM_SECONDS", help=f"since arming (default {LIMIT_S:g})"
     )
@@ -40,12 +39,13 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser.add_argument("--out", action="append", default=[], metavar="udp:HOST:PORT", help="also send telemetry there")
     parser.add_argument("--quiet", action="store_true", help="the summary only")
     add_vehicle_options(parser)
+    add_view_options(parser)
     parser.set_defaults(function=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Fly it; 0 when the mission was completed, 1 when it was not."""
-    speedup = parse_speedup(options.speedup)
+    speedup = parse_speedup(options.speedup or default_speedup(options))
     name = options.mission
     entry = library.find(name) if name in library.entries() else None
     if entry is None and not Path(name).exists() and not Path(name).suffix:
@@ -69,15 +69,19 @@ def run(options: argparse.Namespace) -> int:
                 print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
             if file.has_fence_or_rally:
                 say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
-        outcome = fly(
-            simulation,
-            file.mission,
-            fence=file.fence_items,
-            rally=file.rally_items,
-            limit_s=options.time_limit,
-            advance=paced(simulation, speedup),
-            on_step=quiet if options.quiet else print_step,
-        )
+        pace = StoppablePacing(speedup)
+        with shown(simulation, options, pace) as on_slice:
+            if speedup is None and not wants_view(options):
+                pace.slice_us = 100_000  # nobody else is to be served
+            outcome = fly(
+                simulation,
+                file.mission,
+                fence=file.fence_items,
+                rally=file.rally_items,
+                limit_s=options.time_limit,
+                advance=lambda until_us: runner.serve(simulation, pace, until_us=until_us, on_slice=on_slice),
+                on_step=quiet if options.quiet else print_step,
+            )
         recordings.say_why(simulation, "mission completed" if outcome.completed else outcome.reason)
     finally:
         simulation.close()
@@ -126,18 +130,6 @@ def prepare(options: argparse.Namespace, file: MissionFile, entry: library.Entry
     if options.home is None and file.home is not None and ":" not in options.physics:
         options.home = (*file.home, 0.0)
     return dict(entry.params) if entry else {}
-
-
-def paced(simulation: Simulation, speedup: float | None) -> Callable[[int], object]:
-    """Lets simulated time pass at a speed-up; physics elsewhere may go and come back."""
-
-    def advance(until_us: int) -> None:
-        runner.serve(simulation, pace, until_us=until_us)
-
-    pace = Pacing(speedup)
-    if speedup is None:
-        pace.slice_us = 100_000  # nobody else is to be served
-    return advance
 
 
 def summary(outcome: Outcome) -> str:

@@ -12,7 +12,7 @@ from xml.etree import ElementTree as xml
 
 from sitl.errors import MissingExtra
 
-from . import words
+from . import scene, words
 from .compare import Comparison, Figure
 from .events import SHIFTED, Event
 
@@ -122,7 +122,8 @@ def lines(comparison: Comparison, everything: bool = False) -> list[str]:
 
 
 def report_write(comparison: Comparison, folder: str | Path, title: str = "") -> Path:
-    """Write report.html and junit.xml into a folder; gives the path of the report.
+    """Write report.html and junit.xml into a folder; gives the path of the report. Of flights that differ it has a
+    scene, too: flights.html, where the extra ``view`` is installed.
 
     Without matplotlib the report has no pictures, and says so.
     """
@@ -130,12 +131,13 @@ def report_write(comparison: Comparison, folder: str | Path, title: str = "") ->
     folder.mkdir(parents=True, exist_ok=True)
     junit_write(folder / JUNIT, cases_of(comparison))
     path = folder / HTML
-    path.write_text(html(comparison, title), encoding="utf-8")
+    shown = None if comparison.ok else scene.write(comparison, folder)
+    path.write_text(html(comparison, title, shown.name if shown is not None else ""), encoding="utf-8")
     return path
 
 
-def html(comparison: Comparison, title: str = "") -> str:
-    """The report as HTML."""
+def html(comparison: Comparison, title: str = "", shown: str = "") -> str:
+    """The report as HTML; ``shown``: a file beside it with the scene of both flights."""
     new, golden = comparison.new, comparison.golden
     title = title or Path(new.name).name
     verdict = "Flies like golden" if comparison.ok else "Does not fly like golden"
@@ -149,7 +151,8 @@ def html(comparison: Comparison, title: str = "") -> str:
         f"<p><b>{label}:</b> {escape(first.words)}</p>" if first else "<p>No difference beyond rounding.</p>",
         f'<p class="soft">{summary}; {escape(comparison.pair.new.kind)}, {comparison.pair.new.t[-1]:.1f} s</p>',
         f'<p class="soft">new <code>{escape(new.name)}</code><br>',
-        f"golden <code>{escape(golden.name)}</code></p></header>",
+        f"golden <code>{escape(golden.name)}</code></p>",
+        f'<p><a href="{escape(shown)}">Both flights in one scene</a></p></header>' if shown else "</header>",
         _notes(comparison),
         "<h2>Figures</h2><section><table><tr><th></th><th>figure</th><th class=n>value</th><th class=n>allowed</th>"
         "<th></th><th>where</th></tr>",

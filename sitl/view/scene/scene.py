@@ -10,8 +10,9 @@ import numpy as np
 from ...core.algebra import norm
 from ...core.vectors import Quat, Vec3
 from ..axes import place
-from ..frame import Frame, Stage
+from ..frame import Frame, Points, Stage
 from . import surroundings
+from .company import CompanyNodes
 from .plan import PlanNodes
 from .trail import Trail
 from .vehicle import Ghost, VehicleNodes
@@ -30,7 +31,11 @@ class Scene:
         self.stage = scene.add_frame("/stage", show_axes=False)
         """All of it; ``cameras`` moves it below the eyes of who follows the vehicle."""
         scene.configure_default_lights(cast_shadow=True)
-        surroundings.draw(scene, stage.world)
+        self._world, self._surroundings = stage.world, surroundings.draw(scene, stage.world, stage.copies)
+        self._scene, self._shapes, self._chosen = scene, stage.company, 0
+        self.company = CompanyNodes(scene, stage.company) if stage.company else None
+        """All vehicles, where there are several."""
+        self._shape = stage.shape
         self.vehicle = VehicleNodes(scene, "/stage/vehicle", stage.shape)
         self.trail = Trail(scene, "/stage/trail", size)
         self.plan = PlanNodes(scene, size)
@@ -47,6 +52,9 @@ class Scene:
 
     def show(self, frame: Frame) -> None:
         """Draw a moment."""
+        if self.company is not None and frame.company is not None:
+            self._choose(frame.company.chosen)
+            self.company.show(frame.company)
         self.vehicle.show(frame)
         self.trail.show(frame)
         self.plan.show(frame)
@@ -55,6 +63,26 @@ class Scene:
         if frame.set_point is not None:
             self.set_point.position = place(frame.set_point)
         self._show_wind(frame)
+
+    def place_world(self, copies: Points | None) -> None:
+        """Draw the world at other places, shape (n, 3) [m]; None: once, at the origin."""
+        self._surroundings.remove()
+        self._surroundings = surroundings.draw(self._scene, self._world, copies)
+        self.trail.clear()
+
+    def _choose(self, number: int) -> None:
+        """Show this vehicle in full from now on."""
+        if number == self._chosen:
+            return
+        self._chosen = number
+        self.trail.clear()
+        shape = self._shapes[number]
+        if shape is not self._shape:
+            self._shape = shape
+            self.vehicle.body.remove()
+            self.estimate.body.remove()
+            self.vehicle = VehicleNodes(self._scene, "/stage/vehicle", shape)
+            self.estimate = Ghost(self._scene, "/stage/estimate", shape, _ESTIMATE, 0.35)
 
     def _show_wind(self, frame: Frame) -> None:
         x, y, z = place(frame.pos)

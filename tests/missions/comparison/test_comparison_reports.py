@@ -29,9 +29,20 @@ def test_the_page_needs_nothing_else(differing: Comparison, tmp_path: Path) -> N
     text = report.report_write(differing, tmp_path).read_text()
     assert "Does not fly like golden" in text
     assert text.count("data:image/png;base64,") == 3
-    assert not re.search(r'(src|href)="(?!data:)', text)
+    assert not re.search(r'(src|href)="(?!data:|flights\.html)', text)
     assert "Disarming motors" in text
     assert len(text) < 2_000_000
+
+
+def test_flights_that_differ_leave_a_scene_in_one_file(differing: Comparison, tmp_path: Path) -> None:
+    pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
+    text = report.report_write(differing, tmp_path).read_text()
+    assert '<a href="flights.html">' in text
+    scene = (tmp_path / "flights.html").read_text()
+    assert "__VISER_EMBED_DATA__" in scene and 'src="http' not in scene and len(scene) < 10_000_000
+    alike = compare(differing.golden, differing.golden)
+    assert "flights.html" not in report.report_write(alike, tmp_path / "alike").read_text()
+    assert not (tmp_path / "alike" / "flights.html").exists()
 
 
 def test_without_matplotlib_it_says_what_is_missing(

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Environments on the page in the browser (docs/view.md)."""

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many vehicles in the scene, drawn by instancing: all of one shape are one node, whose places are sent together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..axes import places, turns
+from ..frame import Company
+from ..shape import Mesh, Piece, Shape, joined, moved
+
+_FEW = 64
+"""Up to so many are drawn with all of their pieces."""
+
+
+class CompanyNodes:
+    """The nodes of several vehicles.
+
+    Args:
+        scene: of the page.
+        shapes: of each vehicle.
+    """
+
+    def __init__(self, scene: Any, shapes: Sequence[Shape]) -> None:
+        self.count = len(shapes)
+        rows: dict[int, list[int]] = {}
+        for number, shape in enumerate(shapes):
+            rows.setdefault(id(shape), []).append(number)
+        self._groups = []
+        for number, which in enumerate(rows.values()):
+            shape = shapes[which[0]]
+            for k, (colour, mesh) in enumerate(by_colour(shape, is_plain=self.count > _FEW)):
+                still = np.tile([1.0, 0.0, 0.0, 0.0], (len(which), 1))
+                node = scene.add_batched_meshes_simple(
+                    f"/stage/company/{number}_{k}", mesh.vertices, mesh.faces, batched_wxyzs=still,
+                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=colour, lod="off",
+                    flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
+                )  # fmt: skip
+                self._groups.append((node, np.array(which)))
+
+    @property
+    def nodes(self) -> list[tuple[Any, npt.NDArray[np.int64]]]:
+        """Nodes, with the numbers of the vehicles that each draws."""
+        return self._groups
+
+    def show(self, company: Company) -> None:
+        """Draw a moment."""
+        at, q = places(company.pos).astype(np.float32), turns(company.q).astype(np.float32)
+        for node, which in self._groups:
+            node.batched_positions, node.batched_wxyzs = at[which], q[which]
+
+
+def by_colour(shape: Shape, is_plain: bool = False) -> list[tuple[tuple[int, int, int], Mesh]]:
+    """A shape's pieces as one mesh for each colour, in their places; what turns stands still.
+
+    Args:
+        shape: of a vehicle.
+        is_plain: leave out all but its greatest pieces, a fifth of the triangles.
+    """
+    pieces = [piece for piece in shape.pieces if piece.opacity == 1.0 or is_plain]
+    if is_plain:
+        pieces = sorted(pieces, key=_size, reverse=True)
+        pieces = [piece for piece in pieces if len(piece.mesh.faces) <= 24][:8] or pieces[:4]
+    meshes: dict[tuple[int, int, int], list[Mesh]] = {}
+    for piece in pieces:
+        meshes.setdefault(piece.colour, []).append(moved(piece.mesh, *piece.at))
+    return [(colour, joined(*each)) for colour, each in meshes.items()]
+
+
+def _size(piece: Piece) -> float:
+    return float(np.ptp(piece.mesh.vertices, axis=0).prod())

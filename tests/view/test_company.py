@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A page of several vehicles: all are where they truly are, one is chosen, and nothing in them changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from sitl.client import Endpoint
+from sitl.run.pacing import StoppablePacing
+from sitl.run.swarm import SwarmPacing, serve_swarm
+from sitl.run.watched import Watched
+from sitl.swarm import Swarm
+from sitl.view.axes import place, turn
+
+pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
+from sitl.view.live_page import LivePage
+
+FRAMES = ["erle_copter", "erle_copter", "erle_rover"]
+
+
+def serve(swarm: Swarm, until_us: int, page: LivePage | None) -> None:
+    ticks = iter(range(10**9))
+    watched = (lambda: None) if page is None else Watched(page, lambda: swarm.time_us, clock=lambda: float(next(ticks)))
+    serve_swarm(swarm, SwarmPacing(StoppablePacing(None)), until_us=until_us, on_slice=watched)
+
+
+@pytest.fixture
+def page() -> Iterator[LivePage]:
+    swarm = Swarm(FRAMES, seed=3)
+    page = LivePage(swarm.vehicles, StoppablePacing(None))
+    serve(swarm, 2_000_000, page)
+    page.capture(1.0)
+    page.wait_drawn()
+    yield page
+    page.close()
+    swarm.close()
+
+
+def test_each_vehicle_is_drawn_where_it_truly_is(page: LivePage) -> None:
+    assert page.scene.company is not None
+    drawn = dict[int, tuple[float, ...]]()
+    for node, which in page.scene.company.nodes:
+        assert len(node.batched_positions) == len(node.batched_wxyzs) == len(which)
+        drawn.update((int(k), tuple(at)) for k, at in zip(which, node.batched_positions, strict=True))
+    bodies = [vehicle.v.physics.body for vehicle in page._vehicles]
+    assert [drawn[k] for k in range(3)] == [pytest.approx(place(body.pos), abs=1e-5) for body in bodies]
+    assert np.linalg.norm(np.subtract(drawn[0], drawn[1])) == pytest.approx(4.0, abs=0.1)
+    assert tuple(page.scene.vehicle.body.wxyz) == pytest.approx(turn(bodies[0].q))
+
+
+def test_another_one_is_chosen_shown_and_commanded(page: LivePage) -> None:
+    page.plots.add("physics.body.pos[0]")
+    page.vehicle_number.value = 3
+    page.capture(1.0)
+    page.wait_drawn()
+    rover = page._vehicles[2]
+    assert page.simulation is rover and page.frame is not None and page.frame.company is not None
+    assert page.frame.company.chosen == 2
+    assert tuple(page.scene.vehicle.body.position) == pytest.approx(place(rover.v.physics.body.pos))
+    assert "chassis" in page.scene.vehicle._pieces, "its own shape"
+    assert page.frame.signals["physics.body.pos[0]"] == rover.v.physics.body.pos.x
+    page.ask(lambda: page.pilot.set_parameter("CRUISE_SPEED", 1.25))
+    page.attend()
+    rover.advance_to(rover.time_us)
+    assert rover.parameters["CRUISE_SPEED"] == 1.25
+
+
+def test_telemetry_and_records_are_the_same_bits_with_a_page() -> None:
+    def run(with_page: bool) -> list[bytes]:
+        swarm = Swarm(FRAMES, seed=5)
+        station = Endpoint()
+        swarm.router.add_link(station.link)
+        page = LivePage(swarm.vehicles) if with_page else None
+        for until_us in (4_000_000, 8_000_000):
+            serve(swarm, until_us, page)
+            if page is not None:
+                page.wait_drawn()  # it takes the next moment when it is free, however fast the vehicles go
+        if page is not None:
+            assert page.frame is not None and page.frame.time_us > 4_000_000, "it was shown"
+            page.close()
+        bits = [*(vehicle.fleet.tobytes() for vehicle in swarm.vehicles), station.link.receive()]
+        swarm.close()
+        return bits
+
+    assert run(True) == run(False)
