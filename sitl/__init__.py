@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .vehicles import names as vehicle_names
     from .worlds import names as world_names
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 
 __all__ = [
     "Fleet",

@@ -19,13 +19,13 @@ from sitl.fleet import Fleet
 from sitl.simulation import Simulation
 
 ROOT = Path(__file__).parents[1]
-ROOMS = ("envs", "missions", "agents")
-OURS = ("sitl", "tests", "benchmarks", "docs", "examples")
+ROOMS = ("envs", "missions", "agents", "examples")
+OURS = ("sitl", "tests", "benchmarks", "docs")
 
 USER = """
 import sys
-import agents, envs, missions  # the user's own
-assert [m.OWNER for m in (agents, envs, missions)] == ["user"] * 3
+import agents, envs, examples, missions  # the user's own
+assert [m.OWNER for m in (agents, envs, examples, missions)] == ["user"] * 4
 import gymnasium
 import sitl
 assert sitl.__file__.startswith(sys.argv[1]), sitl.__file__
@@ -101,6 +101,31 @@ def test_a_users_own_folders_do_no_harm(wheel: Path, tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=project, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout == "(5,) (20,) 39 True\n"
+
+
+@pytest.mark.slow
+def test_the_commands_for_newcomers_work_without_the_repository(wheel: Path, tmp_path: Path) -> None:
+    site, desk = tmp_path / "site", tmp_path / "desk"
+    desk.mkdir()
+    install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(site), str(wheel)]
+    assert subprocess.run(install, capture_output=True).returncode == 0
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+
+    def typed(*words: str) -> str:
+        done = subprocess.run([sys.executable, *words], cwd=desk, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert typed("-c", "import sitl; print(sitl.__file__)").startswith(str(site))
+    typed("-m", "sitl", "world", "show", "maze")
+    assert (desk / "maze.png").read_bytes().startswith(b"\x89PNG")
+    typed("-m", "sitl", "examples", "--copy")
+    script = ("examples/pymavlink_guided.py", "tcp:127.0.0.1:{tcp}")
+    said = typed("-m", "sitl", "exec", "--speedup", "max", "--tcp", "0", "--out", "none", "--", sys.executable, *script)
+    assert said.rstrip().endswith("landed and disarmed")
+    pytest.importorskip("mavsdk")
+    for kind in ("copter", "rover"):
+        assert "picture: logs/demo-" in typed("-m", "sitl", "demo", kind)
 
 
 def test_every_name_is_there() -> None:

@@ -99,5 +99,6 @@ def test_the_site_builds_without_warnings(tmp_path: Path) -> None:
         capture_output=True, text=True, timeout=900, env=os.environ | {"PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     assert ran.returncode == 0, ran.stderr[-3000:]
-    for page in ("index", "tutorials/first-flight", "guides/index", "reference/python", "explanation/index", "search"):
+    pages = ("index", "tutorials/first-flight", "guides/index", "reference/python", "parameters-copter")
+    for page in (*pages, "explanation/index", "search"):
         assert (tmp_path / "site" / f"{page}.html").exists(), page

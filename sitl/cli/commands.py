@@ -33,6 +33,7 @@ COMMANDS = {
     "physics": Listed("sitl.cli.physics", "run the physics of a vehicle whose autopilot is elsewhere"),
     "arducopter": Listed("sitl.cli.drop_in", "run a copter in place of ArduPilot's arducopter"),
     "ardurover": Listed("sitl.cli.drop_in", "run a rover in place of ArduPilot's ardurover"),
+    "examples": Listed("sitl.cli.examples", "list and copy the example programs"),
     "params": Listed("sitl.cli.params", "list the parameters"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),
     "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),

@@ -8,11 +8,11 @@ import importlib.util
 import socket
 import sys
 import time
-from pathlib import Path
 
 from tqdm import tqdm
 
 from ..errors import MissingExtra
+from ..examples import FOLDER
 from ..logs import flight as flights
 from ..logs import plot
 from ..run import runner
@@ -20,8 +20,8 @@ from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import KINDS
 from . import execute, recordings
 from .options import add_vehicle_options, build_simulation, open_folder
+from .view_options import add_view_options, default_speedup, shown
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 _SHOWN_US = 200_000
 
 
@@ -29,19 +29,21 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("demo")
     parser.add_argument("vehicle", choices=sorted(KINDS))
-    execute.add_speedup(parser, default="max")
+    execute.add_speedup(parser, default=None)
     recordings.add_recording_option(parser)
+    add_view_options(parser)
     add_vehicle_options(parser)
     parser.set_defaults(function=demo)
 
 
 def demo(options: argparse.Namespace) -> int:
     """Run the example, print the figures, draw."""
+    options.speedup = options.speedup or default_speedup(options)
     name = KINDS[options.vehicle].demo_script
     if name is None:
         raise OptionError(f"there is no demo of a {options.vehicle}")
-    script = EXAMPLES / name
-    check_installed(script)
+    script = FOLDER / name
+    check_installed()
     reason = execute.can_warp()
     if reason:
         print(f"{reason}\nThe demo runs in real time instead.", file=sys.stderr)
@@ -55,8 +57,8 @@ def demo(options: argparse.Namespace) -> int:
     start = time.monotonic()
     command = [sys.executable, str(script), f"udpin://{runner.HOST}:{port}"]
     try:
-        with FlightProgress(simulation) as progress:
-            code = execute.run_script(simulation, command, options.speedup, None, progress.refresh)
+        with FlightProgress(simulation) as progress, shown(simulation, options, then=progress.refresh) as on_slice:
+            code = execute.run_script(simulation, command, options.speedup, None, on_slice)
     finally:
         simulation.close()
     wall = time.monotonic() - start
@@ -79,21 +81,15 @@ def demo(options: argparse.Namespace) -> int:
     return 0
 
 
-def check_installed(script: Path) -> None:
-    """Check that what the demo needs is installed.
+def check_installed() -> None:
+    """Check that the libraries of the example and of the picture are installed, before anything is done.
 
     Raises:
-        OptionError: the example is not there.
-        MissingExtra: the example's library, or that of the picture, is not installed.
+        MissingExtra: some are not.
     """
-    if not script.exists():
-        raise OptionError(
-            f"the demo runs examples/{script.name} of a source checkout, and {script.parent} has none: "
-            "run make demo in a checkout, or a script of your own: sitl exec -- python SCRIPT"
-        )
-    for module, extra in (("mavsdk", "mavsdk"), ("matplotlib", "viz")):
-        if importlib.util.find_spec(module) is None:
-            raise MissingExtra(f"the demo needs {module}: pip install 'gym-sitl[{extra}]'")
+    missing = [module for module in ("mavsdk", "matplotlib") if importlib.util.find_spec(module) is None]
+    if missing:
+        raise MissingExtra(f"the demo needs {' and '.join(missing)}: pip install 'gym-sitl[demo]'")
 
 
 def free_udp_port() -> int:

@@ -29,7 +29,8 @@ SCRATCH_MB = 500
 """Free disk that compiling wants."""
 
 EXTRAS = {
-    "mavsdk": (("mavsdk",), "sitl demo, and scripts that use MAVSDK"),
+    "demo": (("mavsdk", "matplotlib"), "sitl demo"),
+    "mavsdk": (("mavsdk",), "scripts that use MAVSDK"),
     "viz": (("matplotlib", "pygame"), "pictures of flights and worlds, windows of environments"),
     "view": (("viser",), "the page in the browser: sitl run --view, sitl view"),
     "report": (("matplotlib", "scipy"), "reports on learning"),

@@ -60,6 +60,7 @@ def show_world(options: argparse.Namespace) -> int:
     from ..worlds import drawing
 
     world = worlds.load(options.world)
+    drawing.check_installed()
     print(drawing.summary(world))
     path = options.png or Path(f"{world.name}.png")
     try:

@@ -15,9 +15,14 @@ import pytest
 
 from sitl import vehicles
 from sitl.cli import demo, main
+from sitl.cli.cache import all_entries
+from sitl.core.fingerprint import reached
+from sitl.core.kernels import UNITS
 from sitl.logs import flight, plot
 from sitl.simulation import Core
+from sitl.vehicle.kinds import KINDS
 from tests.cli.command import environment, sitl
+from tests.envs.lockstep_vehicle import free_port
 
 RUN = ("run", "copter", "--out", "none", "--tcp", "0", "--speedup", "max")
 
@@ -33,6 +38,16 @@ def test_a_run_says_where_it_listens_and_writes_a_log(core: Core, tmp_path: Path
     assert any("is using GPS" in text for _, text in flown.texts)
     plot.draw(flown, tmp_path / "flight.png")
     assert (tmp_path / "flight.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_out_that_listens_says_so(core: Core, tmp_path: Path) -> None:
+    stream, datagram = free_port(socket.SOCK_STREAM), free_port()
+    outs = ("--out", f"tcp:{stream}", "--out", f"udpin:{datagram}", "--out", "udp:127.0.0.1:9")
+    result = sitl("run", "copter", "--tcp", "0", *outs, "--speedup", "max", "--duration", "1", folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    tcp, datagrams, sent, served, _ = result.stdout.splitlines()
+    assert tcp.startswith("MAVLink on tcp:127.0.0.1:") and tcp.endswith("(listens: clients connect to it)")
+    assert datagrams.endswith("(listens for datagrams)") and "(" not in sent + served
 
 
 def test_two_runs_write_the_same_log_and_none_is_overwritten(core: Core, tmp_path: Path) -> None:
@@ -123,13 +138,14 @@ def test_exec_needs_a_command_that_exists(tmp_path: Path) -> None:
 def test_the_demo_says_what_it_lacks(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with monkeypatch.context() as patch:
-        patch.setattr(demo.importlib.util, "find_spec", lambda name: None)
-        assert main(["demo", "copter"]) == 2
-    assert "pip install 'gym-sitl[mavsdk]'" in capsys.readouterr().err
-    monkeypatch.setattr(demo, "EXAMPLES", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(demo.importlib.util, "find_spec", lambda name: None)
     assert main(["demo", "copter"]) == 2
-    assert "run make demo in a checkout" in capsys.readouterr().err
+    assert "needs mavsdk and matplotlib: pip install 'gym-sitl[demo]'" in capsys.readouterr().err
+    assert main(["world", "show", "maze"]) == 2
+    out, err = capsys.readouterr()
+    assert "pip install 'gym-sitl[viz]'" in err and not out
+    assert not list(tmp_path.iterdir()), "nothing was begun"
 
 
 SLEEPER = """
@@ -285,3 +301,10 @@ def test_cache_lists_all_that_a_run_compiles(
     for kind, unit in ((kind, unit) for kind in ("copter", "rover") for unit in ("advance", "hear", "tell", "run")):
         package = "vehicle" if unit == "advance" else "bridge"
         assert any(line.startswith(f"{kind}: {package}.{kind}.") and line.endswith(f".{unit}") for line in units)
+
+
+def test_build_leaves_no_unit_of_a_vehicle_to_be_compiled_later() -> None:
+    for kind in KINDS.values():
+        built = {unit.name for entry in all_entries(kind) for unit in reached(entry)}
+        own = {name for name in UNITS if f".{kind.name}." in name}
+        assert own and own <= built, own - built

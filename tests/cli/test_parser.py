@@ -110,3 +110,24 @@ def test_code_for_shells(shell: str, capsys: pytest.CaptureFixture[str]) -> None
     assert "sitl" in code and ("complete" in code or "compdef" in code)
     if shell == "bash" and os.path.exists("/bin/bash"):
         subprocess.run(["/bin/bash", "-n"], input=code, text=True, check=True)
+
+
+LOADING = """
+import os, runpy, signal, sys
+
+class Pressed:
+    "Ctrl-C is pressed while the command is being loaded."
+    def find_spec(self, name, *rest):
+        if name == "sitl.cli.commands":
+            os.kill(os.getpid(), signal.SIGINT)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.meta_path.insert(0, Pressed())
+sys.argv = ["sitl", "world", "list"]
+runpy.run_module("sitl", run_name="__main__")
+"""
+
+
+def test_ctrl_c_while_the_command_is_loaded_ends_it_without_a_traceback() -> None:
+    done = subprocess.run([sys.executable, "-c", LOADING], env=environment(), capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
