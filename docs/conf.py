@@ -12,6 +12,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 import sitl  # noqa: E402
+from sitl.autopilot.params import docs  # noqa: E402
+from sitl.vehicle.kinds import KINDS  # noqa: E402
 
 project = "gym-sitl"
 author = "the authors of gym-sitl"
@@ -30,8 +32,7 @@ exclude_patterns = ["templates"]  # what docs/make_pages.py fills in
 
 myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 4
-nb_execution_mode = "cache"
-nb_execution_cache_path = str(ROOT / "build" / "notebooks")
+nb_execution_mode = "force"  # docs/notebooks; a cache would keep what older code printed
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600
 
@@ -77,6 +78,15 @@ def prepare(app: Any, name: str, source: list[str]) -> None:
         source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
 
 
+def make_parameter_pages(app: Any) -> None:
+    """Write parameters-KIND.md from the tables of the firmware: the repository does not keep them."""
+    for name, kind in KINDS.items():
+        page, text = ROOT / "docs" / f"parameters-{name}.md", docs.page(name, kind.firmware.table)
+        if not page.exists() or page.read_text(encoding="utf-8") != text:
+            page.write_text(text, encoding="utf-8")
+
+
 def setup(app: Any) -> None:
     """Called by Sphinx."""
+    app.connect("builder-inited", make_parameter_pages)
     app.connect("source-read", prepare)

@@ -15,7 +15,7 @@ import numpy as np
 
 import sitl.envs
 from sitl.envs.actions import Discrete
-from sitl.envs.parts import GoalConditioned
+from sitl.envs.boxes import GoalConditioned
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
@@ -124,8 +124,8 @@ def page(name: str) -> str:
     box = task.arena
     seconds = spec.max_episode_steps * env.step_time
     lines = [
-        f"# sitl/{name}-v0, sitl/{name}Discrete-v0: {title[0].lower() + title[1:]}", "",
-        "Made by `python docs/make_environment_pages.py`.", "", summary, "",
+        f"# {title}", "", "<!-- Made by python docs/make_environment_pages.py -->", "", summary, "",
+        f"`sitl/{name}-v0` takes actions in [-1, 1], `sitl/{name}Discrete-v0` the number of an action.", "",
         f"![an episode of the baseline](images/{name}.png)" if (HERE / "images" / f"{name}.png").exists() else "", "",
         "| | |", "|---|---|",
         f"| robot, world | {env.robot.name} in `{env.world.name}` |",
@@ -157,7 +157,7 @@ def page(name: str) -> str:
 
 def index() -> str:
     """The page that lists them."""
-    rows = ["# Environments with places", "", "Made by `python docs/make_environment_pages.py`.", ""]
+    rows = ["# Environments with places", "", "<!-- Made by python docs/make_environment_pages.py -->", ""]
     rows += ["| id | task | step | episode |", "|---|---|---:|---:|"]
     for name, (title, _) in TITLES.items():
         spec = gym.spec(f"sitl/{name}-v0")

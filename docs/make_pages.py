@@ -5,14 +5,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sitl.autopilot.params import docs
 from sitl.bridge import docs as mavlink
 from sitl.missions import compare, engines
 from sitl.missions.figures import table
 from sitl.missions.manoeuvres import __main__ as manoeuvres
 from sitl.physics.engines import BACKENDS
 from sitl.scenario import ESTIMATORS
-from sitl.vehicle.kinds import KINDS
 
 HERE = Path(__file__).parent
 
@@ -81,7 +79,7 @@ def physics() -> str:
 
 
 def main() -> None:
-    """Write comparison.md, physics.md, mavlink.md and parameters-*.md."""
+    """Write comparison.md, physics.md and mavlink.md."""
     (HERE / "physics.md").write_text(physics(), encoding="utf-8")
     tables = {
         f"{kind}_{estimator}": table(compare.figures(kind, estimator))
@@ -92,8 +90,6 @@ def main() -> None:
     (HERE / "comparison.md").write_text(text, encoding="utf-8")
     template = (HERE / "templates" / "mavlink.md").read_text(encoding="utf-8")
     (HERE / "mavlink.md").write_text(mavlink.page(template), encoding="utf-8")
-    for name, kind in KINDS.items():
-        (HERE / f"parameters-{name}.md").write_text(docs.page(name, kind.firmware.table), encoding="utf-8")
 
 
 if __name__ == "__main__":
