@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import io
-from importlib.util import find_spec
 from typing import Any
 
 from ..errors import MissingExtra
@@ -13,7 +13,7 @@ from ..errors import MissingExtra
 
 def is_installed() -> bool:
     """Whether the library is there."""
-    return find_spec("viser") is not None
+    return importlib.util.find_spec("viser") is not None
 
 
 def require() -> None:

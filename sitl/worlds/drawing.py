@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
-from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import MissingExtra
@@ -48,7 +48,7 @@ def check_installed() -> None:
     Raises:
         MissingExtra: matplotlib is not installed.
     """
-    if find_spec("matplotlib") is None:
+    if importlib.util.find_spec("matplotlib") is None:
         raise MissingExtra("pictures need matplotlib: pip install 'gym-sitl[viz]'")
 
 

@@ -92,7 +92,7 @@ def test_runs_go_on_and_are_never_other_ones(tmp_path):
 
 
 def test_what_is_not_installed_is_told_before_anything_is_trained(tmp_path, monkeypatch):
-    monkeypatch.setattr(library, "find_spec", lambda name: None)
+    monkeypatch.setattr(library.importlib.util, "find_spec", lambda name: None)
     deep = tmp_path / "deep.toml"
     deep.write_text(f'env = "{CIRCUIT2}"\nalgorithm = "ppo"\nsteps = 100\n')
     with pytest.raises(MissingExtra, match=r"recipes deep: .*gym-sitl\[rl\].*; without: --only round$"):

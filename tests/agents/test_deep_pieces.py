@@ -89,7 +89,7 @@ def test_the_tally_makes_a_row_of_each_episode_that_ends():
 
 
 def test_without_the_extra_the_message_says_how_to_get_it(monkeypatch):
-    monkeypatch.setattr(library, "find_spec", lambda name: None if name == "torch" else name)
+    monkeypatch.setattr(library.importlib.util, "find_spec", lambda name: None if name == "torch" else name)
     for use in (lambda: training.settings("ppo", {}), library.stable_baselines3, library.torch):
         with pytest.raises(MissingExtra, match=r"gym-sitl\[rl\]"):
             use()

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
-from importlib.util import find_spec
 from typing import Any
 
 from sitl.errors import MissingExtra
@@ -21,7 +21,7 @@ def require() -> None:
     Raises:
         MissingExtra: one is not installed.
     """
-    if any(find_spec(name) is None for name in ("torch", "stable_baselines3")):
+    if any(importlib.util.find_spec(name) is None for name in ("torch", "stable_baselines3")):
         raise MissingExtra(
             "dqn, ppo and sac need stable-baselines3 and torch: pip install 'gym-sitl[rl]'; for a torch without GPU "
             "libraries, before that: pip install torch --index-url https://download.pytorch.org/whl/cpu"
