@@ -204,16 +204,20 @@ def quat_from_euler(e: Euler) -> Quat:
 @law
 def euler_of(q: Quat) -> Euler:
     """Euler angles [rad] of a rotation, pitch in [-pi/2, pi/2]."""
+    tilt = tilt_of(q)
+    return Euler(tilt.roll, tilt.pitch, yaw_of(q))
+
+
+@inlined
+def tilt_of(q: Quat) -> Euler:
+    """Roll and pitch [rad] of a rotation, the first two of its Euler angles; yaw 0."""
     s = 2.0 * (q.w * q.y - q.z * q.x)
     if s > 1.0:
         s = 1.0
     elif s < -1.0:
         s = -1.0
-    return Euler(
-        math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y)),
-        math.asin(s),
-        yaw_of(q),
-    )
+    roll = math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
+    return Euler(roll, math.asin(s), 0.0)
 
 
 @law

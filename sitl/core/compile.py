@@ -29,7 +29,7 @@ from .build_work import BuildWork
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
 from .fingerprint import fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
-from .numba_tuning import law_options
+from .numba_tuning import TRUST, law_options, trust_laws
 from .records import Record
 
 Progress = Callable[[str, float, float], None]
@@ -87,7 +87,8 @@ def unit_folder(unit: Unit, path: str) -> Path:
     """Where the unit's current machine code for the record type at ``path`` is or will be."""
     key = (unit.name, path)
     if key not in _fingerprints:
-        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), f"{toolchain()} {path} {unit.inline}")
+        made_by = f"{toolchain()} {TRUST} {path} {unit.inline}"
+        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), made_by)
     return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
 
 
@@ -177,7 +178,8 @@ def load_unit(unit: Unit, path: str) -> Any:
     signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
     names = {"carray": numba.carray, "body": _body(unit)}
     compile_entry = numba.cfunc(signature, cache=True, **_ENTRY_OPTIONS)
-    function = load_entry(folder, name, _wrapper_source(unit), names, compile_entry)
+    with trust_laws():
+        function = load_entry(folder, name, _wrapper_source(unit), names, compile_entry)
     llvmlite.binding.add_symbol(name, function.address)
     _loaded[unit.name, path] = function
     return function

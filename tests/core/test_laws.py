@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dis
 import importlib
 import inspect
 import pkgutil
@@ -10,6 +11,7 @@ import re
 
 import sitl
 from sitl.core import fingerprint
+from sitl.core.array_kernels import KERNELS
 from sitl.core.dispatch import by_number
 from sitl.core.kernels import LAWS, UNITS, law
 from sitl.errors import MissingExtra
@@ -44,6 +46,14 @@ def test_laws_have_few_arguments() -> None:
     _import_all()
     wide = [f"{f.__module__}.{f.__qualname__}" for f in LAWS if f.__code__.co_argcount >= 8]
     assert not wide
+
+
+def test_laws_raise_nothing() -> None:
+    """Compiled, a law does not ask whether one that it calls has raised something (``numba_tuning``)."""
+    _import_all()
+    reached = (*LAWS, *(unit.function for unit in UNITS.values()), *(kernel.law for kernel in KERNELS.values()))
+    ours = [f for f in reached if f.__module__.startswith("sitl.")]
+    assert not [f.__qualname__ for f in ours if any("RAISE" in i.opname for i in dis.get_instructions(f))]
 
 
 @law

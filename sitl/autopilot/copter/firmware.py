@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...core.kernels import law
+from ...core.kernels import inlined
 from ...core.records import Records
 from ..estimation.update import update as estimate
 from ..firmware import Firmware
@@ -22,7 +22,7 @@ from .parameters import TABLE
 from .state import Vehicle
 
 
-@law
+@inlined
 def update(fleet: Records[Vehicle], index: int) -> None:
     """One tick of vehicle ``index``, from ``sensors`` to ``actuators``; 400 times a simulated second."""
     estimate(fleet, index)

@@ -20,6 +20,8 @@ from ....core.algebra import (
     quat_from_euler,
     quat_from_rotation_vector,
     quat_norm_squared,
+    tilt_of,
+    yaw_of,
 )
 from ....core.kernels import inlined, law
 from ....core.scalars import constrain, finite, wrap_pi
@@ -197,13 +199,14 @@ def input_euler_roll_pitch_yaw_rate(
     """Lean to a roll and a pitch while turning at ``yaw_rate`` [rad/s]."""
     shaping = advance_target(control, est, p)
     attitude = control.attitude
-    euler = attitude.target_euler
+    tilt = tilt_of(attitude.target_q)  # without yaw, which is dear and which shaping does not need
     if not (finite(lean.roll) and finite(lean.pitch) and finite(yaw_rate)):
-        lean, yaw_rate = Lean(euler.roll, euler.pitch), 0.0
+        lean, yaw_rate = Lean(tilt.roll, tilt.pitch), 0.0
     if shaping.enabled:
-        attitude.target_rate = shape_euler(euler, attitude.target_rate, lean, yaw_rate, shaping)
+        attitude.target_rate = shape_euler(tilt, attitude.target_rate, lean, yaw_rate, shaping)
     else:
-        jump(attitude, quat_from_euler(Euler(lean.roll, lean.pitch, euler.yaw + yaw_rate * DT)), Vec3(0.0, 0.0, 0.0))
+        yaw = yaw_of(attitude.target_q) + yaw_rate * DT
+        jump(attitude, quat_from_euler(Euler(lean.roll, lean.pitch, yaw)), Vec3(0.0, 0.0, 0.0))
     correct(attitude, est, p.ATC)
 
 

@@ -105,7 +105,8 @@ def turn_sticks(v: Vehicle) -> None:
     ap = v.autopilot
     if ap.estimate.position_ok and ap.home.is_set:
         simple.look_from_home(ap.modes.simple, ap.estimate.pos, ap.home.pos)
-    if not table.ignores_simple(ap.modes.number):
+    # OFF costs no yaw
+    if ap.modes.simple.number != simple.OFF and not table.ignores_simple(ap.modes.number):
         simple.turn_sticks(ap.modes.pilot, ap.modes.simple, ap.estimate.yaw)
 
 

@@ -7,7 +7,7 @@ from ....core.kernels import inline_unit
 from ....core.records import Records
 from ..parameters import Parameters
 from ..state import Vehicle
-from . import forward_speed, motors, position, servos
+from . import motors, position, servos
 from .speed import decel_max
 from .state import Control
 from .steering import lat_accel_max
@@ -25,11 +25,11 @@ def init(control: Control, params: Parameters) -> None:
 
 @inline_unit
 def update(fleet: Records[Vehicle], i: int) -> None:
-    """Carry out what the mode of vehicle ``i`` asked for and write its actuators."""
+    """Carry out what the mode of vehicle ``i`` asked for and write its actuators; its speed has been sensed
+    (``modes.update``)."""
     v = fleet[i]
     ap = v.autopilot
     armed = ap.arming.armed and not ap.arming.emergency_stop
-    forward_speed.sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
     motors.drive_motors(ap.control, armed, ap.params)
     servos.write_actuators(ap.control.motors, v.actuators, ap.rc, armed, ap.params)
     ap.control.tick += 1
