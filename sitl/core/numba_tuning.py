@@ -115,7 +115,8 @@ def _compile_unchecked_calls() -> Callable[[], None]:
     original = CPUCallConv.call_function
 
     def call(self: Any, builder: Any, callee: Any, result: Any, kinds: Any, args: Any, attrs: Any = None) -> Any:
-        caller, optional = builder.function, isinstance(result, types.Optional)  # whether it is None is in the status
+        caller, optional = builder.function, isinstance(result, types.Optional)  # type: ignore[attr-defined]
+        # Whether an optional result is None is said in what is not looked at here.
         if optional or callee.name.startswith("_ZN5numba") or not caller.name.startswith(("_ZN", "cfunc.")):
             return original(self, builder, callee, result, kinds, args, attrs)
         to_result, to_failure = callee.function_type.args[:2]
