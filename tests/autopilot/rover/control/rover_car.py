@@ -86,7 +86,9 @@ def set_motion(v: Any, heading: float, speed: float, turn_rate: float) -> None:
 
 
 def finish(v: Any) -> None:
-    """What follows the mode in a period: ``control.update``, and time goes on."""
+    """The end of a period, after the mode: ``control.update``, with the speed that was sensed at its start; time goes
+    on."""
+    sense(v)
     update.update([v], 0)
     v.time_us += PERIOD_US
 
