@@ -119,7 +119,7 @@ class Navigate(gym.Env[Any, Any]):
             ResetNeeded: before the first ``reset``.
         """
         if not self._is_begun:
-            raise gym.error.ResetNeeded("step() needs an episode: call reset() first")
+            raise gym.error.ResetNeeded("step() before the first reset(): call reset() first")
         session = self._session
         self._actions[0] = self._check(action)
         self._advance()
