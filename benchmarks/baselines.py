@@ -98,8 +98,8 @@ def failing(name: str, seed: int) -> dict[str, int]:
 
 def table(results: Mapping[str, Row]) -> str:
     """All policies."""
-    heads = ("environment", "policy", "algorithm", "training steps", "training time", "mean return", "success", "crashes")
-    lines = [f"| {' | '.join((*heads, 'random policy'))} |", "|---|---|---|---:|---:|---:|---:|---:|---:|"]
+    heads = ("environment", "policy", "algorithm", "training steps", "training time", "mean return", "success")
+    lines = [f"| {' | '.join((*heads, 'crashes', 'random policy'))} |", "|---|---|---|---:|---:|---:|---:|---:|---:|"]
     for name, row in results.items():
         took = f"{row['learnt_s']:.0f} s" if row.get("learnt_s") else ""
         reward, drawn = ("{} ± {}".format(*row[what]) for what in ("reward", "drawn"))
