@@ -98,14 +98,15 @@ def failing(name: str, seed: int) -> dict[str, int]:
 
 def table(results: Mapping[str, Row]) -> str:
     """All policies."""
-    heads = ("environment", "policy", "algorithm", "training steps", "training time", "mean return", "success")
-    lines = [f"| {' | '.join((*heads, 'crashes', 'random policy'))} |", "|---|---|---|---:|---:|---:|---:|---:|---:|"]
+    heads = ("policy", "algorithm", "training steps", "training time", "mean return", "success")
+    lines = [f"| {' | '.join((*heads, 'crashes', 'random policy'))} |", "|---|---|---:|---:|---:|---:|---:|---:|"]
     for name, row in results.items():
         took = f"{row['learnt_s']:.0f} s" if row.get("learnt_s") else ""
         reward, drawn = ("{} ± {}".format(*row[what]) for what in ("reward", "drawn"))
         solved = share(row["solved"], row["episodes"])
+        task = row["env"].removeprefix("sitl/").removesuffix("-v0").removesuffix("Discrete")
         cells = (
-            f"`{row['env']}`", f"`{name}`", row["algorithm"].upper(), f"{row['steps']:,}", took, reward, solved,
+            f"[{name}](envs/{task}.md)", row["algorithm"].upper(), f"{row['steps']:,}", took, reward, solved,
             row["crashed"], drawn,
         )  # fmt: skip
         lines.append(f"| {' | '.join(str(cell) for cell in cells)} |")
