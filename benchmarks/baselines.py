@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``python -m benchmarks.baselines [NAME...] [--learn] [--faults]``: the figures of the shipped policies.
 
-Each plays the same episodes in its environment on every machine, to the last bit; beside it a policy that draws its
-actions plays them. ``--faults``: those of copters fly episodes in which something fails, too. ``--learn``: policies are
-learnt anew by their recipes first. Figures go to docs/envs/baselines.json, which docs/baselines.md and the pages of
-environments show. Intervals are of 95 %: of means by the normal distribution, of shares by Wilson's.
+Each policy plays the same episodes on every machine, to the last bit; a random policy plays them, too. ``--faults``
+adds episodes with faults, for copters. ``--learn`` trains the policies anew first, by their recipes. The figures go to
+docs/envs/baselines.json, which docs/baselines.md and the pages of environments show. Confidence intervals are of 95 %:
+of means by the normal distribution, of success rates by Wilson's formula.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def learn(name: str) -> float:
 
 
 def played(name: str, episodes: int, seed: int) -> Row:
-    """Figures of a policy, and of drawn actions in the same episodes."""
+    """Figures of a policy, and of a random policy in the same episodes."""
     path = baselines.file(name)
     config, (recipe, _) = learnt.load(path).config, baselines.recipe_of(name)
     drawn = rollout(RANDOM, config.env, episodes, seed=seed, max_steps=config.max_steps, options=config.env_options)
@@ -98,14 +98,15 @@ def failing(name: str, seed: int) -> dict[str, int]:
 
 def table(results: Mapping[str, Row]) -> str:
     """All policies."""
-    heads = ("environment", "name", "algorithm", "steps learnt", "processor time", "reward", "solved", "crashes")
-    lines = [f"| {' | '.join((*heads, 'reward of drawn actions'))} |", "|---|---|---|---:|---:|---:|---:|---:|---:|"]
+    heads = ("policy", "algorithm", "training steps", "training time", "mean return", "success")
+    lines = [f"| {' | '.join((*heads, 'crashes', 'random policy'))} |", "|---|---|---:|---:|---:|---:|---:|---:|"]
     for name, row in results.items():
         took = f"{row['learnt_s']:.0f} s" if row.get("learnt_s") else ""
         reward, drawn = ("{} ± {}".format(*row[what]) for what in ("reward", "drawn"))
         solved = share(row["solved"], row["episodes"])
+        task = row["env"].removeprefix("sitl/").removesuffix("-v0").removesuffix("Discrete")
         cells = (
-            f"`{row['env']}`", f"`{name}`", row["algorithm"].upper(), f"{row['steps']:,}", took, reward, solved,
+            f"[{name}](envs/{task}.md)", row["algorithm"].upper(), f"{row['steps']:,}", took, reward, solved,
             row["crashed"], drawn,
         )  # fmt: skip
         lines.append(f"| {' | '.join(str(cell) for cell in cells)} |")
@@ -114,7 +115,7 @@ def table(results: Mapping[str, Row]) -> str:
 
 def faults_table(results: Mapping[str, Row]) -> str:
     """Those that have flown with faults."""
-    lines = [f"| name | {' | '.join(FAULTS)} |", "|---|" + "---:|" * len(FAULTS)]
+    lines = [f"| policy | {' | '.join(FAULTS)} |", "|---|" + "---:|" * len(FAULTS)]
     for name, row in results.items():
         if "faults" in row:
             lines.append(f"| `{name}` | {' | '.join(str(row['faults'].get(fault, '')) for fault in FAULTS)} |")
@@ -145,8 +146,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help="a policy (docs/baselines.md); default: all")
     parser.add_argument("--episodes", type=int, default=200, metavar="N", help="default 200")
     parser.add_argument("--seed", type=int, default=1000, metavar="N", help="of the episodes, default 1000")
-    parser.add_argument("--learn", action="store_true", help="learn them anew first (extra rl)")
-    parser.add_argument("--faults", action="store_true", help="copters: fly with faults, too")
+    parser.add_argument("--learn", action="store_true", help="train them anew first (extra rl)")
+    parser.add_argument("--faults", action="store_true", help="copters: play episodes with faults, too")
     options = parser.parse_args(arguments)
     for name in options.names or baselines.names():
         row = kept().get(name, {})

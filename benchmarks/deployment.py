@@ -147,7 +147,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.episodes < 2:
         parser.error(f"--episodes {options.episodes}: it must be 2 or more")
     warnings.filterwarnings("ignore", message=".*clock cannot be held")
-    head = ("policy", "vehicle", "solved", "reward", "difference of twins", "seconds", "off the straight way [m]")
+    head = ("policy", "vehicle", "success", "return", "paired difference", "seconds", "off the straight line [m]")
     print(f"| {' | '.join(head)} | late steps |")
     print("|---|---|---:|---:|---:|---:|---:|---:|")
     for name in options.names or POLICIES:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python docs/make_environment_pages.py``: writes a page for each environment with places, from its code."""
+"""``python docs/make_environment_pages.py``: writes a page for each flight and driving task, from its code."""
 
 from __future__ import annotations
 
@@ -15,44 +15,53 @@ import numpy as np
 
 import sitl.envs
 from sitl.envs.actions import Discrete
+from sitl.envs.arena import Arena
 from sitl.envs.boxes import GoalConditioned
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
-    "CopterHover": ("Hover in wind", "Hold a place near the start while wind and gusts push."),
-    "CopterReachGoal": ("Copter, goal-conditioned", "Be at a drawn place; sparse rewards, for hindsight replay."),
-    "RoverReachGoal": ("Rover, goal-conditioned", "Be at a drawn place; sparse rewards, for hindsight replay."),
-    "CopterWaypoint": ("Fly to a waypoint", "One place, drawn in the arena."),
-    "CopterCourse": ("Fly a course of waypoints", "Five places one after another, each drawn anew."),
-    "CopterGates": ("Race through gates", "An oval of six gates, in their direction, against the clock."),
-    "CopterRace": ("Race three laps", "The same gates three times; `info` has the times of laps."),
-    "CopterTrajectory": ("Follow a figure of eight", "A point moves along a curve at a drawn speed; be where it is."),
-    "CopterFollow": ("Follow a moving target", "A target wanders; be where it is."),
-    "CopterLand": ("Land on a pad", "Come down softly on a pad beside the start."),
-    "CopterLandMoving": ("Land on a moving pad", "The pad moves at 0.5 m/s."),
-    "CopterForest": ("Fly through a forest", 'One place among trees, by lidar (`world="forest:seed=7"`: others).'),
-    "CopterRooms": ("Fly through rooms", "One place in a house of rooms and doors, by lidar."),
-    "RoverWaypoint": ("Drive to a waypoint", "One place, drawn in the arena."),
-    "RoverCourse": ("Drive a course of waypoints", "Four places one after another, each drawn anew."),
-    "RoverLabyrinth": ("Drive through a labyrinth", "One place in a maze, by lidar."),
-    "RoverSlalom": ("Drive a slalom", 'Poles that are passed on alternate sides (`world="slalom:seed=7"`: others).'),
-    "RoverRace": ("Race two laps", 'A track between walls; `info` has laps\' times (`world="track:seed=7"`: others).'),
-    "RoverParking": ("Park in a bay", 'Stand in a free bay between cars (`world="car_park:seed=7"`: others).'),
+    "CopterHover": ("Hover in wind", "Hold a target position near the start in wind and gusts."),
+    "CopterReachGoal": ("Fly to a goal (goal-conditioned)", "Fly to a random goal. The reward is sparse."),
+    "CopterWaypoint": ("Fly to a waypoint", "Fly to one random waypoint."),
+    "CopterCourse": ("Fly a course of waypoints", "Pass five random waypoints in order."),
+    "CopterGates": ("Race through gates", "Fly one lap through an oval of six gates, against the clock."),
+    "CopterRace": ("Race three laps", "Fly three laps through the same six gates; `info` has lap times."),
+    "CopterTrajectory": ("Follow a figure of eight", "Track a point that moves along a figure of eight."),
+    "CopterFollow": ("Follow a moving target", "Track a target that moves at random."),
+    "CopterLand": ("Land on a pad", "Land softly on a pad near the start."),
+    "CopterLandMoving": ("Land on a moving pad", "Land softly on a pad that moves at 0.5 m/s."),
+    "CopterForest": ("Fly through a forest", "Fly to a waypoint among trees, by lidar."),
+    "CopterRooms": ("Fly through rooms", "Fly to a waypoint in a house, by lidar."),
+    "RoverReachGoal": ("Drive to a goal (goal-conditioned)", "Drive to a random goal. The reward is sparse."),
+    "RoverWaypoint": ("Drive to a waypoint", "Drive to one random waypoint."),
+    "RoverCourse": ("Drive a course of waypoints", "Pass four random waypoints in order."),
+    "RoverLabyrinth": ("Drive through a labyrinth", "Drive to a waypoint in a maze, by lidar."),
+    "RoverSlalom": ("Drive a slalom", "Pass poles on alternate sides."),
+    "RoverRace": ("Race two laps", "Drive two laps of a walled track, by lidar; `info` has lap times."),
+    "RoverParking": ("Park in a bay", "Park in a free bay between cars, by lidar."),
 }  # fmt: skip
+OTHERS = {
+    "CopterForest": "forest:seed=7", "CopterRooms": "rooms:seed=7", "RoverSlalom": "slalom:seed=7",
+    "RoverLabyrinth": "labyrinth:seed=7,size=60,scale=3", "RoverRace": "track:seed=7",
+    "RoverParking": "car_park:seed=7",
+}  # fmt: skip
+"""Another world of the same sort."""
 MANY = 12
 """Columns of one kind beyond which a table has one row for all."""
+UNUSED = {"Land": ("radius", "settle", "scale")}
+"""Arguments of base classes that a task does not use."""
 
 
 def number(value: float) -> str:
-    """As short as can be."""
-    return f"{value:.4g}"
+    """Five digits at most."""
+    return f"{value:.5g}"
 
 
 def observations(env: Any) -> list[str]:
-    """A table of the numbers that are seen."""
+    """A table of the columns of the observation."""
     parts = env.session.observation
     space = env.observation_space["observation"] if isinstance(parts, GoalConditioned) else env.observation_space
-    rows = ["| number | what | least | greatest |", "|---:|---|---:|---:|"]
+    rows = ["| index | part | meaning | min | max |", "|---:|---|---|---:|---:|"]
     for name, at in parts.slices.items():
         columns = parts.columns[at]
         shown = range(len(columns)) if len(columns) <= MANY else (0,)
@@ -60,11 +69,12 @@ def observations(env: Any) -> list[str]:
             first = at.start + k
             what = columns[k] if len(columns) <= MANY else f"{columns[0]} ... {columns[-1]}"
             label = str(first) if len(columns) <= MANY else f"{first} .. {at.stop - 1}"
-            rows.append(f"| {label} | `{name}`: {what} | {number(space.low[first])} | {number(space.high[first])} |")
+            rows.append(f"| {label} | `{name}` | {what} | {number(space.low[first])} | {number(space.high[first])} |")
     if isinstance(parts, GoalConditioned):
         rows += [
             "",
-            'These are `"observation"`; `"achieved_goal"` and `"desired_goal"` are x, y, z in the world\'s frame [m].',
+            'This is `observation["observation"]`. `"achieved_goal"` is the position of the robot, `"desired_goal"`',
+            "that of the goal: x, y, z in the world's frame [m].",
         ]
     return rows
 
@@ -72,12 +82,12 @@ def observations(env: Any) -> list[str]:
 def actions(continuous: Any, discrete: Any) -> list[str]:
     """Tables of both forms."""
     action = continuous.session.action
-    rows = ["| number | what | at -1 | at 1 |", "|---:|---|---:|---:|"]
+    rows = ["Continuous, scaled linearly:", "", "| index | meaning | at -1 | at +1 |", "|---:|---|---:|---:|"]
     for k, (column, (low, high)) in enumerate(zip(action.columns, action.limits, strict=True)):
         rows.append(f"| {k} | {action.setpoint.columns[column]} | {number(low)} | {number(high)} |")
     table = discrete.session.action
     assert isinstance(table, Discrete)
-    rows += ["", "The form `Discrete`:", "", f"| action | name | {' | '.join(table.setpoint.columns)} |"]
+    rows += ["", "Discrete:", "", f"| action | name | {' | '.join(table.setpoint.columns)} |"]
     rows.append("|---:|---|" + "---:|" * table.setpoint.width)
     for k, (name, row) in enumerate(zip(table.names, np.asarray(table.table).tolist(), strict=True)):
         rows.append(f"| {k} | {name} | {' | '.join(number(value) for value in row)} |")
@@ -89,27 +99,48 @@ def spelling(name: str) -> str:
     return re.sub(r"(?<!^)([A-Z])", r"-\1", name).lower()
 
 
-def baseline(name: str) -> list[str]:
-    """What the policies that come with the program reach, of both forms."""
+def baselines_of(name: str) -> list[tuple[str, Any]]:
+    """Names and figures of the trained policies of both forms."""
     found = json.loads((HERE / "baselines.json").read_text(encoding="utf-8"))
-    rows = [(key, found[key]) for key in (spelling(name), f"{spelling(name)}-discrete") if key in found]
+    return [(key, found[key]) for key in (spelling(name), f"{spelling(name)}-discrete") if key in found]
+
+
+def baseline(name: str) -> list[str]:
+    """What the policies that come with the package reach, of both forms."""
+    rows = baselines_of(name)
     if not rows:
         return []
-    lines = ["", "## Baseline", "", "| policy | algorithm | steps learnt | reward | solved | reward of drawn actions |"]
+    lines = ["", "## Baseline", "", "| policy | algorithm | training steps | mean return | success | random policy |"]
     lines.append("|---|---|---:|---:|---:|---:|")
     for key, row in rows:
         reward, drawn = ("{} ± {}".format(*row[what]) for what in ("reward", "drawn"))
         solved = f"{row['solved']} of {row['episodes']}"
         lines.append(f"| `{key}` | {row['algorithm'].upper()} | {row['steps']:,} | {reward} | {solved} | {drawn} |")
-    return [*lines, "", f"`sitl rollout {rows[0][0]} --episodes {rows[0][1]['episodes']} --seed {rows[0][1]['seed']}` "
-            "plays them again ([baselines](../baselines.md))."]  # fmt: skip
+    return [
+        *lines, "",
+        "± is the 95 % confidence interval of the mean; *random policy* is its mean return in the same episodes.",
+        f"`sitl rollout {rows[0][0]} --episodes {rows[0][1]['episodes']} --seed {rows[0][1]['seed']}` repeats the "
+        "first row; [baselines](../baselines.md) has more.",
+    ]  # fmt: skip
 
 
 def chosen(task: Any, names: str) -> str:
     """Values of arguments in this environment, as far as the task tells."""
     values = [vars(task).get(name.strip(), vars(task).get(f"_{name.strip()}")) for name in names.split(",")]
-    plain = [value for value in values if isinstance(value, bool | int | float | str | tuple)]
+    kinds = bool | int | float | str | tuple
+    plain = [value for value in values if isinstance(value, kinds) and not isinstance(value, Arena)]
     return ", ".join(str(value) for value in plain) if len(plain) == len(values) else ""
+
+
+def arguments(task: Any) -> list[tuple[str, str]]:
+    """Names and descriptions of the task's arguments; those of base classes come last."""
+    found: dict[str, str] = {}
+    for cls in type(task).__mro__:
+        _, _, text = ((cls.__doc__ and inspect.getdoc(cls)) or "").partition("\nArgs:\n")
+        lines = [line.strip().partition(": ") for line in re.sub(r"\n {8}", " ", text).splitlines() if ": " in line]
+        found |= {name: what for name, _, what in lines if name not in found}
+    hidden = ("others", "rewards", *UNUSED.get(type(task).__name__, ()))
+    return [(name, what) for name, what in found.items() if name not in hidden]
 
 
 def page(name: str) -> str:
@@ -118,54 +149,83 @@ def page(name: str) -> str:
     continuous, discrete = (gym.make(f"sitl/{name}{form}-v0") for form in ("", "Discrete"))
     env: Any = continuous.unwrapped
     task, spec = env.task, continuous.spec
-    text, _, arguments = (inspect.getdoc(type(task)) or "").partition("\nArgs:\n")
-    arguments = re.sub(r"\n {8}", " ", arguments)
-    described = [line.strip().partition(":") for line in arguments.splitlines() if ":" in line]
+    text = (inspect.getdoc(type(task)) or "").partition("\nArgs:\n")[0]
     box = task.arena
     seconds = spec.max_episode_steps * env.step_time
+    setpoint, frame = env.session.action.setpoint.name, "forward, left, up: x, y, z axes turned by the robot's yaw"
+    picture = f"![One episode seen from above: path of the trained policy (blue), target (green)](images/{name}.png)"
     lines = [
         f"# {title}", "", "<!-- Made by python docs/make_environment_pages.py -->", "", summary, "",
-        f"`sitl/{name}-v0` takes actions in [-1, 1], `sitl/{name}Discrete-v0` the number of an action.", "",
-        f"![an episode of the baseline](images/{name}.png)" if (HERE / "images" / f"{name}.png").exists() else "", "",
+        "```python", "import gymnasium as gym", "", f'env = gym.make("sitl.envs:sitl/{name}-v0")          # continuous',
+        f'env = gym.make("sitl.envs:sitl/{name}Discrete-v0")  # discrete', "```", "",
+        picture if (HERE / "images" / f"{name}.png").exists() else "", "",
         "| | |", "|---|---|",
-        f"| robot, world | {env.robot.name} in `{env.world.name}` |",
-        f"| action space | `{continuous.action_space}` or `{discrete.action_space}`, "
-        f"{env.session.action.setpoint.name} set-points |",
-        f"| a step | {number(env.step_time)} s: {number(1.0 / env.step_time)} Hz |",
-        f"| an episode | {spec.max_episode_steps} steps, {number(seconds)} s, then it is truncated |",
+        f"| robot | `{env.robot.name}`, with the whole autopilot |",
+        f"| world | `{env.world.name}`" + (f'; another one: `world="{OTHERS[name]}"`' if name in OTHERS else "") + " |",
+        f"| action space | `{continuous.action_space}` or `{discrete.action_space}`: {setpoint} set-points |",
+        f"| observation space | {space(continuous.observation_space)} |",
+        f"| step | {number(env.step_time)} s ({number(1.0 / env.step_time)} Hz) |",
+        f"| time limit | {spec.max_episode_steps} steps ({number(seconds)} s), then `truncated` |",
         f"| arena | x {number(box.low[0])} .. {number(box.high[0])}, y {number(box.low[1])} .. {number(box.high[1])}, "
         f"z {number(box.low[2])} .. {number(box.high[2])} m |",
         "", "## Observations", "",
-        "`env.unwrapped.session.observation.columns` names them.", "", *observations(env),
+        f"{frame[0].upper()}{frame[1:]}. Values are clipped to min and max; they are not normalised.",
+        "`env.unwrapped.session.observation.columns` has the names.", "", *observations(env),
         "", "## Actions", "", *actions(env, discrete.unwrapped),
-        "", "## Reward, start and end", "", text.strip().replace("``", "`"), "",
-        f"An episode ends in a crash (reward {number(task.crash_reward)}), or more than 5 m outside of the arena "
-        f"({number(task.out_reward)}), or as said above. It starts at the world's start"
-        + (" in the air." if name.startswith("Copter") else "."),
-        "", f"## Arguments of the task (`task={type(task).__name__}(...)`)", "",
-        "| argument | here | |", "|---|---:|---|",
-        *(f"| `{a}` | {chosen(task, a)} | {b.strip().replace('``', '`')} |" for a, _, b in described),
-        "", "All [options](../environments.md) of `sitl/Navigate-v0` can be replaced, too: observations, set-points,",
+        "", "## Reward", "", text.strip().replace("``", "`"), "",
+        "## Start and end", "",
+        "An episode starts at the world's start pose" + (", in the air." if name.startswith("Copter") else "."),
+        "It terminates",
+        "", f"- with a crash, when the robot touches an obstacle: reward {number(task.crash_reward)};",
+        f"- more than 5 m outside of the arena: {number(task.out_reward)} is added to the reward;",
+        "- as the section on the reward says.",
+        "", f"## Arguments of the task: `task={type(task).__name__}(...)`", "",
+        f"`from {type(task).__module__} import {type(task).__name__}`", "",
+        "| argument | value here | meaning |", "|---|---:|---|",
+        *(f"| `{a}` | {chosen(task, a)} | {b.strip().replace('``', '`')} |" for a, b in arguments(task)),
+        "", "All [options](../environments.md) of `sitl/Navigate-v0` can be changed, too: observations, set-points,",
         "worlds, wind, faults, a vehicle at a connection.",
         *baseline(name),
-        "", "## History", "", "v0: the first version.", "",
+        "", "## Version history", "", "v0: first version.", "",
     ]  # fmt: skip
     continuous.close()
     discrete.close()
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines))
 
 
+def space(of: Any) -> str:
+    """A space without its bounds."""
+    if isinstance(of, gym.spaces.Dict):
+        return ", ".join(f"`{name}`: {space(part)}" for name, part in of.items())
+    return f"`Box({of.shape}, {of.dtype})`"
+
+
 def index() -> str:
     """The page that lists them."""
-    rows = ["# Environments with places", "", "<!-- Made by python docs/make_environment_pages.py -->", ""]
-    rows += ["| id | task | step | episode |", "|---|---|---:|---:|"]
-    for name, (title, _) in TITLES.items():
-        spec = gym.spec(f"sitl/{name}-v0")
-        env: Any = gym.make(spec)
-        seconds = env.unwrapped.step_time * (spec.max_episode_steps or math.nan)
-        link, step = f"[`sitl/{name}-v0`, `...Discrete-v0`]({name}.md)", number(env.unwrapped.step_time)
-        rows.append(f"| {link} | {title} | {step} s | {number(seconds)} s |")
-        env.close()
+    rows = ["# Flight and driving tasks", "", "<!-- Made by python docs/make_environment_pages.py -->", ""]
+    rows += [
+        "Each task has a continuous id, `sitl/NAME-v0`, and a discrete one, `sitl/NAMEDiscrete-v0`. The whole",
+        "autopilot is in the loop. [Environments](../environments.md) explains what they have in common.",
+        "*Trained policy* is the success rate of the [baseline](../baselines.md) of the continuous id in 200 episodes.",
+    ]
+    for robot in ("Copter", "Rover"):
+        rows += [
+            "",
+            f"## {robot}",
+            "",
+            "| task | id | step | time limit | trained policy |",
+            "|---|---|---:|---:|---:|",
+        ]
+        for name in (name for name in TITLES if name.startswith(robot)):
+            spec = gym.spec(f"sitl/{name}-v0")
+            env: Any = gym.make(spec)
+            seconds = env.unwrapped.step_time * (spec.max_episode_steps or math.nan)
+            step = number(env.unwrapped.step_time)
+            found = dict(baselines_of(name)).get(spelling(name))
+            solved = f"{100 * found['solved'] / found['episodes']:.1f} %" if found else "none"
+            link = f"[{TITLES[name][0]}]({name}.md)"
+            rows.append(f"| {link} | `sitl/{name}-v0` | {step} s | {number(seconds)} s | {solved} |")
+            env.close()
     return "\n".join(rows) + "\n"
 
 

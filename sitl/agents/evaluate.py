@@ -25,6 +25,11 @@ CENTRES = {"circuit": (2.0, -1.9), "circuit2": (-1.7, -3.5), "circuit2c": (-1.7,
 """World -> x, y of a position inside the central solids [m]."""
 
 
+def rounded(reward: float) -> str:
+    """A mean reward for people: with one decimal below 100."""
+    return f"{reward:.1f}" if abs(reward) < 100.0 else f"{reward:.0f}"
+
+
 class LapCounter:
     """Counts the turns of a path around a position.
 
@@ -106,17 +111,17 @@ class Evaluation:
         """Summary in one line."""
         count = len(self.episodes)
         crashes = sum(played.crashed for played in self.episodes)
-        parts = [f"{count} episodes: mean reward {self.mean_reward:.0f}", f"{crashes} crashes"]
+        parts = [f"{count} episodes: mean reward {rounded(self.mean_reward)}", f"{crashes} crashes"]
         if not math.isnan(self.mean_laps):
-            parts.append(f"{self.mean_laps:.1f} laps an episode")
+            parts.append(f"{self.mean_laps:.1f} laps per episode")
             parts.append(f"{100.0 * self.lap_rate:.0f} % of the episodes with a lap or more and no crash")
         ended = sum(played.terminated and not (played.crashed or played.reached) for played in self.episodes)
         if ended:
-            parts.append(f"{ended} ended by themselves")
+            parts.append(f"{ended} terminated otherwise")
         if any(played.reached for played in self.episodes):
-            parts.append(f"goal reached in {sum(played.reached for played in self.episodes)}")
+            parts.append(f"success in {sum(played.reached for played in self.episodes)}")
         if not math.isnan(self.mean_simulated_s):
-            parts.append(f"{self.mean_simulated_s:.0f} simulated s an episode")
+            parts.append(f"{self.mean_simulated_s:.0f} simulated s per episode")
         return ", ".join(parts)
 
 

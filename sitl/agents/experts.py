@@ -57,7 +57,7 @@ class _Autopilot(Expert):
                 f"shows velocities: setpoint={VELOCITY.name!r}"
             )
         if not hasattr(session.task, "places"):
-            raise AgentError(f"expert {self.name!r}: task {type(session.task).__name__} of {named(env)} has no places")
+            raise AgentError(f"expert {self.name!r}: task {type(session.task).__name__} of {named(env)} has no targets")
         if POSITION not in robot.setpoints or not robot.has_snapshots:
             raise AgentError(f"expert {self.name!r}: {named(env)} needs a vehicle in process with our autopilot")
         self._robot = robot

@@ -64,7 +64,8 @@ def save(run: RunFolder, path: Path) -> None:
     policy, config = algorithms.policy_of(run), run.config
     if not isinstance(policy, DeepPolicy):
         raise AgentError(
-            f"{run.path}: {config.algorithm} learns a table, which is no network; deploy the folder itself"
+            f"{run.path}: {config.algorithm} has a table and no network to export; rollout and deploy take the run "
+            "folder itself"
         )
     about = {
         "env": config.env, "algorithm": config.algorithm, "options": dict(config.env_options),

@@ -242,7 +242,7 @@ def _table_of_turns(env: gym.Env[Any, Any], action: Any) -> dict[int, Any]:
     names = action.names if isinstance(action, Discrete) else ()
     if not {"forward", "left", "right"} <= set(names):
         raise AgentError(
-            f"expert {Pilot.name!r}: the task of {named(env)} has no places; then it needs a table of actions with "
+            f"expert {Pilot.name!r}: the task of {named(env)} has no targets; then it needs discrete actions named "
             f'"forward", "left" and "right": action="discrete"'
         )
     return {turn: np.int64(names.index(name)) for turn, name in ((0, "forward"), (1, "left"), (-1, "right"))}

@@ -115,7 +115,7 @@ def _config(policy: Named, env: str | None, max_steps: int | None, options: Mapp
             env_options={**run.env_options, **options} if same else options,
         )
     if env is None:
-        raise AgentError(f"policy {policy!r} is of no environment: say which one to play in")
+        raise AgentError(f"policy {policy!r} has no environment of its own: give ENV, the id of one")
     return RunConfig(env, "none", options, max_steps=max_steps or MAX_STEPS)
 
 

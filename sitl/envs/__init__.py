@@ -2,7 +2,7 @@
 """Gymnasium environments: ``import sitl.envs``, then ``gymnasium.make``. Nothing heavy is loaded before that.
 
 ``sitl/Navigate-v0`` is any robot in any world. The paper's have its names ("...LIDAR-v0") and those of the original
-code ("...Lidar-v0"). Those of ``ids.NEW`` have places to be at.
+code ("...Lidar-v0"). ``ids.NEW`` are the flight and driving tasks.
 """
 
 from __future__ import annotations

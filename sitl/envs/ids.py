@@ -61,4 +61,4 @@ NEW = {
     for preset, steps in _STEPS.items()
     for form in ("", "Discrete")
 }
-"""Environments with places to be at; "...Discrete" has a table of actions."""
+"""Flight and driving tasks; "...Discrete" has discrete actions."""

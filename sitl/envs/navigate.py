@@ -25,13 +25,13 @@ class Navigate(gym.Env[Any, Any]):
     """A robot that navigates by lidar.
 
     Args:
-        render_mode: "rgb_array"; "human", the page in the browser where the extra ``view`` is installed, else a window;
+        render_mode: "rgb_array"; "human": the browser view if the extra ``view`` is installed, else a window;
             "window"; or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
             randomise, latency, faults, info, and options of the robot's class.
 
-    ``reset`` takes ``options={"pose": (x, y, yaw)}``. ``info`` holds "crashed", what ``Task.info`` adds, and what
-    the option ``info`` names.
+    ``reset`` takes ``options={"pose": (x, y, yaw)}``: the start pose [m, rad]. ``info`` has "crashed", the task's
+    entries (``Task.info``), and those that the option ``info`` names.
 
     Raises:
         EnvOptionError: an option that cannot be used; the message says what is allowed.
@@ -103,7 +103,7 @@ class Navigate(gym.Env[Any, Any]):
         return self._observation(), {}
 
     def watch(self, watcher: Watcher) -> None:
-        """Let somebody look at all episodes and steps from the next reset on, until the environment is closed."""
+        """Show all episodes and steps to a watcher, from the next reset until the environment is closed."""
         self._watcher = watcher
 
     @property
@@ -111,15 +111,15 @@ class Navigate(gym.Env[Any, Any]):
         return self.spec.id if self.spec is not None else f"{self.robot.name} in {self.world.name}"
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """See ``gymnasium.Env.step``. It is truncated only when the agent is not in charge of a vehicle at a connection
-        any more: ``info["handed_over"]`` says why. (A ``TimeLimit`` truncates episodes, too.)
+        """See ``gymnasium.Env.step``. An episode is truncated by a ``TimeLimit``, or when the agent has lost control of
+        a vehicle at a connection: ``info["handed_over"]`` says why.
 
         Raises:
             InvalidAction: the action is not in the space.
             ResetNeeded: before the first ``reset``.
         """
         if not self._is_begun:
-            raise gym.error.ResetNeeded("the robot stands nowhere before the first reset()")
+            raise gym.error.ResetNeeded("step() before the first reset(): call reset() first")
         session = self._session
         self._actions[0] = self._check(action)
         self._advance()
@@ -147,8 +147,8 @@ class Navigate(gym.Env[Any, Any]):
 
     @property
     def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
-        """What goals are worth, of a goal-conditioned environment: see ``Hold.compute_reward``. Others have no such
-        attribute, by which libraries know them.
+        """The reward of goals in a goal-conditioned environment: see ``Hold.compute_reward``. Other environments do not
+        have this attribute, which is how libraries tell them apart.
 
         Raises:
             AttributeError: the task has no goal that counts alone, or the observation does not tell it.

@@ -201,7 +201,7 @@ class DigitReadings:
 
 
 class LastAction:
-    """The agent's last action; zeros before the first one of an episode. Of a table: one number for each row."""
+    """The agent's last action; zeros before the first one of an episode. Discrete actions are one-hot."""
 
     reads_scan = False
 
@@ -210,7 +210,7 @@ class LastAction:
         self._session, space = session, session.action.space
         self._rows = len(session.action.names) if isinstance(session.action, Discrete) else 0
         if self._rows:
-            self.columns = tuple(f"was {name!r}" for name in session.action.names)
+            self.columns = tuple(f"last action was {name!r}" for name in session.action.names)
             self.low, self.high = [0.0] * self._rows, [1.0] * self._rows
         else:
             self.low, self.high = space.low.tolist(), space.high.tolist()
@@ -231,23 +231,24 @@ WAY = ("ahead [m]", "to the left [m]", "above [m]")
 
 
 class Path:
-    """Ways to the next ``count`` places of the task: forward, left, up [m] of the robot's heading, one after another.
+    """Vectors to the next ``count`` targets of the task: forward, left, up [m] in the frame of the robot's heading.
 
-    "goal" is the way to the next one alone.
+    "goal" is the vector to the next one alone.
     """
 
     reads_scan = False
 
     def __init__(self, count: int = 3) -> None:
         self.count = count
-        self.columns = tuple(f"place {k + 1} {name}" for k in range(count) for name in WAY)
+        targets = ("target",) if count == 1 else tuple(f"target {k + 1}" for k in range(count))
+        self.columns = tuple(f"{target} {name}" for target in targets for name in WAY)
         self.high = (3.0 * FAR,) * (3 * count)
         self.low = (-3.0 * FAR,) * (3 * count)
 
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
         if not hasattr(session.task, "ways"):
-            raise EnvOptionError(f'observation "goal", "path": task {session.task!r} has no places')
+            raise EnvOptionError(f'observation "goal", "path": task {session.task!r} has no target')
         self._task = session.task
 
     def write(self, out: Narrow) -> None:
@@ -256,9 +257,9 @@ class Path:
 
 
 class GoalHeading:
-    """How the heading that the task wants differs from the robot's."""
+    """Difference between the heading that the task wants and the robot's."""
 
-    columns = ("cosine of the turn to the goal's heading", "sine of it, counter-clockwise")
+    columns = ("cosine of the heading error", "sine of the heading error, counter-clockwise")
     low, high = (-1.0, -1.0), (1.0, 1.0)
 
     def prepare(self, session: Surroundings) -> None:

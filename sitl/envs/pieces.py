@@ -62,7 +62,11 @@ def _piece(name: str, piece: Any) -> Any:
 
 def observation_of(option: Any, known: Any) -> Observation | None:
     """What an option names: a list or tuple of parts gives one box, "scan+velocity", "depth+goal" and a dict give a
-    dict, "depth" a picture; None: none of these."""
+    dict, "depth" a picture; None: a name of ``known``, or no text.
+
+    Raises:
+        EnvOptionError: a name that is not known.
+    """
     if isinstance(option, list | tuple):
         return Parts(option)
     if isinstance(option, Mapping):
@@ -75,4 +79,9 @@ def observation_of(option: Any, known: Any) -> Observation | None:
     names = option.split("+")
     if any(name in PICTURES for name in names):
         return Pieces({name: name for name in names})
-    return NamedParts(names) if all(name in PARTS for name in names) else None
+    wrong = next((name for name in names if name not in PARTS), None)
+    if wrong is None:
+        return NamedParts(names)
+    if len(names) > 1:
+        raise unknown(f"observation {option!r}: part", wrong, PARTS)
+    raise unknown("observation", option, dict.fromkeys((*known, *PICTURES, *PARTS)))

@@ -139,8 +139,10 @@ assert all(listed.preset in PRESETS for listed in NEW.values())
 
 def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Options of a preset, with those that are given in their place; a box that is made for one kind of set-point
-    gives way to the usual one when another kind is asked for."""
+    gives way to the usual one when another kind is asked for. A vehicle at a connection keeps its own wind."""
     options = {**PRESETS[preset](), **given}
+    if options.get("connection", "inprocess") != "inprocess" and "randomise" not in given:
+        options["randomise"] = None
     action = options.get("action")
     if isinstance(action, Normalised) and options.get("setpoint", action.setpoint.name) != action.setpoint.name:
         options["action"] = "normalised"

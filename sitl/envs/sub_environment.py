@@ -44,7 +44,7 @@ class OfSubEnvironments(VectorEnv[Any, Any, Any]):
         """
         generator = self.generators[index]
         if generator is None:
-            raise gym.error.ResetNeeded("the robots stand nowhere before the first reset()")
+            raise gym.error.ResetNeeded("before the first reset(): call reset() first")
         return generator
 
     @property

@@ -56,9 +56,9 @@ class Task:
 
     Args:
         rewards: reward terms: names (``rewards.TERMS``), objects of ``rewards``, or functions of a ``Step``.
-        crash_range: a reading below it is a crash [m]; 0: readings never are; None: the robot's.
+        crash_range: a lidar reading below it is a crash [m]; 0: no reading is; None: the robot's value.
         crash_reward: reward of a step that ends in a crash, instead of its terms.
-        contact_ends: whether touching a solid is a crash, too.
+        contact_ends: whether touching an obstacle is a crash, too.
     """
 
     def __init__(

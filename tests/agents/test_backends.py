@@ -223,7 +223,8 @@ def test_ctrl_c_in_a_terminal_meets_the_command_and_not_its_workers(tmp_path):
     assert process.wait(60) == 130
     log.seek(0)
     text = log.read()
-    assert f"interrupted; go on with: sitl train --resume {folder}" in text and "Ray" not in text and "ray" not in text
+    assert f"interrupted; continue with: sitl train --resume {folder}" in text
+    assert "Ray" not in text and "ray" not in text
     for seed in range(2):
         run = RunFolder(folder / f"seed-{seed}")
         done = len(run.episodes.rows())

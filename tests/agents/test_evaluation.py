@@ -130,7 +130,7 @@ def test_in_an_environment_of_another_kind_an_end_is_no_crash():
             return next(self.steps)
 
     found = evaluate(gym.make("CliffWalking-v1", max_episode_steps=20), Walk(), 2)
-    assert found.crash_rate == 0.0 and "0 crashes, 2 ended by themselves" in found.sentence()
+    assert found.crash_rate == 0.0 and "0 crashes, 2 terminated otherwise" in found.sentence()
 
 
 ROVER = {"observation": "digits", "action": "discrete", "start": "random"}

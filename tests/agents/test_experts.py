@@ -72,7 +72,7 @@ def test_an_expert_does_the_task_and_its_actions_do_it_again(name, expert):
     [
         ("GazeboCircuit2TurtlebotLIDAR-v0", {}, "no vehicle with an autopilot"),
         ("sitl/CopterWaypoint-v0", {"setpoint": "attitude"}, "'attitude' set-points; it shows velocities"),
-        ("sitl/Navigate-v0", {"robot": "erle_copter", "world": "office_erlecopter"}, "task Task of .* has no places"),
+        ("sitl/Navigate-v0", {"robot": "erle_copter", "world": "office_erlecopter"}, "task Task of .* has no targets"),
     ],
 )
 @pytest.mark.parametrize("expert", ["guided", "auto"])

@@ -8,6 +8,7 @@ import json
 
 import pytest
 
+from sitl.agents.evaluate import rounded
 from sitl.agents.report.paper_tables import MEAN_REWARDS
 from sitl.agents.runs import folder as folders
 from tests.agents.small_runs import CHECKS, CIRCUIT2, result
@@ -50,7 +51,7 @@ def test_mistakes_are_told(sitl):
         (("train", CIRCUIT2, "--out", "z", "--option", "observation=scan"), "observation = digits"),
         (("train", "Nothing-v0", "--out", "n"), "Nothing"),
         (("train",), "ENV is missing"),
-        (("train", "--resume", "run", "--algo", "sarsa"), "goes on with a run as it is"),
+        (("train", "--resume", "run", "--algo", "sarsa"), "continues a run with its own settings"),
         (("train", "--resume", "nothing"), "neither a run"),
         (("compare", "run", "nothing"), "neither a run"),
         (("evaluate", "run", "--option", "world=nowhere"), "nowhere"),
@@ -79,10 +80,10 @@ def test_a_start_in_a_wall_is_a_users_mistake(sitl):
 def test_evaluate_plays(sitl):
     assert sitl("train", CIRCUIT2, "--out", "run", *SHORT)[0] == 0
     code, out, _ = sitl("evaluate", "run", "--episodes", 3, "--jitter", 0.1)
-    assert code == 0 and out.startswith("run: 3 episodes: mean reward") and "laps an episode" in out
+    assert code == 0 and out.startswith("run: 3 episodes: mean reward") and "laps per episode" in out
     (told,) = json.loads(sitl("evaluate", "run", "--episodes", 3, "--jitter", 0.1, "--json")[1])
     rewards = [played["reward"] for played in told["episodes"]]
-    assert told["run"] == "run" and f"mean reward {sum(rewards) / 3:.0f}," in out
+    assert told["run"] == "run" and f"mean reward {rounded(sum(rewards) / 3)}," in out
     assert "laps" not in sitl("evaluate", "run", "--episodes", 1, "--option", "world=maze")[1]
 
 
@@ -118,7 +119,7 @@ def test_compare_plays_runs_as_they_are_evaluated(sitl, tmp_path):
     )
     row = next(csv.DictReader((tmp_path / "report" / "greedy.csv").open()))
     _, played, _ = sitl("evaluate", "runs/moved", "--episodes", 2)
-    assert row["seed"] == "3" and f"mean reward {float(row['mean_reward']):.0f}," in played
+    assert row["seed"] == "3" and f"mean reward {rounded(float(row['mean_reward']))}," in played
 
 
 @pytest.mark.slow

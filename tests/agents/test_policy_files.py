@@ -135,5 +135,5 @@ def test_rollouts_play_a_file_in_the_environment_that_it_says(tmp_path):
     policy_file.write(tmp_path / "p.npz", policy, {**ABOUT, "env": "sitl/RoverWaypointDiscrete-v0", "algorithm": "dqn"})
     found = rollout(tmp_path / "p.npz", episodes=3, robots=2)
     assert [one.steps for one in found.episodes] == [50, 50, 50]
-    with pytest.raises(AgentError, match="the model sees"):
+    with pytest.raises(AgentError, match="the policy was trained on"):
         rollout(tmp_path / "p.npz", "sitl/CopterWaypointDiscrete-v0", episodes=1)

@@ -172,7 +172,7 @@ def test_a_recipe_is_good_for_further_environments(small, tmp_path):
 def test_conflicts_are_refused(sitl, small, tmp_path):
     for words, message in (
         (("--recipe", small, "GazeboMazeTurtlebotLIDAR-v0"), "learns in GazeboCircuit2TurtlebotLIDAR-v0, not Gazebo"),
-        (("--recipe", small, "--algo", "qlearn"), "learns by sarsa, not qlearn"),
+        (("--recipe", small, "--algo", "qlearn"), "trains with sarsa, not qlearn"),
         (("--recipe", "nothing"), "one of circuit"),
         (("--recipe", small, "--set", "alhpa=1"), "did you mean 'alpha'"),
     ):

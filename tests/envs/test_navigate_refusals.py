@@ -229,3 +229,10 @@ def test_a_window_needs_a_screen(monkeypatch, capfd):
 def test_a_vehicle_at_a_connection_starts_where_it_is(start):
     with pytest.raises(EnvOptionError, match=f"start '{start}': a vehicle at a connection.*--option start=original"):
         gym.make("GazeboMazeErleRoverLIDAR-v0", connection="udpout:127.0.0.1:9", start=start)
+
+
+def test_a_vehicle_at_a_connection_keeps_its_own_wind():
+    env = gym.make("sitl/CopterHover-v0", connection="udpout:127.0.0.1:9")
+    assert not env.unwrapped.session.randomisation.ranges
+    with pytest.raises(EnvOptionError, match="randomise: figure 'wind_speed' is not known"):
+        gym.make("sitl/CopterHover-v0", connection="udpout:127.0.0.1:9", randomise={"wind_speed": (0.0, 5.0)})

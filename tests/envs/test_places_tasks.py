@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Environments with places to be at: every id is Gymnasium's, repeats, and is the same alone and among many."""
+"""Flight and driving tasks: every id passes Gymnasium's checks, repeats, and is the same alone and in a vector."""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ def test_an_acceleration_accelerates_and_a_rate_turns():
     [
         ({"observation": ["gaol"]}, "part 'gaol' is not known.*did you mean 'goal'"),
         ({"observation": []}, "has no parts; there are pose"),
-        ({"observation": ["goal"], "task": "wander"}, "has no places"),
+        ({"observation": ["goal"], "task": "wander"}, "has no target"),
         ({"action": "normal"}, "did you mean 'normalised'"),
     ],
 )

@@ -71,7 +71,7 @@ def test_stable_baselines3_with_single_environments_by_id(algorithm, name):
         library = pytest.importorskip("sb3_contrib", reason="needs sb3-contrib")
     off_policy = {"learning_starts": 50, "buffer_size": 1000, "batch_size": 32}
     settings = {"n_steps": 128, "batch_size": 64, "n_epochs": 2} if algorithm == "PPO" else off_policy
-    model = getattr(library, algorithm)("MlpPolicy", name, seed=1, device="cpu", **settings)
+    model = getattr(library, algorithm)("MlpPolicy", f"sitl.envs:{name}", seed=1, device="cpu", **settings)
     before = weights(model.policy)
     model.learn(256)
     assert has_learnt(before, weights(model.policy))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Policies that come with the program, for environments with places: each was learnt by the recipe of its name.
+"""Trained policies that come with the package, for flight and driving tasks. The recipe of the same name trains each.
 
-"NAME-discrete" is of the environment's form with a table of actions; where there is no recipe of that name, it was
-learnt by that of NAME, which names this form among those that it is good for.
+"NAME-discrete" is for the environment with discrete actions. If there is no recipe of that name, the recipe NAME
+trained it, and lists the discrete id, too.
 """
 
 from __future__ import annotations

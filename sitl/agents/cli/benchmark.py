@@ -36,11 +36,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     one = actions.add_parser(
         "paper",
-        help="Q-learning and Sarsa on circuit2, beside the paper's table",
-        description="Trains what is missing in --out, then writes report.md, report.html, pictures and CSV files.",
+        help="Q-learning and Sarsa on circuit2, compared with the paper's table",
+        description="Trains what is missing in --out, then writes report.md, report.html, figures and CSV files.",
     )
     one.add_argument("--seeds", type=positive, default=_SEEDS, metavar="N", help=f"runs of each (default {_SEEDS})")
-    one.add_argument("--episodes", type=positive, default=EPISODES, metavar="N", help=f"of a run (default {EPISODES})")
+    one.add_argument(
+        "--episodes", type=positive, default=EPISODES, metavar="N", help=f"episodes of a run (default {EPISODES})"
+    )
     add_jobs(one)
     one.add_argument(
         "--play", type=positive, default=100, metavar="N", help="greedy episodes of each run (default 100)"
@@ -48,7 +50,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     one.add_argument(
         "--changes",
         action="store_true",
-        help="also runs with one thing changed: exploration, first visit, step time ...",
+        help="ablation, too: runs with one change each (exploration, first visit, step time, ...)",
     )
     one.add_argument("--out", type=Path, default=Path("reports/paper"), metavar="DIR", help="default: reports/paper")
     one.set_defaults(function=run_paper)
@@ -90,9 +92,9 @@ def run_paper(options: argparse.Namespace) -> int:
 def _declare_environments(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser = actions.add_parser(
         "environments",
-        help="an agent for each environment, by the shipped recipes",
-        description="Trains what is missing in --out, plays it greedily, then writes report.md, report.html, pictures "
-        "and a CSV file. The same command goes on after an interrupt.",
+        help="train and evaluate all recipes",
+        description="Trains what is missing in --out, evaluates it greedily, then writes report.md, report.html, "
+        "figures and a CSV file. The same command continues after an interrupt.",
     )
     shipped = ", ".join(recipes.names())
     parser.add_argument(
@@ -135,20 +137,20 @@ def _declare_rehearsal(actions: argparse._SubParsersAction[argparse.ArgumentPars
     shipped = ", ".join(plans.names())
     parser = actions.add_parser(
         "rehearsal",
-        help="how much of a reward transfers to other simulations, with and without domain randomisation",
-        description="Trains for each robot what is missing in --out: a policy in one simulation and one in many. Tries "
-        "both under the changes of the robot's plan, then writes report.md, report.html, pictures and CSV files. The "
-        "same command goes on after an interrupt.",
+        help="robustness to other simulations, with and without domain randomisation",
+        description="Trains two policies for each robot, with and without domain randomisation, if they are missing in "
+        "--out. Tests both under the changes of the robot's plan, then writes report.md, report.html, figures and CSV "
+        "files. The same command continues after an interrupt.",
     )
     parser.add_argument("--only", nargs="+", metavar="PLAN", help=f"{shipped}, or .toml files (default: all shipped)")
     parser.add_argument("--seeds", type=positive, default=1, metavar="N", help="runs of each (default 1)")
-    parser.add_argument("--steps", type=positive, metavar="N", help="of a training, instead of the recipe's length")
+    parser.add_argument("--steps", type=positive, metavar="N", help="training steps, instead of the recipe's")
     parser.add_argument(
         "--episodes",
         type=positive,
         default=_REHEARSAL_EPISODES,
         metavar="N",
-        help=f"of each change and run (default {_REHEARSAL_EPISODES})",
+        help=f"episodes of each change and run (default {_REHEARSAL_EPISODES})",
     )
     add_jobs(parser)
     parser.add_argument("--out", type=Path, default=_REHEARSAL_OUT, metavar="DIR", help=f"default: {_REHEARSAL_OUT}")

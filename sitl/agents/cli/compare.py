@@ -13,18 +13,20 @@ from .options import add_jobs, positive, workers
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("compare")
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of runs, or of groups of seeds")
+    parser = commands.add_parser("compare", description="Writes a report that compares runs.")
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders, or folders of several seeds")
     parser.add_argument(
         "--out", type=Path, default=Path("reports/compare"), metavar="DIR", help="default: reports/compare"
     )
-    parser.add_argument("--block", type=positive, metavar="N", help="episodes of an average (default: 200)")
+    parser.add_argument(
+        "--block", type=positive, metavar="N", help="episodes of a block in tables and curves (default 200)"
+    )
     parser.add_argument(
         "--play",
         type=positive,
         default=0,
         metavar="N",
-        help="also play N greedy episodes a run, as evaluate does",
+        help="also evaluate each run in N greedy episodes",
     )
     add_jobs(parser)
     parser.set_defaults(function=run)

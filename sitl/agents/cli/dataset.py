@@ -16,29 +16,33 @@ from .options import assignment, assignments, positive, whole
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser(
-        "dataset", description="Datasets of flights, for imitation and offline learning."
-    )
+    parser = commands.add_parser("dataset", description="Datasets of flights, for imitation and offline learning.")
     record = parser.add_subparsers(metavar="COMMAND", required=True).add_parser(
         "record",
-        help="let an expert fly episodes, and write them as a dataset",
-        description="The dataset is kept where Minari keeps its own ($MINARI_DATASETS_PATH), and minari.load_dataset "
+        help="record episodes of an expert",
+        description="The dataset is stored in Minari's folder ($MINARI_DATASETS_PATH), and minari.load_dataset "
         "opens it. The same command gives the same dataset.",
     )
-    record.add_argument("env", metavar="ENV", help="id of the environment, as sitl/CopterWaypoint-v0")
+    record.add_argument("env", metavar="ENV", help="id of the environment, such as sitl/CopterWaypoint-v0")
     experts = ", ".join((*AUTOPILOTS, datasets.BASELINE, RANDOM))
     record.add_argument(
         "--expert",
         default="guided",
         metavar="EXPERT",
-        help=f"{experts}, the name of a shipped policy, or the folder or file of one (default guided)",
+        help=f"{experts}, name of a baseline, run folder or policy file (default guided)",
     )
-    record.add_argument("--episodes", type=positive, default=100, metavar="N", help="default 100")
-    record.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes (default 0)")
-    record.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: as the id has it)")
+    record.add_argument("--episodes", type=positive, default=100, metavar="N", help="number of episodes (default 100)")
+    record.add_argument("--seed", type=whole, default=0, metavar="N", help="seed of the episodes (default 0)")
+    record.add_argument(
+        "--max-steps", type=positive, metavar="N", help="time limit of an episode in steps (default: that of the id)"
+    )
     record.add_argument("--name", metavar="DATASET", help="id of the dataset (default: sitl/ENV/EXPERT-v0)")
     record.add_argument(
-        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+        "--option",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="option of the environment, such as world=circuit",
     )
     record.set_defaults(function=run)
 

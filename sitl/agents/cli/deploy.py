@@ -21,35 +21,45 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "deploy",
-        description="Takes over a vehicle that stands or hovers in GUIDED, lets a policy act on it within a fence and "
-        "limits, and hands it back to its own modes at the end, on Ctrl-C, and when anything goes wrong.",
+        description="Runs a policy on a vehicle that stands or hovers in GUIDED. A guard limits speed, height and "
+        "distance. At the end, on Ctrl-C and on every error the vehicle goes into a safe mode.",
     )
     parser.add_argument(
         "policy",
         type=baselines.find,
         metavar="POLICY",
-        help="folder of a run, a file of `sitl export` (.npz), or the name of a shipped policy (docs/baselines.md)",
+        help="run folder, policy file of `sitl export` (.npz), or name of a baseline (docs/baselines.md)",
     )
     parser.add_argument(
         "--connection", required=True, metavar="URL",
-        help="of the vehicle: udp:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD",
+        help="address of the vehicle: udp:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD",
     )  # fmt: skip
-    parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="default 1")
-    parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: as it was learnt)")
+    parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="number of episodes (default 1)")
+    parser.add_argument(
+        "--max-steps", type=positive, metavar="N", help="time limit of an episode in steps (default: as in training)"
+    )
     parser.add_argument(
         "--reset", choices=RESETS, default=RESETS[0],
-        help="what is done to the vehicle before each episode: nothing but to wait (default), fly back in GUIDED, "
-        "reboot what proves to be a simulator, or reboot whatever it is",
+        help="before each episode: none: wait for the vehicle (default); return: fly back in GUIDED; reboot: reboot a "
+        "simulator; force: reboot any vehicle",
     )  # fmt: skip
     parser.add_argument(
-        "--wait", type=float, default=60.0, metavar="S", help="for a vehicle that is ready [s] (default 60)"
+        "--wait",
+        type=float,
+        default=60.0,
+        metavar="S",
+        help="time to wait for a vehicle that is ready [s] (default 60)",
     )
     parser.add_argument(
         "--guard", type=assignment, action="append", metavar="NAME=VALUE",
-        help=f"a limit: {', '.join(field.name for field in fields(Guard))}",
+        help=f"limit of the guard: {', '.join(field.name for field in fields(Guard))}",
     )  # fmt: skip
     parser.add_argument(
-        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+        "--option",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="option of the environment, such as world=circuit",
     )
     parser.set_defaults(function=run)
 

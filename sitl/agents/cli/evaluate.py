@@ -18,17 +18,24 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "evaluate",
-        description="Plays greedy episodes. A run by a recipe has defaults of its own: how its recipe is evaluated.",
+        description="Evaluates the best agent of a run in greedy episodes. Defaults are the evaluation settings of the "
+        "run's recipe.",
     )
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or of several")
-    parser.add_argument("--episodes", type=positive, metavar="N", help="default: of the run, 100")
-    parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run)")
-    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
+    parser.add_argument("run", type=Path, metavar="RUN", help="run folder, or folder of several runs")
+    parser.add_argument("--episodes", type=positive, metavar="N", help="number of episodes (default: of the run, 100)")
     parser.add_argument(
-        "--jitter", type=float, metavar="X", help="starts are moved by up to X m and X rad (default: of the run, 0)"
+        "--max-steps", type=positive, metavar="N", help="time limit of an episode in steps (default: of the run)"
+    )
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="seed of the episodes (default 0)")
+    parser.add_argument(
+        "--jitter", type=float, metavar="X", help="move start poses by up to X m and X rad (default: of the run, 0)"
     )
     parser.add_argument(
-        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+        "--option",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="option of the environment, such as world=circuit",
     )
     add_jobs(parser)
     add_json_option(parser, "a list of runs, with each episode")

@@ -14,10 +14,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "export",
-        description="Writes a network without what it was trained with: .npz plays here and by NumPy alone, .onnx "
-        "in other programs.",
+        description="Writes the policy network of a run: .npz for sitl and NumPy, .onnx in other programs.",
     )
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run; of several, the first is written")
+    parser.add_argument("run", type=Path, metavar="RUN", help="run folder; of several runs the first is written")
     parser.add_argument("file", type=Path, metavar="FILE", help=".npz or .onnx")
     parser.set_defaults(function=export)
 

@@ -64,12 +64,15 @@ def assignments(pairs: Iterable[tuple[str, Any]] | None) -> dict[str, Any]:
 
 def add_jobs(parser: argparse.ArgumentParser) -> None:
     """--jobs, --backend, --address."""
-    parser.add_argument("--jobs", type=positive, default=1, metavar="N", help="how many at a time (default 1)")
+    parser.add_argument("--jobs", type=positive, default=1, metavar="N", help="number of parallel workers (default 1)")
     parser.add_argument(
-        "--backend", choices=BACKENDS, default=BACKENDS[0], help="processes of this machine, or a Ray cluster"
+        "--backend",
+        choices=BACKENDS,
+        default=BACKENDS[0],
+        help="workers: processes of this machine, or of a Ray cluster",
     )
     parser.add_argument(
-        "--address", metavar="ADDRESS", help="of the Ray cluster (default: $RAY_ADDRESS, else one on this machine)"
+        "--address", metavar="ADDRESS", help="address of the Ray cluster (default: $RAY_ADDRESS, else a new one here)"
     )
 
 

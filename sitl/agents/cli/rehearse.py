@@ -29,18 +29,24 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     shipped = ", ".join(plans.names())
     parser = commands.add_parser(
         "rehearse",
-        description="Plays runs at home and under changes of the simulation: another world, other physics, vehicle "
-        "figures, sensor noise, latency. Reports how much of the reward transfers.",
+        description="Tests the robustness of trained policies: evaluates them in their own environment and under "
+        "changes (other world, physics, vehicle, sensor noise, latency), and reports the share of the reward "
+        "that is kept.",
     )
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of runs, or of groups of seeds")
-    parser.add_argument("--plan", metavar="NAME", help=f"changes: a .toml file, or {shipped} (default: by robot)")
+    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders, or folders of several seeds")
+    parser.add_argument(
+        "--plan", metavar="NAME", help=f"list of changes: a .toml file, or {shipped} (default: that of the robot)"
+    )
     parser.add_argument("--only", action="append", metavar="CHANGE", help="a change or a group of changes, by name")
     parser.add_argument(
-        "--episodes", type=positive, metavar="N", help=f"of each change and run (default: {EPISODES}, or the run's)"
+        "--episodes",
+        type=positive,
+        metavar="N",
+        help=f"episodes of each change and run (default: {EPISODES}, or the run's)",
     )
-    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="seed of the episodes (default 0)")
     parser.add_argument(
-        "--jitter", type=float, metavar="X", help="starts are moved by up to X metres and X rad (default: of the run)"
+        "--jitter", type=float, metavar="X", help="move start poses by up to X m and X rad (default: of the run)"
     )
     add_jobs(parser)
     parser.add_argument(

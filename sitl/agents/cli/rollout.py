@@ -28,27 +28,42 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "rollout",
-        description="Plays episodes with a policy and prints rewards and success. Results depend on the seed, not on "
-        "the number of workers.",
+        description="Plays episodes with a policy and prints mean reward, crashes and successes. Results depend on the "
+        "seed, not on the number of workers.",
     )
     parser.add_argument(
         "policy",
         metavar="POLICY",
-        help=f"folder of a run, file of a policy (.npz), name of a shipped one (docs/baselines.md), MODULE:FUNCTION of "
-        f"observations, or {RANDOM}",
+        help=f"run folder, policy file (.npz), name of a baseline (docs/baselines.md), MODULE:FUNCTION from "
+        f"observations to actions, or {RANDOM}",
     )
     parser.add_argument("env", nargs="?", metavar="ENV", help="id of the environment (default: that of the run)")
-    parser.add_argument("--episodes", type=positive, default=100, metavar="N", help="default 100")
-    parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run, or 1500)")
-    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes (default 0)")
+    parser.add_argument("--episodes", type=positive, default=100, metavar="N", help="number of episodes (default 100)")
     parser.add_argument(
-        "--robots", type=positive, default=ROBOTS, metavar="N", help=f"that a worker flies at once (default {ROBOTS})"
+        "--max-steps",
+        type=positive,
+        metavar="N",
+        help="time limit of an episode in steps (default: of the run, or 1500)",
+    )
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="seed of the episodes (default 0)")
+    parser.add_argument(
+        "--robots",
+        type=positive,
+        default=ROBOTS,
+        metavar="N",
+        help=f"parallel environments of a worker (default {ROBOTS})",
     )
     parser.add_argument(
-        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+        "--option",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="option of the environment, such as world=circuit",
     )
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help=f"write {RESULTS} there: a row an episode")
-    parser.add_argument("--trajectories", action="store_true", help="with --out: write what was seen and done, too")
+    parser.add_argument("--out", type=Path, metavar="FOLDER", help=f"write {RESULTS} there, a row for each episode")
+    parser.add_argument(
+        "--trajectories", action="store_true", help="with --out: write observations, actions and rewards, too"
+    )
     add_jobs(parser)
     parser.set_defaults(function=run)
 

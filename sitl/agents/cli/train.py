@@ -33,7 +33,9 @@ def add_recipe(parser: argparse.ArgumentParser) -> None:
     """--recipe."""
     shipped = ", ".join(recipes.names())
     parser.add_argument(
-        "--recipe", metavar="NAME", help=f"a tuned way to learn: a .toml file, or one of {shipped}; ENV is not needed"
+        "--recipe",
+        metavar="NAME",
+        help=f"environment, algorithm and hyperparameters: a .toml file, or one of {shipped}; ENV is optional",
     )
 
 
@@ -47,8 +49,8 @@ def config_by_recipe(options: argparse.Namespace) -> RunConfig:
     recipe = recipes.load(options.recipe)
     if options.algo not in (None, recipe.algorithm):
         raise AgentError(
-            f"recipe {recipe.name} learns by {recipe.algorithm}, not {options.algo}; leave that out, or train without "
-            "--recipe"
+            f"recipe {recipe.name} trains with {recipe.algorithm}, not {options.algo}; leave --algo out, or train "
+            "without --recipe"
         )
     return recipe.config(
         env=options.env,
@@ -77,8 +79,8 @@ def add_sweep(parser: argparse.ArgumentParser) -> None:
         type=_axis,
         action="append",
         metavar="NAME=V1,V2,...",
-        help=f"runs with each of these values of a setting, or of an option as {OPTION}world=maze,circuit; repeatable: "
-        "each combination",
+        help=f"train with each of these values of a hyperparameter, or of an option ({OPTION}world=maze,circuit); "
+        "several --sweep: all combinations",
     )
 
 
@@ -140,28 +142,46 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "train",
         description="Trains an agent and writes a run folder: config.json, episodes.csv, the model, curve.png. "
-        "Ctrl-C ends it after the episode; --resume goes on, and nothing is lost.",
+        "Ctrl-C stops the training after the episode; --resume continues it without loss.",
     )
-    parser.add_argument("env", nargs="?", metavar="ENV", help="id, as GazeboCircuit2TurtlebotLIDAR-v0")
+    parser.add_argument("env", nargs="?", metavar="ENV", help="id of an environment, such as sitl/CopterHover-v0")
     add_recipe(parser)
-    parser.add_argument("--algo", choices=tuple(algorithms.ALGORITHMS), help="default: qlearn")
-    parser.add_argument("--episodes", type=positive, metavar="N", help="how many; default: of the algorithm")
-    parser.add_argument("--steps", type=positive, metavar="N", help="how many, of all episodes together")
-    parser.add_argument("--max-steps", type=positive, metavar="N", help=f"of an episode (default {MAX_STEPS})")
-    parser.add_argument("--seed", type=int, metavar="N", help="default 0; of the first run when there are several")
-    parser.add_argument("--seeds", type=positive, default=1, metavar="N", help="how many runs, each with the next seed")
+    parser.add_argument(
+        "--algo",
+        choices=tuple(algorithms.ALGORITHMS),
+        help="default: qlearn (tabular); dqn, ppo and sac need the extra rl",
+    )
+    parser.add_argument(
+        "--episodes", type=positive, metavar="N", help="length of the training in episodes (default: of the algorithm)"
+    )
+    parser.add_argument("--steps", type=positive, metavar="N", help="length of the training in steps")
+    parser.add_argument(
+        "--max-steps", type=positive, metavar="N", help=f"time limit of an episode in steps (default {MAX_STEPS})"
+    )
+    parser.add_argument("--seed", type=int, metavar="N", help="seed of the (first) run (default 0)")
+    parser.add_argument(
+        "--seeds", type=positive, default=1, metavar="N", help="number of runs, each with the next seed (default 1)"
+    )
     add_jobs(parser)
     parser.add_argument(
-        "--set", type=assignment, action="append", metavar="NAME=VALUE", help="a setting of the algorithm, as alpha=0.1"
+        "--set",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="hyperparameter, such as alpha=0.1 (docs/learning.md)",
     )
     parser.add_argument(
-        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=maze"
+        "--option",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="option of the environment, such as world=maze",
     )
     add_sweep(parser)
     add_view_options(parser)
     parser.add_argument("--out", type=Path, metavar="RUN", help="folder (default: runs/ENV-ALGO, runs/RECIPE)")
     parser.add_argument(
-        "--resume", nargs="?", const="", metavar="RUN", help="go on with a run: this one, or that of ENV and --out"
+        "--resume", nargs="?", const="", metavar="RUN", help="continue a run: RUN, or that of ENV and --out"
     )
     parser.set_defaults(function=train)
 
@@ -175,7 +195,7 @@ def train(options: argparse.Namespace) -> int:
     if all(is_done(run) for run in runs):
         if is_sweep(path):
             tell_sweep(path)
-        print(f"{path} is done; --episodes or --steps lets it go on")
+        print(f"{path} is done; a greater --episodes or --steps continues it")
         return 0
     with Bar(runs) as bar, shown_training(options) as shows:
         done = train_all([run.path for run in runs], pool.jobs, bar, pool.each, shows)
@@ -184,7 +204,7 @@ def train(options: argparse.Namespace) -> int:
         _draw(folder, group)
     print(summary, file=sys.stderr)
     if not done:
-        print(f"interrupted; go on with: sitl train --resume {path}", file=sys.stderr)
+        print(f"interrupted; continue with: sitl train --resume {path}", file=sys.stderr)
         return 130
     if is_sweep(path):
         tell_sweep(path)
@@ -205,7 +225,7 @@ def _runs(options: argparse.Namespace) -> tuple[Path, list[RunFolder]]:
             (options.algo, options.set, options.option, options.sweep, options.max_steps)
         ):
             raise AgentError(
-                "--resume RUN goes on with a run as it is: give --episodes, --steps or --jobs, nothing else"
+                "--resume RUN continues a run with its own settings: give --episodes, --steps or --jobs, nothing else"
             )
         path = Path(options.resume)
         runs = [run for group in _groups(path, []).values() for run in group] or folders.find(path)
@@ -213,7 +233,9 @@ def _runs(options: argparse.Namespace) -> tuple[Path, list[RunFolder]]:
             run.extend(options.episodes, options.steps)
         return path, runs
     if options.env is None and options.recipe is None:
-        raise AgentError("ENV is missing: the id of an environment, as GazeboCircuit2TurtlebotLIDAR-v0, or --recipe")
+        raise AgentError(
+            "ENV is missing: the id of an environment, such as GazeboCircuit2TurtlebotLIDAR-v0, or --recipe"
+        )
     configure = _config if options.recipe is None else config_by_recipe
     config = configure(options)
     path = Path(options.resume) if options.resume else options.out or RUNS / folder_name(options, config)
@@ -253,7 +275,9 @@ def _open(path: Path, config: RunConfig, options: argparse.Namespace) -> RunFold
     run = RunFolder(path)
     different = run.config.differences(config)
     if different:
-        raise AgentError(f"{path} was begun with other {', '.join(different)}; --resume {path} alone goes on as it was")
+        raise AgentError(
+            f"{path} was started with other {', '.join(different)}; --resume {path} alone continues it unchanged"
+        )
     run.extend(options.episodes, options.steps)
     return run
 

@@ -18,22 +18,28 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "watch",
-        description="Plays what a run has learnt, without learning and exploring: on the page in the browser "
-        "(docs/view.md), in a window, or onto a film.",
+        description="Shows greedy episodes of a run's best agent: in the browser (extra view, docs/view.md), in a "
+        "window, or as a GIF or MP4.",
     )
-    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run; of several, the first is shown")
-    parser.add_argument("--out", type=Path, metavar="FILE", help=".gif, or .mp4 by ffmpeg")
-    parser.add_argument("--window", action="store_true", help="a window, also where the page (extra view) is installed")
+    parser.add_argument("run", type=Path, metavar="RUN", help="run folder; of several runs the first is shown")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write a .gif, or an .mp4 (needs ffmpeg)")
+    parser.add_argument("--window", action="store_true", help="use a window, also if the extra view is installed")
     parser.add_argument(
-        "--episodes", type=positive, metavar="N", help="default 1; on the page: one after another until Ctrl-C"
-    )
-    parser.add_argument("--max-steps", type=positive, metavar="N", help="of an episode (default: of the run)")
-    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of the episodes")
-    parser.add_argument(
-        "--speed", type=_factor, default=SPEED, metavar="X", help=f"times real time (default {SPEED:g})"
+        "--episodes", type=positive, metavar="N", help="number of episodes (default 1; in the browser: until Ctrl-C)"
     )
     parser.add_argument(
-        "--option", type=assignment, action="append", metavar="NAME=VALUE", help="of the environment, as world=circuit"
+        "--max-steps", type=positive, metavar="N", help="time limit of an episode in steps (default: of the run)"
+    )
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="seed of the episodes (default 0)")
+    parser.add_argument(
+        "--speed", type=_factor, default=SPEED, metavar="X", help=f"speed, times real time (default {SPEED:g})"
+    )
+    parser.add_argument(
+        "--option",
+        type=assignment,
+        action="append",
+        metavar="NAME=VALUE",
+        help="option of the environment, such as world=circuit",
     )
     parser.set_defaults(function=watch)
 

@@ -34,7 +34,8 @@ class DeepPolicy:
         """See ``Policy``: as many features, and the same kind of actions. Their limits may be others."""
         width = Features(observations, self.settings.sectors).width
         if width != self.features.width:
-            raise AgentError(f"the model sees {self.features.width} features; {observations} gives {width}")
+            trained = self.features.width
+            raise AgentError(f"the policy was trained on {trained} features; not {width}: {observations}")
         own = self.actions.environment
         if type(actions) is not type(own) or actions.shape != own.shape or getattr(actions, "n", 0) != _count(own):
             raise AgentError(f"the model takes actions of {own}, not of {actions}")

@@ -79,7 +79,7 @@ class Recipe:
         if env not in (None, self.env, *self.also):
             known = " or ".join((self.env, *self.also))
             raise AgentError(
-                f"recipe {self.name} learns in {known}, not {env}; leave that out, or train without --recipe"
+                f"recipe {self.name} learns in {known}, not {env}; leave ENV out, or train without --recipe"
             )
         module = algorithms.load(self.algorithm)
         try:

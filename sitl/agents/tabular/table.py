@@ -56,7 +56,9 @@ class Table:
             AgentError: they are not discrete.
         """
         if not isinstance(actions, gym.spaces.Discrete) or int(actions.start) != 0:
-            raise AgentError(f"a table needs a finite choice of actions (action = discrete), not {actions}")
+            raise AgentError(
+                f"a table needs discrete actions, not {actions}: take --algo ppo or sac, or --option action=discrete"
+            )
         if isinstance(observations, gym.spaces.Discrete) and int(observations.start) == 0:
             return cls([int(observations.n)], int(actions.n))
         if isinstance(observations, gym.spaces.MultiDiscrete) and observations.nvec.ndim == 1:

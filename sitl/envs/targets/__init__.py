@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tasks with places to be at: hold one, pass several, follow one that moves."""
+"""Tasks with target positions: hold one, pass several in order, follow one that moves."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Go to places among solids."""
+"""Go to waypoints among obstacles."""
 
 from __future__ import annotations
 
@@ -16,17 +16,16 @@ from .waypoints import Waypoints
 
 
 class Among(Waypoints):
-    """Pass places among solids one after another; the last one ends the episode, and is success.
+    """Pass one or more waypoints among obstacles, in order. Passing the last one is success and ends the episode.
 
-    As ``Waypoints`` with places that can be reached, at the height of the start; but a step pays what the shortest free
-    way round the solids, seen from above, has become shorter [m] times ``progress``: what leads into a dead end pays
-    nothing in the end.
+    Waypoints are reachable, and at the height of the start. The reward is that of ``Waypoints``, but distance is the
+    length of the shortest obstacle-free path in the horizontal plane, not the straight line: a dead end earns nothing.
 
     Args:
-        count: how many are drawn in the arena for each episode.
-        apart: least distance between one and the next, straight [m].
-        ceiling: above this height over the floor a robot that flies is outside of the arena: it does not get over the
-            walls [m]. None: the arena's.
+        count: number of random waypoints in an episode.
+        apart: least straight distance from one waypoint to the next [m].
+        ceiling: top of the arena for robots that fly, above the floor, so that they cannot fly over the walls [m].
+            None: the arena's.
         others: further arguments of ``Waypoints``.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pass gates one after another, in their direction: a race."""
+"""Pass gates in order and in their direction: a race."""
 
 from __future__ import annotations
 
@@ -65,19 +65,21 @@ _HIGH = 4.0
 
 
 class Gates(PlacesTask):
-    """Fly or drive through gates, round after round.
+    """Pass gates in order and in their direction, for one or more laps. The end of the last lap is success and ends
+    the episode.
 
-    Gates are seen: "goal" and "path" are the true ways to their middles, and where the robot really is counts.
-    ``info["passed"]`` counts gates, ``info["lap_time"]`` is the last whole round's time and ``info["best_lap"]`` the
-    shortest one's [s], 0 before it. The last round ends the episode, and is success. Who passes beside a gate has to
-    come back and pass it.
+    Reward of a step: ``progress`` times the decrease of the distance to the next gate's centre [m], plus
+    ``each_second`` times the step's seconds, plus ``gate_reward`` when the gate is passed. A robot that misses a gate
+    has to go back and pass it. "goal" and "path" are exact vectors to gate centres, and gates are judged by the robot's
+    true position: there is no estimation error in them. ``info["passed"]`` counts gates; ``info["lap_time"]`` is the
+    time of the last complete lap and ``info["best_lap"]`` the shortest one [s], 0 before the first.
 
     Args:
-        gates: in their order; None: those that the world's markings "gate 1", "gate 2", ... show.
-        laps: rounds.
-        progress: reward for each metre nearer to the middle of the next gate.
-        gate_reward: of each gate passed.
-        each_second: reward of each second.
+        gates: gates in order; None: the world's markings "gate 1", "gate 2", ...
+        laps: number of laps.
+        progress: reward for each metre nearer to the centre of the next gate.
+        gate_reward: reward for each gate passed.
+        each_second: reward per second.
         others: further arguments of ``PlacesTask``.
     """
 

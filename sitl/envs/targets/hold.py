@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Be at a place and stay there: hover, or hold a position in wind."""
+"""Go to a target position and hold it: hover in wind."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ from .places import PlacesTask
 
 
 class Hold(PlacesTask):
-    """Go to a place near the start and hold it.
+    """Go to a target position near the start and hold it.
 
-    Each step pays ``step_time * (1 - distance / scale)``, at least 0, and takes ``effort * step_time`` times the mean
-    of the squared actions. ``info["is_success"]``: the robot has been within ``radius`` for the last ``hold`` seconds.
+    Reward of a step: ``step_time * max(1 - distance / scale, 0)``, minus ``effort * step_time`` times the mean squared
+    action. ``info["is_success"]``: the robot has been within ``radius`` for the last ``hold`` seconds. Success does not
+    end the episode.
 
     Args:
-        offset: places are drawn so far from the start, horizontally and vertically [m].
-        radius: distance that counts as being there [m].
-        hold: how long to be there [s].
-        scale: distance beyond which nothing is paid [m].
-        effort: what squared actions cost a second.
-        is_sparse: a step pays what ``compute_reward`` says instead.
+        offset: greatest distance of the random target from the start, horizontally along each axis and vertically [m].
+        radius: distance that counts as reached [m].
+        hold: time to stay there for success [s].
+        scale: distance from which on the reward is 0 [m].
+        effort: weight of the squared actions.
+        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1.
         others: further arguments of ``PlacesTask``.
     """
 

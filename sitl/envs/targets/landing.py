@@ -28,22 +28,23 @@ stands on it and goes on flying.
 
 
 class Land(MovingTask):
-    """Come down on a pad on the floor, gently.
+    """Land softly on a pad on the floor.
 
-    The pad is a beacon that the robot sees: "goal" and "path" are the true way to it, and the landing is judged by
-    where the robot really is. Each step pays what it has come nearer [m] times ``progress``; touching the floor ends
-    the episode with ``success_reward`` when it is on the pad, slower than 0.5 m/s relative to the pad and sinking
-    slower than 1 m/s; else with ``crash_reward``. Of a vehicle that runs elsewhere nobody knows the true height: on a
-    pad that stands still its autopilot puts it down from 0.35 m on, and the episode ends when it says that it has
-    landed (EXTENDED_SYS_STATE).
+    Reward of a step: ``progress`` times the decrease of the distance to the pad [m], plus ``each_second`` times the
+    step's seconds. Touching the floor ends the episode. It is success, with ``success_reward``, on the pad, below
+    0.5 m/s relative to the pad and with a descent rate below 1 m/s; else the reward is ``crash_reward``.
+
+    "goal" and "path" are exact vectors to the pad, and the landing is judged by the robot's true position. The true
+    height of a vehicle in another process is unknown. There, if the pad does not move, the autopilot lands the vehicle
+    below 0.35 m, and the episode ends when the autopilot reports a landing (EXTENDED_SYS_STATE).
 
     Args:
-        offset: the pad is drawn so far from the start, horizontally [m].
-        pad: its radius [m].
-        speed: of the pad, in a direction that is drawn; it turns round every 10 s [m/s].
+        offset: greatest distance of the random pad from the start, along each horizontal axis [m].
+        pad: radius of the pad [m].
+        speed: speed of the pad, in a random direction that reverses every 10 s [m/s].
         progress: reward for each metre nearer.
-        each_second: reward of each second.
-        success_reward: of a landing on the pad.
+        each_second: reward per second.
+        success_reward: reward for a landing on the pad.
         others: further arguments of ``MovingTask``.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Be where a target is that moves: along a trajectory, or as it likes."""
+"""Follow a moving target: along a trajectory, or at random."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ AHEAD_S = 0.5
 
 
 class MovingTask(PlacesTask):
-    """Base of tasks whose target moves. Each step pays ``step_time * (1 - distance / scale)``, at least 0.
+    """Base of tasks with a moving target. Reward of a step: ``step_time * max(1 - distance / scale, 0)``.
 
-    ``info["is_success"]``: the root mean square of the distances so far, after the first ``settle`` seconds, is below
-    ``radius``; ``info["error"]`` is that figure [m], 0 until then.
+    ``info["error"]`` is the root mean square distance to the target since the first ``settle`` seconds [m], 0 before.
+    ``info["is_success"]``: it is below ``radius``. "path" is the vector to the target now, in 0.5 s and in 1 s.
 
     Args:
-        radius: see above [m].
-        settle: time to get there [s].
-        scale: distance beyond which nothing is paid [m].
+        radius: greatest root mean square distance of a success [m].
+        settle: time at the start that does not count [s].
+        scale: distance from which on the reward is 0 [m].
         lost: distance beyond which the episode ends [m].
         others: further arguments of ``PlacesTask``.
     """
@@ -143,12 +143,12 @@ many."""
 
 
 class Trajectory(MovingTask):
-    """Follow a point that moves along a curve, which begins where the robot does, ahead of it.
+    """Follow a point along a closed curve that begins at the robot's start.
 
     Args:
-        curve: name (``CURVES``).
-        size: half of the figure's extent ahead, the circle's radius [m].
-        speed: mean speed along it [m/s]; or (least, greatest), drawn for each episode.
+        curve: "eight", "circle" or "helix".
+        size: half of the length of the figure of eight, or radius of the circle and helix [m].
+        speed: mean speed along the curve [m/s], or a range (low, high) to draw from in each episode.
         others: further arguments of ``MovingTask``.
     """
 
@@ -197,12 +197,12 @@ class Trajectory(MovingTask):
 
 
 class Follow(MovingTask):
-    """Stay with a target that wanders about: its position is a sum of slow waves, others in each episode.
+    """Follow a target that moves at random: its position is a sum of sines, drawn anew in each episode.
 
     Args:
-        size: how far it goes from where it begins, horizontally [m].
-        speed: its greatest speed [m/s].
-        height: how far it goes up and down; 0 for a robot that does not fly [m].
+        size: greatest distance of the target from its start along each horizontal axis [m].
+        speed: greatest speed of the target [m/s].
+        height: greatest vertical distance of the target from its start; 0 for a robot that does not fly [m].
         others: further arguments of ``MovingTask``.
     """
 

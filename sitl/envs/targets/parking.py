@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Park: be in a bay, in its heading, and stand."""
+"""Park in a bay, in its heading."""
 
 from __future__ import annotations
 
@@ -20,21 +20,22 @@ _NEAR = 4.0
 
 
 class Park(PlacesTask):
-    """Drive into a bay and stand there in its heading; which bay is drawn for each episode.
+    """Drive into a bay, drawn at random for each episode, and stop there in the bay's heading.
 
-    Success, which ends the episode: within ``radius`` of the bay's middle, the heading right to ``angle``, slower than
-    ``speed``. A step pays what it has changed of the distance [m] times ``progress``, and of the error of the heading
-    [rad] times ``turn_progress``, which counts fully in the bay and a half 4 m from it.
+    Success ends the episode: the robot is within ``radius`` of the bay's centre, its heading error is below ``angle``
+    and it is slower than ``speed``. Reward of a step: ``progress`` times the decrease of the distance [m], plus
+    ``turn_progress`` times the decrease of the heading error [rad] weighted by 1 / (1 + (distance / 4 m)^2), plus
+    ``each_second`` times the step's seconds; with success ``success_reward`` is added.
 
     Args:
-        bays: (x, y, yaw) of each [m, rad]; None: the world's markings called "bay ...".
-        radius: distance from its middle that is in the bay [m].
-        angle: error of the heading that is right [rad].
-        speed: below it the robot stands [m/s].
+        bays: (x, y, yaw) of each bay [m, rad]; None: the world's markings "bay 1", "bay 2", ...
+        radius: greatest distance from the bay's centre [m].
+        angle: greatest heading error [rad].
+        speed: speed below which the robot counts as stopped [m/s].
         progress: reward for each metre nearer.
-        turn_progress: reward for each radian nearer to the heading.
-        each_second: reward of each second.
-        success_reward: of standing in the bay.
+        turn_progress: reward for each radian of heading error less.
+        each_second: reward per second.
+        success_reward: reward for parking.
         others: further arguments of ``PlacesTask``.
     """
 

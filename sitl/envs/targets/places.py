@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What tasks with places have in common: the places of an episode, the ways to them, and the arena it stays in."""
+"""What tasks with target positions have in common: the targets of an episode, the vectors to them, the arena."""
 
 from __future__ import annotations
 
@@ -48,12 +48,13 @@ _ways = Kernel(write_ways)
 
 
 class PlacesTask(Task):
-    """Base of tasks with places; subclasses draw them and judge steps.
+    """Base of tasks with target positions ("places"); subclasses draw them and judge steps.
 
     Args:
-        arena: box that places are drawn in; None: that of the world and ``reach`` round the start.
+        arena: box in which targets are drawn; None: a box around the world and ``reach`` about the start.
         reach: see ``arena_of`` [m].
-        crash_reward, out_reward: of a step that ends in a crash, or outside of the arena, besides its terms.
+        crash_reward: reward of a step that ends in a crash.
+        out_reward: added to the reward of a step that ends more than 5 m outside of the arena.
         others: further arguments of ``Task``.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Go to a place, or to several one after another."""
+"""Go to a waypoint, or to several in order."""
 
 from __future__ import annotations
 
@@ -54,17 +54,20 @@ _pass = Kernel(pass_places)
 
 
 class Waypoints(PlacesTask):
-    """Pass places one after another; the last one ends the episode, and is success.
+    """Pass one or more waypoints in order. Passing the last one is success and ends the episode.
+
+    Reward of a step: ``progress`` times the decrease of the distance to the current waypoint [m], plus ``each_second``
+    times the step's seconds, plus ``place_reward`` when the waypoint is passed.
 
     Args:
-        count: how many are drawn in the arena for each episode.
-        reachable: draw them where the robot can get to among the world's solids, at the height of its start.
-        places: these instead of drawn ones: (x, y, z) in the world's frame [m].
-        apart: least distance between one and the next [m].
-        radius: distance at which a place is passed [m].
+        count: number of random waypoints in an episode.
+        reachable: draw them where the robot can get to among the obstacles, at the height of its start.
+        places: fixed waypoints instead of random ones: (x, y, z) in the world's frame [m].
+        apart: least distance from one waypoint to the next [m].
+        radius: distance at which a waypoint is passed [m].
         progress: reward for each metre nearer.
-        place_reward: of each place passed.
-        each_second: reward of each second.
+        place_reward: reward for each waypoint passed.
+        each_second: reward per second.
         others: further arguments of ``PlacesTask``.
     """
 
