@@ -81,7 +81,9 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 def test_the_page_is_up_to_date() -> None:
     template = (DOCS / "templates" / "mavlink.md").read_text(encoding="utf-8")
-    assert (DOCS / "mavlink.md").read_text(encoding="utf-8") == docs.page(template), "run: python docs/make_pages.py"
+    assert (DOCS / "mavlink.md").read_text(encoding="utf-8") == docs.page(template), (
+        "run: python docs/make_pages.py mavlink"
+    )
 
 
 def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
