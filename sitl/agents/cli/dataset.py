@@ -16,9 +16,7 @@ from .options import assignment, assignments, positive, whole
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser(
-        "dataset", description="Datasets of flights, for imitation and offline learning."
-    )
+    parser = commands.add_parser("dataset", description="Datasets of flights, for imitation and offline learning.")
     record = parser.add_subparsers(metavar="COMMAND", required=True).add_parser(
         "record",
         help="let an expert fly episodes, and write them as a dataset",
