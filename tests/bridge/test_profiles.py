@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -84,6 +87,18 @@ def test_the_page_is_up_to_date() -> None:
     assert (DOCS / "mavlink.md").read_text(encoding="utf-8") == docs.page(template), (
         "run: python docs/make_pages.py mavlink"
     )
+
+
+def make_pages(*words: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(DOCS / "make_pages.py"), *words]
+    environment = os.environ | {"PYTHONPATH": str(DOCS.parent)}
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
+
+
+def test_a_page_that_is_not_made_is_refused_by_name() -> None:
+    done = make_pages("mavlink", "extending")
+    assert done.returncode == 2
+    assert done.stderr.endswith("page 'extending' is not made here; there are comparison, mavlink, physics\n")
 
 
 def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
