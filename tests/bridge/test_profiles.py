@@ -129,3 +129,8 @@ def test_a_message_is_taken_in_one_place(taken: str, said: str, monkeypatch: pyt
     monkeypatch.setattr(services, "_registered", [Second])
     with pytest.raises(ValueError, match=said):
         Bench()
+
+
+def test_what_is_no_service_cannot_be_registered() -> None:
+    with pytest.raises(TypeError, match="is no subclass of sitl"):
+        services.register_service(Bench)  # type: ignore[arg-type]
