@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
 import re
 from collections.abc import Callable, Mapping
 
+from ..errors import MissingExtra
 from .engine import Engine, EngineError, EngineVehicle
 
 NATIVE = "native"
 ENGINES = ("pybullet", "jsbsim")
+"""Their names are those of the modules that they are made with, and of the extras that bring these."""
 BACKENDS = (NATIVE, *ENGINES)
 _registered: dict[str, dict[str, str]] = {}
 """Engines of other packages: name -> kind of vehicle -> "module:FUNCTION"."""
@@ -50,6 +52,7 @@ def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[EngineVeh
     Raises:
         EngineError: no engine of this name, it does not simulate this kind, or it is another package's and cannot be
             imported.
+        MissingExtra: the library that one of ours is made with is not installed; nothing has been compiled for it yet.
     """
     others = {engine: places[kind] for engine, places in _registered.items() if kind in places}
     models = {**models, **others}
@@ -58,6 +61,8 @@ def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[EngineVeh
     if name not in models:
         able = ", ".join((NATIVE, *models))
         raise EngineError(f"physics {name!r} has no model of a {kind}; it is simulated by {able}")
+    if name in ENGINES and importlib.util.find_spec(name) is None:
+        raise MissingExtra(f"physics {name!r} needs {name}: pip install 'gym-sitl[{name}]'")
     module, _, function = models[name].partition(":")
     try:
         make: Callable[[EngineVehicle], Engine] = getattr(importlib.import_module(module), function)

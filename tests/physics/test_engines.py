@@ -4,10 +4,14 @@ docs/extending.md."""
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
+from sitl.errors import MissingExtra
 from sitl.physics import engines
 from sitl.physics.engine import EngineError
+from sitl.plants.local import LocalPlant, stand_alone
 
 OURS = {"pybullet": "sitl.physics.engine:Engine"}
 
@@ -53,3 +57,15 @@ def test_one_of_another_kind_is_refused_and_one_that_nobody_has() -> None:
         engines.find("lift", "copter", OURS)
     with pytest.raises(EngineError, match="physics 'crane' is not known; there are native, pybullet, jsbsim, lift"):
         engines.find("crane", "copter", OURS)
+
+
+@pytest.mark.parametrize("name", engines.ENGINES)
+def test_a_library_that_is_not_installed_is_said_before_anything_is_compiled(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, name, None)
+    compiled: list[object] = []
+    monkeypatch.setattr(LocalPlant, "_unit", lambda self, unit: compiled.append(unit))
+    with pytest.raises(MissingExtra, match=rf"physics '{name}' needs {name}: pip install 'gym-sitl\[{name}\]'"):
+        stand_alone("erle_copter", physics=name)
+    assert not compiled
