@@ -91,7 +91,13 @@ class Toy:
             [sys.executable, "run.py", *arguments], cwd=self.folder, env=env, capture_output=True, text=True
         )
         assert result.returncode == 0, result.stderr
+        self.stderr = result.stderr
         return json.loads(result.stdout)
+
+    def said(self, *arguments: str) -> str:
+        """What a run prints on standard error."""
+        self.run(*arguments)
+        return self.stderr
 
 
 @pytest.fixture
@@ -140,6 +146,12 @@ def test_machine_code_belongs_to_a_processor(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(numba.config, "CPU_NAME", "generic")
     monkeypatch.setattr(numba.config, "CPU_FEATURES", "")
     assert compiler.toolchain() != here
+
+
+def test_a_first_start_without_progress_says_what_takes_so_long(toy: Toy) -> None:
+    (toy.folder / "run.py").write_text(RUN.replace(", lambda name, done, total: built.append(name))", ")"))
+    cold, warm = toy.said("compiled"), toy.said("compiled")
+    assert cold == "gym-sitl compiles its core (once; later starts load it from the cache) ...\n" and warm == ""
 
 
 def failed(toy: Toy) -> str:
