@@ -231,11 +231,16 @@ def index() -> str:
 
 def main() -> None:
     """Write all of them."""
-    assert {f"sitl/{name}-v0" for name in TITLES} == {name for name in sitl.envs.NEW if "Discrete" not in name}
+    known = {name.removeprefix("sitl/").removesuffix("-v0") for name in sitl.envs.NEW if "Discrete" not in name}
+    if known != set(TITLES):
+        raise SystemExit(
+            f"TITLES in {Path(__file__).name}: environments without one: {sorted(known - set(TITLES))}; "
+            f"titles of none: {sorted(set(TITLES) - known)}"
+        )
     HERE.mkdir(exist_ok=True)
-    (HERE / "index.md").write_text(index())
+    (HERE / "index.md").write_text(index(), encoding="utf-8")
     for name in TITLES:
-        (HERE / f"{name}.md").write_text(page(name))
+        (HERE / f"{name}.md").write_text(page(name), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python docs/make_pages.py``: writes the pages that are made from code and measurements."""
+"""``python docs/make_pages.py [PAGE ...]``: writes the pages that are made from code and measurements, or those named.
+
+``mavlink`` takes a second; ``comparison`` and ``physics`` fly, on every engine.
+"""
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sitl.bridge import docs as mavlink
@@ -16,7 +21,7 @@ HERE = Path(__file__).parent
 
 COMPARISON = """# Beside a real ArduPilot
 
-Made by `python docs/make_pages.py` (the tables alone: `python -m sitl.missions.compare`).
+Made by `python docs/make_pages.py comparison` (the tables alone: `python -m sitl.missions.compare`).
 
 A real ArduPilot SITL (4.7-dev of July 2025, unmodified, default frames and SITL parameters, no wind) was recorded with
 a copter flying two scripts, a GUIDED one (take-off 10 m, position 20 m north, velocity 3 m/s east for 10 s, zero
@@ -78,18 +83,36 @@ def physics() -> str:
     return (HERE / "templates" / "physics.md").read_text(encoding="utf-8").format(**tables)
 
 
-def main() -> None:
-    """Write comparison.md, physics.md and mavlink.md."""
-    (HERE / "physics.md").write_text(physics(), encoding="utf-8")
+def comparison() -> str:
+    """comparison.md."""
     tables = {
         f"{kind}_{estimator}": table(compare.figures(kind, estimator))
         for kind in compare.FLIGHTS
         for estimator in ESTIMATORS
     }
-    text = f"{COMPARISON.format(**tables)}\n{manoeuvres.kept_beside_ours()}"
-    (HERE / "comparison.md").write_text(text, encoding="utf-8")
-    template = (HERE / "templates" / "mavlink.md").read_text(encoding="utf-8")
-    (HERE / "mavlink.md").write_text(mavlink.page(template), encoding="utf-8")
+    return f"{COMPARISON.format(**tables)}\n{manoeuvres.kept_beside_ours()}"
+
+
+def messages() -> str:
+    """mavlink.md."""
+    return mavlink.page((HERE / "templates" / "mavlink.md").read_text(encoding="utf-8"))
+
+
+PAGES: dict[str, Callable[[], str]] = {"comparison": comparison, "mavlink": messages, "physics": physics}
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    """Write the pages that the command line names."""
+    parser = argparse.ArgumentParser(
+        prog="python docs/make_pages.py", description="Writes pages that are made from code."
+    )
+    parser.add_argument("pages", nargs="*", metavar="PAGE", help=f"{', '.join(PAGES)}; default: all of them")
+    names = parser.parse_args(words).pages
+    for name in names:
+        if name not in PAGES:
+            parser.error(f"page {name!r} is not made here; there are {', '.join(PAGES)}")
+    for name in names or PAGES:
+        (HERE / f"{name}.md").write_text(PAGES[name](), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import os
 import re
@@ -35,7 +36,8 @@ from tests.agents.small_runs import new
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"^```python ?(\S*)\n(.*?)^```$", re.M | re.S)
 """A file's name, if there is one, and Python."""
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+TOP = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CODE_OF_CONDUCT.md")
+PAGES = sorted([*(ROOT / name for name in TOP), *(ROOT / "docs").glob("*.md")])
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -210,12 +212,35 @@ def test_an_example_of_extending_does_what_it_says(title: str, tmp_path: Path) -
 
 def test_every_way_in_has_an_example_or_a_test() -> None:
     rows = [line.split("|")[1].strip() for line in EXTENDING.splitlines() if line.startswith("| a ")]
-    assert len(rows) == 8
+    assert len(rows) == 9
     assert set(EXTENSIONS) == {
         "A mode", "A parameter", "A message that is sent", "A message that is taken", "A fault", "A physics engine",
         "A task of environments",
     }  # fmt: skip
     assert (ROOT / "tests/vehicle/test_kinds.py").exists()
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/extending.md"])
+def test_what_contributors_are_told_to_touch_and_to_run_is_there(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    places = [ROOT / word for word in re.findall(r"`((?:sitl|tests|docs)/[\w/.]*)`", text) if "NAME" not in word]
+    assert len(places) > 5
+    for place in places:
+        assert place.exists(), place
+    for module in re.findall(r"python -m ([\w.]+)", text):
+        assert importlib.util.find_spec(module), module
+    for script in re.findall(r"python (docs/\w+\.py)", text):
+        assert (ROOT / script).exists(), script
+    targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(), re.M)
+    assert set(re.findall(r"(?:^|`)make (\w+)", text, re.M)) <= set(targets)
+
+
+def test_lists_that_a_new_part_joins_are_where_extending_says() -> None:
+    lists = re.findall(r"`([A-Z_]{5,})` of `([\w/.]+\.py)`", EXTENDING)
+    assert len(lists) >= 5
+    for name, place in lists:
+        file = ROOT / place if "/" in place else ROOT / "sitl/bridge/telemetry" / place
+        assert re.search(rf"^{name}\b.*=", file.read_text(encoding="utf-8"), re.M), (name, place)
 
 
 DOCS = ROOT / "docs"

@@ -17,6 +17,12 @@ from sitl.cli import parser
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 SCRIPTS = (".ci/run", ".ci/release")
+WORKPLACE = (
+    *sorted(str(p.relative_to(ROOT)) for p in (ROOT / ".github").rglob("*.yml")),
+    ".pre-commit-config.yaml",
+    "CITATION.cff",
+)
+"""What a host of repositories reads."""
 
 
 def read_yaml(path: str) -> Any:
@@ -96,3 +102,15 @@ def test_the_action_uses_inputs_that_it_has_and_extras_that_there_are() -> None:
     used = set(re.findall(r"inputs\.([\w-]+)", (ROOT / "action.yml").read_text()))
     assert used == set(action["inputs"])
     assert set(action["inputs"]["extras"]["default"].split(",")) <= set(PROJECT["optional-dependencies"])
+
+
+@pytest.mark.parametrize("path", WORKPLACE)
+def test_the_files_of_the_workplace_can_be_read(path: str) -> None:
+    assert read_yaml(path)
+
+
+def test_the_hooks_of_a_commit_are_what_lint_runs() -> None:
+    (lint,) = re.findall(r"^lint:.*\n((?:\t.+\n)+)", (ROOT / "Makefile").read_text(), re.M)
+    (local,) = read_yaml(".pre-commit-config.yaml")["repos"]
+    hooks = [hook["entry"].removeprefix(".venv/bin/").removesuffix(" --force-exclude") for hook in local["hooks"]]
+    assert hooks == [line.strip().removeprefix("$(BIN)/").removesuffix(" .") for line in lint.splitlines()]

@@ -98,7 +98,6 @@ class Guided(_Autopilot):
         robot.restore(0, now)
         return self._shown.action_for(velocity)
 
-
     def _aim(self) -> Floats:
         """The present place; of a gate, a place behind it, or before it as long as the vehicle is too far beside."""
         place, gates = self._seen(), getattr(self._task, "gates", ())

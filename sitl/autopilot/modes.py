@@ -7,6 +7,7 @@ Each mode is a file of its firmware (``FIRMWARE/modes/NAME.py``) that ends with 
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from typing import Any, Generic, TypeVar
 
 from ..core.kernels import law
 from ..core.places import ExtensionError, Places
+from ..core.records import Record
 from .events import MODE_CHANGED, Events, emit
 from .state import Modes
 
@@ -60,9 +62,11 @@ _HINTS = {
 NUMBER_MAX = 2**24 - 1
 """A command of MAVLink carries the number as a float."""
 _PLACES = Places("SITL_MODES", "mode")
+_STATES = Places("SITL_MODE_STATES", "state of modes")
 
 V = TypeVar("V")
 M = TypeVar("M", bound="Mode[Any]")
+S = TypeVar("S", bound=Modes)
 
 
 @law
@@ -165,6 +169,34 @@ def register_mode(firmware: str, place: str) -> None:
         ExtensionError: too late, or ``place`` is no such text.
     """
     _PLACES.add(firmware, place)
+
+
+def register_state(firmware: str, name: str, place: str) -> None:
+    """Give a firmware's record room for what a mode of another package remembers, before the firmware is imported.
+
+    Laws read and write it as ``autopilot.modes.NAME``; it is zero at power-on, and part of snapshots.
+
+    Args:
+        firmware: "copter" or "rover".
+        name: small letters, digits and "_", not taken.
+        place: where the class of the record is: "package.module:NAME", importable by that name. Its module imports
+            nothing of the firmware.
+
+    Raises:
+        ExtensionError: too late, or an argument is no such text.
+    """
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        raise ExtensionError(f"state of modes {place}: name {name!r} is not small letters, digits and _")
+    _STATES.add(f"{firmware}.{name}", place)
+
+
+def with_states(firmware: str, record: type[S]) -> type[S]:
+    """A firmware's record of modes with the records that other packages gave it.
+
+    Raises:
+        ExtensionError: one cannot be imported, is no Record, or has a name that is taken.
+    """
+    return _STATES.join(firmware, record, Record)
 
 
 def with_registered(firmware: str, modes: tuple[M, ...]) -> tuple[M, ...]:

@@ -19,6 +19,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -185,6 +186,12 @@ def load_unit(unit: Unit, path: str) -> Any:
     return function
 
 
+@cache
+def _announce() -> None:
+    """Say once what takes so long, where nobody follows the progress: a first start takes minutes."""
+    print("gym-sitl compiles its core (once; later starts load it from the cache) ...", file=sys.stderr, flush=True)
+
+
 def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress | None = None, jobs: int = 0) -> float:
     """Compile what ``entries``, for the record type at ``path``, miss in the cache, side by side; returns the seconds.
 
@@ -198,6 +205,8 @@ def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress |
         if todo:
             tasks = [f"{entry_of[unit].__module__}:{unit.name}" for unit in todo]
             work = BuildWork({unit.name: _weight(unit) for unit in todo})
+            if progress is None:
+                _announce()
             with _workers(path, jobs or min(len(todo), os.cpu_count() or 1), tasks) as process:
                 _follow(process, work, progress)
             drop_old_versions()

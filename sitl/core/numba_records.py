@@ -21,12 +21,14 @@ from numba.core.compiler import Flags
 from numba.core.cpu import CPUContext
 from numba.core.datamodel import register_default
 from numba.core.datamodel.models import OpaqueModel, RecordModel
+from numba.core.errors import NumbaAttributeError
 from numba.core.imputils import lower_constant, lower_getattr_generic, lower_setattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import intrinsic, overload, typeof_impl
 from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
+from ..errors import did_you_mean
 from .memory import bytes_at, call_unit, fetch_ahead, floats_at, ints_at, record_at, table_at, words_of
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record
@@ -52,6 +54,17 @@ class RecordType(types.Record):
         self.properties: dict[str, Any] = cls.properties
         # Numba takes types of one name for the same: classes that are made by a function may share theirs.
         self.name = f"{cls.__module__}.{cls.__qualname__}@{zlib.crc32(cls.layout().encode()):08x}"
+
+    def typeof(self, key: str) -> Any:
+        """The type of a field.
+
+        Raises:
+            NumbaAttributeError: there is none of this name; Numba adds where in the law that is.
+        """
+        if key not in self.fields:
+            record = self.name.partition("@")[0]
+            raise NumbaAttributeError(f"record {record} has no field {key!r}{did_you_mean(key, self.fields)}")
+        return super().typeof(key)
 
     @property
     def dtype(self) -> Any:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts of the compiled core that other packages bring: modes, groups of parameters.
+"""Parts of the compiled core that other packages bring: modes, what they remember, groups of parameters.
 
 Each is named by where it is, "package.module:NAME", and kept in an environment variable, so that the processes that
 compile the core and those of a pool have it, too; a shell can set the variable as well.
@@ -11,8 +11,12 @@ import importlib
 import os
 import re
 from collections.abc import Iterator
+from typing import TypeVar
 
 from ..errors import SitlError
+from .records import Record
+
+R = TypeVar("R", bound=Record)
 
 
 class ExtensionError(SitlError, ValueError):
@@ -39,7 +43,10 @@ class Places:
         """
         name = owner.split(".")[0]
         if name in self._read:
-            raise ExtensionError(f"{self.noun} {place}: too late, the {name} firmware is loaded; register it before")
+            raise ExtensionError(
+                f"{self.noun} {place}: too late, the {name} firmware is loaded; register it before anything imports "
+                f'that, or set {self.variable}="{owner}={place}" in the environment'
+            )
         if not re.fullmatch(r"[\w.]+:\w+", place):
             raise ExtensionError(f'{self.noun} {place!r}: where it is must be written as "package.module:NAME"')
         known = os.environ.get(self.variable, "").split()
@@ -58,6 +65,29 @@ class Places:
             name, _, key = whose.partition(".")
             if name == owner:
                 yield key, place, self._load(place)
+
+    def join(self, owner: str, record: type[R], base: type) -> type[R]:
+        """``record`` of ``owner`` with its parts of other packages as fields behind its own, by their keys.
+
+        Args:
+            owner: whose parts.
+            record: what they join.
+            base: class that each of them inherits.
+
+        Raises:
+            ExtensionError: one cannot be imported, is no such class, or has a name that is taken.
+        """
+        found: dict[str, type] = {}
+        for key, place, part in self.of(owner):
+            if not (isinstance(part, type) and issubclass(part, base)):
+                raise ExtensionError(f"{self.noun} {place}: {part!r} is no {base.__name__}")
+            if key in record.fields or key in found:
+                raise ExtensionError(f"{self.noun} {place}: the {owner} has a {self.noun} {key} already")
+            found[key] = part
+        if not found:
+            return record
+        members = {"__annotations__": found, "__module__": record.__module__, "__doc__": record.__doc__}
+        return type(record.__name__, (record,), members)
 
     def _load(self, place: str) -> object:
         module, _, name = place.partition(":")

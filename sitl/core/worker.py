@@ -33,6 +33,16 @@ def compile_one(path: str, name: str) -> None:
     load_unit(UNITS[name], path)
 
 
+def complain(error: BaseException) -> None:
+    """Say what went wrong: of a law that Numba cannot type, what and where it is, not the way through Numba."""
+    from numba.core.errors import NumbaError
+
+    if isinstance(error, NumbaError):
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+    else:
+        traceback.print_exception(error)
+
+
 def fork(path: str, name: str) -> int:
     """Start a copy of this process that compiles a unit, and return its id."""
     with warnings.catch_warnings():  # libraries have threads that wait, and hold no lock
@@ -44,8 +54,8 @@ def fork(path: str, name: str) -> int:
     try:
         compile_one(path, name)
         code = 0
-    except BaseException:
-        traceback.print_exc()
+    except BaseException as error:
+        complain(error)
     finally:
         sys.stderr.flush()
         os._exit(code)
@@ -88,7 +98,11 @@ def main() -> int:
     if jobs == "0":
         module, _, name = tasks[0].partition(":")
         importlib.import_module(module)
-        compile_one(path, name)
+        try:
+            compile_one(path, name)
+        except Exception as error:
+            complain(error)
+            return 1
         return 0
     return compile_all(path, int(jobs), tasks)
 

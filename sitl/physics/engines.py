@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
+import re
 from collections.abc import Callable, Mapping
 
+from ..errors import MissingExtra
 from .engine import Engine, EngineError, EngineVehicle
 
 NATIVE = "native"
 ENGINES = ("pybullet", "jsbsim")
+"""Their names are those of the modules that they are made with, and of the extras that bring these."""
 BACKENDS = (NATIVE, *ENGINES)
 _registered: dict[str, dict[str, str]] = {}
 """Engines of other packages: name -> kind of vehicle -> "module:FUNCTION"."""
@@ -24,10 +27,12 @@ def register_engine(name: str, kind: str, place: str) -> None:
         place: "module:FUNCTION" of a function that makes an ``Engine`` of a ``EngineVehicle``.
 
     Raises:
-        EngineError: the name is one of ours.
+        EngineError: the name is one of ours, or ``place`` is no such text.
     """
     if name in BACKENDS:
         raise EngineError(f"physics {name!r} comes with the simulator; choose another name")
+    if not re.fullmatch(r"[\w.]+:\w+", place):
+        raise EngineError(f'physics {name!r}: where it is must be written as "module:FUNCTION", not {place!r}')
     _registered.setdefault(name, {})[kind] = place
 
 
@@ -45,14 +50,24 @@ def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[EngineVeh
         models: engine -> "module:FUNCTION" that makes it for this kind; loaded when it is asked for.
 
     Raises:
-        EngineError: no engine of this name, or it does not simulate this kind.
+        EngineError: no engine of this name, it does not simulate this kind, or it is another package's and cannot be
+            imported.
+        MissingExtra: the library that one of ours is made with is not installed; nothing has been compiled for it yet.
     """
-    models = {**models, **{engine: places[kind] for engine, places in _registered.items() if kind in places}}
+    others = {engine: places[kind] for engine, places in _registered.items() if kind in places}
+    models = {**models, **others}
     if name not in backends() and name not in models:
         raise EngineError(f"physics {name!r} is not known; there are {', '.join(backends())}")
     if name not in models:
         able = ", ".join((NATIVE, *models))
         raise EngineError(f"physics {name!r} has no model of a {kind}; it is simulated by {able}")
+    if name in ENGINES and importlib.util.find_spec(name) is None:
+        raise MissingExtra(f"physics {name!r} needs {name}: pip install 'gym-sitl[{name}]'")
     module, _, function = models[name].partition(":")
-    make: Callable[[EngineVehicle], Engine] = getattr(importlib.import_module(module), function)
+    try:
+        make: Callable[[EngineVehicle], Engine] = getattr(importlib.import_module(module), function)
+    except (ImportError, AttributeError) as error:
+        if name in others:
+            raise EngineError(f"physics {name!r} at {models[name]}: {error}") from error
+        raise
     return make

@@ -28,9 +28,7 @@ def folder(tmp_path, monkeypatch):
 
 def arrays(dataset):
     """All of a dataset's episodes."""
-    return [
-        (e.observations, e.actions, e.rewards, e.terminations, e.truncations) for e in dataset.iterate_episodes()
-    ]
+    return [(e.observations, e.actions, e.rewards, e.terminations, e.truncations) for e in dataset.iterate_episodes()]
 
 
 def equal(one, other):

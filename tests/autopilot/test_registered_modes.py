@@ -66,10 +66,42 @@ def test_a_driving_mode_of_another_package_is_driven_by_mavlink() -> None:
     assert float(done.stdout or "0") == pytest.approx(1.0, abs=0.1), done.stderr
 
 
+REMEMBERED = """
+from sitl.autopilot.modes import register_state
+register_state("copter", "spin", "spin_state:SpinState")
+from sitl.autopilot.copter.state import Autopilot
+from spin_state import SpinState
+
+ap = Autopilot()
+ap.modes.spin.turned = 1.5
+print(type(ap.modes.spin) is SpinState, ap.modes.spin.turned, list(type(ap.modes).fields)[-1])
+"""
+
+
+def test_what_a_mode_remembers_is_in_the_record_of_the_modes() -> None:
+    done = program(REMEMBERED)
+    assert done.stdout.strip() == "True 1.5 spin", done.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "message"),
+    (
+        ("spin", "spin_mode:MODE", "is no Record"),
+        ("flip", "spin_state:SpinState", "the copter has a state of modes flip already"),
+        ("Spin", "spin_state:SpinState", "name 'Spin' is not small letters, digits and _"),
+    ),
+)
+def test_what_cannot_be_remembered_is_refused_clearly(name: str, place: str, message: str) -> None:
+    first = "from sitl.autopilot.modes import register_state"
+    done = program(f"{first}\nregister_state('copter', {name!r}, {place!r})\nimport sitl.autopilot.copter.firmware")
+    assert done.returncode != 0
+    assert "ExtensionError: state of modes " in done.stderr and message in done.stderr.splitlines()[-1], done.stderr
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     (
-        ("import sitl.autopilot.copter.firmware; register('copter', 'spin_mode:MODE')", "too late"),
+        ("import sitl.autopilot.copter.firmware; register('copter', 'spin_mode:MODE')", "register it before"),
         ("register('copter', 'spin_mode')", 'must be written as "package.module:NAME"'),
         ("register('copter', 'no_such:MODE'); import sitl.autopilot.copter.firmware", "No module named 'no_such'"),
         ("register('copter', 'spin_mode:RATE'); import sitl.autopilot.copter.firmware", "is no CopterMode"),

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -81,7 +84,21 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 def test_the_page_is_up_to_date() -> None:
     template = (DOCS / "templates" / "mavlink.md").read_text(encoding="utf-8")
-    assert (DOCS / "mavlink.md").read_text(encoding="utf-8") == docs.page(template), "run: python docs/make_pages.py"
+    assert (DOCS / "mavlink.md").read_text(encoding="utf-8") == docs.page(template), (
+        "run: python docs/make_pages.py mavlink"
+    )
+
+
+def make_pages(*words: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(DOCS / "make_pages.py"), *words]
+    environment = os.environ | {"PYTHONPATH": str(DOCS.parent)}
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
+
+
+def test_a_page_that_is_not_made_is_refused_by_name() -> None:
+    done = make_pages("mavlink", "extending")
+    assert done.returncode == 2
+    assert done.stderr.endswith("page 'extending' is not made here; there are comparison, mavlink, physics\n")
 
 
 def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
@@ -112,3 +129,8 @@ def test_a_message_is_taken_in_one_place(taken: str, said: str, monkeypatch: pyt
     monkeypatch.setattr(services, "_registered", [Second])
     with pytest.raises(ValueError, match=said):
         Bench()
+
+
+def test_what_is_no_service_cannot_be_registered() -> None:
+    with pytest.raises(TypeError, match="is no subclass of sitl"):
+        services.register_service(Bench)  # type: ignore[arg-type]

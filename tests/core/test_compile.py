@@ -91,7 +91,13 @@ class Toy:
             [sys.executable, "run.py", *arguments], cwd=self.folder, env=env, capture_output=True, text=True
         )
         assert result.returncode == 0, result.stderr
+        self.stderr = result.stderr
         return json.loads(result.stdout)
+
+    def said(self, *arguments: str) -> str:
+        """What a run prints on standard error."""
+        self.run(*arguments)
+        return self.stderr
 
 
 @pytest.fixture
@@ -142,8 +148,14 @@ def test_machine_code_belongs_to_a_processor(monkeypatch: pytest.MonkeyPatch) ->
     assert compiler.toolchain() != here
 
 
-def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:
-    toy.write(LAWS.replace("GAIN * x", "GAIN * x.nothing"))
+def test_a_first_start_without_progress_says_what_takes_so_long(toy: Toy) -> None:
+    (toy.folder / "run.py").write_text(RUN.replace(", lambda name, done, total: built.append(name))", ")"))
+    cold, warm = toy.said("compiled"), toy.said("compiled")
+    assert cold == "gym-sitl compiles its core (once; later starts load it from the cache) ...\n" and warm == ""
+
+
+def failed(toy: Toy) -> str:
+    """What a run says that cannot be compiled."""
     root = str(Path(__file__).parents[2])
     env = {**os.environ, "SITL_CACHE_DIR": str(toy.folder / "cache")}
     env["PYTHONPATH"] = os.pathsep.join([str(toy.folder), root])
@@ -151,8 +163,24 @@ def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:
         [sys.executable, "run.py", "compiled"], cwd=toy.folder, env=env, capture_output=True, text=True
     )
     assert result.returncode != 0
-    assert "BuildError: compiling unit toy.first failed" in result.stderr
-    assert "nothing" in result.stderr
+    return result.stderr
+
+
+def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:
+    toy.write(LAWS.replace("GAIN * x", "GAIN * x.nothing"))
+    said = failed(toy)
+    assert "BuildError: compiling unit toy.first failed" in said
+    assert "nothing" in said
+
+
+@pytest.mark.parametrize(("old", "new"), [("inner(v.x)", "inner(v.z)"), ("v.x = inner", "v.z = inner")])
+def test_a_field_that_a_record_does_not_have_is_named_with_its_line(toy: Toy, old: str, new: str) -> None:
+    (toy.folder / "toy.py").write_text(ENTRY.replace(old, new))
+    said = failed(toy)
+    assert "record toy.Pair has no field 'z'" in said
+    line = ENTRY.replace(old, new).splitlines().index(f"    {'v.x = inner(v.x)'.replace(old, new)}") + 1
+    assert f'toy.py", line {line}:' in said
+    assert "Traceback" not in said.split("BuildError")[-1], "no way through Numba's compiler"
 
 
 def test_progress_is_told_in_work_and_ends_complete(toy: Toy) -> None:

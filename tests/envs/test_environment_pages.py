@@ -19,7 +19,9 @@ _spec.loader.exec_module(pages)
 
 @pytest.mark.parametrize("name", ["CopterHover", "RoverReachGoal", "CopterGates"])
 def test_a_page_is_what_the_code_says(name: str) -> None:
-    assert (DOCS / "envs" / f"{name}.md").read_text(encoding="utf-8") == pages.page(name)
+    assert (DOCS / "envs" / f"{name}.md").read_text(encoding="utf-8") == pages.page(name), (
+        "run: python docs/make_environment_pages.py"
+    )
 
 
 def test_every_environment_with_places_has_a_page() -> None:
@@ -27,3 +29,9 @@ def test_every_environment_with_places_has_a_page() -> None:
     for name in sitl.envs.NEW:
         word = name.removeprefix("sitl/").removesuffix("-v0").removesuffix("Discrete")
         assert f"({word}.md)" in listed and (DOCS / "envs" / f"{word}.md").is_file()
+
+
+def test_an_environment_without_a_title_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(pages.TITLES, "CopterHover")
+    with pytest.raises(SystemExit, match=r"without one: \['CopterHover'\]; titles of none: \[\]"):
+        pages.main()

@@ -50,7 +50,10 @@ def ask(gate: Gate, path: str, headers: str = "") -> bytes:
 @pytest.mark.parametrize(
     ("path", "headers"),
     [
-        ("/", ""), ("/?token=", ""), ("/?token=wrong", ""), (f"/?token={TOKEN}&token=x", ""),
+        ("/", ""),
+        ("/?token=", ""),
+        ("/?token=wrong", ""),
+        (f"/?token={TOKEN}&token=x", ""),
         ("/", f"Cookie: {COOKIE}=wrong\r\n"),
     ],
 )

@@ -18,8 +18,6 @@ def _never() -> bool:
     return False
 
 
-
-
 class Watch:
     """Receives episodes as they are done; says whether to stop.
 

@@ -41,14 +41,4 @@ def with_registered(firmware: str, record: type[P]) -> type[P]:
     Raises:
         ExtensionError: one cannot be imported, is no group, or has a prefix that is taken.
     """
-    found: dict[str, type[ParameterGroup]] = {}
-    for prefix, place, group in _PLACES.of(firmware):
-        if not (isinstance(group, type) and issubclass(group, ParameterGroup)):
-            raise ExtensionError(f"group of parameters {place}: {group!r} is no ParameterGroup")
-        if prefix in record.fields or prefix in found:
-            raise ExtensionError(f"group of parameters {place}: the {firmware} has parameters {prefix} already")
-        found[prefix] = group
-    if not found:
-        return record
-    members = {"__annotations__": found, "__module__": record.__module__, "__doc__": record.__doc__}
-    return type(record.__name__, (record,), members)
+    return _PLACES.join(firmware, record, ParameterGroup)

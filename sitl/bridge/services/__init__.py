@@ -64,7 +64,13 @@ _registered: list[type[Service]] = []
 
 
 def register_service(service: type[Service]) -> None:
-    """Make a service of another package known in this process: every bridge that is made later has it."""
+    """Make a service of another package known in this process: every bridge that is made later has it.
+
+    Raises:
+        TypeError: it is no subclass of ``Service``.
+    """
+    if not (isinstance(service, type) and issubclass(service, Service)):
+        raise TypeError(f"{service!r} is no subclass of sitl.bridge.services.service.Service")
     if service not in _registered:
         _registered.append(service)
 

@@ -114,9 +114,7 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             else:
                 self._seen[row] = seen
 
-    def step(
-        self, actions: npt.NDArray[Any]
-    ) -> tuple[Any, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
+    def step(self, actions: npt.NDArray[Any]) -> tuple[Any, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """Velocities of all agents for a step: see ``gymnasium.vector.VectorEnv.step``.
 
         Args:

@@ -171,6 +171,7 @@ POSITION = Message(
     when=E + "origin_set",
 )
 
+
 def barometer(number: int, pressure: str, count: str, when: Source) -> Message:
     """BARO of a barometer; ``pressure``, ``count``: paths of what it shows [hPa] and of its samples."""
     return Message(

@@ -7,9 +7,12 @@ angles radians.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Record
 from ....core.vectors import Quat, Vec2, Vec3
 from ... import state as shared
+from ...modes import with_states
 from ..navigation.state import CopterNav
 
 
@@ -317,3 +320,7 @@ class Modes(shared.Modes):
     landing: LandingState
     arming_delay: bool  # armed less than 2 s ago: motors wait
     nav: CopterNav
+
+
+if not TYPE_CHECKING:
+    Modes = with_states("copter", Modes)

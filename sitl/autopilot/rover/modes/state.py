@@ -7,9 +7,12 @@ Positions are NE metres from the EKF origin (as ``estimate.pos``), velocities m/
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ....core.records import Record
 from ....core.vectors import Vec2
 from ... import state as shared
+from ...modes import with_states
 from ..navigation.state import RoverNav
 
 
@@ -133,3 +136,7 @@ class Modes(shared.Modes):
     links: LinksState
     ekf_was_good: bool  # while armed, since boot
     nav: RoverNav
+
+
+if not TYPE_CHECKING:
+    Modes = with_states("rover", Modes)
