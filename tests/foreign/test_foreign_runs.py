@@ -175,7 +175,7 @@ def test_a_test_of_pytest_is_flown_by_a_program(arducopter, tmp_path):
         copter.takeoff(5.0)
         assert copter.height == pytest.approx(5.0, abs=0.5)
         assert copter.connection.plant.vehicle.v.physics.wind.vel[0] < -2.0
-        with pytest.raises(OptionError, match="cannot be flown again"):
+        with pytest.raises(OptionError, match="cannot be recorded or continued"):
             copter.save_recording(tmp_path / "flight.rec")
         (_, lines), *_ = factory.keep_logs(None)
         assert lines[-1].startswith("no logs: autopilot")

@@ -30,7 +30,7 @@ def test_the_same_flight_is_the_same_to_the_last_digit(golden: Flight, tmp_path:
     assert found.ok
     assert found.tolerance.name == "same"
     assert found.first is None and found.first_trace is None
-    assert found.headline == "flies like golden, to the last digit of its track"
+    assert found.headline == "flies like the golden flight, to the last digit of its track"
     assert found.differences["position"].max == 0.0
 
 
@@ -41,7 +41,7 @@ def test_one_percent_of_a_gain_is_seen_and_located(golden: Flight, tmp_path: Pat
     assert found.differences["position"].max < 0.3
     assert found.first is not None
     assert "s after item" in found.first.words
-    assert "of golden" in found.first.words
+    assert "of the golden" in found.first.words
     assert any("parameter ATC_RAT_RLL_P" in note for note in found.notes)
 
 
