@@ -122,9 +122,9 @@ def replay_recording(options: argparse.Namespace) -> int:
 def verdict(flown: Replay, astray: list[str], exact: bool) -> int:
     """Say what is as it was and what is not; the exit code."""
     for text in flown.differences:
-        print(f"not as recorded: {text}")
+        print(f"changed since the recording: {text}")
     if astray:
-        print("the flight is another one: " + "; ".join(astray))
+        print("the flight differs: " + "; ".join(astray))
         return 1 if exact or not flown.differences else 0
     whole = flown.is_over and flown.recording.end is not None
     print("the same flight" + (": all telemetry is the same, byte for byte" if whole else " as far as digests tell"))

@@ -75,8 +75,8 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     finally:
         replay.close()
     notes = ["it keeps no track: flown again for it"]
-    notes += [f"not as recorded: {text}" for text in replay.differences]
-    notes += [f"the flight is another one: {text}" for text in astray]
+    notes += [f"changed since the recording: {text}" for text in replay.differences]
+    notes += [f"the replay differs: {text}" for text in astray]
     return Flight(str(recording.path), track, recording.header, recording.end, notes=tuple(notes))
 
 
