@@ -27,7 +27,8 @@ def home(text: str) -> Home:
         lat, lon, alt, heading = (float(word) for word in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not LAT,LON,ALT,HEADING (degrees, degrees, metres, degrees), as in {DEFAULT_HOME}"
+            f"{text!r} is not LAT,LON,ALT,HEADING (degrees, degrees, metres, degrees), "
+            f"as in {','.join(f'{number:.10g}' for number in DEFAULT_HOME)}"
         ) from None
     try:
         return checked_home((lat, lon, alt, heading))
