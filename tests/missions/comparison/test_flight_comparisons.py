@@ -110,7 +110,7 @@ def test_a_message_of_the_client_that_is_lost_is_seen_and_located(squares: Path,
     assert not found.ok
     assert found.first is not None
     assert found.first.t < 10.0
-    assert any("another one" in note for note in found.notes)
+    assert any("the replay differs" in note for note in found.notes)
 
 
 def test_numbers_in_texts_do_not_count_unless_asked(golden: Flight) -> None:
