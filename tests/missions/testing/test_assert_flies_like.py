@@ -101,13 +101,13 @@ def test_two_flights_do_not_share_a_golden(make: VehicleFactory, store: GoldenSt
     store.update = True
     copter = hop(make("copter"))
     copter.assert_flies_like("golden/hop.rec")
-    with pytest.raises(AssertionError, match="is of another flight of this test already"):
+    with pytest.raises(AssertionError, match="is already used by another flight of this test"):
         copter.assert_flies_like("golden/hop.rec")
 
 
 def test_only_recordings_are_written(make: VehicleFactory, store: GoldenStore) -> None:
     store.update = True
-    with pytest.raises(AssertionError, match="only recordings"):
+    with pytest.raises(AssertionError, match="must be a recording"):
         hop(make("copter")).assert_flies_like("golden/hop.tlog")
 
 
