@@ -19,17 +19,23 @@ from sitl.scenario import ESTIMATORS
 
 HERE = Path(__file__).parent
 
-COMPARISON = """# Beside a real ArduPilot
+COMPARISON = """# Compared with a real ArduPilot
 
-Made by `python docs/make_pages.py comparison` (the tables alone: `python -m sitl.missions.compare`).
+This page compares the flights of our autopilot with those of a real ArduPilot SITL. `python docs/make_pages.py`
+generates it (`python -m sitl.missions.compare` prints the first tables).
 
-A real ArduPilot SITL (4.7-dev of July 2025, unmodified, default frames and SITL parameters, no wind) was recorded with
-a copter flying two scripts, a GUIDED one (take-off 10 m, position 20 m north, velocity 3 m/s east for 10 s, zero
-velocity, three yaw commands, RTL) and an AUTO mission (take-off 10 m, 30 m square, land), and with a rover driving one
-(2 m/s north for 10 s in GUIDED, silence, positions 20 m east and back, a 20 m square in AUTO, 2 m/s again, HOLD, RTL).
-The columns are in `sitl/missions/reference/`. Here the same commands are sent at the same times, as MAVLink bytes, to
-this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both sides are the autopilot's own estimate
-(LOCAL_POSITION_NED, ATTITUDE), seed 0.
+The first tables use recordings of ArduPilot 4.7-dev of July 2025 (unmodified, default frames and SITL parameters,
+no wind):
+
+- a copter in GUIDED: take-off to 10 m, position 20 m north, velocity 3 m/s east for 10 s, zero velocity, three yaw
+  commands, RTL;
+- a copter in AUTO: take-off to 10 m, 30 m square, land;
+- a rover: 2 m/s north for 10 s in GUIDED, no set-points, positions 20 m east and back, a 20 m square in AUTO, 2 m/s
+  again, HOLD, RTL.
+
+The recordings are in `sitl/missions/reference/`. gym-sitl gets the same MAVLink commands at the same times, with
+the airframes `ardupilot_quad` and `ardupilot_rover` and seed 0. All figures are from the autopilot's own estimate
+(LOCAL_POSITION_NED, ATTITUDE).
 
 ## Copter, with the Kalman filter
 
@@ -39,14 +45,14 @@ this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both s
 
 {copter_truth}
 
-### Where it differs by more than 5 % or 0.5 m, and why
+### Reasons for differences above 5 % or 0.5 m
 
-- *take-off: 0.1 m.* The recorded vehicle lifts its first 10 cm more slowly, in its own ground truth too; from 5 m on
+- *take-off: 0.1 m.* The recorded vehicle climbs the first 10 cm more slowly, also in its true state. From 5 m on
   the times agree.
-- *3 m/s east: 2.85 m/s* (95 % of the step) *with the true state.* Both curves are almost level there, and little
-  speed is much time. With the filter it agrees: the simulated receiver is 33 ms later than the filter takes it for,
-  as the recorded one (its position is 0.1 m behind the truth at 3 m/s), and the position loop (PSC_POSXY_P 1) makes
-  that up as speed.
+- *3 m/s east: 2.85 m/s* (95 % of the step) *with the true state.* Both curves are almost flat there, so a small
+  difference of speed is a large difference of time. With the EKF the times agree: the simulated GPS is 33 ms later
+  than the EKF assumes, as in the recording (its position is 0.1 m behind the true one at 3 m/s), and the position
+  controller (PSC_POSXY_P 1) corrects that by a higher speed.
 
 ## Rover, with the Kalman filter
 
@@ -56,20 +62,20 @@ this simulator with the airframes `ardupilot_quad` and `ardupilot_rover`; both s
 
 {rover_truth}
 
-### Where it differs by more than 5 % or 0.5 m, and why
+### Reasons for differences above 5 % or 0.5 m
 
-- *AUTO: item 1 reached with the true state*, and with it the times of the later items and the path since AUTO began.
-  The rover stands with its tail to the first waypoint. Path time runs only as fast as the vehicle moves along the
-  leg, and at the first moment that is decided by the estimate's errors: the recorded estimate goes 0.03 m/s towards
-  the waypoint while the recorded vehicle stands still, so its target gets away; with the true state ours stands. It
-  is the estimator, not the loop: with the filter, a receiver as late as the recorded one and gyros that drift as
-  ArduPilot's simulated ones do (SIM_DRIFT_SPEED on all axes), our estimate goes 0.01 m/s and the first waypoint is
-  reached after 10.4 s. With the recorded velocity put into our estimate it is reached as recorded
+- *AUTO: item 1 reached with the true state*, and so the times of the later items and the path since the start of
+  AUTO. The rover stands with its back to the first waypoint. The target moves along the leg only as fast as the
+  vehicle does, so the start depends on errors of the estimate. In the recording the estimated velocity is 0.03 m/s
+  towards the waypoint while the vehicle stands still, so the target moves. With the true state ours stands. The
+  cause is the estimator, not the controller: with the EKF, with a GPS as late as the recorded one and with the gyro
+  drift of ArduPilot's SITL (SIM_DRIFT_SPEED on all axes), our estimate is 0.01 m/s, and the first waypoint is
+  reached after 10.4 s. With the recorded velocity in our estimate, it is reached at the recorded time
   (`tests/autopilot/rover/modes/test_rover_square.py`).
-- *HOLD: below 0.5 m/s and 0.1 m/s.* The recorded estimate is 0.03 m/s slower than the recorded vehicle, which itself
-  still does 0.10 m/s after 6.0 s; then RTL begins (a dash: it was not so slow by then).
-- *errors at the end* of the position targets differ by centimetres: GUIDED stops as soon as the target has come within
-  WP_RADIUS, wherever the vehicle is then.
+- *HOLD: below 0.5 m/s and 0.1 m/s.* The recorded estimate is 0.03 m/s slower than the recorded vehicle, whose true
+  speed is still 0.10 m/s after 6.0 s, when RTL begins (a dash: the speed was not reached).
+- *errors at the end* of the position targets differ by centimetres: GUIDED stops when the moving target is within
+  WP_RADIUS of the end, wherever the vehicle is at that time.
 """
 
 

@@ -45,6 +45,10 @@ class MissingExtra(SitlError, RuntimeError):
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The end of a message about a name that is not known: "; did you mean ...?" with the nearest, or nothing."""
-    near = get_close_matches(name, list(known), 1)
+    """The end of a message about a name that is not known: "; did you mean ...?" with the first that begins
+    with it, else the nearest, or nothing."""
+    names = list(known)
+    near = [longer for longer in names if len(name) > 3 and longer.startswith(name)] or get_close_matches(
+        name, names, 1
+    )
     return f"; did you mean {near[0]!r}?" if near else ""

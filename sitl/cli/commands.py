@@ -16,10 +16,10 @@ class Listed(NamedTuple):
 
 COMMANDS = {
     "run": Listed("sitl.cli.run", "run a vehicle and serve MAVLink"),
-    "exec": Listed("sitl.cli.execute", "run a script in simulated time against a vehicle of its own"),
+    "exec": Listed("sitl.cli.execute", "start a vehicle and run a script with it, in simulated time"),
     "demo": Listed("sitl.cli.demo", "run a MAVSDK example and draw what the vehicle did"),
-    "mission": Listed("sitl.missions.cli", "fly mission files, and keep flights as tests"),
-    "view": Listed("sitl.missions.view", "show flights that were kept, on a page in the browser"),
+    "mission": Listed("sitl.missions.cli", "fly mission files, record, replay and compare flights"),
+    "view": Listed("sitl.missions.view", "show logs and recordings on a page in the browser"),
     "train": Listed("sitl.agents.cli.train", "let an agent learn in an environment"),
     "evaluate": Listed("sitl.agents.cli.evaluate", "evaluate the trained agent of a run: reward, crashes, laps"),
     "watch": Listed("sitl.agents.cli.watch", "show the trained agent of a run: browser, window, GIF or MP4"),
@@ -30,15 +30,15 @@ COMMANDS = {
     "export": Listed("sitl.agents.cli.export", "export the policy of a run as .npz or .onnx"),
     "deploy": Listed("sitl.agents.cli.deploy", "run a policy on a vehicle, within limits"),
     "benchmark": Listed("sitl.agents.cli.benchmark", "published results, made again"),
-    "physics": Listed("sitl.cli.physics", "run the physics of a vehicle whose autopilot is elsewhere"),
+    "physics": Listed("sitl.cli.physics", "run physics for an autopilot in another process"),
     "arducopter": Listed("sitl.cli.drop_in", "run a copter in place of ArduPilot's arducopter"),
     "ardurover": Listed("sitl.cli.drop_in", "run a rover in place of ArduPilot's ardurover"),
     "examples": Listed("sitl.cli.examples", "list and copy the example programs"),
-    "params": Listed("sitl.cli.params", "list the parameters"),
+    "params": Listed("sitl.cli.params", "list the parameters, as a .parm file"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),
     "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),
-    "doctor": Listed("sitl.cli.doctor", "tell what is installed, what is missing for what, and what mends it"),
-    "completion": Listed("sitl.cli.completion", "print what makes a shell complete this command's words"),
+    "doctor": Listed("sitl.cli.doctor", "check the installation, and print the commands that complete it"),
+    "completion": Listed("sitl.cli.completion", "print the completion script for a shell"),
 }
 """Name -> the command, in the order of ``sitl --help``."""
 
@@ -46,11 +46,11 @@ WELCOME = """\
 Autopilot-in-the-loop simulator in simulated time. Five things to begin with:
 
   sitl demo copter              fly a MAVSDK script and draw the flight
-  sitl run copter               serve a copter by MAVLink, for any ground station or script
-  sitl exec -- python FLY.py    run your script against a vehicle of its own, as fast as it goes
-  sitl mission fly FILE.plan    fly a mission file; `sitl mission suite` keeps flights as tests
+  sitl run copter               run a copter for any ground station or script
+  sitl exec -- python FLY.py    start a copter and run your script with it, in simulated time
+  sitl mission fly FILE.plan    fly a mission file; `sitl mission suite` is for regression tests
   sitl train --recipe NAME      let an agent learn, by the vehicle's real command interface
 
-All commands: sitl --help. One of them: sitl COMMAND --help.
+All commands: sitl --help. Options of a command: sitl COMMAND --help. Is all installed? sitl doctor
 """
 """What ``sitl`` alone prints."""

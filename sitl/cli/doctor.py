@@ -88,11 +88,11 @@ def show(found: list[Finding]) -> None:
     installs = [word.partition("[")[2].rstrip("]'") for word in wanted if word.startswith("pip install 'gym-sitl[")]
     others = [word for word in wanted if not word.startswith("pip install 'gym-sitl[")]
     if needed:
-        print("\nIt does not work until this is done:", *dict.fromkeys(needed), sep="\n  ")
+        print("\nThe simulator does not work until you do this:", *dict.fromkeys(needed), sep="\n  ")
     if others or installs:
-        print("\nFor what is absent, if you want it:", *dict.fromkeys(others), sep="\n  ")
+        print("\nTo add what is absent (optional):", *dict.fromkeys(others), sep="\n  ")
     if installs:
-        print(f"  pip install 'gym-sitl[{','.join(installs)}]'   (or those of it that you need)")
+        print(f"  pip install 'gym-sitl[{','.join(installs)}]'   (or only the extras that you need)")
 
 
 def system() -> Iterator[Finding]:
@@ -141,7 +141,7 @@ def cache() -> Iterator[Finding]:
     yield Finding("cache", OK if enough else BROKEN, f"{folder}, {size} MB, {free} MB of disk free")
     for kind in KINDS.values():
         units = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
-        state = f"{len(units)} units to compile, on the first start" if units else "compiled"
+        state = f"not compiled ({len(units)} parts); the first start compiles it" if units else "compiled"
         yield Finding(f"core of {kind.name}", ABSENT if units else OK, state, "sitl cache build" if units else "")
 
 
@@ -157,7 +157,12 @@ def ports() -> Iterator[Finding]:
                 taken.append(str(number))
     wanted = f"TCP {runner.BASE_TCP_PORT}, {', '.join(map(str, runner.MORE_TCP_PORTS))}"
     if taken:
-        yield Finding("ports", ABSENT, f"in use: {', '.join(taken)} (of {wanted})", "sitl run copter --instance 1")
+        yield Finding(
+            "ports",
+            ABSENT,
+            f"in use: {', '.join(taken)} (of {wanted}); --instance N uses others",
+            "sitl run copter --instance 1",
+        )
     else:
         yield Finding("ports", OK, f"{wanted} are free")
 

@@ -36,13 +36,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "exec",
         usage="sitl exec [options] -- COMMAND [ARGUMENT ...]",
-        epilog="{tcp} in an argument of the command becomes the TCP port that is served.",
+        epilog="{tcp} in an argument of COMMAND is replaced by the first TCP port. The exit code is that of COMMAND.",
     )
     parser.add_argument("--vehicle", choices=sorted(KINDS), default=DEFAULT)
     add_speedup(parser)
     run.add_run_options(parser)
     foreign.add_autopilot_options(parser)
-    parser.add_argument("script", nargs=argparse.REMAINDER, metavar="-- COMMAND", help="what to run")
+    parser.add_argument("script", nargs=argparse.REMAINDER, metavar="-- COMMAND", help="the script or program to run")
     parser.set_defaults(function=execute)
 
 
@@ -52,7 +52,7 @@ def add_speedup(parser: argparse.ArgumentParser, default: str | None = DEFAULT_S
         "--speedup",
         default=default,
         metavar="K|max",
-        help=f"simulated seconds a second (default {default or DEFAULT_TEXT}); max: as fast as stays faithful",
+        help=f"simulated seconds a second (default {default or DEFAULT_TEXT}); max: as fast as possible",
     )
 
 
@@ -62,7 +62,7 @@ def execute(options: argparse.Namespace) -> int:
     if not command:
         raise OptionError("no command given: sitl exec [options] -- python script.py")
     if shutil.which(command[0]) is None:
-        raise OptionError(f"command {command[0]!r} is not found or cannot be run")
+        raise OptionError(f"command {command[0]!r} is not found or not executable")
     parse_speedup(options.speedup)
     wants_view(options)  # refuses what cannot be before anything is compiled
     choice = choose(options.autopilot, options.vehicle)
@@ -95,7 +95,7 @@ def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[
     """``execute`` with the program of another autopilot."""
     foreign.check(options, choice)
     if choice.kind != ARDUPILOT or choice.program is None:
-        raise OptionError(f"sitl exec: {choice.name} cannot be held by a script's clock; ardupilot:PROGRAM can")
+        raise OptionError(f"sitl exec: {choice.name} cannot run in simulated time; use ardupilot:PROGRAM")
     with foreign.opened(options, choice, None, is_relayed_by_slice=True) as flown:
         assert isinstance(flown.session, ArduPilotSession)
         command = [word.replace("{tcp}", str(flown.tcp_port)) for word in command]

@@ -33,11 +33,12 @@ from .view_options import shown
 
 def add_autopilot_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that choose the autopilot."""
+    parser.add_argument("--autopilot", default=NATIVE, metavar="NAME[:PROGRAM|:CONNECTION]", help=f"autopilot: {FORMS}")
     parser.add_argument(
-        "--autopilot", default=NATIVE, metavar="NAME[:PROGRAM|:CONNECTION]", help=f"who flies it: {FORMS}"
-    )
-    parser.add_argument(
-        "--autopilot-dir", type=Path, metavar="DIR", help="folder of a foreign autopilot's files (default: a new one)"
+        "--autopilot-dir",
+        type=Path,
+        metavar="DIR",
+        help="folder for the files of another autopilot (default: a temporary one)",
     )
 
 
@@ -109,19 +110,23 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
     """OptionError for an option that a foreign autopilot cannot have."""
     for name in ("rec", "from_file"):
         if getattr(options, name, None) is not None:
-            raise OptionError(f"--{name.removesuffix('_file')}: a run of {choice.kind} cannot be flown again")
+            raise OptionError(
+                f"--{name.removesuffix('_file')}: a run with {choice.kind} cannot be recorded or continued"
+            )
     if getattr(options, "lockstep", False):
-        raise OptionError(f"--lockstep: {choice.kind} knows no grants; environments hold its time (autopilot=)")
+        raise OptionError(f"--lockstep: not with {choice.kind}; environments control its time (autopilot=)")
     if link_faults(options) is not None:
-        raise OptionError(f"--link-...: the links of {choice.kind} are its own; only our autopilot's have faults")
+        raise OptionError(
+            f"--link-...: not with {choice.kind}, which has its own links; only those of our autopilot can have faults"
+        )
     if getattr(options, "fail", ()):
-        raise OptionError(f"--fail: {choice.kind} has SIM_ parameters of its own; set those")
+        raise OptionError(f"--fail: not with {choice.kind}, which has its own SIM_ parameters; set those")
     if options.estimator != "ekf":
-        raise OptionError(f"--estimator {options.estimator}: {choice.kind} has estimators of its own")
+        raise OptionError(f"--estimator {options.estimator}: not with {choice.kind}, which has its own estimators")
     if options.physics not in BACKENDS:
-        raise OptionError(f"--physics {options.physics}: a foreign autopilot flies one of {', '.join(BACKENDS)}")
+        raise OptionError(f"--physics {options.physics}: {choice.kind} needs one of {', '.join(BACKENDS)}")
     if choice.program is None and options.params:
-        raise OptionError(f"--params: {choice.name} runs already, with parameters of its own")
+        raise OptionError(f"--params: {choice.name} runs already; set its parameters by MAVLink")
 
 
 def build_plant(options: argparse.Namespace, choice: Choice) -> LocalPlant:

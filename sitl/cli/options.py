@@ -27,7 +27,8 @@ def home(text: str) -> Home:
         lat, lon, alt, heading = (float(word) for word in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not LAT,LON,ALT,HEADING (degrees, degrees, metres, degrees), as in {DEFAULT_HOME}"
+            f"{text!r} is not LAT,LON,ALT,HEADING (degrees, degrees, metres, degrees), "
+            f"as in {','.join(f'{number:.10g}' for number in DEFAULT_HOME)}"
         ) from None
     try:
         return checked_home((lat, lon, alt, heading))
@@ -82,28 +83,40 @@ def seconds(text: str) -> float:
 
 def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe the vehicle and its start."""
-    parser.add_argument(
-        "--frame", metavar="NAME", help="airframe, or a .py file that defines one (default: the vehicle's own)"
-    )
+    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (docs/vehicles.md)")
     parser._negative_number_matcher = re.compile(r"-[\d.]")  # a value such as -35.3,149.1,584,0 is no option
-    parser.add_argument("--home", type=home, metavar="LAT,LON,ALT,HEADING", help="start")
     parser.add_argument(
-        "--physics", default=NATIVE, metavar="NAME", help=f"what simulates it: {', '.join(FORMS)} (default {NATIVE})"
+        "--home",
+        type=home,
+        metavar="LAT,LON,ALT,HEADING",
+        help="home [deg, deg, m above mean sea level, deg]",
     )
-    parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
-    parser.add_argument("--terrain", metavar="HEIGHTS", help=f"heights of the ground: {FORMS_OF_HEIGHTS}")
+    parser.add_argument(
+        "--physics", default=NATIVE, metavar="NAME", help=f"physics engine: {', '.join(FORMS)} (default {NATIVE})"
+    )
+    parser.add_argument(
+        "--world", metavar="NAME|FILE", help="world with walls and obstacles; its origin is home (sitl world list)"
+    )
+    parser.add_argument("--terrain", metavar="HEIGHTS", help=f"terrain altitudes: {FORMS_OF_HEIGHTS}")
     parser.add_argument("--start", type=start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
     parser.add_argument("--seed", type=int, metavar="N", help="seed of sensor noise and turbulence")
-    parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf", help="truth is for work on controllers")
+    parser.add_argument(
+        "--estimator",
+        choices=ESTIMATORS,
+        default="ekf",
+        help="ekf (default), or truth: the true state, without estimator errors",
+    )
     parser.add_argument("--params", action="append", default=[], metavar="FILE", help=".parm file (repeatable)")
     parser.add_argument(
         "--fail",
         action="append",
         default=[],
         metavar="FAULT",
-        help=f"what fails, and when: {FORM}, as gps@12 or motor:2=0.5@20..30 (repeatable; docs/faults.md)",
+        help=f"inject a fault: {FORM}, such as gps@12 or motor:2=0.5@20..30 (repeatable; docs/faults.md)",
     )
-    parser.add_argument("--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="where .tlog files go")
+    parser.add_argument(
+        "--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="folder for the .tlog and .bin logs"
+    )
 
 
 def check_kind(frame: str, airframe: vehicles.Airframe, vehicle: str) -> None:

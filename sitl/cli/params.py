@@ -18,12 +18,12 @@ from .output import print_json
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("params")
-    parser.add_argument(
-        "--vehicle", choices=sorted(KINDS), help=f"whose parameters (default: the frame's, or {DEFAULT})"
-    )
-    parser.add_argument("--frame", metavar="NAME", help="with the values of this airframe")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), help=f"firmware (default: that of --frame, or {DEFAULT})")
+    parser.add_argument("--frame", metavar="NAME", help="use the values of this airframe")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--markdown", action="store_true", help="as the documentation page")
+    form.add_argument(
+        "--markdown", action="store_true", help="print the documentation page: meaning, range, unit, default"
+    )
     form.add_argument("--json", action="store_true", help="for programs: a list of parameters")
     parser.set_defaults(function=params)
 

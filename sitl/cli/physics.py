@@ -29,7 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser("physics")
     parser.add_argument("vehicle", choices=sorted(KINDS))
     parser.add_argument(
-        "--backend", dest="physics", choices=BACKENDS, default=NATIVE, help=f"what simulates it (default {NATIVE})"
+        "--backend", dest="physics", choices=BACKENDS, default=NATIVE, help=f"physics engine (default {NATIVE})"
     )
     parser.add_argument(
         "--listen",
@@ -38,11 +38,23 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="MAVLink HIL on a TCP port (default 127.0.0.1:4560), or ArduPilot's JSON on a UDP port (9002)",
     )
     parser.add_argument(
-        "--instance", type=shared.instance, default=0, metavar="N", help="adds N to the default TCP port, 10 N to UDP's"
+        "--instance",
+        type=shared.instance,
+        default=0,
+        metavar="N",
+        help="add N to the default TCP port, or 10 N to the UDP port",
     )
-    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one")
-    parser.add_argument("--home", type=shared.home, default=DEFAULT_HOME, metavar="LAT,LON,ALT,HEADING", help="start")
-    parser.add_argument("--world", metavar="NAME|FILE", help="world with solids (sitl world list), its origin at home")
+    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (docs/vehicles.md)")
+    parser.add_argument(
+        "--home",
+        type=shared.home,
+        default=DEFAULT_HOME,
+        metavar="LAT,LON,ALT,HEADING",
+        help="home [deg, deg, m above mean sea level, deg]",
+    )
+    parser.add_argument(
+        "--world", metavar="NAME|FILE", help="world with walls and obstacles; its origin is home (sitl world list)"
+    )
     parser.add_argument("--start", type=shared.start, metavar="NAME|X,Y,Z,YAW", help="start pose in the world [m, deg]")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of sensor noise and turbulence")
     add_view_options(parser)

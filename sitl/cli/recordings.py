@@ -22,22 +22,20 @@ FLUSH_US = 1_000_000
 
 def add_recording_option(parser: argparse.ArgumentParser) -> None:
     """The option that keeps a recording."""
-    parser.add_argument(
-        "--rec", type=Path, metavar="FILE", help="keep a recording: sitl mission replay flies it again, byte for byte"
-    )
+    parser.add_argument("--rec", type=Path, metavar="FILE", help="record the run to this file, for sitl mission replay")
 
 
 def add_from_option(parser: argparse.ArgumentParser) -> None:
     """Add the option that continues from a recording."""
     parser.add_argument(
-        "--from", dest="from_file", type=Path, metavar="FILE", help="go on where a recording or snapshot ends"
+        "--from", dest="from_file", type=Path, metavar="FILE", help="continue from the end of a recording or snapshot"
     )
 
 
 def new_file(path: Path) -> Path:
     """``path``; OptionError when there is such a file already: a recording is never overwritten by a run."""
     if path.exists():
-        raise OptionError(f"--rec {str(path)!r} is there already; give another name or delete it")
+        raise OptionError(f"--rec {str(path)!r} exists already; give another name or delete it")
     return path
 
 

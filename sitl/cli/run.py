@@ -29,7 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("vehicle", choices=sorted(KINDS))
     clock = parser.add_mutually_exclusive_group()
     clock.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")
-    clock.add_argument("--lockstep", action="store_true", help="time stands until a client grants it by MAVLink")
+    clock.add_argument("--lockstep", action="store_true", help="a MAVLink client controls the time (docs/mavlink.md)")
     add_run_options(parser)
     foreign.add_autopilot_options(parser)
     recordings.add_from_option(parser)
@@ -41,30 +41,31 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     ports = ", ".join(f"udp:127.0.0.1:{p}" for p in runner.OUTPUT_PORTS)
     more = ", ".join(map(str, (runner.BASE_TCP_PORT, *runner.MORE_TCP_PORTS)))
     parser.add_argument(
-        "--instance", type=instance, default=0, metavar="N", help="adds 10 N to every default port and N to MAV_SYSID"
+        "--instance", type=instance, default=0, metavar="N", help="add 10 N to all default ports, and N to MAV_SYSID"
     )
     parser.add_argument(
         "--out",
         action="append",
         metavar="udp:HOST:PORT",
-        help=f"send there; tcp:PORT and udpin:PORT listen (repeatable; default {ports}; or 'none')",
+        help=f"send MAVLink to this address; tcp:PORT and udpin:PORT listen (repeatable; default {ports}; "
+        "'none' for no UDP)",
     )
     parser.add_argument(
         "--tcp",
         action="append",
         type=port,
         metavar="PORT",
-        help=f"serve it (repeatable; default {more}; 0: any)",
+        help=f"listen on this TCP port (repeatable; default {more}; 0: a free port)",
     )
     parser.add_argument(
         "--streamrate",
         type=stream_rate,
         default=runner.STREAM_RATE_HZ,
         metavar="N",
-        help=f"telemetry to UDP clients until they ask otherwise [Hz] (default {runner.STREAM_RATE_HZ}; "
-        "-1: as the MAV1_ parameters say)",
+        help=f"stream rate for UDP clients until they request another [Hz] (default {runner.STREAM_RATE_HZ}; "
+        "-1: use the MAV1_ parameters)",
     )
-    parser.add_argument("--duration", type=seconds, metavar="SIM_SECONDS", help="stop after this simulated time")
+    parser.add_argument("--duration", type=seconds, metavar="SIM_SECONDS", help="stop after this simulated time [s]")
     parser.add_argument("--quiet", action="store_true", help="no status line")
     recordings.add_recording_option(parser)
     add_vehicle_options(parser)

@@ -48,12 +48,18 @@ def add_swarm_options(parser: argparse.ArgumentParser) -> None:
         "--count", type=count, default=1, metavar="N", help="how many, with system ids 1 to N (default 1)"
     )
     group.add_argument(
-        "--spacing", type=spacing, default=SPACING, metavar="METRES", help=f"from one to the next (default {SPACING:g})"
+        "--spacing",
+        type=spacing,
+        default=SPACING,
+        metavar="METRES",
+        help=f"distance between starts (default {SPACING:g})",
     )
     links = group.add_mutually_exclusive_group()
-    links.add_argument("--one-link", action="store_true", help="all of them on each link (default)")
+    links.add_argument("--one-link", action="store_true", help="all vehicles on each link (default)")
     links.add_argument(
-        "--own-links", action="store_true", help=f"each on links of its own: vehicle k at ports {PORT_STEP} (k - 1) on"
+        "--own-links",
+        action="store_true",
+        help=f"separate links: {PORT_STEP} (k - 1) is added to the ports of vehicle k",
     )
 
 

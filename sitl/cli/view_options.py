@@ -27,14 +27,16 @@ if TYPE_CHECKING:
 def add_view_options(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("--view", action="store_true", help="show the vehicle on a page in the browser (docs/view.md)")
-    parser.add_argument("--view-only", action="store_true", help="the same; the page can do nothing to the vehicle")
+    parser.add_argument("--view-only", action="store_true", help="the same, without controls")
     parser.add_argument(
-        "--view-port", type=port, default=0, metavar="PORT", help="of the page on this machine (default: a free one)"
+        "--view-port", type=port, default=0, metavar="PORT", help="port of the page (default: a free one)"
     )
     parser.add_argument(
-        "--view-address", metavar="HOST", help="offer the page to other machines: an address of this one, or 0.0.0.0"
+        "--view-address",
+        metavar="HOST",
+        help="address of the page, for other machines (default 127.0.0.1; needs --view-token)",
     )
-    parser.add_argument("--view-token", metavar="TOKEN", help="what they must know for that; nothing is encrypted")
+    parser.add_argument("--view-token", metavar="TOKEN", help="token in the address of the page; nothing is encrypted")
 
 
 DEFAULT_TEXT = f"{MAX}, with --view 1"
@@ -60,7 +62,7 @@ def wants_view(options: argparse.Namespace) -> bool:
     if (options.view_address is None) != (options.view_token is None):
         raise OptionError("--view-address and --view-token go together: without a token anybody could fly the vehicle")
     if options.view_address is not None and not wanted:
-        raise OptionError("--view-address is of use with --view or --view-only alone")
+        raise OptionError("--view-address needs --view or --view-only")
     if wanted:
         library.require()
     return wanted

@@ -17,14 +17,14 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("world")
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
-    listing = actions.add_parser("list", help="the worlds there are")
+    listing = actions.add_parser("list", help="list the worlds")
     add_json_option(listing, "a list of worlds")
     listing.set_defaults(function=list_worlds)
-    show = actions.add_parser("show", help="describe a world and draw its plan")
-    show.add_argument("world", metavar="NAME|FILE", help="one of the list, or a .toml file")
-    show.add_argument("--png", type=Path, metavar="OUT", help="where the picture goes (default: NAME.png)")
+    show = actions.add_parser("show", help="describe a world and draw its plan to a .png file")
+    show.add_argument("world", metavar="NAME|FILE", help="name of a world (sitl world list), or a .toml file")
+    show.add_argument("--png", type=Path, metavar="OUT", help="file of the picture (default: NAME.png)")
     show.add_argument(
-        "--height", type=float, metavar="Z", help="height of the cut in metres (default: the world's own)"
+        "--height", type=float, metavar="Z", help="height of the plan's cut [m] (default: set by the world)"
     )
     show.set_defaults(function=show_world)
 

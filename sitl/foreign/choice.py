@@ -19,8 +19,8 @@ WIND = "SIM_WIND_"
 """Beginning of the parameters of an ArduPilot that mean our physics."""
 _REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 FORMS = (
-    '"native", "ardupilot" or "px4" (the program is looked for in PATH), "ardupilot:PROGRAM", "px4:PROGRAM", or, for '
-    'one that runs already, where its MAVLink is: "ardupilot:tcp:HOST:PORT", "px4:udp:HOST:PORT"'
+    '"native" (default); "ardupilot" or "px4" (program in PATH); "ardupilot:PROGRAM", "px4:PROGRAM"; or a running one '
+    'by its MAVLink address: "ardupilot:tcp:HOST:PORT", "px4:udp:HOST:PORT"'
 )
 
 

@@ -27,16 +27,29 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("view")
     parser.add_argument(
-        "flights", nargs="+", type=Path, metavar="FLIGHT", help=".tlog, .bin, recording or golden; several are aligned"
+        "flights",
+        nargs="+",
+        type=Path,
+        metavar="FLIGHT",
+        help=".tlog, .bin or .rec; several flights are aligned in time",
     )
     parser.add_argument(
-        "--align", choices=("auto", "AUTO", "armed", "start"), default="auto", help="the moment that they share"
+        "--align",
+        choices=("auto", "AUTO", "armed", "start"),
+        default="auto",
+        help="event at which the flights are aligned",
     )
-    parser.add_argument("--frame", metavar="NAME", help="airframe that is drawn (default: the usual one of its kind)")
+    parser.add_argument(
+        "--frame",
+        metavar="NAME",
+        help="airframe to draw (default: that of the file, or the default of its vehicle type)",
+    )
     parser.add_argument("--system", type=int, metavar="N", help="system id of the vehicle in a .tlog that has several")
-    parser.add_argument("--save", type=Path, metavar="FILE.html", help="write one file that opens from disk, and end")
     parser.add_argument(
-        "--view-port", type=port, default=0, metavar="PORT", help="of the page on this machine (default: a free one)"
+        "--save", type=Path, metavar="FILE.html", help="write one .html file that opens without a server, and exit"
+    )
+    parser.add_argument(
+        "--view-port", type=port, default=0, metavar="PORT", help="port of the page (default: a free one)"
     )
     parser.set_defaults(function=run)
 

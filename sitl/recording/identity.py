@@ -88,7 +88,7 @@ def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[st
     found = []
     rooms = [name for name in now["sources"] if then["sources"].get(name) != now["sources"][name]]
     if rooms:
-        found.append(f"other sources of {', '.join(rooms)}")
+        found.append(f"sources of {', '.join(rooms)}")
     if then["compiled core"] != now["compiled core"]:
         found.append("another compiled core" + ("" if rooms else " (compilers or processor)"))
     for name in sorted({*then, *now} - {"sources", "compiled core"}):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol, TypeVar
@@ -59,7 +60,8 @@ def tcp_server(port: int) -> TcpServerLink:
     try:
         return TcpServerLink(port, HOST)
     except OSError as error:
-        raise LinkAddressError(f"link tcp:{HOST}:{port} cannot be opened: {error.strerror}") from None
+        hint = "; --instance N uses other ports, --tcp 0 a free one" if error.errno == errno.EADDRINUSE else ""
+        raise LinkAddressError(f"link tcp:{HOST}:{port} cannot be opened: {error.strerror}{hint}") from None
 
 
 def send_to_free_port(simulation: Simulation, port: int) -> None:

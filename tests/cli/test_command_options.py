@@ -29,7 +29,7 @@ from tests.cli.command import sitl
         (("run", "copter", "--link-loss", "2"), "link fault loss 2.0 is not a share from 0 to 1"),
         (("run", "copter", "--link-delay", "0.2-0.4"), "--link-delay '0.2-0.4' is not SECONDS|LOW..HIGH"),
         (("run", "copter", "--link-cut", "5"), "--link-cut '5' is not BEGIN..END"),
-        (("run", "copter", "--autopilot", "ardupilot:tcp:127.0.0.1:1", "--link-loss", "0.2"), "only our autopilot's"),
+        (("run", "copter", "--autopilot", "ardupilot:tcp:127.0.0.1:1", "--link-loss", "0.2"), "only those of our"),
     ],
 )
 def test_mistakes_are_one_line(words: tuple[str, ...], said: str, tmp_path: Path, capsys, monkeypatch) -> None:

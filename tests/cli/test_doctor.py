@@ -57,7 +57,7 @@ def test_what_is_broken_ends_with_code_1(monkeypatch, capsys) -> None:
     monkeypatch.setattr(doctor.os, "access", lambda place, how: False)
     assert main(["doctor"]) == 1
     out = capsys.readouterr().out
-    assert "BROKEN  cache" in out and "It does not work until this is done:\n  export SITL_CACHE_DIR" in out
+    assert "BROKEN  cache" in out and "The simulator does not work until you do this:\n  export SITL_CACHE_DIR" in out
 
 
 def test_an_old_python_is_told_of(monkeypatch) -> None:

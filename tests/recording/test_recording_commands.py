@@ -114,7 +114,7 @@ def test_what_from_does_not_take(hopped: Recorded, tmp_path: Path) -> None:
         typed(f"run copter --from {hopped.path} --seed 3 --tcp 0 --out none --log-dir {tmp_path}")
     with pytest.raises(SitlError, match="is of a copter, not of a rover"):
         typed(f"run rover --from {hopped.path} --tcp 0 --out none --log-dir {tmp_path}")
-    with pytest.raises(SitlError, match="is there already"):
+    with pytest.raises(SitlError, match="exists already"):
         typed(f"run copter --rec {hopped.path} --tcp 0 --out none --log-dir {tmp_path}")
     with pytest.raises(SitlError, match="--home: the recording decides that"):
         typed(f"replay {hopped.path} --home 1,2,3,4")

@@ -159,6 +159,6 @@ def test_another_version_is_flown_and_named(hopped: Recorded, core: Core) -> Non
     recording.header["airframe"]["figures"]["mass"] *= 1.01
     replay = Replay(recording, core=core)
     assert replay.run() == []
-    assert replay.differences[0] == "other sources of bridge"
+    assert replay.differences[0] == "sources of bridge"
     assert replay.differences[1].startswith("gym-sitl 0.0 then")
     assert replay.differences[2].startswith("airframe erle_copter: figure mass 1.15")

@@ -23,8 +23,8 @@ class TerrainReport(Message, name="TERRAIN_REPORT"):
 
 @law
 def terrain_report(m: TerrainReport, v: Copter) -> bool:
-    """TERRAIN_REPORT: where the vehicle is, height of the ground [m above sea level] and of the vehicle over it, parts
-    of the grid that are missing and known; spacing 0: not known here, heights are by the last ground that was."""
+    """TERRAIN_REPORT: position, terrain altitude [m above sea level], altitude above terrain, numbers of missing and
+    loaded parts of the grid; spacing 0: no data here, altitudes use the last known terrain."""
     ap = v.autopilot
     t = ap.terrain
     difference = ap.home.pos.z - by_grid(t, ap.estimate.pos, ap.home.pos.z).d

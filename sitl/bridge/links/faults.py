@@ -113,16 +113,16 @@ class LinkFaults:
 
 
 OPTIONS = {
-    "loss": ("SHARE", "of the frames to and from clients that are lost, 0 .. 1"),
-    "delay": ("SECONDS|LOW..HIGH", "that a frame takes"),
-    "jitter": ("SECONDS", "by up to so much a frame comes sooner or later"),
-    "duplicates": ("SHARE", "of the frames that come twice"),
-    "reordering": ("SHARE", "of the frames that are overtaken by those behind them"),
-    "corruption": ("PROBABILITY", "that a bit is turned over"),
-    "bandwidth": ("BYTES_A_SECOND", "in each direction"),
-    "cut": ("BEGIN..END", "simulated seconds in which everything is lost (repeatable)"),
-    "direction": ("|".join(DIRECTIONS), "which frames are concerned (default both)"),
-    "seed": ("NUMBER", "of these faults (default 0)"),
+    "loss": ("SHARE", "share of frames that are lost, 0 .. 1"),
+    "delay": ("SECONDS|LOW..HIGH", "transmission delay of a frame"),
+    "jitter": ("SECONDS", "random change of the delay, up to this much more or less"),
+    "duplicates": ("SHARE", "share of frames that arrive twice, 0 .. 1"),
+    "reordering": ("SHARE", "share of frames that later ones overtake, 0 .. 1"),
+    "corruption": ("PROBABILITY", "probability that a bit is inverted"),
+    "bandwidth": ("BYTES_A_SECOND", "capacity in each direction"),
+    "cut": ("BEGIN..END", "lose everything between these simulated seconds (repeatable)"),
+    "direction": ("|".join(DIRECTIONS), "direction of the faults (default both)"),
+    "seed": ("NUMBER", "seed of these faults (default 0)"),
 }
 """Options of command lines, without "--link-": what stands behind them, and what they mean."""
 

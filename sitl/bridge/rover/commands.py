@@ -24,7 +24,7 @@ def _rover(bridge: Bridge) -> RoverAutopilot:
 
 
 def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """178: p1 0 or 1 (else DENIED), p2 speed [m/s]; FAILED in a mode whose speed is not set so."""
+    """178: p1 0 or 1 (else DENIED), p2 speed [m/s]; FAILED in a mode without a speed target."""
     if command.p1 not in (0.0, 1.0):
         return DENIED
     return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
@@ -51,7 +51,7 @@ def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def yaw_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """213: in GUIDED (else FAILED): p1 heading [deg], p2 speed [m/s], p3 1 adds p1 to the heading asked for last."""
+    """213: in GUIDED (else FAILED): p1 heading [deg], p2 speed [m/s], p3 1 adds p1 to the last target heading."""
     turn = _rover(bridge).guided_heading_change if command.p3 > 0.0 else _rover(bridge).guided_heading
     return ACCEPTED if turn(math.radians(command.p1), command.p2) else FAILED
 

@@ -333,7 +333,7 @@ def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def look_ahead(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """197: the gimbal does what MNT1_DEFLT_MODE says."""
+    """197: the gimbal returns to the mode of MNT1_DEFLT_MODE."""
     bridge.get(MountService).look_ahead()
     return ACCEPTED
 

@@ -40,7 +40,7 @@ START_RADIUS = 100.0
 
 
 class TerrainService(Service):
-    """The grid of heights, and who is asked for it."""
+    """Terrain data, requested from ground stations."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)

@@ -126,8 +126,8 @@ def fill_sector(m: DistanceSensor, seen: Proximity, k: int) -> None:
 
 @law
 def distance_sensor(m: DistanceSensor, v: Vehicle, port: Port) -> bool:
-    """DISTANCE_SENSOR: the range-finder that looks down [cm]; the range + 1 where it meets nothing; nothing without a
-    range-finder or a world. Then each sector in which the proximity sensor sees something, orientation 0 to 7.
+    """DISTANCE_SENSOR: the downward rangefinder [cm]; the maximum range + 1 if nothing is in range; not sent without a
+    rangefinder or a world. Then each sector with a reading of the proximity sensor, orientation 0 to 7.
     """
     s = v.sensors
     m.time_boot_ms = boot_ms(v.time_us)

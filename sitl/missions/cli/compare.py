@@ -14,15 +14,15 @@ from sitl.recording.entries import RecordingError
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = actions.add_parser("compare", help="compare a flight with golden: .rec, .tlog or .bin each")
-    parser.add_argument("golden", type=Path, metavar="GOLDEN", help="the flight as it should be")
-    parser.add_argument("new", type=Path, metavar="NEW", help="the flight as it is")
+    parser = actions.add_parser("compare", help="compare two flights (.rec, .tlog or .bin)")
+    parser.add_argument("golden", type=Path, metavar="GOLDEN", help="the golden flight")
+    parser.add_argument("new", type=Path, metavar="NEW", help="the flight to compare with it")
     parser.add_argument(
         "--tolerance",
         metavar="NAME|FILE",
-        help="same, alike, or a TOML file (default: same for recordings of one seed, vehicle and world, else alike)",
+        help="same, alike, or a .toml file (default: same if seed, vehicle and world are equal, else alike)",
     )
-    parser.add_argument("--report", type=Path, metavar="DIR", help="write report.html and junit.xml there")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write report.html and junit.xml to this folder")
     parser.add_argument("--all", action="store_true", help="print every figure, not only those beyond their limits")
     parser.add_argument("--system", type=int, metavar="N", help="system id of the vehicle in a .tlog that has several")
     parser.set_defaults(function=run)

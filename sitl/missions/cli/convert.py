@@ -18,12 +18,12 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     """Declare the command."""
     parser = actions.add_parser("convert", help="convert between .plan and .waypoints")
     parser.add_argument("source", metavar="FROM", help=".plan, .waypoints or .txt")
-    parser.add_argument("target", metavar="TO", help="the suffix says the format")
-    parser.add_argument("--vehicle", choices=sorted(KINDS), help="whom a .plan is for")
+    parser.add_argument("target", metavar="TO", help="the suffix sets the format")
+    parser.add_argument("--vehicle", choices=sorted(KINDS), help="vehicle type of a .plan")
     parser.add_argument(
         "--expand", action="store_true", help="write surveys, corridors, structures and splines as waypoints"
     )
-    parser.add_argument("--force", action="store_true", help="replace TO if it is there")
+    parser.add_argument("--force", action="store_true", help="overwrite TO")
     parser.set_defaults(function=convert)
 
 

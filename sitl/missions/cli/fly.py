@@ -29,15 +29,25 @@ GENERIC = 0
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = actions.add_parser("fly", help="fly a mission file from power-on to its end")
-    parser.add_argument("mission", metavar="FILE|NAME", help=".plan, .waypoints, or a mission of the library")
-    parser.add_argument("--vehicle", choices=sorted(KINDS), help="default: what the file is made for, or a copter")
+    parser.add_argument(
+        "mission",
+        metavar="FILE|NAME",
+        help=".plan, .waypoints or .txt file, or a mission of the library (sitl mission library)",
+    )
+    parser.add_argument("--vehicle", choices=sorted(KINDS), help="default: the vehicle type of the file, or a copter")
     parser.add_argument("--speedup", metavar="K|max", help=f"simulated seconds a second (default {DEFAULT_TEXT})")
     parser.add_argument(
-        "--time-limit", type=seconds, default=LIMIT_S, metavar="SIM_SECONDS", help=f"since arming (default {LIMIT_S:g})"
+        "--time-limit",
+        type=seconds,
+        default=LIMIT_S,
+        metavar="SIM_SECONDS",
+        help=f"simulated seconds since arming (default {LIMIT_S:g})",
     )
     recordings.add_recording_option(parser)
-    parser.add_argument("--out", action="append", default=[], metavar="udp:HOST:PORT", help="also send telemetry there")
-    parser.add_argument("--quiet", action="store_true", help="the summary only")
+    parser.add_argument(
+        "--out", action="append", default=[], metavar="udp:HOST:PORT", help="also send telemetry to this address"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print only the summary")
     add_vehicle_options(parser)
     add_view_options(parser)
     parser.set_defaults(function=run)

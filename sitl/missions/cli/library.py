@@ -16,9 +16,9 @@ from .. import library
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = actions.add_parser("library", help="list or copy the missions that come with the simulator")
+    parser = actions.add_parser("library", help="list or copy the missions of this package")
     parser.add_argument("names", nargs="*", metavar="NAME", help="such as copter/square (default: all)")
-    parser.add_argument("--copy", type=Path, metavar="DIR", help="copy their files there")
+    parser.add_argument("--copy", type=Path, metavar="DIR", help="copy their files to this folder")
     add_json_option(parser, "a list of missions")
     parser.set_defaults(function=show)
 

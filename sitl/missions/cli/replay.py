@@ -36,14 +36,20 @@ DECIDED = ("home", "start", "seed", "params")
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = commands.add_parser("replay", help="fly a recording again without its client, or a ground station's .tlog")
+    parser = commands.add_parser("replay", help="fly a recording again without its clients, or a .tlog")
     parser.add_argument("file", type=Path, metavar="FILE", help="a recording (sitl run --rec), or a .tlog")
     parser.add_argument("--until", type=seconds, metavar="SIM_SECONDS", help="stop after this simulated time")
-    parser.add_argument("--snapshot", type=Path, metavar="FILE", help="keep the flight so far: sitl run --from FILE")
-    parser.add_argument("--rec", type=Path, metavar="FILE", help="keep a recording of the replay")
+    parser.add_argument(
+        "--snapshot", type=Path, metavar="FILE", help="write a snapshot of the end, for sitl run --from FILE"
+    )
+    parser.add_argument("--rec", type=Path, metavar="FILE", help="record the replay to this file")
     parser.add_argument("--speedup", default="max", metavar="K|max", help="simulated seconds a second (default max)")
-    parser.add_argument("--unfinished", action="store_true", help="take a recording that is cut short, up to there")
-    parser.add_argument("--exact", action="store_true", help="exit with 1 when anything differs, on any version")
+    parser.add_argument(
+        "--unfinished", action="store_true", help="accept an incomplete recording, and fly it to its end"
+    )
+    parser.add_argument(
+        "--exact", action="store_true", help="exit code 1 for any difference, even with another version"
+    )
     parser.add_argument("--quiet", action="store_true", help="no status line")
     parser.add_argument("--system", type=int, metavar="N", help="system id of the vehicle in a .tlog that has several")
     add_vehicle_options(parser)
@@ -116,9 +122,9 @@ def replay_recording(options: argparse.Namespace) -> int:
 def verdict(flown: Replay, astray: list[str], exact: bool) -> int:
     """Say what is as it was and what is not; the exit code."""
     for text in flown.differences:
-        print(f"not as recorded: {text}")
+        print(f"changed since the recording: {text}")
     if astray:
-        print("the flight is another one: " + "; ".join(astray))
+        print("the flight differs: " + "; ".join(astray))
         return 1 if exact or not flown.differences else 0
     whole = flown.is_over and flown.recording.end is not None
     print("the same flight" + (": all telemetry is the same, byte for byte" if whole else " as far as digests tell"))

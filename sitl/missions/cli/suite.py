@@ -16,15 +16,22 @@ from sitl.errors import OptionError
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = actions.add_parser("suite", help="fly all missions of a folder against their golden flights")
+    parser = actions.add_parser("suite", help="fly all missions of a folder and compare them with their golden flights")
     parser.add_argument("folder", type=Path, metavar="DIR", help="mission files, suite.toml, golden/NAME.rec")
-    parser.add_argument("--jobs", type=_jobs, metavar="N", help=f"flights at a time (default {os.cpu_count()})")
+    parser.add_argument("--jobs", type=_jobs, metavar="N", help=f"flights at the same time (default {os.cpu_count()})")
     parser.add_argument("--backend", choices=("local", "ray"), default="local", help="where they fly (default local)")
-    parser.add_argument("--only", action="append", metavar="PATTERN", help="fly those whose names match (repeatable)")
-    parser.add_argument("--report", type=Path, metavar="DIR", help="write index.html, junit.xml and what differs there")
-    parser.add_argument("--list", action="store_true", help="say what would be flown")
     parser.add_argument(
-        "--update-golden", action="store_true", help="make goldens of flights that have none or are not as golden is"
+        "--only", action="append", metavar="PATTERN", help="only flights whose names match (repeatable)"
+    )
+    parser.add_argument(
+        "--report",
+        type=Path,
+        metavar="DIR",
+        help="write index.html, junit.xml and the flights that differ to this folder",
+    )
+    parser.add_argument("--list", action="store_true", help="list the flights without flying them")
+    parser.add_argument(
+        "--update-golden", action="store_true", help="write the golden flights that are missing or differ"
     )
     parser.set_defaults(function=run)
 
@@ -46,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     if options.only:
         cases = [case for case in cases if any(fnmatch(case.name, pattern) for pattern in options.only)]
         if not cases:
-            raise OptionError(f"--only {' '.join(options.only)}: no flight of {options.folder} is called so")
+            raise OptionError(f"--only {' '.join(options.only)}: no flight of {options.folder} has such a name")
     width = max(len(case.name) for case in cases)
     if options.list:
         for case in cases:

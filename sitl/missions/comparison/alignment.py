@@ -73,7 +73,9 @@ def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -
     if away <= ELSEWHERE:
         new = new.seen_from((golden.home[0], golden.home[1], new.home[2]))  # heights stay above each one's home
     else:
-        notes.append(f"flown {away / 1000.0:.1f} km from golden's home: each is compared from its own home")
+        notes.append(
+            f"flown {away / 1000.0:.1f} km from the golden flight's home: each flight is relative to its own home"
+        )
     for name in ("AUTO", "armed", "start") if align == "auto" else (align,):
         first, second = begin(golden, name), begin(new, name)
         if first is not None and second is not None:

@@ -90,9 +90,9 @@ class Comparison:
     def headline(self) -> str:
         """The verdict in one line."""
         if self.ok:
-            return "flies like golden" + ("" if self.first_trace else ", to the last digit of its track")
+            return "flies like the golden flight" + ("" if self.first_trace else ", to the last digit of its track")
         what = self.first.words if self.first else self.failed[0].words
-        return f"does not fly like golden: {what}"
+        return f"does not fly like the golden flight: {what}"
 
 
 def compare(golden: Flight, new: Flight, tolerance: str | Path | Mapping[str, Any] | None = None) -> Comparison:
@@ -140,7 +140,7 @@ def _of_series(both: Pair, series: Series, differences: Differences, limits: Tol
         g = int(np.argmax(differences.missed))
         value, at = float(differences.missed[g]), float(both.golden.t[g])
         north, east = (float(both.golden[name][g]) for name in ("north", "east"))
-        text = f"golden's place {north:.1f} m north, {east:.1f} m east of home (at {at:.1f} s) is passed this far away"
+        text = f"the point {north:.1f} m north, {east:.1f} m east of home (golden at {at:.1f} s) is missed by this much"
     found = [
         Figure(f"{series.name}.max", series.title, value, series.unit, limits.limit(f"{series.name}.max"), at, text)
     ]
@@ -211,7 +211,7 @@ def _first(
         return Divergence(worst_figure.at or 0.0, f"{text} ({worst_figure.words})" if worst_figure.words else text)
     first = min(found, key=lambda divergence: divergence.t)
     place = differences["position"]
-    if "of golden" not in first.words and place.first_over(limits.limit("position.max")) is not None:
+    if "of the golden" not in first.words and place.first_over(limits.limit("position.max")) is not None:
         worst = place.worst()
         far = f"farthest {words.deviation(place, worst)}, {words.when(both, float(place.t[worst]))}"
         first = Divergence(first.t, f"{first.words}; {far}")

@@ -75,8 +75,8 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     finally:
         replay.close()
     notes = ["it keeps no track: flown again for it"]
-    notes += [f"not as recorded: {text}" for text in replay.differences]
-    notes += [f"the flight is another one: {text}" for text in astray]
+    notes += [f"changed since the recording: {text}" for text in replay.differences]
+    notes += [f"the replay differs: {text}" for text in astray]
     return Flight(str(recording.path), track, recording.header, recording.end, notes=tuple(notes))
 
 
@@ -165,7 +165,7 @@ def measure(pair: Pair) -> Differences:
     yaw = np.interp(matched.index, np.arange(len(golden)), np.unwrap(golden["yaw"]))
     heading = (new["yaw"] - yaw + np.pi) % (2.0 * np.pi) - np.pi
     found = (
-        Series("position", "place at the same time", "m", 0.0175, t, np.linalg.norm(drift, axis=1), drift),
+        Series("position", "position at the same time", "m", 0.0175, t, np.linalg.norm(drift, axis=1), drift),
         Series("cross_track", "cross-track", "m", 0.015, t, matched.cross, flat),
         Series("altitude", "altitude", "m", 0.0101, t, -aside[:, 2]),
         Series("delay", "delay along the way", "s", 0.05, t, delay),

@@ -62,7 +62,7 @@ def plan(comparison: Comparison) -> bytes:
     lines.set_clim(0.0, top)
     axis.add_collection(lines)
     bar = figure.colorbar(lines, ax=axis, shrink=0.8, pad=0.01)
-    bar.set_label("new: distance from golden's way [m]", fontsize=9)
+    bar.set_label("new: distance from the golden path [m]", fontsize=9)
     bar.ax.tick_params(labelsize=8)
     if np.isfinite(limit):
         bar.ax.axhline(limit, color=LIMIT, lw=1.5)

@@ -140,7 +140,7 @@ def html(comparison: Comparison, title: str = "", shown: str = "") -> str:
     """The report as HTML; ``shown``: a file beside it with the scene of both flights."""
     new, golden = comparison.new, comparison.golden
     title = title or Path(new.name).name
-    verdict = "Flies like golden" if comparison.ok else "Does not fly like golden"
+    verdict = "Flies like the golden flight" if comparison.ok else "Does not fly like the golden flight"
     failed = len(comparison.failed)
     judged = sum(figure.is_judged for figure in comparison.figures)
     summary = f"{judged - failed} of {judged} figures within tolerance <b>{escape(comparison.tolerance.name)}</b>"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times and differences in words: "12.4 s after item 3: 0.8 m east of golden"."""
+"""Times and differences in words: "12.4 s after item 3: 0.8 m east of the golden position"."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ def deviation(series: Series, k: int) -> str:
     """Sample ``k`` of a difference, in words."""
     value = float(series.values[k])
     if series.gap is not None:
-        return direction(series.gap[k]) + (" of golden" if series.name == "position" else " of golden's way")
-    size = abs(value)
+        return direction(series.gap[k]) + (" of the golden " + ("position" if series.name == "position" else "path"))
+    size, later = abs(value), "later" if value > 0 else "earlier"
     return {
-        "altitude": f"{size:.2f} m {'above' if value > 0 else 'below'} golden's way",
-        "delay": f"{size:.2f} s {'later' if value > 0 else 'earlier'} than golden at the same place",
-        "speed": f"{size:.2f} m/s {'faster' if value > 0 else 'slower'} than golden",
-        "climb": f"climb rate {size:.2f} m/s {'above' if value > 0 else 'below'} golden's",
-        "tilt": f"roll and pitch {size:.1f} deg from golden's",
-        "heading": f"heading {size:.1f} deg {'right' if value > 0 else 'left'} of golden's",
+        "altitude": f"{size:.2f} m {'above' if value > 0 else 'below'} the golden path",
+        "delay": f"{size:.2f} s {later} than the golden flight at the same point of the path",
+        "speed": f"{size:.2f} m/s {'faster' if value > 0 else 'slower'} than the golden flight",
+        "climb": f"climb rate {size:.2f} m/s {'higher' if value > 0 else 'lower'} than in the golden flight",
+        "tilt": f"roll and pitch differ by {size:.1f} deg",
+        "heading": f"heading {size:.1f} deg {'right' if value > 0 else 'left'} of the golden heading",
     }[series.name]
 
 
@@ -55,7 +55,8 @@ def event_text(event: Event, difference: str) -> str:
         return f"{event.what} is missing (golden: at {event.golden or 0.0:.1f} s)"
     if difference == ADDED:
         return f"{event.what} is new"
-    return f"{event.what} comes {abs(event.shift):.2f} s {'later' if event.shift > 0 else 'earlier'} than in golden"
+    later = "later" if event.shift > 0 else "earlier"
+    return f"{event.what} comes {abs(event.shift):.2f} s {later} than in the golden flight"
 
 
 def number(value: float, unit: str) -> str:

@@ -14,7 +14,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from sitl.errors import OptionError
+from sitl.errors import OptionError, did_you_mean
 
 FOLDER = Path(str(resources.files(__name__)))
 
@@ -62,8 +62,9 @@ def find(name: str) -> Entry:
     """The mission of a name.
 
     Raises:
-        OptionError: there is none; names those there are.
+        OptionError: there is none; suggests the nearest.
     """
     if name not in entries():
-        raise OptionError(f"there is no mission {name!r}; there are {', '.join(entries())}")
+        hint = did_you_mean(name, entries())
+        raise OptionError(f"there is no mission {name!r}{hint} (sitl mission library lists all)")
     return entries()[name]

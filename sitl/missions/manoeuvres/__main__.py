@@ -22,20 +22,20 @@ FLIGHTS: dict[str, Mapping[str, Callable[[Flyer], None]]] = {"copter": copter.FL
 RATES_HZ = {"copter": 50.0, "rover": 25.0}
 BOOT_SPEEDUP = 60
 WHY = """
-### Where manoeuvres differ, and why
+### Reasons for differences of manoeuvres
 
-- *Rover, from standstill* (RTL, SMART_RTL, AUTO after its delay, the first turns, headings in AUTO with the steering
-  stick out, the end of HOLD). The real estimate of a rover that stands is 0.02 to 0.05 m/s and 2 to 6 deg of heading
-  off: its filter trusts receiver and compass less and follows the drift of the simulated gyros later. Ours is 0.01 m/s
-  and 1 deg off. Path time runs only as fast as the vehicle moves along its leg, so that the first metre takes half a
-  second more or less. In SMART_RTL that decides between a turn to the left and one to the right: of three flights of
-  the real one, two took 24 s to half of the way and one 20 s.
-- *Copter, sticks: half of the lean* and the height after a short climb. Overrides are read here with the frames of the
-  receiver, 50 times a second; the real one reads them 250 times a second, 20 ms earlier.
-- *3 m/s east: 95 %* and the first moments of turn rates: both curves are almost level there, and commands reach the
-  real one some 10 ms late.
-- *Copter, GUIDED velocities against a fence*: the real one comes to rest 1.3 m within FENCE_MARGIN whatever
-  AVOID_BEHAVE is, and stays there; ours at its edge, as both do in LOITER.
+- *Rover, from standstill* (RTL, SMART_RTL, AUTO after its delay, the first turns, headings in AUTO with the
+  steering stick out, the end of HOLD). While a rover stands, ArduPilot's estimate has an error of 0.02 to 0.05 m/s
+  and 2 to 6 deg of heading: its EKF gives GPS and compass less weight, and follows the drift of the simulated gyros
+  later. Our error is 0.01 m/s and 1 deg. The target moves along the leg only as fast as the vehicle does, so the
+  first metre takes half a second more or less. In SMART_RTL this decides between a left and a right turn: of three
+  flights of ArduPilot, two took 24 s to the middle of the path and one took 20 s.
+- *Copter, sticks: half of the lean* and the altitude after a short climb. Our autopilot reads RC overrides at the
+  frame rate of the receiver, 50 Hz; ArduPilot reads them at 250 Hz, 20 ms earlier.
+- *3 m/s east: 95 %* and the first moments of turn rates: both curves are almost flat there, and commands reach
+  ArduPilot about 10 ms late.
+- *Copter, GUIDED velocities against a fence*: ArduPilot stops 1.3 m within FENCE_MARGIN with any AVOID_BEHAVE; ours
+  stops at the margin, as both do in LOITER.
 """
 HEADING = "## Manoeuvres"
 
@@ -93,17 +93,18 @@ def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) 
     every = [row for part in found.values() for row in part]
     parts = [
         f"{HEADING} by commands and sticks\n",
-        "Made by `python -m sitl.missions.manoeuvres --ardupilot PATH --times 3 --keep`, PATH the folder of a real",
-        "ArduPilot's `arducopter` and `ardurover`. Scripts of this project fly both by MAVLink, with the same",
-        "parameters (the firmware's defaults and those of our airframe), in simulated time. The real one's flights",
-        "differ a little from one to the next, for its clock goes on while a client writes: its figures are medians of",
-        "three flights, kept in `sitl/missions/reference/`: `python -m sitl.missions.manoeuvres` compares without it.",
+        "Scripts of this project fly a real ArduPilot and ours by MAVLink, with the same parameters (the defaults",
+        "of the firmware and those of our airframe), in simulated time. ArduPilot's flights vary a little, because",
+        "its clock continues while a client writes. Its figures are medians of three flights, in",
+        "`sitl/missions/reference/`; they are from `python -m sitl.missions.manoeuvres --ardupilot PATH --times 3",
+        "--keep`, where PATH is the folder of `arducopter` and `ardurover`. Without `--ardupilot` the command",
+        "compares with these figures.",
         f"\n{table.RULE}\n",
         f"**{table.summary(every)}**; by {table.PERCENT:g} % or {table.CLOSE['m']:g} m alone "
-        f"{sum(map(table.within, every))} do, most others being times below {table.SHORT_S:g} s.",
+        f"{sum(map(table.within, every))} do. Most of the others are times below {table.SHORT_S:g} s.",
     ]
     for kind, part in found.items():
-        parts.append(f"\n### {kind.title()}: {table.summary(part)}, beside {described[kind]}\n")
+        parts.append(f"\n### {kind.title()}: {table.summary(part)}, compared with {described[kind]}\n")
         for flight in dict.fromkeys(row.flight for row in part):
             own = [row for row in part if row.flight == flight]
             parts.append(f"{FLIGHTS[kind][flight].__doc__}\n\n{table.markdown(own)}\n")

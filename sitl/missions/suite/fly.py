@@ -141,7 +141,7 @@ def _judged(
 
     if not case.golden.exists():
         if not update:
-            return result(NO_GOLDEN, f"there is no {case.golden}: --update-golden makes it")
+            return result(NO_GOLDEN, f"there is no {case.golden}: --update-golden writes it")
         _keep(path, case.golden)
         return result(WRITTEN, note)
     flight = Flight(case.name, new.track, new.header, new.digests)
@@ -179,4 +179,4 @@ def _keep(path: Path, golden: Path) -> None:
         finally:
             beside.unlink(missing_ok=True)
     except OSError as error:
-        raise SuiteError(f"golden {golden} cannot be written: {error.strerror or error}") from None
+        raise SuiteError(f"golden flight {golden} cannot be written: {error.strerror or error}") from None

@@ -92,7 +92,7 @@ def _from_anywhere(case: Case) -> Case:
     )
 
 
-_HEADS = ("place [m]", "cross [m]", "height [m]", "delay [s]", "energy [%]")
+_HEADS = ("position [m]", "cross-track [m]", "altitude [m]", "delay [s]", "energy [%]")
 
 
 def head(width: int) -> str:
@@ -115,7 +115,7 @@ def summary(results: Sequence[Result], wall: float) -> str:
     """Last line of the table; ``wall``: wall time [s]."""
     bad = sum(not result.ok for result in results)
     simulated = sum(result.simulated for result in results)
-    good = f"{len(results) - bad} of {len(results)} as they should be"
+    good = f"{len(results) - bad} of {len(results)} passed"
     return f"{good}: {simulated / 60.0:.0f} simulated minutes in {wall:.1f} s"
 
 
@@ -143,7 +143,7 @@ def _page(folder: Path, suite: str, results: Sequence[Result]) -> str:
     from ..comparison.report import STYLE
 
     bad = sum(not result.ok for result in results)
-    title = f"{len(results) - bad} of {len(results)} missions fly like golden"
+    title = f"{len(results) - bad} of {len(results)} missions fly like their golden flights"
     heads = "".join(f"<th class=n>{name}</th>" for name in _HEADS)
     rows = []
     for result in sorted(results, key=lambda result: (result.ok, result.name)):

@@ -80,19 +80,23 @@ class Golden(Forking):
                 self._update(path, self._record(Path(folder), "new"))
                 return
             if not path.exists():
-                raise AssertionError(f"there is no golden flight {path}; to make it of this flight: {self.golden.how}")
+                raise AssertionError(
+                    f"there is no golden flight {path}; to write it from this flight: {self.golden.how}"
+                )
             try:
                 problem = self._compare(path, self._record(Path(folder), "new"), tolerance)
             except (RecordingError, LogError, AlignmentError) as error:
-                lines = [f"golden {path} is of no use: {error}", f"  to make it anew: {self.golden.how}"]
+                lines = [f"golden flight {path} cannot be used: {error}", f"  to write it again: {self.golden.how}"]
                 raise AssertionError("\n".join(lines)) from None
         if problem:
-            raise AssertionError("\n".join([*problem, f"  if that is meant to be: {self.golden.how}"]))
+            raise AssertionError("\n".join([*problem, f"  if the change is intended: {self.golden.how}"]))
 
     def _record(self, folder: Path, stem: str) -> Path:
         """A recording of the flight so far."""
         if self.cannot_repeat:
-            raise OptionError(f"{self.cannot_repeat}: what it flew cannot be flown again: no recording, no golden")
+            raise OptionError(
+                f"{self.cannot_repeat}: its flight cannot be repeated: there is no recording and no golden flight"
+            )
         flown = fly_again(self, folder, stem, log=False)
         if not flown.same:
             raise AssertionError(NOT_AGAIN)
@@ -102,10 +106,12 @@ class Golden(Forking):
         """Write a golden, unless it is this flight already."""
         store = self.golden
         if path.suffix != ".rec":
-            raise AssertionError(f"golden {path} is not written: only recordings (.rec) are")
+            raise AssertionError(f"golden flight {path} is not written: it must be a recording (.rec)")
         before = store.taken.setdefault(path.resolve(), store.test)
         if before != store.test or path in store.checked:
-            raise AssertionError(f"golden {path} is of another flight of {before} already; each needs one of its own")
+            raise AssertionError(
+                f"golden flight {path} is already used by another flight of {before}; each flight needs its own"
+            )
         store.checked.append(path)
         if path.exists() and _track(path) == _track(new):
             return
@@ -118,7 +124,7 @@ class Golden(Forking):
             finally:
                 beside.unlink(missing_ok=True)
         except OSError as error:
-            raise AssertionError(f"golden {path} cannot be written: {error.strerror or error}") from None
+            raise AssertionError(f"golden flight {path} cannot be written: {error.strerror or error}") from None
         store.written.append(path)
 
     def _compare(self, path: Path, new: Path, tolerance: Limits) -> list[str]:
@@ -132,10 +138,11 @@ class Golden(Forking):
         found = compare(flight.read(path), flight.read(new), tolerance)
         if found.ok:
             if found.first_trace is not None and found.tolerance.name == "same":
-                text = f"{path.name}: like golden, but not the same any more: {found.first_trace.words}"
+                within = "within the limits of the golden flight, but no longer the same"
+                text = f"{path.name}: {within}: {found.first_trace.words}"
                 warnings.warn(FlightChanged(text), stacklevel=3)
             return []
-        lines = [f"golden {path}", *report.lines(found)]
+        lines = [f"golden flight {path}", *report.lines(found)]
         if self.golden.reports is not None:
             lines.append(f"  report: {report.report_write(found, self.golden.reports / path.stem)}")
         return lines

@@ -76,13 +76,13 @@ def keep(vehicle: Forking, folder: Path, stem: str, error: BaseException | None)
     simulation = vehicle.connection.simulation
     if simulation is None:
         lines = [f"{vehicle.now:.1f} s simulated", f"  {vehicle.describe()}", *vehicle.last_texts(20)]
-        return [*lines, f"no logs: {vehicle.cannot_repeat}: what it flew cannot be flown again"]
+        return [*lines, f"no logs: {vehicle.cannot_repeat}: its flight cannot be repeated"]
     world = f" in {simulation.world.name}" if simulation.world is not None else ""
     lines = [f"{simulation.airframe.name}{world}, seed {simulation.seed}, {vehicle.now:.1f} s simulated"]
     lines.append(f"  {vehicle.describe()}")
     lines += [f"  {text}" for text in vehicle.last_texts(20)]
     if vehicle.cannot_repeat:
-        return [*lines, f"no logs: {vehicle.cannot_repeat}: what it flew cannot be flown again"]
+        return [*lines, f"no logs: {vehicle.cannot_repeat}: its flight cannot be repeated"]
     lost = vehicle.failed_fork
     if lost is not None and lost.error is error:
         flown = fly_again(vehicle, folder, stem, log=True, said=lost.said, end_us=lost.end_us)

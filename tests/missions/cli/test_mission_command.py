@@ -77,7 +77,7 @@ def test_a_mission_that_is_not_completed_is_code_1(capsys: pytest.CaptureFixture
     ("words", "message"),
     [
         (["nothing.plan"], "sitl mission: nothing.plan: No such file"),
-        (["copter/nothing"], "there is no mission 'copter/nothing'; there are copter/square"),
+        (["copter/nothing"], "(sitl mission library lists all)"),
         (["rover/square", "--vehicle", "copter"], "vehicleType 10 is a rover, not a copter"),
         (["wing.plan"], "wing.plan: vehicleType 1 (MAV_TYPE) is none of copter, rover; --vehicle says"),
         (["lawn.plan"], "mission item 1: a rover does not fly command 22 Takeoff; it flies"),

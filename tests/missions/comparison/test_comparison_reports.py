@@ -27,7 +27,7 @@ def differing(squares: Path, tmp_path_factory: pytest.TempPathFactory) -> Compar
 def test_the_page_needs_nothing_else(differing: Comparison, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     text = report.report_write(differing, tmp_path).read_text()
-    assert "Does not fly like golden" in text
+    assert "Does not fly like the golden flight" in text
     assert text.count("data:image/png;base64,") == 3
     assert not re.search(r'(src|href)="(?!data:|flights\.html)', text)
     assert "Disarming motors" in text
@@ -77,7 +77,7 @@ def test_junit_takes_any_text(tmp_path: Path) -> None:
 
 def test_lines_tell_what_is_wrong_or_all(differing: Comparison) -> None:
     some, everything = report.lines(differing), report.lines(differing, True)
-    assert some[0].startswith("DIFFERS: does not fly like golden: ")
+    assert some[0].startswith("DIFFERS: does not fly like the golden flight: ")
     assert len(everything) > len(some)
     assert sum(line.startswith("  !") for line in some) == len(differing.failed)
 
@@ -87,7 +87,7 @@ def test_the_command_tells_by_its_exit_code(
 ) -> None:
     golden = str(squares / "copter.rec")
     assert main(["mission", "compare", golden, str(squares / "copter.tlog")]) == 0
-    assert "OK: flies like golden" in capsys.readouterr().out
+    assert "OK: flies like the golden flight" in capsys.readouterr().out
     folder = tmp_path / "report"
     assert main(["mission", "compare", golden, differing.new.name, "--report", str(folder)]) == 1
     out = capsys.readouterr().out

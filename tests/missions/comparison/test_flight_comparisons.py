@@ -30,7 +30,7 @@ def test_the_same_flight_is_the_same_to_the_last_digit(golden: Flight, tmp_path:
     assert found.ok
     assert found.tolerance.name == "same"
     assert found.first is None and found.first_trace is None
-    assert found.headline == "flies like golden, to the last digit of its track"
+    assert found.headline == "flies like the golden flight, to the last digit of its track"
     assert found.differences["position"].max == 0.0
 
 
@@ -41,7 +41,7 @@ def test_one_percent_of_a_gain_is_seen_and_located(golden: Flight, tmp_path: Pat
     assert found.differences["position"].max < 0.3
     assert found.first is not None
     assert "s after item" in found.first.words
-    assert "of golden" in found.first.words
+    assert "of the golden" in found.first.words
     assert any("parameter ATC_RAT_RLL_P" in note for note in found.notes)
 
 
@@ -110,7 +110,7 @@ def test_a_message_of_the_client_that_is_lost_is_seen_and_located(squares: Path,
     assert not found.ok
     assert found.first is not None
     assert found.first.t < 10.0
-    assert any("another one" in note for note in found.notes)
+    assert any("the replay differs" in note for note in found.notes)
 
 
 def test_numbers_in_texts_do_not_count_unless_asked(golden: Flight) -> None:

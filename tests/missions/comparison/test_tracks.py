@@ -241,4 +241,4 @@ def test_flights_far_apart_are_each_seen_from_home() -> None:
     away = replace(straight(), home=(-36.0, 150.0, 10.0))
     both = pair(straight(), away)
     assert measure(both)["position"].max == 0.0
-    assert "km from golden's home" in both.notes[0]
+    assert "km from the golden flight's home" in both.notes[0]

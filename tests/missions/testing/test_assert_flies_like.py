@@ -41,7 +41,9 @@ def test_the_same_flight_is_like_golden(make: VehicleFactory, golden: Path) -> N
 def test_what_changes_within_the_limits_is_told(make: VehicleFactory, golden: Path) -> None:
     gain = make("copter").parameter("PSC_POSXY_P")
     copter = hop(make("copter", params={"PSC_POSXY_P": 1.001 * gain}))
-    with pytest.warns(FlightChanged, match=r"hop\.rec: like golden, but not the same any more: .* after "):
+    with pytest.warns(
+        FlightChanged, match=r"hop\.rec: within the limits of the golden flight, but no longer the same: .* after "
+    ):
         copter.assert_flies_like("golden/hop.rec")
 
 
@@ -54,7 +56,7 @@ def test_without_golden_it_says_how_to_make_one(make: VehicleFactory, store: Gol
 
 def test_another_way_is_found_and_golden_stays(make: VehicleFactory, golden: Path) -> None:
     before = golden.read_bytes()
-    with pytest.raises(AssertionError, match=r"(?s)golden .*hop.rec.*s after .* of golden"):
+    with pytest.raises(AssertionError, match=r"(?s)golden .*hop.rec.*s after .* of the golden"):
         hop(make("copter"), east=6.0).assert_flies_like("golden/hop.rec")
     assert golden.read_bytes() == before
 
@@ -99,26 +101,26 @@ def test_two_flights_do_not_share_a_golden(make: VehicleFactory, store: GoldenSt
     store.update = True
     copter = hop(make("copter"))
     copter.assert_flies_like("golden/hop.rec")
-    with pytest.raises(AssertionError, match="is of another flight of this test already"):
+    with pytest.raises(AssertionError, match="is already used by another flight of this test"):
         copter.assert_flies_like("golden/hop.rec")
 
 
 def test_only_recordings_are_written(make: VehicleFactory, store: GoldenStore) -> None:
     store.update = True
-    with pytest.raises(AssertionError, match="only recordings"):
+    with pytest.raises(AssertionError, match="must be a recording"):
         hop(make("copter")).assert_flies_like("golden/hop.tlog")
 
 
 def test_a_golden_that_is_damaged_is_named(make: VehicleFactory, golden: Path) -> None:
     golden.write_bytes(golden.read_bytes()[:-200])
-    with pytest.raises(AssertionError, match=r"hop\.rec is of no use: .* ends at byte"):
+    with pytest.raises(AssertionError, match=r"hop\.rec cannot be used: .* ends at byte"):
         hop(make("copter")).assert_flies_like("golden/hop.rec")
 
 
 def test_a_golden_of_no_use_says_how_it_is_made_anew(make: VehicleFactory, store: GoldenStore, golden: Path) -> None:
     golden.write_text("junk")
     copter = hop(make("copter"))
-    with pytest.raises(AssertionError, match=r"(?s)hop\.rec is of no use: .*begins with.*--sitl-update-golden"):
+    with pytest.raises(AssertionError, match=r"(?s)hop\.rec cannot be used: .*begins with.*--sitl-update-golden"):
         copter.assert_flies_like("golden/hop.rec")
     assert golden.read_text() == "junk"
     store.update = True

@@ -106,7 +106,7 @@ def test_goldens(project: pytest.Pytester) -> None:
     source.write_text(source.read_text().replace("fly_to(north, 0)", "fly_to(north, 0.5)"))
     result = project.runpytest_inprocess("--sitl-log-dir=logs", "-k", "10")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["E *does not fly like golden: *", "E *report: *report.html"])
+    result.stdout.fnmatch_lines(["E *does not fly like the golden flight: *", "E *report: *report.html"])
 
 
 @pytest.mark.slow

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AUTOTUNE: twitches about one axis after the other, and finds the gains that answer best (AUTOTUNE_*).
+"""AUTOTUNE: twitches one axis after the other, and finds its gains (AUTOTUNE_*).
 
 Entered in flight. The sticks interrupt it, and fly it with the gains from before; between twitches it leans back to its
 place. Disarmed on the ground with the gains found, or while it tries them, it keeps them; left before, or disarmed in

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AVOID_ADSB: stops and holds its place, as ArduPilot's does while no aircraft comes near; here none does."""
+"""AVOID_ADSB: stops and holds its position, as ArduPilot does while no aircraft is near; no traffic is simulated."""
 
 from __future__ import annotations
 

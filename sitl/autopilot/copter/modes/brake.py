@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""BRAKE: stops as fast as is sensible and holds; the sticks do nothing."""
+"""BRAKE: stops as fast as possible and holds its position; the sticks have no effect."""
 
 from __future__ import annotations
 

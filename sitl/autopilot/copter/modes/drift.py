@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DRIFT: flown like a plane: the roll stick turns it, the lean against side slip follows; the pitch stick leans it.
+"""DRIFT: flies like a plane: the roll stick turns it in coordinated turns, the pitch stick pitches it.
 
 With the pitch stick centred it brakes. The yaw stick asks for a speed sideways. The throttle drives the motors, with an
 assist against climbing and sinking around its middle.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""FLIP: turns over once, then gives back to the mode before.
+"""FLIP: flips once, then returns to the previous mode.
 
 It turns right; forward, back or left when that stick is held on entry. It begins in the air in STABILIZE, ACRO and
 ALT_HOLD only, and gives up when it takes too long or a stick is pushed far.

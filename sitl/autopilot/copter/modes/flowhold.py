@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""FLOWHOLD: holds still by optical flow alone: no GPS and no range-finder; sticks lean it, and it brakes when let go.
+"""FLOWHOLD: holds its position by optical flow, without GPS and rangefinder; the sticks lean it, centred they brake.
 
 Flow times the height over the take-off is a velocity. A lean in proportion to it drags at all times (FHLD_XY_P, a share
 of ANGLE_MAX for 1 m/s); one that grows with the way gone leads it to zero against wind (FHLD_XY_I). Let go, it brakes

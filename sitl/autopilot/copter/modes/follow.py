@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""FOLLOW: flies beside another vehicle that tells where it is (FOLL_*); holds still while there is none."""
+"""FOLLOW: follows another vehicle by its position messages (FOLL_*); holds its position without them."""
 
 from __future__ import annotations
 

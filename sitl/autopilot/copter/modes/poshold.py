@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""POSHOLD: the sticks lean it as in STABILIZE; let go of them, it leans back to stop (PHLD_BRAKE_*), then holds.
+"""POSHOLD: the sticks lean it as in STABILIZE; when they are centred, it brakes (PHLD_BRAKE_*) and holds its position.
 
 Roll and pitch are apart: one may be flown while the other brakes. The lean that holding took against the wind is added
 while it does not hold.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SMART_RTL: flies home the way it came, without the loops, then lands (or stays at RTL_ALT_FINAL).
+"""SMART_RTL: flies home along its recorded path, without loops, then lands (or stays at RTL_ALT_FINAL).
 
 ``smart_rtl_path`` keeps the way. A point leaves it when it is reached: left on the way, the mode goes on from there.
 """

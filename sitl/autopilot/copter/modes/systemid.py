@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SYSTEMID: STABILIZE, or holding its place, with a chirp added that shows how the vehicle answers (SID_*).
+"""SYSTEMID: STABILIZE, or holding its place, with an added chirp, for system identification (SID_*).
 
 SID_AXIS says what the chirp is added to: 1 to 3 the roll, pitch [deg] and turn rate [deg/s] that the sticks ask for,
 4 to 6 the same without feed-forward, 7 to 9 the body rates asked for [deg/s], 10 to 12 the motors' demands and 13 the

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""THROW: armed in the hand with its motors off, it starts them when it was thrown up, levels out, stops and hovers.
+"""THROW: armed in the hand with motors off; after a throw it starts the motors, levels, stops and hovers.
 
 THROW_TYPE 1: dropped, not thrown. It must be within THROW_ALT_MIN and THROW_ALT_MAX. In the air it climbs by
 THROW_ALT_ACSND, or sinks by THROW_ALT_DCSND when dropped, stops, and goes on with THROW_NEXTMODE.

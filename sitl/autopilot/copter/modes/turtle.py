@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""TURTLE: would turn a vehicle over that lies on its back, by motors that DShot turns backwards; always refused.
+"""TURTLE: would flip an overturned vehicle by reversed motors (DShot); not simulated, always refused.
 
 The simulated motors have no such controllers, as in ArduPilot's own simulator."""
 

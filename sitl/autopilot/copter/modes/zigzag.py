@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ZIGZAG: LOITER with two points, A and B, that a switch stores; then it flies to the line through either.
+"""ZIGZAG: LOITER with two points, A and B, stored by a switch; then it flies between parallel lines through A and B.
 
 The lines are at right angles to A .. B, and it flies parallel to that. Function 61: low is A, high is B, the middle
 gives back to the sticks. Function 83 sweeps from line to line (ZIGZ_AUTO_ENABLE): sideways by ZIGZ_SIDE_DIST towards

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AUTO: drives the mission's navigation commands one after the other, then does what MIS_DONE_BEHAVE says.
+"""AUTO: drives the navigation commands of the mission one after the other; at the end it follows MIS_DONE_BEHAVE.
 
 The shell writes the command under way into ``modes.nav`` and counts it up; this mode begins it, drives it and says when
 it is done (``navigation.command.complete``), upon which the shell gives the next.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""FOLLOW: drives beside another vehicle that tells where it is (FOLL_*); stops while there is none."""
+"""FOLLOW: follows another vehicle by its position messages (FOLL_*); stops without them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GUIDED: drives what the set-points say; a set-point too old stops the vehicle.
+"""GUIDED: follows the set-points; it stops when they expire.
 
 ``guided_setpoints`` takes the set-points. Positions are good until the next one. A mission's GUIDED_ENABLE drives so,
 too, within limits of time and distance.

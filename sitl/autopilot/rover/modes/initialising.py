@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""INITIALISING: until another mode is chosen, when INITIAL_MODE cannot be entered at power-on."""
+"""INITIALISING: when INITIAL_MODE cannot be entered at power-on, until another mode is selected."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SIMPLE: the stick points where to drive, seen from the heading when armed (SIMPLE_TYPE 0) or from north (1)."""
+"""SIMPLE: the stick is the direction, relative to the heading at arming (SIMPLE_TYPE 0) or to north (1)."""
 
 from __future__ import annotations
 

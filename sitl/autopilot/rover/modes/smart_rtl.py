@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SMART_RTL: drives home the way it came, without the loops.
+"""SMART_RTL: drives home along its recorded path, without loops.
 
 ``smart_rtl_path`` keeps the way.
 """
