@@ -83,9 +83,7 @@ def state(frame: Frame, speed: str) -> str:
         ("wind", f"{wind:.1f} m/s from {calls:.0f}°" if wind > 0.05 else "none"), ("item", str(frame.mission_current)),
     ]  # fmt: skip
     alarms = "".join(_badge(name, "#c0392b") for name in frame.failsafes)
-    return (
-        f'<div style="padding:0.4em 0.6em 0.2em">{mode}{armed}{ready}{alarms}{_grid(cells)}</div>'
-    )
+    return f'<div style="padding:0.4em 0.6em 0.2em">{mode}{armed}{ready}{alarms}{_grid(cells)}</div>'
 
 
 def _grid(cells: Sequence[tuple[str, str]]) -> str:
