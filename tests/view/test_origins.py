@@ -75,7 +75,7 @@ def test_a_viser_that_cannot_be_guarded_is_not_used(monkeypatch: pytest.MonkeyPa
 
         __version__ = "9.9"
 
-        def ViserServer(self, **options: Any) -> Any:  # noqa: N802 - viser's name
+        def ViserServer(self, **options: Any) -> Any:
             return "the server"
 
     monkeypatch.setattr(library, "viser", Other)
