@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.errors import SitlError
-from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
+from sitl.recording import recorder
+from sitl.recording.blocks import END, ENTRIES, HEADER, MARK, BlockReader, BlockWriter, is_recording
 from sitl.recording.entries import Entry, EntryKind, RecordingError, decode, encode, read_varint, varint
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
@@ -136,6 +137,26 @@ def test_what_cannot_be_made_again(hopped: Recorded, core: Core, change: dict[st
     recording.header.update(change)
     with pytest.raises(RecordingError, match=f"hop.rec.*{message}"):
         Replay(recording, core=core)
+
+
+def test_a_long_recording_is_packed_in_whole_entries(
+    hopped: Recorded, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, header, rows = tmp_path / "long.rec", read(hopped.path).header, []
+    writer, before = BlockWriter(path), 0
+    writer.write(HEADER, json.dumps(header).encode())
+    for k in range(40):
+        some = [Entry(1000 * k + i, EntryKind.RECEIVED, 1, bytes([k]) * (7 * i + k)) for i in range(9)]
+        times = [before, *(entry.time_us for entry in some)]
+        writer.write(ENTRIES, b"".join(map(encode, some, times)))
+        rows += some
+        before = some[-1].time_us
+    writer.write(END, json.dumps({"time_us": before, "stopped": "", "state": "", "channels": {}}).encode())
+    writer.close()
+    monkeypatch.setattr(recorder, "PACKED_BYTES", 1000)
+    recorder.repack(path)
+    assert sum(block.kind == ENTRIES for block in BlockReader(path)) > 5
+    assert read(path).entries == rows and read(path).end_us == before
 
 
 def test_entries_that_contradict_each_other(hopped: Recorded, core: Core) -> None:
