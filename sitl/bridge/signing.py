@@ -18,6 +18,8 @@ EPOCH_US = 1_420_070_400_000_000
 UNIT_US = 10
 WINDOW = 6_000_000
 """A stream that is new may be this much behind: one minute [10 us]."""
+LAST = (1 << 48) - 1
+"""The last time stamp there is [10 us]: the own one stays there."""
 MAX_STREAMS = 256
 
 
@@ -48,7 +50,7 @@ class Signing:
     """The key of a vehicle, its time stamp, and the last one of each stream that it has heard."""
 
     def __init__(self, state: SigningState = OFF) -> None:
-        self.key, self.timestamp = state.key, state.timestamp
+        self.key, self.timestamp = state.key, min(max(state.timestamp, 0), LAST)
         self._streams = dict(state.streams)
 
     def state(self) -> SigningState:
@@ -66,7 +68,7 @@ class Signing:
         The own time stamp begins a minute later: what was sent with this key before is not taken again. (ArduPilot.)
         """
         is_off = timestamp == 0 and not any(key)
-        self.key, self.timestamp = (b"", 0) if is_off else (bytes(key), timestamp + WINDOW)
+        self.key, self.timestamp = (b"", 0) if is_off else (bytes(key), min(timestamp + WINDOW, LAST))
         self._streams.clear()
 
     def follow_date(self, unix_us: int) -> None:
@@ -79,7 +81,7 @@ class Signing:
             return frame
         body = _checked(frame[:-2], SIGNED)
         stamp = bytes((link & 0xFF,)) + self.timestamp.to_bytes(6, "little")
-        self.timestamp += 1
+        self.timestamp = min(self.timestamp + 1, LAST)
         return body + stamp + self._signature(body, stamp)
 
     def accepts(self, raw: bytes, system: int, component: int) -> bool:

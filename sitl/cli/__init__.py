@@ -87,6 +87,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         return 141
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(f"sitl {command}: {str(error.filename)!r}: {error.strerror}", file=sys.stderr)
+        return 2
 
 
 def complete() -> None:

@@ -15,13 +15,16 @@ from typing import Any
 
 VARIABLE = "SITL_ALLOW_CODE"
 _ALL = "1"
+REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
+"""How the place of an autopilot that runs already begins, behind its kind; all else is a program to start."""
 
 
 def code_of_options(options: Mapping[str, Any]) -> list[str]:
     """What of an environment's options runs code of others, or acts on a vehicle, each as "name = value"."""
     frame, autopilot = options.get("frame"), options.get("autopilot", "native")
-    elsewhere = isinstance(autopilot, str) and (":tcp:" in autopilot or ":udp" in autopilot)
-    starts = isinstance(autopilot, str) and autopilot != "native" and not elsewhere
+    starts = isinstance(autopilot, str) and autopilot != "native"
+    if starts and autopilot.partition(":")[2].startswith(REACHED):
+        starts = False
     return [
         f"{name} = {options[name]!r}"
         for name, runs in (

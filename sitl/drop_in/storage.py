@@ -11,6 +11,7 @@ from ..autopilot.fence import items as fence
 from ..autopilot.fence.state import FenceState
 from ..autopilot.mission.item import MissionItem
 from ..bridge.signing import KEY_BYTES, OFF, SigningState
+from ..core import documents
 from ..errors import SitlError
 
 
@@ -34,7 +35,7 @@ class Storage:
         self.signing = OFF
         self._is_changed = False
         try:
-            kept = json.loads(path.read_text(encoding="utf-8"))
+            kept = documents.of_json(path.read_text(encoding="utf-8"))
             self.parameters = {str(name): float(value) for name, value in kept["parameters"].items()}
             self.mission = tuple(MissionItem(*item) for item in kept["mission"])
             self.fence = tuple(MissionItem(*item) for item in kept.get("fence", ()))

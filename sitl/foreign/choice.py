@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..core.code_in_files import REACHED
 from ..errors import OptionError
 from ..vehicle.kinds import KINDS
 
@@ -17,7 +18,6 @@ NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
 FOREIGN = (ARDUPILOT, PX4)
 WIND = "SIM_WIND_"
 """Beginning of the parameters of an ArduPilot that mean our physics."""
-_REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 FORMS = (
     '"native" (default); "ardupilot" or "px4" (program in PATH); "ardupilot:PROGRAM", "px4:PROGRAM"; or a running one '
     'by its MAVLink address: "ardupilot:tcp:HOST:PORT", "px4:udp:HOST:PORT"'
@@ -64,7 +64,7 @@ def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | 
     if kind not in FOREIGN:
         extra = f" with a program ({path})" if kind == NATIVE else ""
         raise OptionError(f"autopilot {text!r}{extra} is none of {FORMS}")
-    if rest.startswith(_REACHED):
+    if rest.startswith(REACHED):
         return Choice(kind, connection=rest)
     wanted = rest or (str(path) if path is not None else "")
     usual = KINDS[vehicle].programs.get(kind)

@@ -13,10 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from ..core import documents
 from .track import COLUMNS, QUANTA, Array, Track, TrackError
 
 MAGIC = b"SITLTRK\x01"
 _PACKING = {"format": lzma.FORMAT_XZ, "check": lzma.CHECK_CRC32, "preset": 9 | lzma.PRESET_EXTREME}
+_LONGEST = 1 << 26
+"""Bytes of a track, unpacked: more are no flight of a vehicle."""
 _HEADER = ("kind", "home", "modes", "items", "texts", "armed", "samples")
 
 
@@ -50,9 +53,12 @@ def unpack(data: bytes) -> Track:
     if not data.startswith(MAGIC):
         raise TrackError("these bytes are no track: they do not begin as one")
     try:
-        raw = lzma.decompress(data[len(MAGIC) :], format=lzma.FORMAT_XZ)
+        unpacker = lzma.LZMADecompressor(lzma.FORMAT_XZ)
+        raw = unpacker.decompress(data[len(MAGIC) :], _LONGEST)
+        if not unpacker.eof:
+            raise ValueError("it is too long, or incomplete")
         size = int.from_bytes(raw[:4], "little")
-        header = json.loads(raw[4 : 4 + size])
+        header = documents.of_json(raw[4 : 4 + size])
         kind, home, modes, items, texts, armed, count = (header[name] for name in _HEADER)
         whole = _columns(raw[4 + size :], int(count))
     except (lzma.LZMAError, ValueError, KeyError, TypeError, EOFError) as error:

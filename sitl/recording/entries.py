@@ -65,6 +65,9 @@ class Entry(NamedTuple):
     data: bytes = b""
 
 
+_LAST_SHIFT = 63
+
+
 def varint(value: int) -> bytes:
     """An unsigned integer as a varint: seven bits a byte, least significant first."""
     out = bytearray()
@@ -80,6 +83,7 @@ def read_varint(data: bytes, at: int) -> tuple[int, int]:
 
     Raises:
         IndexError: the data ends within it.
+        ValueError: it does not fit 64 bits.
     """
     value = shift = 0
     while True:
@@ -87,8 +91,13 @@ def read_varint(data: bytes, at: int) -> tuple[int, int]:
         at += 1
         value |= (byte & 0x7F) << shift
         if byte < 0x80:
-            return value, at
+            if value < 1 << 64:
+                return value, at
+            break
         shift += 7
+        if shift > _LAST_SHIFT:
+            break
+    raise ValueError("a number that does not fit 64 bits")
 
 
 def encode(entry: Entry, before_us: int) -> bytes:

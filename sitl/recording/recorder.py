@@ -25,6 +25,8 @@ CHECK_US = 10_000_000
 """Simulated time between two digests that say where a replay goes astray [us]."""
 BLOCK_BYTES = 1 << 18
 """Largest number of bytes kept before they are written; ``flush`` writes at once."""
+PACKED_BYTES = 1 << 22
+"""Bytes of entries that are packed together, at least, when there are more."""
 REPACKED_BYTES = 1 << 26
 """A recording up to this size is packed anew when the run ends: smaller, and equal runs give equal files."""
 LOG, TCP, UDP, IN_PROCESS, OTHER = "log", "tcp", "udp", "inprocess", "other"
@@ -258,10 +260,14 @@ def repack(path: Path) -> None:
     blocks = list(BlockReader(path))
     beside = path.with_name(path.name + ".packing")
     writer = BlockWriter(beside)
-    entries = b"".join(block.data for block in blocks if block.kind == ENTRIES)
     writer.write(HEADER, blocks[0].data, LZMA)
-    for at in range(0, len(entries), 1 << 22):
-        writer.write(ENTRIES, entries[at : at + (1 << 22)], LZMA)
+    together = bytearray()
+    for block in blocks:
+        if block.kind == ENTRIES:
+            together += block.data
+        if together and (len(together) >= PACKED_BYTES or block.kind != ENTRIES):
+            writer.write(ENTRIES, bytes(together), LZMA)  # of whole entries: each block is read for itself
+            together.clear()
     for block in blocks:
         if block.kind in (SECTION, END):
             writer.write(block.kind, block.data)

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..core import documents
 from .blocks import END, ENTRIES, HEADER, SECTION, Block, BlockReader
 from .entries import Entry, RecordingError, decode
 
@@ -60,14 +60,14 @@ def read(path: str | Path, unfinished: bool = False) -> Recording:
             if header is None:
                 if block.kind != HEADER:
                     raise ValueError("a recording begins with what the run was made of")
-                header = _json(block, HEADER_KEYS)
+                header = _header(block)
             elif block.kind == ENTRIES:
                 entries += decode(block.data, entries[-1].time_us if entries else 0)
             elif block.kind == SECTION:
                 name, _, data = block.data.partition(b"\0")
                 sections[name.decode()] = data
             elif block.kind == END:
-                end = _json(block, END_KEYS)
+                end = _end(block)
             else:
                 raise ValueError("what the run was made of stands twice")
         except (ValueError, KeyError, TypeError) as error:
@@ -86,8 +86,40 @@ def read(path: str | Path, unfinished: bool = False) -> Recording:
     return found
 
 
+_TYPES: dict[str, tuple[type, ...]] = {
+    "version": (dict,), "airframe": (dict,), "params": (dict,), "home": (list,), "vehicle": (str,), "physics": (str,),
+    "world": (dict, type(None)),
+}  # fmt: skip
+"""Those of the header's values in which others are looked up."""
+
+
+def _header(block: Block) -> dict[str, Any]:
+    found = _json(block, HEADER_KEYS)
+    for key, types in _TYPES.items():
+        if not isinstance(found[key], types):
+            raise ValueError(f"its {key} is {found[key]!r}")
+    version, airframe = found["version"], found["airframe"]
+    if not {"sources", "compiled core"} <= version.keys() or not isinstance(version["sources"], dict):
+        raise ValueError("its version names no sources")
+    if not isinstance(airframe["name"], str) or not all(
+        isinstance(airframe[group], dict) for group in ("figures", "parameters")
+    ):
+        raise ValueError("its airframe has no name, figures or parameters")
+    return found
+
+
+def _end(block: Block) -> dict[str, Any]:
+    found = _json(block, END_KEYS)
+    time_us, channels = found["time_us"], found["channels"]
+    if type(time_us) is not int or not 0 <= time_us < 1 << 63:
+        raise ValueError(f"it ends at {time_us!r} us")
+    if not isinstance(channels, dict):
+        raise ValueError(f"its channels are {channels!r}")
+    return found
+
+
 def _json(block: Block, keys: frozenset[str]) -> dict[str, Any]:
-    found = json.loads(block.data)
+    found = documents.of_json(block.data)
     if not isinstance(found, dict) or not keys <= found.keys():
         raise ValueError("it misses " + ", ".join(sorted(keys - set(found))))
     return found

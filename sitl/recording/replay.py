@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections import defaultdict
 from collections.abc import Callable
@@ -12,7 +11,9 @@ from typing import Any
 
 from ..bridge.frame import Splitter
 from ..bridge.links.inprocess import FrameWriter
+from ..core import documents
 from ..core.compile import Progress
+from ..errors import SitlError
 from ..logs.dataflash.log import attach
 from ..plants.plant import is_remote
 from ..scenario import Scenario
@@ -73,7 +74,7 @@ class Replay:
         self.recording = recording
         for entry in recording.entries:
             if entry.kind is EntryKind.NOT_REPLAYABLE:
-                raise RecordingError(f"{self._at_entry(entry)} {entry.data.decode()}: it cannot be flown")
+                raise RecordingError(f"{self._at_entry(entry)} {_text(entry)}: it cannot be flown")
         self.simulation = _build(recording, frame, world, physics, core, progress)
         try:
             self.differences = identity.differences(recording.header, identity.describe(self.simulation))
@@ -95,7 +96,10 @@ class Replay:
         self._astray: set[str] = set()
         for entry in recording.entries:
             if entry.kind is EntryKind.CONGESTED:
-                sent, _ = read_varint(entry.data, 1)
+                try:
+                    sent, _ = read_varint(entry.data, 1)
+                except (IndexError, ValueError):
+                    raise self._senseless(entry) from None
                 self._flips[entry.number].append(Flip(entry.time_us, sent, bool(entry.data[0])))
 
     # ------------------------------------------------------------------ going on
@@ -121,10 +125,10 @@ class Replay:
             self._at += 1
             try:
                 self._do(entry)
-            except (KeyError, IndexError, TypeError, ValueError) as error:
+            except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
                 if isinstance(error, RecordingError) or entry.kind not in _STRUCTURE:
                     raise
-                raise RecordingError(f"{self._at_entry(entry)} {entry.kind.name} makes no sense: {error!r}") from error
+                raise self._senseless(entry, f": {error!r}") from error
         if self.simulation.time_us < time_us:
             self.simulation.advance_to(time_us)
 
@@ -142,7 +146,7 @@ class Replay:
         elif kind is EntryKind.SERVED:
             self.simulation.advance_to(self.simulation.time_us)
         elif kind is EntryKind.LINK:
-            self._open(number, *json.loads(entry.data))
+            self._open(number, *documents.of_json(entry.data))
         elif kind is EntryKind.UNLINK:
             bridge.remove_link(self._links.pop(number))
         elif kind is EntryKind.CONNECTED:
@@ -153,13 +157,13 @@ class Replay:
             link.add_peer(peer)
         elif kind is EntryKind.DISCONNECTED:
             peer = self._peers.pop(number)
-            peer.closed, peer.why_closed = True, entry.data.decode()
+            peer.closed, peer.why_closed = True, _text(entry)
             for link in self._links.values():
                 if peer in link.peers:
                     link.peers.remove(peer)
             bridge.flush()
         elif kind is EntryKind.STREAMS:
-            bridge.stream_to(self._links[number], json.loads(entry.data))
+            bridge.stream_to(self._links[number], documents.of_json(entry.data))
         elif kind is EntryKind.LOCKSTEP:
             if entry.data:
                 bridge.free_clock()
@@ -173,7 +177,7 @@ class Replay:
         elif kind is EntryKind.LOGS:
             self._keep_logs()
         elif kind is EntryKind.FAULT:
-            self.simulation.order_fault(entry.data.decode())
+            self.simulation.order_fault(_text(entry))
         elif kind is EntryKind.CHECK:
             self._check(entry)
 
@@ -184,6 +188,9 @@ class Replay:
 
     def _at_entry(self, entry: Entry) -> str:
         return f"{_title(self.recording)}: at {entry.time_us * 1e-6:.3f} s"
+
+    def _senseless(self, entry: Entry, why: str = "") -> RecordingError:
+        return RecordingError(f"{self._at_entry(entry)} {entry.kind.name} makes no sense{why}")
 
     def _open(self, number: int, kind: str, name: str) -> None:
         writer = self._log(self.simulation) if kind == LOG and self._log is not None else None
@@ -260,6 +267,10 @@ def asks_for_logs(recording: Recording) -> bool:
     )
 
 
+def _text(entry: Entry) -> str:
+    return entry.data.decode(errors="replace")
+
+
 def _title(recording: Recording) -> str:
     return f"recording {str(recording.path)!r}"
 
@@ -273,6 +284,23 @@ def _build(
     progress: Progress | None,
 ) -> Simulation:
     """The simulation of a recording, at power-on."""
+    try:
+        return _simulation(recording, frame, world, physics, core, progress)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        if isinstance(error, SitlError):
+            raise
+        why = f"{type(error).__name__}: {error}"
+        raise RecordingError(f"{_title(recording)}: what it was made of cannot be understood ({why})") from error
+
+
+def _simulation(
+    recording: Recording,
+    frame: str | Airframe | None,
+    world: str | Path | World | None,
+    physics: str | None,
+    core: Core | None,
+    progress: Progress | None,
+) -> Simulation:
     header: dict[str, Any] = recording.header
     title = _title(recording)
     physics = physics or header["physics"]

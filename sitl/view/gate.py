@@ -15,6 +15,7 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from ..errors import SitlError
+from .origins import is_own
 
 COOKIE = "sitl_view"
 LEAST = 8
@@ -91,23 +92,38 @@ class Gate:
         words = lines[0].split(" ")
         if len(words) != 3:
             return refusal()
-        url = urlsplit(words[1])
+        try:
+            url = urlsplit(words[1])
+        except ValueError:
+            return refusal()
         if self._is_right(*parse_qs(url.query).get("token", [""])):
             cookie = f"{COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/"
             return _answer("303 See Other", "", f"Location: {url.path or '/'}\r\nSet-Cookie: {cookie}\r\n")
-        shown = [line.partition(":")[2].strip() for line in lines[1:] if line.lower().startswith("cookie:")]
+        headers = [
+            (name.strip().lower(), value.strip()) for name, _, value in (line.partition(":") for line in lines[1:])
+        ]
+        shown, hosts, origins = (
+            [v for name, v in headers if name == wanted] for wanted in ("cookie", "host", "origin")
+        )
         try:
             cookies = SimpleCookie("; ".join(shown))
         except CookieError:
             return refusal()
-        return None if COOKIE in cookies and self._is_right(cookies[COOKIE].value) else refusal()
+        knows = COOKIE in cookies and self._is_right(cookies[COOKIE].value)
+        return None if knows and len(hosts) == 1 and is_own(hosts[0], origins) else refusal()
 
     def _is_right(self, token: str, *more: str) -> bool:
         return not more and hmac.compare_digest(token.encode(), self._token.encode())
 
+    def _as_from_here(self, head: bytes) -> bytes:
+        """A request as the server inside gets it: for 127.0.0.1, and without the origin, which is judged already."""
+        first, *lines = head.split(b"\r\n")
+        kept = [line for line in lines if line.partition(b":")[0].strip().lower() not in (b"host", b"origin")]
+        return b"\r\n".join([first, f"Host: 127.0.0.1:{self._target}".encode(), *kept])
+
     async def _pass_on(self, head: bytes, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         inner_reader, inner_writer = await asyncio.open_connection("127.0.0.1", self._target)
-        inner_writer.write(head)
+        inner_writer.write(self._as_from_here(head))
         inward = asyncio.create_task(_speak(reader, inner_writer))
         try:
             await _pump(inner_reader, writer)  # the server inside ends it, also when the visitor has said all

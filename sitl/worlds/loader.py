@@ -11,6 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from ..core import documents
 from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
 from .tables import COLOURS, SINGLE, TABLES, Key, is_number, written
 from .world import World
@@ -41,7 +42,7 @@ def parse(content: str, file: str) -> World:
         WorldError: as ``read``.
     """
     try:
-        document = tomllib.loads(content)
+        document = documents.toml(content)
     except tomllib.TOMLDecodeError as error:
         raise WorldError(f"world file {file!r} is not TOML: {error}") from None
     reader = _Reader(file)

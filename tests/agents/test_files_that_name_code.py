@@ -22,6 +22,8 @@ NAMED = [
     ({"frame": "theirs.py"}, r"frame = 'theirs\.py'"),
     ({"autopilot": "ardupilot:./theirs"}, r"autopilot = 'ardupilot:\./theirs'"),
     ({"autopilot": "px4"}, "autopilot = 'px4'"),
+    ({"autopilot": "ardupilot:./a:tcp:b/theirs"}, r"autopilot = 'ardupilot:\./a:tcp:b/theirs'"),
+    ({"autopilot": "px4:./a:udp:b/theirs"}, r"autopilot = 'px4:\./a:udp:b/theirs'"),
     ({"autopilot_path": "./theirs"}, r"autopilot_path = '\./theirs'"),
     ({"connection": "tcp:127.0.0.1:1", "reset": "force"}, "reset = 'force'"),
     ({"connection": "tcp:127.0.0.1:1", "guard": False}, "guard = False"),
@@ -60,6 +62,17 @@ def test_a_module_before_an_id_is_code(tmp_path):
     """Gymnasium would import it."""
     with pytest.raises(AgentError, match=REFUSED.format("env = 'theirs:Env-v0'")):
         RunFolder(run_folder(tmp_path / "run", env="theirs:Env-v0"))
+
+
+def test_an_environment_of_the_old_gym_is_code(tmp_path):
+    """It takes the id of another one, which may name a module."""
+    with pytest.raises(AgentError, match=REFUSED.format("env = 'GymV26Environment-v0'")):
+        RunFolder(run_folder(tmp_path / "run", env="GymV26Environment-v0", env_options={"env_id": "theirs:Env-v0"}))
+
+
+def test_an_autopilot_that_runs_elsewhere_is_no_program(tmp_path):
+    options = {"autopilot": "ardupilot:tcp:127.0.0.1:5760"}
+    assert RunFolder(run_folder(tmp_path / "run", env_options=options)).config.code == []
 
 
 def test_what_the_user_allows(tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import socket
 
@@ -110,6 +111,42 @@ def test_a_silent_tcp_client_gives_way_to_another_one(bench: Bench, monkeypatch:
     bench.bridge.close()
     for c in clients:
         c.close()
+
+
+@pytest.mark.parametrize(
+    "pieces",
+    [(b"POST / HTTP/1.1\r\n\r\n" + REQUEST,), (b"GE", b"T / HTTP/1.1\r\n\r\n", REQUEST), (b"OPTIONS ", REQUEST)],
+)
+def test_what_a_site_lets_a_browser_post_is_not_heard(bench: Bench, pieces: tuple[bytes, ...]) -> None:
+    link = TcpServerLink(0)
+    bench.bridge.add_link(link)
+    with socket.create_connection(link.local_address) as browser:
+        for piece in pieces:
+            with contextlib.suppress(OSError):  # it may have been dropped already
+                browser.sendall(piece)
+            receive(bench)
+        for _ in range(TRIES):
+            receive(bench)
+            if bench.bridge.dropped:
+                break
+        assert "client speaks HTTP, not MAVLink" in bench.bridge.dropped[0] and not link.peers
+        browser.settimeout(5.0)
+        with contextlib.suppress(ConnectionResetError):
+            assert "COMMAND_ACK" not in names(browser.recv(4096))
+    bench.bridge.close()
+
+
+@pytest.mark.parametrize("before", [b"G", b"GOT ", b"noise POST ", b"PO" + REQUEST])
+def test_bytes_before_a_frame_are_no_browser(bench: Bench, before: bytes) -> None:
+    link = TcpServerLink(0)
+    bench.bridge.add_link(link)
+    with socket.create_connection(link.local_address) as client:
+        client.settimeout(5.0)
+        client.sendall(before + REQUEST)
+        receive(bench)
+        receive(bench)
+        assert names(client.recv(4096))[0] == "COMMAND_ACK"
+    bench.bridge.close()
 
 
 def test_notes_that_nobody_takes_are_few(bench: Bench) -> None:

@@ -10,7 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.frame import Splitter
 from sitl.bridge.services.signing import SigningService
-from sitl.bridge.signing import WINDOW, is_signed
+from sitl.bridge.services.statustext import HEARTBEAT
+from sitl.bridge.signing import LAST, WINDOW, is_signed
 from tests.bridge.fakes import Bench, Client
 
 KEY = bytes(range(32))
@@ -103,6 +104,24 @@ def test_a_frame_that_was_changed_on_the_way_is_refused(bench: Bench, client: Cl
     client.link.send(bytes(raw))
     bench.bridge.receive()
     assert client.receive() == []
+
+
+@pytest.mark.parametrize("timestamp", [2**64 - 1, 2**48 - 1, LAST - WINDOW])
+def test_time_stamps_end_where_48_bits_do(bench: Bench, timestamp: int) -> None:
+    """An absurd one, which anybody may give an unsigned vehicle, does not end the run."""
+    client = outside(bench)
+    set_key(bench, client, timestamp=timestamp)
+    sign(client, timestamp=LAST)
+    for _ in range(2):
+        bench.bridge.send_to_all(HEARTBEAT)
+        bench.bridge.flush()
+    stamps = [int.from_bytes(frame.raw[-12:-6], "little") for frame in Splitter().feed(client.link.receive())]
+    assert stamps[-2:] == [LAST, LAST]
+
+
+def test_a_client_at_the_last_time_stamp(bench: Bench, client: Client) -> None:
+    sign(client, timestamp=LAST)
+    assert answers(bench, client) == ["PING"]
 
 
 def test_each_stream_counts_for_itself(bench: Bench, client: Client) -> None:

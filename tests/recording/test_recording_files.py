@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.recording.blocks import END, HEADER, MARK, BlockReader, BlockWriter, is_recording
+from sitl.errors import SitlError
+from sitl.recording import recorder
+from sitl.recording.blocks import END, ENTRIES, HEADER, MARK, BlockReader, BlockWriter, is_recording
 from sitl.recording.entries import Entry, EntryKind, RecordingError, decode, encode, read_varint, varint
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
@@ -136,6 +139,26 @@ def test_what_cannot_be_made_again(hopped: Recorded, core: Core, change: dict[st
         Replay(recording, core=core)
 
 
+def test_a_long_recording_is_packed_in_whole_entries(
+    hopped: Recorded, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, header, rows = tmp_path / "long.rec", read(hopped.path).header, []
+    writer, before = BlockWriter(path), 0
+    writer.write(HEADER, json.dumps(header).encode())
+    for k in range(40):
+        some = [Entry(1000 * k + i, EntryKind.RECEIVED, 1, bytes([k]) * (7 * i + k)) for i in range(9)]
+        times = [before, *(entry.time_us for entry in some)]
+        writer.write(ENTRIES, b"".join(map(encode, some, times)))
+        rows += some
+        before = some[-1].time_us
+    writer.write(END, json.dumps({"time_us": before, "stopped": "", "state": "", "channels": {}}).encode())
+    writer.close()
+    monkeypatch.setattr(recorder, "PACKED_BYTES", 1000)
+    recorder.repack(path)
+    assert sum(block.kind == ENTRIES for block in BlockReader(path)) > 5
+    assert read(path).entries == rows and read(path).end_us == before
+
+
 def test_entries_that_contradict_each_other(hopped: Recorded, core: Core) -> None:
     for entry in (
         Entry(5, EntryKind.RECEIVED, 77, b"x"),
@@ -150,6 +173,69 @@ def test_entries_that_contradict_each_other(hopped: Recorded, core: Core) -> Non
     del recording.header["version"]["sources"]
     with pytest.raises(RecordingError, match="what it was made of cannot be understood: KeyError"):
         Replay(recording, core=core)
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        Entry(5, EntryKind.CONGESTED),
+        Entry(5, EntryKind.CONGESTED, 1, b"\x01\x80"),
+        Entry(5, EntryKind.LINK, 5, b"[" * 50_000),
+        Entry(5, EntryKind.STREAMS, 0, b"[]"),
+        Entry(5, EntryKind.FAULT, 0, b"\xff\xff"),
+        Entry(5, EntryKind.NOT_REPLAYABLE, 0, b"\xff\xff"),
+        Entry(5, EntryKind.DISCONNECTED, 77, b"\xff"),
+    ],
+)
+def test_entries_that_make_no_sense(hopped: Recorded, core: Core, entry: Entry) -> None:
+    recording = read(hopped.path)
+    after = next(k for k, other in enumerate(recording.entries) if other.time_us > entry.time_us)
+    recording.entries.insert(after, entry)
+    with pytest.raises(SitlError):
+        Replay(recording, core=core).run()
+
+
+@pytest.mark.parametrize("data", [b"\xff" * 100_000 + b"\x01", b"\xff" * 9 + b"\x02"])
+def test_numbers_beyond_64_bits(data: bytes) -> None:
+    with pytest.raises(ValueError, match="64 bits"):
+        read_varint(data, 0)
+
+
+@pytest.mark.parametrize(
+    "kind, change, message",
+    [
+        (HEADER, {"version": "x"}, "its version is 'x'"),
+        (HEADER, {"version": {"sources": [], "compiled core": ""}}, "its version names no sources"),
+        (HEADER, {"world": "x"}, "its world is 'x'"),
+        (HEADER, {"params": [[1], [2]]}, "its params is"),
+        (HEADER, {"airframe": {"name": "x", "figures": {}, "parameters": 3}}, "its airframe has no name, figures or"),
+        (END, {"time_us": None}, "it ends at None us"),
+        (END, {"time_us": 1e308}, "it ends at 1e.308 us"),
+        (END, {"time_us": -1}, "it ends at -1 us"),
+        (END, {"time_us": 1 << 63}, "it ends at"),
+        (END, {"channels": None}, "its channels are None"),
+    ],
+)
+def test_values_of_other_types(
+    hopped: Recorded, tmp_path: Path, kind: int, change: dict[str, Any], message: str
+) -> None:
+    writer = BlockWriter(tmp_path / "x.rec")
+    for block in BlockReader(hopped.path):
+        changed = json.dumps({**json.loads(block.data), **change}).encode() if block.kind == kind else block.data
+        writer.write(block.kind, changed)
+    writer.close()
+    with pytest.raises(RecordingError, match=message):
+        read(tmp_path / "x.rec")
+
+
+@pytest.mark.parametrize("kind", [HEADER, END])
+def test_lists_without_end(hopped: Recorded, tmp_path: Path, kind: int) -> None:
+    writer = BlockWriter(tmp_path / "x.rec")
+    for block in BlockReader(hopped.path):
+        writer.write(block.kind, b"[" * 100_000 if block.kind == kind else block.data)
+    writer.close()
+    with pytest.raises(RecordingError, match="within each other"):
+        read(tmp_path / "x.rec")
 
 
 def test_another_version_is_flown_and_named(hopped: Recorded, core: Core) -> None:

@@ -65,14 +65,22 @@ def test_who_knows_it_gets_a_cookie_and_passes_with_it(gate: Gate) -> None:
     answer = ask(gate, f"/?token={TOKEN}").decode()
     assert answer.startswith("HTTP/1.1 303 ") and "Location: /\r\n" in answer
     assert f"{COOKIE}={TOKEN}; HttpOnly; SameSite=Strict" in answer
-    passed = ask(gate, "/somewhere", f"Cookie: other=1; {COOKIE}={TOKEN}\r\n")
+    passed = ask(gate, "/somewhere", f"Origin: http://x\r\nCookie: other=1; {COOKIE}={TOKEN}\r\n")
     assert passed.startswith(b"GET /somewhere HTTP/1.1"), "the server inside has heard it, and its answer came back"
+    assert b"\r\nHost: 127.0.0.1:" in passed and b"x" not in passed.split(b"Cookie")[0], "as from this machine"
+
+
+def test_a_page_of_another_port_is_turned_away_with_its_cookie(gate: Gate) -> None:
+    for origin in ("http://x:81", "null", "http://x\r\nOrigin: http://y"):
+        answer = ask(gate, "/", f"Cookie: {COOKIE}={TOKEN}\r\nOrigin: {origin}\r\n")
+        assert answer.startswith(b"HTTP/1.1 403 "), origin
 
 
 def test_garbage_is_turned_away(gate: Gate) -> None:
     with socket.create_connection(("127.0.0.1", gate.port), timeout=30.0) as connection:
         connection.sendall(b"\x00\xff nonsense\r\n\r\n")
         assert connection.recv(100).startswith(b"HTTP/1.1 403 ")
+    assert ask(gate, "//[").startswith(b"HTTP/1.1 403 ")
 
 
 def test_tokens_that_are_none_are_named() -> None:

@@ -17,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core import documents
+
 from ..errors import AgentError
 from ..runs.files import write_bytes
 from . import models, plain
@@ -91,7 +93,7 @@ def score_of(path: Path) -> Score:
     """
     try:
         with _opened(path) as archive:
-            return tuple(float(figure) for figure in json.loads(archive.read(_ABOUT))["score"])
+            return tuple(float(figure) for figure in documents.of_json(archive.read(_ABOUT))["score"])
     except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
         raise AgentError(f"{path} is no best model: {error}") from None
 
@@ -111,7 +113,7 @@ def resume(path: Path, model: Any, robots: Any) -> None:
         with _opened(path) as archive:
             _read_weights(archive, model)
             with np.load(io.BytesIO(archive.read(_ARRAYS)), allow_pickle=False) as arrays:
-                state = plain.decode(json.loads(archive.read(_STATE)), dict(arrays))
+                state = plain.decode(documents.of_json(archive.read(_STATE)), dict(arrays))
             for name in _COUNTED:
                 if name in state["model"]:
                     setattr(model, name, state["model"][name])
@@ -131,7 +133,7 @@ def load(path: Path, algorithm: str) -> tuple[Any, Spaces]:
     """
     try:
         with _opened(path) as archive:
-            about = json.loads(archive.read(_ABOUT))
+            about = documents.of_json(archive.read(_ABOUT))
             seen, actions = space_of(about["features"]), space_of(about["moves"])
             model = models.empty(algorithm, about["net_arch"], seen, actions)
             _read_weights(archive, model)

@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core import documents
+
 from ..errors import AgentError
 from ..runs.files import write_bytes
 from .actions import Actions
@@ -66,7 +68,7 @@ def read(path: Path) -> tuple[dict[str, Any], DeepPolicy]:
     """
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:
-            about = json.loads(bytes(arrays["about"]))
+            about = documents.of_json(bytes(arrays["about"]))
             if about["format"] != FORMAT:
                 raise AgentError(f"{path} has format {about['format']!r}; this version reads {FORMAT}")
             layers = [

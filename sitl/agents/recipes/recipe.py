@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sitl.core import code_in_files
+from sitl.core import code_in_files, documents
 from sitl.errors import MissingExtra, did_you_mean
 
 from .. import algorithms, environments
@@ -131,7 +131,7 @@ def read(path: Path) -> Recipe:
     except (OSError, ValueError) as error:
         raise AgentError(f"recipe {path} cannot be read: {error}") from None
     try:
-        return _recipe(path.stem, tomllib.loads(text))
+        return _recipe(path.stem, documents.toml(text))
     except (tomllib.TOMLDecodeError, AgentError) as error:
         raise AgentError(f"recipe {path}: {error}") from None
 

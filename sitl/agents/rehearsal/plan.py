@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sitl.core import code_in_files
+from sitl.core import code_in_files, documents
 from sitl.errors import did_you_mean
 
 from ..errors import AgentError
@@ -137,7 +137,7 @@ def plan_for(robot: str) -> Plan:
 
 def _read(path: Path) -> Plan:
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
+        values = documents.toml(path.read_text(encoding="utf-8"))
         _known(f"keys: {', '.join(_KEYS)}", values, _KEYS)
         changes = values.get("change", [])
         if not isinstance(changes, list):

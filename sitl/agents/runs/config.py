@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import sitl
-from sitl.core import code_in_files
+from sitl.core import code_in_files, documents
 
 from ..errors import AgentError
 from .files import write_json
@@ -22,6 +21,8 @@ EPISODES = 3000
 MAX_STEPS = 1500
 """Default lengths, the paper's: episodes of a run, steps of an episode."""
 _NO_DIFFERENCE = ("versions", "episodes", "steps", "evaluation")
+_OF_OLD_GYM = "GymV"
+"""Environments that Gymnasium makes with the package gym, by a name of their own."""
 _LIBRARIES = ("numpy", "numba", "gymnasium")
 
 
@@ -33,7 +34,8 @@ def versions(*libraries: str) -> dict[str, str]:
 
 def code_of(env: Any, *options: Any) -> list[str]:
     """What of an environment's id and options runs code of others, or acts on a vehicle."""
-    named = [f"env = {env!r}"] if isinstance(env, str) and ":" in env else []  # Gymnasium imports what stands before
+    runs = isinstance(env, str) and (":" in env or env.startswith(_OF_OLD_GYM))  # Gymnasium imports what stands before
+    named = [f"env = {env!r}"] if runs else []
     tables = [table for table in options if isinstance(table, Mapping)]
     return named + [name for table in tables for name in code_in_files.code_of_options(table)]
 
@@ -107,7 +109,7 @@ class RunConfig:
             AgentError: it is something else, or it names code that the user has not allowed.
         """
         try:
-            values = json.loads(path.read_text())
+            values = documents.of_json(path.read_text())
         except FileNotFoundError:
             raise AgentError(f"{path.parent} is no run: it has no {path.name}") from None
         except (OSError, ValueError) as error:

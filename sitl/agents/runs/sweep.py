@@ -13,6 +13,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from sitl.core import documents
+
 from ..errors import AgentError
 from . import folder as folders
 from .files import make_folder, write_json
@@ -117,7 +119,7 @@ class Sweep:
             AgentError: there is none.
         """
         try:
-            found = json.loads((path / FILE).read_text())
+            found = documents.of_json((path / FILE).read_text())
             return cls(path, {str(name): dict(values) for name, values in found.items()})
         except FileNotFoundError:
             raise AgentError(f"{path} is no sweep: it has no {FILE}") from None

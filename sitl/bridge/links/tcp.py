@@ -25,6 +25,8 @@ MAX_CONNECTIONS = 64
 CONNECT_S = 5.0
 """Wall time to connect to a client that listens [s]."""
 _READ_BYTES = 1 << 16
+_WEB = tuple(f"{word} ".encode() for word in ("GET", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "PATCH", "CONNECT"))
+"""Beginnings of what a browser sends: it lets any site's page post bytes to this machine, frames among them."""
 
 
 _NO_ROOM = frozenset((errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM))
@@ -46,6 +48,8 @@ class _TcpPeer(Peer):
         self._socket = sock
         self._link = link
         self._pending = bytearray()
+        self._begin: bytes | None = b""
+        """First bytes from the client, as long as they may become the beginning of HTTP."""
 
     @property
     def congested(self) -> bool:
@@ -74,10 +78,17 @@ class _TcpPeer(Peer):
         except OSError as error:
             self.drop(f"connection lost: {error.strerror or error}")
             return
-        if data:
+        if self._begin is not None and self._is_web(data):
+            self.drop("client speaks HTTP, not MAVLink")
+        elif data:
             self._link.deliver(self, data)
         else:
             self.drop("client closed the connection")
+
+    def _is_web(self, data: bytes) -> bool:
+        begin = (self._begin or b"") + data[:8]
+        self._begin = begin if any(word.startswith(begin) for word in _WEB) else None
+        return begin.startswith(_WEB)
 
     def drop(self, why: str) -> None:
         """Close the connection and say why."""

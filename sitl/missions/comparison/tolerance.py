@@ -12,6 +12,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from sitl.core import documents
 from sitl.errors import OptionError
 from sitl.vehicle.kinds import DEFAULT, KINDS
 
@@ -68,7 +69,7 @@ def load(given: str | Path | Mapping[str, Any], kind: str = DEFAULT) -> Toleranc
         return _build(given, _preset(given), kind)
     file = Path(given)
     try:
-        table = tomllib.loads(file.read_text())
+        table = documents.toml(file.read_text())
     except OSError as error:
         raise ToleranceError(
             f"tolerance {str(given)!r} cannot be read ({error.strerror or error}), and is none of {', '.join(PRESETS)}"

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sitl import vehicles
-from sitl.core import code_in_files
+from sitl.core import code_in_files, documents
 from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import DEFAULT, KINDS
@@ -125,7 +125,7 @@ def _table(folder: Path) -> dict[str, Any]:
     if not path.exists():
         return {}
     try:
-        return tomllib.loads(path.read_text())
+        return documents.toml(path.read_text())
     except OSError as error:
         raise SuiteError(f"{path} cannot be read: {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
