@@ -8,6 +8,7 @@ It draws dronekit_goto.png and needs dronekit, future (which DroneKit imports) a
 
 import collections
 import collections.abc
+import functools
 import sys
 import time
 
@@ -33,6 +34,12 @@ def wait(what: str, condition, seconds: float) -> None:
     print(what, flush=True)
 
 
+def is_near(vehicle, goal) -> bool:
+    """Whether the vehicle is within about a metre of a place."""
+    here = vehicle.location.global_relative_frame
+    return abs(here.lat - goal.lat) + abs(here.lon - goal.lon) < 1e-5 and abs(here.alt - goal.alt) < 1
+
+
 def main() -> None:
     """Fly, and draw the flight."""
     vehicle = connect(sys.argv[1] if len(sys.argv) > 1 else "udpin:0.0.0.0:14550", wait_ready=True, timeout=60)
@@ -50,12 +57,7 @@ def main() -> None:
     for north, east, height in PLACES:
         goal = LocationGlobalRelative(home.lat + north, home.lon + east, height)
         vehicle.simple_goto(goal, groundspeed=6)
-        here = lambda: vehicle.location.global_relative_frame  # noqa: E731
-        wait(
-            f"at {north:g}, {east:g} degrees, {height:.0f} m",
-            lambda: abs(here().lat - goal.lat) + abs(here().lon - goal.lon) < 1e-5 and abs(here().alt - goal.alt) < 1,  # noqa: B023
-            60,
-        )
+        wait(f"{height:.0f} m above {north:g}, {east:g}", functools.partial(is_near, vehicle, goal), 60)
     vehicle.mode = VehicleMode("RTL")
     wait("landed and disarmed", lambda: not vehicle.armed, 120)
     vehicle.close()
@@ -63,6 +65,7 @@ def main() -> None:
     figure = plt.figure(figsize=(5, 4.4), layout="constrained")
     axes = figure.add_subplot(projection="3d")
     axes.plot(*zip(*places))
+    axes.set_box_aspect(None, zoom=0.85)  # room for the labels
     axes.set(xlabel="east [m]", ylabel="north [m]", zlabel="height [m]")
     figure.savefig("dronekit_goto.png", dpi=80)
 

@@ -68,8 +68,10 @@ def main() -> None:
     action.arm()
     action.takeoff()
     wait_for("at altitude", lambda: telemetry.position().relative_altitude_m > 9.5, 30.0)
-    offboard.set_velocity_ned(VelocityNedYaw(4.0, 3.0, 0.0, 0.0))  # north-east, out of the fence
+    offboard.set_velocity_ned(VelocityNedYaw(-1.0, -4.0, 0.0, 0.0))  # north, east, down [m/s], yaw [deg]
     offboard.start()
+    time.sleep(5.0)
+    offboard.set_velocity_ned(VelocityNedYaw(5.0, 2.0, 0.0, 0.0))  # out of the fence
     wait_for("outside", lambda: telemetry.flight_mode().name == "RETURN_TO_LAUNCH", 60.0)
     wait_for("landed and disarmed", lambda: not telemetry.armed(), 120.0)
     mavsdk.destroy()
@@ -78,6 +80,7 @@ def main() -> None:
     figure, axes = plt.subplots(figsize=(5, 4.6), layout="constrained")
     axes.plot(easts, norths, "r--", label="fence")
     axes.plot(*zip(*way), label="flight")
+    axes.plot(0, 0, "ks", label="home")
     axes.set(xlabel="east [m]", ylabel="north [m]", aspect="equal")
     axes.legend()
     figure.savefig("mavsdk_geofence.png", dpi=80)

@@ -18,7 +18,7 @@ try:
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is missing: pip install matplotlib") from None
 
-EPISODES = 1500
+EPISODES = 1200
 LEARN, DISCOUNT = 0.2, 0.9
 EXPLORE, DECAY = 0.9, 0.995
 """Share of random actions in the first episode, and by what it is multiplied after each."""

@@ -63,9 +63,9 @@ def main() -> None:
     for solid in rover.simulation.world.solids:
         axes.fill(*solid.footprint().T, color="0.3")
     axes.plot(*way.T)
-    axes.plot(*way[0], "o", color="tab:orange", label="start")
+    axes.plot(*way[0], "o", color="tab:orange")
+    axes.annotate(" start", way[0], va="bottom")
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, 1.15))
     figure.savefig("rover_wall_following.png", dpi=80)
 
 
