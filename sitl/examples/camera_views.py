@@ -9,7 +9,7 @@ It draws camera_views.png and needs matplotlib.
 """
 
 import gymnasium as gym
-import sitl.envs  # registers the environments
+
 from sitl.envs.pictures import Camera, Depth
 
 try:
@@ -24,7 +24,7 @@ STEPS = (0, 30, 60)
 
 def main() -> None:
     """Fly ahead, and draw what is seen on the way."""
-    env = gym.make("sitl/CopterForest-v0", world="forest:seed=7,difficulty=0.6", observation=CAMERAS)
+    env = gym.make("sitl.envs:sitl/CopterForest-v0", world="forest:seed=7", observation=CAMERAS)
     observation, _ = env.reset(seed=1)
     figure, rows = plt.subplots(len(CAMERAS), len(STEPS), figsize=(8, 4), layout="constrained")
     step = 0

@@ -10,6 +10,7 @@ import math
 import time
 
 import numpy as np
+
 from sitl import Fleet, Simulation
 from sitl.client import Client, Endpoint
 

@@ -10,6 +10,7 @@ import sys
 import warnings
 
 from pymavlink import DFReader
+
 from sitl.client import Client
 
 try:
@@ -55,7 +56,7 @@ def main() -> None:
         for name in names:
             axes.plot(*column(kind, name), linewidth=1, label=f"{kind}.{name}")
         axes.set_ylabel(label)
-        axes.legend(fontsize="small", loc="lower center" if kind == "RCOU" else "best", ncols=2 if kind == "RCOU" else 1)
+        axes.legend(fontsize="small", ncols=2)
     for axes in panels[1]:
         axes.set_xlabel("time since boot [s]")
     figure.savefig("on_board_log.png", dpi=80)

@@ -87,7 +87,8 @@ def main() -> None:
         axes.plot([t - begin for t, _ in rolls], [roll for _, roll in rolls], label=f"{NAME} {value:g}")
         risen = next(t - begin for t, roll in rolls if roll > 0.9 * LEAN_DEG)
         print(f"  90 % of {LEAN_DEG:g} degrees after {risen:.2f} s", flush=True)
-    axes.plot([0, 0, STEP_S, STEP_S, STEP_S + AFTER_S], [0, LEAN_DEG, LEAN_DEG, 0, 0], "--", color="0.6", label="asked for")
+    asked = [0, 0, STEP_S, STEP_S, STEP_S + AFTER_S], [0, LEAN_DEG, LEAN_DEG, 0, 0]
+    axes.plot(*asked, "--", color="0.6", label="asked for")
     axes.set(xlabel="time [s]", ylabel="roll [deg]")
     axes.legend()
     figure.savefig("pymavlink_tuning.png", dpi=80)

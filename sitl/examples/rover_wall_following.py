@@ -8,9 +8,8 @@ Scans come as OBSTACLE_DISTANCE, and each step sends speed and turn rate: MAVLin
 It draws rover_wall_following.png and needs matplotlib.
 """
 
-import math
-
 import numpy as np
+
 from sitl import Simulation
 from sitl.client import Client
 

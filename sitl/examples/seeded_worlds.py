@@ -10,6 +10,7 @@ and needs matplotlib.
 import math
 
 import numpy as np
+
 from sitl import worlds
 from sitl.worlds import planar, raycast
 

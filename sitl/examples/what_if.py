@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What if? Five futures of one moment of a flight: which mode stops a fast copter in the shortest way?
+"""Five futures of one moment of a flight: which mode stops a fast copter in the shortest way.
 
 A block `with vehicle.fork():` flies on from the present moment. After the block the vehicle is back there, bit for
 bit, so all five modes meet the same copter in the same gust.
