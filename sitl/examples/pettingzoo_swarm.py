@@ -6,8 +6,6 @@
 It draws pettingzoo_swarm.png and needs matplotlib and PettingZoo.
 """
 
-import itertools
-
 import numpy as np
 
 try:
@@ -43,23 +41,25 @@ def giving_way(observation: np.ndarray) -> np.ndarray:
 def main() -> None:
     """Fly both, and draw the ways."""
     env = SwarmEnv("crossing", count=COUNT)
-    figure, panels = plt.subplots(1, 2, figsize=(8, 4.2), sharey=True, layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(8, 4.2), sharex=True, sharey=True, layout="constrained")
     for axes, act in zip(panels, (straight_on, giving_way)):
-        observations, infos = env.reset(seed=1)
-        places, hit = [], set()
+        observations, _ = env.reset(seed=1)
+        ways, hit = {agent: [] for agent in env.agents}, set()
         while env.agents:
             actions = {agent: act(observations[agent]) for agent in env.agents}
             observations, _, _, _, infos = env.step(actions)
-            hit |= {agent for agent, info in infos.items() if info["was_hit"]}
-            if len(infos) == COUNT:
-                places.append([info["true_place"] for info in infos.values()])
-        ways = np.array(places)  # step, agent, axis
-        pairs = itertools.combinations(range(COUNT), 2)
-        nearest = min(np.linalg.norm(ways[:, a] - ways[:, b], axis=1).min() for a, b in pairs)
+            for agent, info in infos.items():
+                ways[agent].append(info["true_place"])  # north, east, down [m]
+                if info["was_hit"]:
+                    hit.add(agent)
         name = act.__name__.replace("_", " ")
-        print(f"{name}: {len(hit)} copters hit, never nearer than {nearest:.1f} m")
-        axes.plot(ways[:, :, 1], ways[:, :, 0])
-        axes.plot(ways[0, :, 1], ways[0, :, 0], "ks", markersize=4)
+        print(f"{name}: {len(hit)} copters hit")
+        for agent, way in ways.items():
+            norths, easts, _ = zip(*way)
+            (line,) = axes.plot(easts, norths)
+            axes.plot(easts[0], norths[0], "s", color=line.get_color())
+            if agent in hit:
+                axes.plot(easts[-1], norths[-1], "kx", markersize=10)
         axes.set(xlabel="east [m]", aspect="equal", title=f"{name}: {len(hit)} of {COUNT} hit")
     panels[0].set_ylabel("north [m]")
     env.close()
