@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A session of MAVProxy without a hand at the keyboard: lines are typed when it has said what they wait for.
+"""A session of MAVProxy without a hand at the keyboard: each line is typed when the one before is done.
 
     sitl exec --speedup 5 -- python examples/mavproxy_session.py       (CONNECTION: udpin:0.0.0.0:14550)
 
@@ -23,15 +23,25 @@ except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is missing: pip install matplotlib MAVProxy") from None
 
 SESSION = (
-    ("is using GPS", "mode guided"),
-    ("DO_SET_MODE: ACCEPTED", "arm throttle"),
-    ("ARMED", "takeoff 10"),
-    (10.0, "velocity 3 0 0"),
-    (5.0, "velocity 0 3 -1"),
-    (5.0, "mode rtl"),
-    ("DISARMED", ""),
+    ("", "online system"),
+    ("mode guided", "DO_SET_MODE: ACCEPTED"),
+    ("arm throttle", "ARMED"),
+    ("takeoff 10", 10.0),
+    ("velocity 3 0 0", 5.0),
+    ("velocity 0 3 -1", 5.0),
+    ("mode rtl", "DISARMED"),
 )
-"""What MAVProxy has to say, or how many seconds have to pass, before a line is typed."""
+"""A line, and what MAVProxy has to say, or how many seconds have to pass, before the next one."""
+AGAIN_S, LIMIT_S = 20.0, 300.0
+"""A line is typed again after so long, until MAVProxy has said it."""
+
+
+def type_line(proxy: subprocess.Popen, line: str) -> None:
+    """Type a line into the console."""
+    if line:
+        print(">", line, flush=True)
+        proxy.stdin.write(line + "\n")
+        proxy.stdin.flush()
 
 
 def main() -> None:
@@ -47,21 +57,22 @@ def main() -> None:
             command, stdin=subprocess.PIPE, stdout=out, stderr=subprocess.STDOUT, text=True, cwd=folder,
             start_new_session=True,
         )  # fmt: skip
-    read = 0
     try:
-        for cause, line in SESSION:
-            if isinstance(cause, float):
-                time.sleep(cause)
-            else:
-                end = time.monotonic() + 120.0
-                while cause not in said.read_text()[read:]:
-                    if time.monotonic() > end:
-                        raise SystemExit(f"MAVProxy did not say {cause!r}:\n{said.read_text()[-2000:]}")
-                    time.sleep(0.2)
-            read = len(said.read_text())
-            print(f"> {line}" if line else "landed and disarmed", flush=True)
-            proxy.stdin.write(line + "\n")
-            proxy.stdin.flush()
+        for line, until in SESSION:
+            read, begin = len(said.read_text()), time.monotonic()
+            type_line(proxy, line)
+            if isinstance(until, float):
+                time.sleep(until)
+                continue
+            typed = begin
+            while until not in said.read_text()[read:]:
+                if time.monotonic() > begin + LIMIT_S:
+                    raise SystemExit(f"MAVProxy did not say {until!r}:\n{said.read_text()[-2000:]}")
+                if time.monotonic() > typed + AGAIN_S:
+                    typed = time.monotonic()
+                    type_line(proxy, line)
+                time.sleep(0.2)
+        print("landed and disarmed")
     finally:
         os.killpg(proxy.pid, signal.SIGKILL)  # at the end of its input MAVProxy would wait for a child of its own
 
