@@ -56,7 +56,7 @@ def main() -> None:
         for name in names:
             axes.plot(*column(kind, name), linewidth=1, label=f"{kind}.{name}")
         axes.set_ylabel(label)
-        axes.legend(fontsize="small", ncols=2)
+        axes.legend(fontsize="x-small", ncols=len(names), loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False)
     for axes in panels[1]:
         axes.set_xlabel("time since boot [s]")
     figure.savefig("on_board_log.png", dpi=80)
