@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Short programs that come with the package; ``sitl examples`` lists and copies them.
 
-Those that speak MAVLink know nothing of the simulator: they are what one runs against a real vehicle.
+Those that speak MAVLink know nothing of the simulator: they are what one runs against a real vehicle. An example
+that needs matplotlib draws a picture of its name into the current folder (docs/gallery.md shows them).
 """
 
 from __future__ import annotations
@@ -22,13 +23,35 @@ class Example(NamedTuple):
     """Packages of PyPI that it needs besides gym-sitl itself."""
 
 
+def _exec(name: str, speedup: str = "max") -> str:
+    return f"sitl exec --speedup {speedup} -- python examples/{name}.py"
+
+
 EXAMPLES = {
     "mavsdk_mission": Example("sitl exec -- python examples/mavsdk_mission.py", ("mavsdk",)),
     "mavsdk_offboard": Example("sitl exec -- python examples/mavsdk_offboard.py", ("mavsdk",)),
     "mavsdk_rover": Example("sitl exec --vehicle rover -- python examples/mavsdk_rover.py", ("mavsdk",)),
+    "mavsdk_geofence": Example(_exec("mavsdk_geofence"), ("mavsdk", "matplotlib")),
     "pymavlink_guided": Example("sitl exec -- python examples/pymavlink_guided.py"),
+    "pymavlink_mission": Example(_exec("pymavlink_mission"), ("matplotlib",)),
+    "pymavlink_tuning": Example(_exec("pymavlink_tuning"), ("matplotlib",)),
+    "dronekit_goto": Example(_exec("dronekit_goto"), ("dronekit", "future", "matplotlib")),
+    "mavproxy_session": Example(_exec("mavproxy_session", "5"), ("MAVProxy", "matplotlib")),
+    "on_board_log": Example(_exec("on_board_log"), ("matplotlib",)),
     "lockstep_client": Example("python examples/lockstep_client.py"),
+    "velocity_controller": Example("python examples/velocity_controller.py", ("matplotlib",)),
+    "what_if": Example("python examples/what_if.py", ("matplotlib",)),
+    "gps_glitch": Example("python examples/gps_glitch.py", ("matplotlib",)),
+    "mission_wind": Example("python examples/mission_wind.py", ("matplotlib",)),
+    "rover_wall_following": Example("python examples/rover_wall_following.py", ("matplotlib",)),
+    "fleet_flower": Example("python examples/fleet_flower.py", ("matplotlib",)),
     "swarm_formation": Example("sitl exec --count 16 -- python examples/swarm_formation.py"),
+    "seeded_worlds": Example("python examples/seeded_worlds.py", ("matplotlib",)),
+    "camera_views": Example("python examples/camera_views.py", ("matplotlib",)),
+    "q_learning": Example("python examples/q_learning.py", ("matplotlib",)),
+    "vector_env": Example("python examples/vector_env.py", ("matplotlib",)),
+    "race_baseline": Example("python examples/race_baseline.py", ("matplotlib",)),
+    "pettingzoo_swarm": Example("python examples/pettingzoo_swarm.py", ("matplotlib", "pettingzoo")),
     "regression": Example("pytest examples/regression", ("pytest",)),
 }
 """Name -> the example, in the order in which ``sitl examples`` lists them."""

@@ -10,12 +10,15 @@ import asyncio
 import sys
 from contextlib import aclosing
 
-from mavsdk import ComponentType
-from mavsdk.asyncio import Configuration, Mavsdk
-from mavsdk.asyncio.plugins.action import ActionAsync
-from mavsdk.asyncio.plugins.offboard import OffboardAsync
-from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
-from mavsdk.plugins.offboard import VelocityBodyYawspeed, VelocityNedYaw
+try:
+    from mavsdk import ComponentType
+    from mavsdk.asyncio import Configuration, Mavsdk
+    from mavsdk.asyncio.plugins.action import ActionAsync
+    from mavsdk.asyncio.plugins.offboard import OffboardAsync
+    from mavsdk.asyncio.plugins.telemetry import TelemetryAsync
+    from mavsdk.plugins.offboard import VelocityBodyYawspeed, VelocityNedYaw
+except ModuleNotFoundError as error:
+    raise SystemExit(f"{error.name} is missing: pip install 'mavsdk>=4'") from None
 
 ALTITUDE_M = 10.0
 

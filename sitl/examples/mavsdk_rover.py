@@ -10,10 +10,13 @@ import math
 import sys
 import time
 
-from mavsdk import ComponentType, Configuration, Mavsdk, log_subscribe
-from mavsdk.plugins.action import Action
-from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
-from mavsdk.plugins.telemetry import Telemetry
+try:
+    from mavsdk import ComponentType, Configuration, Mavsdk, log_subscribe
+    from mavsdk.plugins.action import Action
+    from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
+    from mavsdk.plugins.telemetry import Telemetry
+except ModuleNotFoundError as error:
+    raise SystemExit(f"{error.name} is missing: pip install 'mavsdk>=4'") from None
 
 SIDE_M = 20.0
 WAYPOINT = 16

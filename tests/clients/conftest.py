@@ -46,9 +46,15 @@ def environment() -> dict[str, str]:
 
 
 def run_script(
-    logs: Path, script: Path, url: str, *options: str, vehicle: str = "copter", speedup: str = SPEEDUP
+    logs: Path,
+    script: Path,
+    url: str,
+    *options: str,
+    vehicle: str = "copter",
+    speedup: str = SPEEDUP,
+    folder: Path = ROOT,
 ) -> str:
-    """Run a script against a vehicle of its own (on the ground it drives); what it printed.
+    """Run a script in a folder, against a vehicle of its own (on the ground it drives); what it printed.
 
     Fails when the script does. ``PORT`` in ``url`` becomes the UDP port that the vehicle sends to.
     """
@@ -57,7 +63,7 @@ def run_script(
     command += ["--tcp", "0", "--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
     command += ["--", sys.executable, str(script), url.replace("PORT", port)]
     done = subprocess.run(
-        command, cwd=ROOT, env=environment(), text=True, timeout=WALL_S,
+        command, cwd=folder, env=environment(), text=True, timeout=WALL_S,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
