@@ -21,8 +21,8 @@ HERE = Path(__file__).parent
 
 COMPARISON = """# Compared with a real ArduPilot
 
-This page compares the flights of our autopilot with those of a real ArduPilot SITL. `python docs/make_pages.py comparison`
-generates it (`python -m sitl.missions.compare` prints the first tables).
+This page compares the flights of our autopilot with those of a real ArduPilot SITL.
+`python docs/make_pages.py comparison` generates it (`python -m sitl.missions.compare` prints the first tables).
 
 The first tables use recordings of ArduPilot 4.7-dev of July 2025 (unmodified, default frames and SITL parameters,
 no wind):
