@@ -16,7 +16,7 @@ _LINES = ("#2e86de", "#e67e22", "#27ae60", "#c0392b", "#8e44ad", "#16a085", "#f3
 _MOST = 6
 """Plots at once."""
 _TOGETHER = 4
-"""Signals of a plot: the first has the axis on the left, the others share one on the right."""
+"""Signals of a plot."""
 _OWN = "a plot of its own"
 _KEPT = 900
 """Samples of each: half a minute at 30 frames a second."""
@@ -57,10 +57,11 @@ class Plot:
         series: list[dict[str, Any]] = [{"label": "t"}]
         for k, name in enumerate(self.names):
             colour = _LINES[(self._first_colour + k) % len(_LINES)]
-            series.append({"label": name, "stroke": colour, "width": 1.5, "scale": "right" if k else "y"})
+            scale = "y" if _group(name) == _group(self.names[0]) else "right"
+            series.append({"label": name, "stroke": colour, "width": 1.5, "scale": scale})
         scales: dict[str, Any] = {"x": {"time": False, "auto": True}, "y": {"auto": True}}
         axes: list[dict[str, Any]] = [{"scale": "x"}, {"scale": "y"}]
-        if len(self.names) > 1:
+        if any(each.get("scale") == "right" for each in series):
             scales["right"] = {"auto": True}
             axes.append({"scale": "right", "side": 1, "grid": {"show": False}})
         data = (np.zeros(1),) * (1 + len(self.names)) if self._count < 2 else self.samples
@@ -100,6 +101,11 @@ class Plot:
             self._node.remove()
 
 
+def _group(name: str) -> str:
+    """The message or the part of the record that a signal is of: its signals share an axis."""
+    return name.rpartition(".")[0]
+
+
 class Plots:
     """The plots, and how a signal is found: part of its name, then a choice.
 
@@ -116,7 +122,7 @@ class Plots:
         """Users choose plots in another thread than the one that draws them."""
         self._search = gui.add_text("Signal", "", hint="part of a name, such as ATTITUDE or physics.body.pos")
         self._choice = gui.add_dropdown("Found", ("-",))
-        self._into = gui.add_dropdown("Into", (_OWN,), hint="a plot that is there has its further signals on the right")
+        self._into = gui.add_dropdown("Into", (_OWN,), hint="signals of another message have their axis on the right")
         self._add = gui.add_button("Plot it")
         self._clear = gui.add_button("Remove all plots")
         self.paused = gui.add_checkbox("Plots stand still", False)

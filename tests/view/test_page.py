@@ -181,8 +181,12 @@ def test_plots_take_signals_by_name(page: LivePage) -> None:
     assert np.all(np.isfinite(yaws)) and np.all(np.isnan(rolls[:4])) and np.all(np.isfinite(rolls[4:]))
     for name in ("ATTITUDE.pitch", "ATTITUDE.rollspeed"):
         page.plots.add(name, beside="ATTITUDE.yaw")
+    assert [each.get("scale") for each in plot._node.series] == [None, "y", "y", "y", "y"], "one message, one axis"
     with pytest.raises(SitlError, match="4 signals in a plot are the most"):
         page.plots.add("ATTITUDE.yawspeed", beside="ATTITUDE.yaw")
+    page.plots.add("physics.body.pos[2]")
+    page.plots.add("VFR_HUD.alt", beside="physics.body.pos[2]")
+    assert page.plots.find("VFR_HUD.alt")._node.series[2]["scale"] == "right"
     page.plots.clear()
     assert page.plots.names == () and page.frame is not None
     fly(page, 0.1)
