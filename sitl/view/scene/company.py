@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..axes import places, turns
+from ..colours import of_ends
 from ..frame import Company
 from ..shape import DARK, FRONT, Mesh, Piece, Shape, joined, moved
 
@@ -37,7 +38,7 @@ class CompanyNodes:
                 still = np.tile([1.0, 0.0, 0.0, 0.0], (len(which), 1))
                 node = scene.add_batched_meshes_simple(
                     f"/stage/company/{number}_{k}", mesh.vertices, mesh.faces, batched_wxyzs=still,
-                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=colour, lod="off",
+                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=of_ends([colour])[0], lod="off",
                     flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
                 )  # fmt: skip
                 self._groups.append((node, np.array(which)))
