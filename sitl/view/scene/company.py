@@ -38,8 +38,8 @@ class CompanyNodes:
                 still = np.tile([1.0, 0.0, 0.0, 0.0], (len(which), 1))
                 node = scene.add_batched_meshes_simple(
                     f"/stage/company/{number}_{k}", mesh.vertices, mesh.faces, batched_wxyzs=still,
-                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=of_ends([colour])[0], lod="off",
-                    flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
+                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=of_ends([colour])[0],
+                    lod="off", flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
                 )  # fmt: skip
                 self._groups.append((node, np.array(which)))
 
