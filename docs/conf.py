@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
+
+import make_scenes  # noqa: E402
 
 import sitl  # noqa: E402
 from sitl.autopilot.params import docs  # noqa: E402
@@ -68,12 +70,14 @@ html_sidebars = {"index": []}
 
 
 def prepare(app: Any, name: str, source: list[str]) -> None:
-    """What a page lacks on the site and has in the repository: folders to link to, a list of the pages beside it."""
+    """What a page lacks on the site and has in the repository: folders to link to, a list of the pages beside it; and
+    what it has on the site alone: scenes."""
 
     def without_folder(link: re.Match[str]) -> str:
         return link[1] if (ROOT / "docs" / name).parent.joinpath(link[2]).is_dir() else link[0]
 
     source[0] = re.sub(r"\[([^\]]+)\]\((\.\./[^)#]+)\)", without_folder, source[0])
+    source[0] = make_scenes.embed(name, source[0])
     if name == "envs/index":
         source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
 
@@ -86,7 +90,14 @@ def make_parameter_pages(app: Any) -> None:
             page.write_text(text, encoding="utf-8")
 
 
+def fly_scenes(app: Any) -> None:
+    """Write the flights that pages show."""
+    if app.builder.format == "html":
+        make_scenes.make(Path(app.outdir) / "_static" / "scenes")
+
+
 def setup(app: Any) -> None:
     """Called by Sphinx."""
     app.connect("builder-inited", make_parameter_pages)
+    app.connect("builder-inited", fly_scenes)
     app.connect("source-read", prepare)

@@ -21,6 +21,7 @@ from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 
+from .autopilot.mission.mission import Mission
 from .bridge.channel import ChannelState
 from .bridge.links import LinkFaults
 from .bridge.links.inprocess import InProcessLink
@@ -39,6 +40,7 @@ from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
 from .vehicle.core_entry import Core, bind_fleet_unit, unit_address
 from .vehicle.faults import Failure
+from .vehicle.kind import load
 from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
 
@@ -104,6 +106,8 @@ class Fleet:
         self._link = InProcessLink()
         shell.bridge.add_link(self._link)
         self._is_closed = False
+        self.observers: list[Callable[[], None]] = []
+        """Called after each advance; they change nothing."""
         self._states: list[Snapshot] = []
         self._held: dict[int, _Held] = {}
         """Identity of a snapshot -> its state."""
@@ -285,6 +289,27 @@ class Fleet:
             view = self._views[index] = self.kind.record.of(self.records, index)
         return view
 
+    def mission(self, index: int) -> Mission:
+        """The mission of a vehicle."""
+        self._check(index)
+        return self._states[index].mission
+
+    def page(self, height: int = 480, port: int = 0) -> Any:
+        """Show the fleet on a page of the browser, in a notebook as the cell's output, while it is advanced.
+
+        Args:
+            height: of the cell's output [pixels].
+            port: of the page on this machine; 0: a free one.
+
+        Returns:
+            ``sitl.view.inline.FleetView``; its ``close`` ends it, ``page.address`` is where a browser finds it.
+
+        Raises:
+            MissingExtra: the extra ``view`` is not installed.
+            sitl.view.page.PageAddressError: the port is taken.
+        """
+        return load("sitl.view.inline:FleetView")(self, height, port)
+
     def _check_open(self) -> None:
         if self._is_closed:
             raise OptionError("the fleet is closed")
@@ -409,6 +434,8 @@ class Fleet:
                 self._serve(index, int(self._until[index] - self._times[index]), int(self._needs_shell[index]))
         for index, goal_us in goals or ():
             self._serve(index, goal_us - int(self._times[index]), TO_HEAR)
+        for observe in self.observers:
+            observe()
 
     def _set_each(self, step_us: int | Array, rows: Any) -> list[tuple[int, int]]:
         """Say in the slots how far vehicles are to go [us]; the others stay. So do those whose links have faults: they

@@ -87,6 +87,13 @@ def test_the_examples_of_faults_run_and_every_fault_and_option_is_explained(core
             Failure.of_text(fault).checked(KINDS["copter"].firmware.table)
 
 
+def test_the_examples_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
+    for example in blocks(ROOT / "docs/view.md", "python"):
+        exec(compile(example, "docs/view.md", "exec"), {})
+    assert "http://127.0.0.1:" in capsys.readouterr().out
+
+
 def test_the_example_of_fleets_runs(core: Core) -> None:
     example, moves = blocks(ROOT / "docs/fleets.md", "python")
     scope: dict[str, Any] = {}

@@ -102,3 +102,8 @@ def test_the_site_builds_without_warnings(tmp_path: Path) -> None:
     pages = ("index", "tutorials/first-flight", "guides/index", "reference/python", "parameters-copter")
     for page in (*pages, "explanation/index", "search"):
         assert (tmp_path / "site" / f"{page}.html").exists(), page
+    for page, scene in (("view", "calm-and-wind"), ("tutorials/first-flight", "first-flight")):
+        shown = re.search(r'<iframe src="([^"]+)"', (tmp_path / "site" / f"{page}.html").read_text(encoding="utf-8"))
+        assert shown is not None and Path(shown[1]).stem == scene
+        file = (tmp_path / "site" / page).parent / shown[1]
+        assert "__VISER_EMBED_DATA__" in file.read_text(encoding="utf-8"), "a scene that the page itself plays"

@@ -37,7 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--align",
         choices=("auto", "AUTO", "armed", "start"),
         default="auto",
-        help="event at which the flights are aligned",
+        help="event at which the flights are aligned (auto: one flight alone stays as it was logged)",
     )
     parser.add_argument(
         "--frame",
@@ -85,17 +85,19 @@ def together(found: list[flight.Flight], align: str = "auto", frame: str | None 
 
     Args:
         found: as they were read; the first is the one that others are aligned with.
-        align: what they have in common, as a tolerance has it.
+        align: what they have in common, as a tolerance has it; one flight begins there, with "auto" where its log does.
         frame: airframe that is drawn; None: the usual one.
 
     Raises:
-        sitl.missions.comparison.alignment.AlignmentError: they have nothing in common.
+        OptionError: a flight has no samples.
+        sitl.missions.comparison.alignment.AlignmentError: they have nothing in common, or no such moment.
     """
     names = [Path(each.name).stem for each in found]
     if len(found) == 1:
         if len(found[0].track) < 2:
             raise OptionError(f"{found[0].name}: no samples: its estimator never had an origin")
-        return [of_track(names[0], found[0].track, frame)], {}
+        track = found[0].track if align == "auto" else alignment.part(found[0].track, align)
+        return [of_track(names[0], track, frame)], {}
     pairs = [alignment.pair(found[0].track, each.track, align, found[0].coarse or each.coarse) for each in found[1:]]
     tracks = [pairs[0].golden, *(each.new for each in pairs)]
     measured = flight_differences(pairs[0])

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..core.vectors import Vec3
 from .axes import place, turn
 from .frame import Frame
 
@@ -65,8 +66,13 @@ class Cameras:
             eye = size * (0.9 * ahead + 0.35 * up)
             _put(camera, eye, eye + 5.0 * ahead, tuple(up))
         elif self.view == TOP:
-            height = max(30.0 * size, 1.5 * place(frame.pos)[2])
-            _put(camera, np.array([-0.02 * height, 0.0, height]), np.zeros(3), _UP)
+            middle, wide = np.zeros(3), 0.0
+            if frame.company is not None:  # all of them
+                low, high = frame.company.pos.min(axis=0), frame.company.pos.max(axis=0)
+                middle = np.array(place(Vec3(*(0.5 * (low + high)).tolist()))) - place(frame.pos)
+                wide = float((high - low).max())
+            height = max(30.0 * size, 1.5 * place(frame.pos)[2], 0.9 * wide)
+            _put(camera, middle + np.array([-0.02 * height, 0.0, height]), middle, _UP)
         else:
             _put(camera, size * np.array([-2.6, 1.3, 1.3]), np.zeros(3), _UP)
 

@@ -55,5 +55,6 @@ def css(colour: Colour) -> str:
 
 
 def of_ends(colours: Sequence[Colour]) -> npt.NDArray[Any]:
-    """Colours of the ends of lines, shape (n, 3): a browser takes these for linear light, all others for sRGB."""
+    """Colours of the ends of lines and of instances, shape (n, 3): a browser takes these for linear light, all others
+    for sRGB."""
     return np.round(255.0 * (np.asarray(colours, float) / 255.0) ** 2.2).astype(np.uint8)

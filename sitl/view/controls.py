@@ -12,6 +12,7 @@ from ..run.pacing import MAX, StoppablePacing
 from ..simulation import Simulation
 from .frame import Stage
 from .pilot import Pilot
+from .sticks import Sticks
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5", "10", "50", "200", MAX)
 _STEP_S = 0.1
@@ -49,6 +50,8 @@ class Controls:
         self._ask, self._pilot, self._shift = ask, pilot, shift
         with gui.add_folder("Pilot"):
             self._add_pilot(gui, stage)
+        with gui.add_folder("Sticks", expand_by_default=False):
+            self.sticks = Sticks(gui, lambda axes: ask(lambda: pilot().hold(axes), None), stage.flies)
         if pace is not None:
             with gui.add_folder("Time"):
                 self._add_time(gui, pace, not stage.company)

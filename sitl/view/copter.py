@@ -53,11 +53,12 @@ def shape(figures: Any) -> Shape:
 
 
 def motion(v: Any) -> Motion:
-    """Speeds of the rotors."""
-    figures, rotors = v.physics.airframe, v.physics.rotors
+    """Speeds of the rotors, and how it has landed."""
+    figures, rotors, ground = v.physics.airframe, v.physics.rotors, v.physics.ground
     scale = _SHOWN_SPEED if figures.thrust_model == THRUST_MOMENTUM else 1.0
     count = int(figures.rotor_count)
-    return Motion(rotors=tuple(scale * float(rotors.speed[k] * figures.rotor_direction[k]) for k in range(count)))
+    speeds = tuple(scale * float(rotors.speed[k] * figures.rotor_direction[k]) for k in range(count))
+    return Motion(speeds, ground_hits=(int(ground.hit_count), float(ground.hit_speed), int(ground.hit_time_us)))
 
 
 def set_point(v: Any) -> Vec3 | None:

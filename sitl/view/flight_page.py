@@ -53,7 +53,8 @@ class FlightScene:
                 colours = np.stack([each[:-1], each[:-1]], axis=1)
             lines = np.stack([places[:-1], places[1:]], axis=1)
             scene.add_line_segments(f"{name}/way", lines, colours, thickness=2.5, thickness_units="screen")
-            label = scene.add_label(f"{name}/label", flight.name, anchor="bottom-center", font_screen_scale=0.8)
+            anchor = "bottom-center" if k % 2 == 0 else "top-center"  # two that fly together can both be read
+            label = scene.add_label(f"{name}/label", flight.name, anchor=anchor, font_screen_scale=0.8)
             self._labels.append(label)
             for at, seq in flight.track.items if k == 0 else ():  # others' are in the same places, or in the list
                 here = [np.interp(at, flight.track.t, places[:, axis]) for axis in range(3)]
@@ -68,10 +69,11 @@ class FlightScene:
     def show(self, time: float) -> list[Any]:
         """Draw a moment [s]; gives the frames of it."""
         frames = [flight.frame(min(time, flight.length)) for flight in self._flights]
-        for flight, nodes, label, frame in zip(self._flights, self.vehicles, self._labels, frames, strict=True):
+        shown = zip(self._flights, self.vehicles, self._labels, frames, strict=True)
+        for k, (flight, nodes, label, frame) in enumerate(shown):
             nodes.show(frame)
             x, y, z = nodes.body.position
-            label.position = (x, y, z + 0.8 * self._size)
+            label.position = (x, y, z + (0.8 if k % 2 == 0 else -0.8) * self._size)
             label.text = f"{flight.name}  {time:.1f} s  {frame.mode}"
         if len(frames) > 1:
             places = [nodes.body.position for nodes in self.vehicles[:2]]

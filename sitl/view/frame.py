@@ -96,6 +96,8 @@ class Frame:
     q: Quat
     vel: Vec3
     """NED [m/s]"""
+    stands: Vec3 = CALM
+    """Where the origin of its own world is in the scene [m]."""
     estimate_pos: Vec3 | None = None
     """Where its estimator believes it to be; None: nowhere yet."""
     estimate_q: Quat | None = None
@@ -126,6 +128,12 @@ class Frame:
     """Of the front wheels, to the right [rad]."""
     rolled: tuple[float, float] = (0.0, 0.0)
     """By the left and right wheels [m]."""
+    touching: bool = False
+    """A solid."""
+    hits: int = 0
+    """Impacts so far, on solids and on the ground."""
+    hit_speed: float = 0.0
+    """Of the last one [m/s]."""
     scan: Points | None = None
     """What the lidar has met, on the body, forward, right, down [m], shape (n, 3); the same object until the next."""
     wind: Vec3 = CALM

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A simulation shown where a notebook has its output: ``simulation.view()``. It looks on while cells advance it."""
+"""A simulation or a fleet shown where a notebook has its output: ``simulation.view()``, ``fleet.page()``. The page
+looks on while cells advance it."""
 
 from __future__ import annotations
 
+from ..fleet import Fleet
 from ..run.watched import Watched
 from ..simulation import Simulation
+from .fleet import FleetPage
 from .live_page import LivePage
 
 _LOOK_US = 20_000
@@ -52,4 +55,45 @@ class InlineView:
     def _repr_html_(self) -> str:
         """The page in a frame of the notebook."""
         self.refresh()
-        return f'<iframe src="{self.page.address}" width="100%" height="{self._height}" style="border:0"></iframe>'
+        return _frame(self.page.address, self._height)
+
+
+class FleetView:
+    """The page of a fleet that others advance, shown by a notebook as the value of a cell. It has a frame after a call
+    of ``advance``, at most 30 a second.
+
+    Args:
+        fleet: the vehicles; this is one of its observers until it is closed.
+        height: of the cell's output [pixels].
+        port: of the page on this machine; 0: a free one.
+
+    Raises:
+        MissingExtra: the library that draws it is not installed.
+        sitl.view.page.PageAddressError: the port is taken.
+    """
+
+    def __init__(self, fleet: Fleet, height: int = 480, port: int = 0) -> None:
+        self._fleet, self._height = fleet, height
+        self.page = FleetPage(fleet, port)
+        self._watched = Watched(self.page, lambda: int(fleet.time_us.max()))
+        fleet.observers.append(self._watched)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the fleet as it is now."""
+        self.page.capture(0.0)
+
+    def close(self) -> None:
+        """Look on no longer, and close the page."""
+        observers = self._fleet.observers
+        observers[:] = [each for each in observers if each is not self._watched]
+        self.page.close()
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of the notebook."""
+        self.refresh()
+        return _frame(self.page.address, self._height)
+
+
+def _frame(address: str, height: int) -> str:
+    return f'<iframe src="{address}" width="100%" height="{height}" style="border:0"></iframe>'

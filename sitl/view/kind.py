@@ -22,6 +22,8 @@ class Motion(NamedTuple):
     rotors: tuple[float, ...] = ()
     steering: float = 0.0
     rolled: tuple[float, float] = (0.0, 0.0)
+    ground_hits: tuple[int, float, int] = (0, 0.0, 0)
+    """Impacts on the ground so far; speed of the last one [m/s] and when it was [us]."""
 
 
 @dataclass(frozen=True)

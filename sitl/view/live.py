@@ -21,7 +21,7 @@ from ..core.geodesy import offset_ne
 from ..core.vectors import Vec3
 from ..simulation import Simulation
 from .frame import Frame, Mark, Plan, Points, Text
-from .record import RecordSource
+from .record import Array, RecordSource
 
 _CORNERS = 48
 """Of the outline of a circle."""
@@ -40,44 +40,20 @@ class Captured(NamedTuple):
     texts: tuple[Text, ...]
 
 
-class LiveSource(RecordSource):
-    """A simulation as the page sees it. It listens to what the vehicle says to its pilot until it is closed."""
+class AutopilotSource(RecordSource):
+    """Vehicles with an autopilot of ours, of which one is shown.
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
+    Args:
+        simulation: whose kind, airframe, world and modes theirs are.
+        fleet: the array with their records.
+        index: of the one that is shown.
+    """
+
+    def __init__(self, simulation: Simulation, fleet: Array, index: int) -> None:
         self._names = names = simulation.firmware.mode_names
         modes = tuple(names[number] for number in sorted(names))
-        super().__init__(
-            simulation.kind, simulation.fleet, simulation.index, simulation.airframe.name, simulation.world, modes
-        )
-        self._texts: list[Text] = []
+        super().__init__(simulation.kind, fleet, index, simulation.airframe.name, simulation.world, modes)
         self._plan: tuple[object, Plan] = (None, Plan())
-        simulation.bridge.listeners.append(self)
-
-    def said(self, severity: int, text: str) -> None:
-        """The vehicle says a text (``sitl.bridge.bridge.Bridge.listeners``)."""
-        self._texts.append(Text(self._simulation.time_us, severity, text))
-
-    def reached(self, seq: int) -> None:
-        """A mission's item is reached: frames show it."""
-
-    def parameter_set(self, name: str) -> None:
-        """A parameter was set: whoever wants to see it asks for it."""
-
-    def close(self) -> None:
-        """Listen no longer."""
-        listeners = self._simulation.bridge.listeners
-        listeners[:] = [each for each in listeners if each is not self]
-
-    # ------------------------------------------------------------------ where the vehicle is
-
-    def capture(self) -> Captured:
-        """The vehicle as it is now."""
-        simulation = self._simulation
-        texts, self._texts = tuple(self._texts), []
-        return Captured(simulation.time_us, self._copy(), simulation.mission, texts)
-
-    # ------------------------------------------------------------------ where the page is
 
     def frame(self, captured: Captured) -> Frame:
         """What the page shows of a moment."""
@@ -107,9 +83,9 @@ class LiveSource(RecordSource):
         """The estimator's origin in the scene [m]."""
         estimate, place = self._v.autopilot.estimate, self._v.physics.place
         if not estimate.origin_set:
-            return Vec3(0.0, 0.0, 0.0)
+            return self._stands
         flat = offset_ne(place.lat, place.lon, estimate.origin_lat, estimate.origin_lon)
-        return Vec3(flat.x, flat.y, place.alt - estimate.origin_alt)
+        return self._stands + Vec3(flat.x, flat.y, place.alt - estimate.origin_alt)
 
     def _failsafes(self) -> tuple[str, ...]:
         ap = self._v.autopilot
@@ -173,3 +149,34 @@ class LiveSource(RecordSource):
         count = min(int(ap.params.RALLY.TOTAL), len(ap.rally.lat))
         places = [rally.position(ap.rally, k, ap.estimate, ap.home) + offset for k in range(count)]
         return tuple(Mark(f"rally {k}", place, k) for k, place in enumerate(places))
+
+
+class LiveSource(AutopilotSource):
+    """A simulation as the page sees it. It listens to what the vehicle says to its pilot until it is closed."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        super().__init__(simulation, simulation.fleet, simulation.index)
+        self._texts: list[Text] = []
+        simulation.bridge.listeners.append(self)
+
+    def said(self, severity: int, text: str) -> None:
+        """The vehicle says a text (``sitl.bridge.bridge.Bridge.listeners``)."""
+        self._texts.append(Text(self._simulation.time_us, severity, text))
+
+    def reached(self, seq: int) -> None:
+        """A mission's item is reached: frames show it."""
+
+    def parameter_set(self, name: str) -> None:
+        """A parameter was set: whoever wants to see it asks for it."""
+
+    def close(self) -> None:
+        """Listen no longer."""
+        listeners = self._simulation.bridge.listeners
+        listeners[:] = [each for each in listeners if each is not self]
+
+    def capture(self) -> Captured:
+        """The vehicle as it is now."""
+        simulation = self._simulation
+        texts, self._texts = tuple(self._texts), []
+        return Captured(simulation.time_us, self._copy(), simulation.mission, texts)

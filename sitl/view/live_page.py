@@ -50,6 +50,9 @@ class LivePage(Page):
             with self.tabs.add_tab("Control"):
                 scene, shift, of = self.server.scene, self.cameras.shift, source.stage
                 self.controls = Controls(gui, scene, self.ask, lambda: self.pilot, of, pace, shift)
+                if of.company:  # whoever is chosen next is not flown by sticks yet
+                    held = self.controls.sticks.held
+                    self.vehicle_number.on_update(lambda event: setattr(held, "value", False))
             with self.tabs.add_tab("Faults"):
                 self.weather = Weather(gui, self.simulation, self.ask, lambda: self.pilot)
         with self.tabs.add_tab("Parameters"):
@@ -88,7 +91,10 @@ class LivePage(Page):
                 request()
             except SitlError as error:
                 self.notify(str(error), client)
-        for pilot in self._pilots.values():
+        for number, pilot in self._pilots.items():
+            if number != self.chosen:
+                pilot.hold(None)
+            pilot.keep_sticks()
             pilot.listen()
 
     def close(self) -> None:

@@ -72,7 +72,7 @@ def state(frame: Frame, speed: str) -> str:
     error = "-"
     if frame.estimate_pos is not None:
         error = f"{math.dist(frame.estimate_pos, frame.pos):.2f} m"
-    north, east = frame.pos.x, frame.pos.y
+    north, east, _ = frame.pos - frame.stands
     wind = math.hypot(frame.wind.x, frame.wind.y)
     calls = math.degrees(math.atan2(-frame.wind.y, -frame.wind.x)) % 360.0
     cells = [
@@ -81,8 +81,10 @@ def state(frame: Frame, speed: str) -> str:
         ("GPS", f"{fix}, {frame.satellites} sat"), ("estimate's error", error),
         ("place", f"{north:.1f} N, {east:.1f} E"), ("climb", f"{-frame.vel.z:.1f} m/s"),
         ("wind", f"{wind:.1f} m/s from {calls:.0f}°" if wind > 0.05 else "none"), ("item", str(frame.mission_current)),
+        ("impacts", f"{frame.hits}, last {frame.hit_speed:.1f} m/s" if frame.hits else "none"),
     ]  # fmt: skip
-    alarms = "".join(_badge(name, "#c0392b") for name in frame.failsafes)
+    touching = ("touches a solid",) if frame.touching else ()
+    alarms = "".join(_badge(name, "#c0392b") for name in (*frame.failsafes, *touching))
     return f'<div style="padding:0.4em 0.6em 0.2em">{mode}{armed}{ready}{alarms}{_grid(cells)}</div>'
 
 

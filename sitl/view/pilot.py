@@ -15,12 +15,15 @@ from ..core.geodesy import add_offset
 from ..errors import OptionError, did_you_mean
 from ..recording.recorder import Recorder
 from ..simulation import Simulation, Snapshot
+from .sticks import Axes
 
 SYSTEM, COMPONENT = 254, 190
 """MAVLink ids of the page: a second ground station, so that no link of another one is taken for its own."""
 GUIDED = "GUIDED"
 IN_PROGRESS = 5
 """MAV_RESULT"""
+_STICKS_US = 100_000
+"""Simulated time between two MANUAL_CONTROL [us]."""
 
 
 class Pilot:
@@ -34,6 +37,10 @@ class Pilot:
     def __init__(self, simulation: Simulation, tell: Callable[[str], None]) -> None:
         self._simulation, self._tell = simulation, tell
         self._endpoint: Endpoint | None = None
+        self._driver: Endpoint | None = None
+        """Holds the sticks: the vehicle takes them from its pilot's ground station alone (MAV_GCS_SYSID)."""
+        self._axes: Axes | None = None
+        self._sticks_due_us = 0
         self._snapshot: Snapshot | None = None
 
     # ------------------------------------------------------------------ MAVLink
@@ -50,6 +57,32 @@ class Pilot:
     def _send(self, name: str, **fields: Any) -> None:
         target = {"target_system": self._simulation.bridge.system, "target_component": 1}
         self._client().send(name, **target, **fields)
+
+    def hold(self, axes: Axes | None) -> None:
+        """Hold the sticks from now on; None: give them back to the radio."""
+        had, self._axes, self._sticks_due_us = self._axes, axes, 0
+        if axes is None and had is None:
+            return
+        simulation = self._simulation
+        if self._driver is None:
+            self._driver = Endpoint(component=COMPONENT)
+            simulation.bridge.add_link(self._driver.link)
+        self._driver.system = int(simulation.v.autopilot.params.MAV.GCS_SYSID)
+        if axes is not None:
+            self.keep_sticks()
+        else:  # 0 gives channels 1 .. 8 back and leaves the others
+            target = {"target_system": simulation.bridge.system, "target_component": 1}
+            self._driver.send("RC_CHANNELS_OVERRIDE", **target)
+
+    def keep_sticks(self) -> None:
+        """Say where the held sticks are when that falls due: the vehicle soon forgets them (RC_OVERRIDE_TIME)."""
+        now = self._simulation.time_us
+        if self._driver is None:
+            return
+        self._driver.receive()
+        if self._axes is not None and not 0 < self._sticks_due_us - now <= _STICKS_US:
+            self._sticks_due_us = now + _STICKS_US
+            self._driver.send("MANUAL_CONTROL", target=self._simulation.bridge.system, **self._axes._asdict())
 
     def listen(self) -> None:
         """Tell of commands that were refused since the last call."""

@@ -10,7 +10,7 @@ import numpy as np
 from ..vehicle.kind import Kind
 from ..worlds import World
 from . import kind as kinds
-from .frame import Points, Stage
+from .frame import CALM, Points, Stage
 from .signals import Signals
 
 Array = np.ndarray[Any, Any]
@@ -36,6 +36,8 @@ class RecordSource:
         self._bytes = self._fleet.view("u1")
         self._v = kind.record.of(self._fleet, 0)
         self._view = kinds.of(kind)
+        self._stands = CALM
+        """Where its own world's origin is in the scene, NED [m]."""
         self._scan: tuple[int, Points | None] = (-1, None)
         self._signals: Signals | None = None
         self._read = dict[str, float]
@@ -71,10 +73,14 @@ class RecordSource:
     def _moment(self) -> dict[str, Any]:
         """Fields of a frame that are the same whoever flies the vehicle."""
         v = self._v
-        body = v.physics.body
-        rotors, steering, rolled = self._view.motion(v)
+        body, solids = v.physics.body, v.physics.obstacles
+        rotors, steering, rolled, (ground_hits, ground_speed, ground_us) = self._view.motion(v)
+        is_last = solids.hit_count > 0 and solids.hit_time_us >= ground_us
         return {
-            "pos": body.pos, "q": body.q, "vel": body.vel, "rotors": rotors, "steering": steering, "rolled": rolled,
+            "pos": body.pos + self._stands, "stands": self._stands, "q": body.q, "vel": body.vel,
+            "rotors": rotors, "steering": steering, "rolled": rolled, "touching": bool(solids.touching),
+            "hits": int(solids.hit_count) + ground_hits,
+            "hit_speed": float(solids.hit_speed) if is_last else ground_speed,
             "scan": self._scanned(), "wind": v.physics.wind.vel, "signals": self._read(),
         }  # fmt: skip
 

@@ -16,8 +16,9 @@ from sitl.view.axes import place
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
 from sitl.envs.page.page import EnvPage
-from sitl.envs.page.source import GRID, ONE, poses, states
+from sitl.envs.page.source import poses, states
 from sitl.envs.page.watchers import Directly, InClips
+from sitl.view.layout import GRID, ONE
 from sitl.view.page import Page
 
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"

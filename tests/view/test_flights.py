@@ -66,6 +66,13 @@ def test_goldens_are_aligned_and_their_distance_measured() -> None:
     assert apart[k] == pytest.approx(math.dist(one, two), abs=0.02)
 
 
+def test_one_flight_can_begin_at_its_arming() -> None:
+    shown, _ = together([flight.Flight("one.rec", track())], "armed")
+    assert shown[0].length == pytest.approx(9.0) and tuple(shown[0].frame(0.0).pos) == pytest.approx((2.0, 0.0, -3.0))
+    with pytest.raises(AlignmentError, match="align = 'AUTO': there is no such moment"):
+        together([flight.Flight("never.rec", Track("copter", track().data))], "AUTO")
+
+
 def test_what_cannot_be_shown_together_is_said() -> None:
     rover = next(GOLDEN.glob("rover-*.rec"))
     with pytest.raises(AlignmentError, match="golden is a copter's flight, the new one a rover's"):

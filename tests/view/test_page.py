@@ -11,6 +11,10 @@ import pytest
 
 from sitl import Simulation
 from sitl.client import Client, Endpoint
+from sitl.core.algebra import rotate_inverse
+from sitl.core.vectors import Vec3
+from sitl.errors import SitlError
+from sitl.physics.native.records import GROUND_AIRBORNE
 from sitl.run.pacing import StoppablePacing
 from sitl.run.runner import serve
 from sitl.run.watched import Watched
@@ -91,6 +95,30 @@ def test_buttons_arm_and_take_off_by_mavlink(page: LivePage) -> None:
     assert v.physics.body.pos.y == pytest.approx(-8.0, abs=2.5)
 
 
+def test_sticks_on_the_page_fly_it_and_are_given_back(page: LivePage) -> None:
+    assert page.controls is not None
+    sticks = page.controls.sticks
+    fly(page, 60.0)
+    v = page.simulation.v
+    page.ask(lambda: page.pilot.set_mode("ALT_HOLD"))
+    page.ask(page.pilot.arm)
+    sticks.held.value = True
+    fly(page, 4.0)
+    assert v.autopilot.arming.armed and -v.physics.body.pos.z < 0.1
+    sticks.sliders["Throttle"].value = 80.0
+    fly(page, 6.0)
+    assert -v.physics.body.pos.z > 4.0
+    sticks.centre.value = True
+    assert sticks.axes == (0, 0, 500, 0)
+    sticks.sliders["Pitch"].value = 40.0
+    fly(page, 5.0)
+    ahead = rotate_inverse(v.physics.body.q, v.physics.body.vel)
+    assert ahead.x > 2.0 and abs(ahead.y) < 1.0
+    sticks.held.value = False
+    fly(page, 0.2)
+    assert not any(v.autopilot.rc.override), "the radio has them again"
+
+
 def test_what_is_refused_is_said(page: LivePage) -> None:
     said: list[str] = []
     page.notify = lambda text, client=None, title="": said.append(text)  # type: ignore[method-assign]
@@ -144,6 +172,21 @@ def test_plots_take_signals_by_name(page: LivePage) -> None:
         fly(page, 2.0)
     times, values = page.plots.find("ATTITUDE.yaw").samples
     assert np.allclose(np.diff(times), 2.0, atol=0.01) and np.all(np.isfinite(values))
+    page.plots.add("ATTITUDE.roll", beside="ATTITUDE.yaw")
+    for _ in range(3):
+        fly(page, 2.0)
+    plot = page.plots.find("ATTITUDE.roll")
+    times, yaws, rolls = plot.samples
+    assert plot is page.plots.find("ATTITUDE.yaw") and len(times) == 7
+    assert np.all(np.isfinite(yaws)) and np.all(np.isnan(rolls[:4])) and np.all(np.isfinite(rolls[4:]))
+    for name in ("ATTITUDE.pitch", "ATTITUDE.rollspeed"):
+        page.plots.add(name, beside="ATTITUDE.yaw")
+    assert [each.get("scale") for each in plot._node.series] == [None, "y", "y", "y", "y"], "one message, one axis"
+    with pytest.raises(SitlError, match="4 signals in a plot are the most"):
+        page.plots.add("ATTITUDE.yawspeed", beside="ATTITUDE.yaw")
+    page.plots.add("physics.body.pos[2]")
+    page.plots.add("VFR_HUD.alt", beside="physics.body.pos[2]")
+    assert page.plots.find("VFR_HUD.alt")._node.series[2]["scale"] == "right"
     page.plots.clear()
     assert page.plots.names == () and page.frame is not None
     fly(page, 0.1)
@@ -203,10 +246,30 @@ def test_telemetry_and_record_are_the_same_bits_with_a_page(core: Core) -> None:
     assert run(True) == run(False)
 
 
+def test_impacts_are_marked_where_they_were(core: Core) -> None:
+    page = LivePage(Simulation("erle_copter", core=core, world="maze"), StoppablePacing(None))
+    try:
+        fly(page, 0.1)
+        v = page.simulation.v
+        assert page.scene.contacts.places == [] and page.frame is not None and page.frame.hits == 0
+        v.physics.body.pos, v.physics.body.vel = v.physics.body.pos - Vec3(0.0, 0.0, 3.0), Vec3(0.0, 0.0, 0.0)
+        v.physics.ground.state = GROUND_AIRBORNE
+        fly(page, 3.0)
+        hits, speed = int(v.physics.ground.hit_count), float(v.physics.ground.hit_speed)
+        assert hits == 1 and speed > 5.0, "it fell three metres"
+        assert page.scene.contacts.places == [pytest.approx(place(page.frame.pos))]
+        assert page.frame.hits == 1 and page.frame.hit_speed == pytest.approx(speed)
+        page.show(page.frame)
+        page.show(page.frame)
+        page.show(page.frame)
+        assert f"1, last {speed:.1f} m/s" in page.panel.state_html and len(page.scene.contacts.places) == 1
+    finally:
+        page.close()
+
+
 def test_the_trails_memory_is_limited(page: LivePage, monkeypatch: pytest.MonkeyPatch) -> None:
     from dataclasses import replace
 
-    from sitl.core.vectors import Vec3
     from sitl.view.scene import trail
 
     monkeypatch.setattr(trail, "_PIECES", 5)

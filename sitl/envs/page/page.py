@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from sitl.view.layout import GRID, LAYOUTS
 from sitl.view.page import Page
 
 from ..session import Session
-from .source import GRID, LAYOUTS, EnvSource
+from .source import EnvSource
 
 _PLOTTED = ("reward", "return", "action[0]")
 """Signals that are plotted from the beginning."""
@@ -41,3 +42,4 @@ class EnvPage(Page):
     def _lay_out(self, layout: str) -> None:
         self.env_source.layout = layout
         self.scene.place_world(self.env_source.stage.copies if layout == GRID else None)
+        self.cameras.choose(self.cameras.view)

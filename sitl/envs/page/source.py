@@ -15,6 +15,7 @@ from sitl.core.vectors import Euler, Vec3
 from sitl.view import kind
 from sitl.view.axes import FLIP
 from sitl.view.frame import Company, Frame, Mark, Plan, Points, Stage
+from sitl.view.layout import GRID, side_by_side
 from sitl.view.record import hits
 from sitl.view.shape import Shape, plain
 from sitl.view.signals import SignalError
@@ -25,10 +26,6 @@ from ..session import Session
 from ..targets.places import PlacesTask
 from ..tasks import ReachGoal
 
-GRID, ONE = "grid", "one world"
-LAYOUTS = (GRID, ONE)
-_BETWEEN = 1.0
-"""From one world of the grid to the next [m]."""
 _MOST = 256
 """Numbers of an observation that can be plotted: pictures are not."""
 _TURNING = 120.0
@@ -248,8 +245,4 @@ def grid(session: Session) -> Points:
     if isinstance(task, PlacesTask):
         low, high = task.arena.low, task.arena.high
         x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
-    number = np.arange(session.robot.count)
-    columns = math.ceil(math.sqrt(len(number)))
-    across, along = number % columns, number // columns
-    wide, long = y1 - y0 + _BETWEEN, x1 - x0 + _BETWEEN
-    return np.column_stack([-along * long, -across * wide, np.zeros(len(number))])
+    return side_by_side(session.robot.count, (x0, y0), (x1, y1))

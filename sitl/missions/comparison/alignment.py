@@ -116,6 +116,18 @@ def begin(track: Track, align: str) -> float | None:
     return 0.0
 
 
+def part(track: Track, align: str) -> Track:
+    """A flight from a moment on, with its clock starting there, to the next disarming or the end.
+
+    Raises:
+        AlignmentError: there is no such moment in it.
+    """
+    start = begin(track, align)
+    if start is None:
+        raise AlignmentError(f"align = {align!r}: there is no such moment ({START_NAMES.get(align, align)})")
+    return _from(track, start)
+
+
 def _from(track: Track, start: float, logged: float | None = None) -> Track:
     """The part of a track from a time [s] to the next disarming or the end, with its clock starting there.
 

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..axes import places, turns
+from ..colours import of_ends
 from ..frame import Company
-from ..shape import Mesh, Piece, Shape, joined, moved
+from ..shape import DARK, FRONT, Mesh, Piece, Shape, joined, moved
 
 _FEW = 64
 """Up to so many are drawn with all of their pieces."""
@@ -37,8 +38,8 @@ class CompanyNodes:
                 still = np.tile([1.0, 0.0, 0.0, 0.0], (len(which), 1))
                 node = scene.add_batched_meshes_simple(
                     f"/stage/company/{number}_{k}", mesh.vertices, mesh.faces, batched_wxyzs=still,
-                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=colour, lod="off",
-                    flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
+                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=of_ends([colour])[0],
+                    lod="off", flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
                 )  # fmt: skip
                 self._groups.append((node, np.array(which)))
 
@@ -59,16 +60,28 @@ def by_colour(shape: Shape, is_plain: bool = False) -> list[tuple[tuple[int, int
 
     Args:
         shape: of a vehicle.
-        is_plain: leave out all but its greatest pieces, a fifth of the triangles.
+        is_plain: leave out all but its greatest pieces, and draw the discs of rotors by few triangles: a fifth of all.
     """
-    pieces = [piece for piece in shape.pieces if piece.opacity == 1.0 or is_plain]
+    pieces = [piece for piece in shape.pieces if piece.opacity == 1.0]
+    meshes: dict[tuple[int, int, int], list[Mesh]] = {}
     if is_plain:
+        for piece in shape.pieces:
+            if piece.opacity < 1.0:
+                colour = piece.colour if piece.colour == FRONT else DARK  # light ones are not seen from far away
+                meshes.setdefault(colour, []).append(moved(_disc(piece.mesh), *piece.at))
         pieces = sorted(pieces, key=_size, reverse=True)
         pieces = [piece for piece in pieces if len(piece.mesh.faces) <= 24][:8] or pieces[:4]
-    meshes: dict[tuple[int, int, int], list[Mesh]] = {}
     for piece in pieces:
         meshes.setdefault(piece.colour, []).append(moved(piece.mesh, *piece.at))
     return [(colour, joined(*each)) for colour, each in meshes.items()]
+
+
+def _disc(mesh: Mesh) -> Mesh:
+    """A flat octagon of the same width."""
+    turn = np.arange(8) * (np.pi / 4)
+    rim = 0.5 * np.ptp(mesh.vertices[:, 0]) * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(8)])
+    faces = [(0, j, j + 1) for j in range(1, 7)]
+    return Mesh(rim.astype(np.float32), np.array(faces, np.uint32))
 
 
 def _size(piece: Piece) -> float:

@@ -13,6 +13,7 @@ from ..axes import place
 from ..frame import Frame, Points, Stage
 from . import surroundings
 from .company import CompanyNodes
+from .contacts import Contacts
 from .plan import PlanNodes
 from .trail import Trail
 from .vehicle import Ghost, VehicleNodes
@@ -38,6 +39,7 @@ class Scene:
         self._shape = stage.shape
         self.vehicle = VehicleNodes(scene, "/stage/vehicle", stage.shape)
         self.trail = Trail(scene, "/stage/trail", size)
+        self.contacts = Contacts(scene, size)
         self.plan = PlanNodes(scene, size)
         self.estimate = Ghost(scene, "/stage/estimate", stage.shape, _ESTIMATE, 0.35)
         self.set_point = scene.add_icosphere(
@@ -57,6 +59,7 @@ class Scene:
             self.company.show(frame.company)
         self.vehicle.show(frame)
         self.trail.show(frame)
+        self.contacts.show(frame)
         self.plan.show(frame)
         self.estimate.show(frame.estimate_pos, frame.estimate_q or _LEVEL)
         self.set_point.visible = frame.set_point is not None
@@ -69,6 +72,7 @@ class Scene:
         self._surroundings.remove()
         self._surroundings = surroundings.draw(self._scene, self._world, copies)
         self.trail.clear()
+        self.contacts.clear()
 
     def _choose(self, number: int) -> None:
         """Show this vehicle in full from now on."""
@@ -76,6 +80,7 @@ class Scene:
             return
         self._chosen = number
         self.trail.clear()
+        self.contacts.clear()
         shape = self._shapes[number]
         if shape is not self._shape:
             self._shape = shape
