@@ -158,11 +158,12 @@ def _expert(name: str, env: gym.Env[Any, Any]) -> Expert:
 
 def _baseline_of(env: gym.Env[Any, Any]) -> str:
     preset = "" if env.spec is None else str(env.spec.kwargs.get("preset", ""))
-    if preset not in baselines.names():
+    name = baselines.of_preset(preset)
+    if name not in baselines.names():
         named = "the environment" if env.spec is None else env.spec.id
         known = ", ".join(baselines.names())
         raise AgentError(f"expert {BASELINE!r}: no policy of {named} is shipped; there are {known}")
-    return preset
+    return name
 
 
 def _flown(env: gym.Env[Any, Any], expert: Expert, number: int, seed: int) -> Any:

@@ -29,28 +29,40 @@ AMONG = (*SEEN, "scan")
 INDOORS = (*AMONG, "pose", "heading")
 DRIVEN = ("goal", "velocity", "last_action")
 DRIVEN_ON_A_WAY = ("path", "velocity", "last_action")
-COPTER_MOVES = {
-    "stay": (0.0, 0.0, 0.0, 0.0),
-    "forward": (3.0, 0.0, 0.0, 0.0),
-    "forward left": (3.0, 3.0, 0.0, 0.0),
-    "left": (0.0, 3.0, 0.0, 0.0),
-    "back left": (-3.0, 3.0, 0.0, 0.0),
-    "back": (-3.0, 0.0, 0.0, 0.0),
-    "back right": (-3.0, -3.0, 0.0, 0.0),
-    "right": (0.0, -3.0, 0.0, 0.0),
-    "forward right": (3.0, -3.0, 0.0, 0.0),
-    "slowly forward": (0.8, 0.0, 0.0, 0.0),
-    "slowly left": (0.0, 0.8, 0.0, 0.0),
-    "slowly back": (-0.8, 0.0, 0.0, 0.0),
-    "slowly right": (0.0, -0.8, 0.0, 0.0),
-    "up": (0.0, 0.0, 0.8, 0.0),
-    "down": (0.0, 0.0, -0.8, 0.0),
-}
+
+
+def _copter_moves(fast: float) -> dict[str, tuple[float, ...]]:
+    slow, climb = 0.8, 0.8
+    return {
+        "stay": (0.0, 0.0, 0.0, 0.0),
+        "forward": (fast, 0.0, 0.0, 0.0),
+        "forward left": (fast, fast, 0.0, 0.0),
+        "left": (0.0, fast, 0.0, 0.0),
+        "back left": (-fast, fast, 0.0, 0.0),
+        "back": (-fast, 0.0, 0.0, 0.0),
+        "back right": (-fast, -fast, 0.0, 0.0),
+        "right": (0.0, -fast, 0.0, 0.0),
+        "forward right": (fast, -fast, 0.0, 0.0),
+        "slowly forward": (slow, 0.0, 0.0, 0.0),
+        "slowly left": (0.0, slow, 0.0, 0.0),
+        "slowly back": (-slow, 0.0, 0.0, 0.0),
+        "slowly right": (0.0, -slow, 0.0, 0.0),
+        "up": (0.0, 0.0, climb, 0.0),
+        "down": (0.0, 0.0, -climb, 0.0),
+    }
+
+
+COPTER_MOVES = _copter_moves(3.0)
+COPTER_MOVES_AMONG = {**_copter_moves(1.5), "turn left": (0.0, 0.0, 0.0, 1.2), "turn right": (0.0, 0.0, 0.0, -1.2)}
+"""Among solids: it stops within what its lidar sees, and turns the lidar, which is blind behind."""
 ROVER_MOVES = {
     "forward": (1.2, 0.0, 0.0, 0.0),
     "left": (0.8, 0.0, 0.0, 0.6),
     "right": (0.8, 0.0, 0.0, -0.6),
-    "back": (-0.6, 0.0, 0.0, 0.0),
+    "back": (-1.2, 0.0, 0.0, 0.0),
+    "back left": (-0.8, 0.0, 0.0, -0.6),
+    "back right": (-0.8, 0.0, 0.0, 0.6),
+    "stay": (0.0, 0.0, 0.0, 0.0),
 }
 """Velocities: forward, left, up [m/s], turn [rad/s]."""
 TRACK = [
@@ -125,6 +137,8 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
 
 def _discrete(preset: str) -> Callable[[], dict[str, Any]]:
     moves: Mapping[str, tuple[float, ...]] = COPTER_MOVES if preset.startswith("copter") else ROVER_MOVES
+    if preset in ("copter-forest", "copter-rooms"):
+        moves = COPTER_MOVES_AMONG
     return lambda: {**_CONTINUOUS[preset](), "action": moves}
 
 

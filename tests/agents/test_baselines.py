@@ -10,6 +10,7 @@ import pytest
 from benchmarks import baselines as table
 from sitl.agents import baselines, learnt
 from sitl.agents.rollout import rollout
+from sitl.envs import ids
 
 
 @pytest.mark.parametrize("name", baselines.names())
@@ -27,7 +28,7 @@ def test_the_page_shows_what_was_measured() -> None:
     assert table.table(results) in page and table.faults_table(results) in page
 
 
-@pytest.mark.parametrize("name", ["rover-waypoint", "rover-slalom"])
+@pytest.mark.parametrize("name", ["rover-waypoint", "rover-waypoint-discrete", "rover-slalom"])
 def test_it_solves_its_environment_and_plays_again_to_the_last_bit(name: str) -> None:
     first, second = (rollout(baselines.find(name), episodes=16, seed=1000, robots=8) for _ in range(2))
     assert all(played.reached and not played.crashed for played in first.episodes)
@@ -39,6 +40,11 @@ def test_a_policy_of_a_table_of_actions_is_of_the_other_forms_recipe() -> None:
     assert (recipe.name, env) == ("copter-hover", "sitl/CopterHoverDiscrete-v0")
     recipe, env = baselines.recipe_of("copter-hover")
     assert (recipe.name, env) == ("copter-hover", "sitl/CopterHover-v0")
+
+
+@pytest.mark.parametrize("name", baselines.names())
+def test_it_is_found_by_its_environments_preset(name: str) -> None:
+    assert baselines.of_preset(ids.NEW[learnt.load(baselines.find(name)).config.env].preset) == name
 
 
 def test_a_path_that_is_there_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -79,6 +79,8 @@ def test_goals_and_tables_are_recorded():
 def test_a_shipped_policy_is_an_expert():
     found = datasets.record(ID, expert="baseline", episodes=2)
     assert found.dataset.id == "sitl/CopterWaypoint/copter-waypoint-v0" and found.successes == 2
+    found = datasets.record("sitl/RoverWaypointDiscrete-v0", expert="baseline", episodes=2)
+    assert found.dataset.id == "sitl/RoverWaypointDiscrete/rover-waypoint-discrete-v0" and found.successes == 2
 
 
 def test_a_policy_that_copies_the_expert_is_better_than_drawn_actions():

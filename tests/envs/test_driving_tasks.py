@@ -72,6 +72,37 @@ def test_passing_through_a_bay_or_standing_across_it_is_not_parking():
     assert not across.step(np.zeros(2, np.float32))[4]["is_success"]
 
 
+def test_a_rover_parks_by_its_table_of_actions():
+    task = Park([(6.0, 0.5, 0.0)])  # its own idea of its place is half a metre to the left
+    env = gym.make("sitl/RoverParkingDiscrete-v0", world="open", start=(0.0, 0.0, 0.0), task=task).unwrapped
+    number = env.session.action.names.index
+    env.reset(seed=1)
+    info = {"is_success": False}
+    for _ in range(60):
+        *_, info = env.step(number("forward" if env.robot.pose[0, 0] < 5.1 else "stay"))
+        if info["is_success"]:
+            break
+    assert info["is_success"] and abs(env.robot.velocity[0, 0]) < task.speed
+
+
+@pytest.mark.parametrize(("move", "side"), [("back left", 1.0), ("back right", -1.0)])
+def test_a_rover_backs_to_the_side_that_the_action_names(move, side):
+    env = gym.make("sitl/RoverWaypointDiscrete-v0", start=(0.0, 0.0, 0.0)).unwrapped
+    env.reset(seed=1)
+    before = env.robot.pose[0].copy()
+    for _ in range(20):
+        env.step(env.session.action.names.index(move))
+    x, y, _, yaw = env.robot.pose[0] - before
+    assert x < -1.5 and side * y > 0.5 and side * yaw < -0.5
+
+
+@pytest.mark.parametrize("name", ["CopterGates", "CopterForest", "CopterRooms", "CopterReachGoal", "RoverParking"])
+def test_a_table_of_actions_is_within_the_limits_of_the_other_form(name):
+    box, table = (gym.make(f"sitl/{name}{form}-v0").unwrapped.session.action for form in ("", "Discrete"))
+    for column, (low, high) in zip(box.columns, box.limits, strict=True):
+        assert low <= table.table[:, column].min() and table.table[:, column].max() <= high
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [

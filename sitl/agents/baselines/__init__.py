@@ -31,6 +31,12 @@ def file(name: str) -> Path:
     return _FOLDER / f"{name}.npz"
 
 
+def of_preset(preset: str) -> str:
+    """What the policy of an environment is called, by the environment's preset (``sitl.envs.ids``)."""
+    form = DISCRETE.removeprefix("-")
+    return preset.removesuffix(form) + DISCRETE if preset.endswith(form) else preset
+
+
 def recipe_of(name: str) -> tuple[recipes.Recipe, str]:
     """The recipe that a policy of this name is learnt by, and the id of its environment.
 
