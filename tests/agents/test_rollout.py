@@ -154,7 +154,7 @@ def test_the_command_writes_a_row_an_episode(tmp_path, capsys):
         ("math:pi", {}, "it must be a function"),
         ("random", {"episodes": 0}, "episodes = 0; it must be 1 or more"),
         ("random", {"robots": 0}, "robots = 0; it must be 1 or more"),
-        ("random", {"env": None}, "say which one to play in"),
+        ("random", {"env": None}, "give ENV, the id of one"),
         ("random", {"env": "NoSuchEnvironment-v0"}, "NoSuchEnvironment"),
         (lambda rows: math.pi, {"workers": Workers(2)}, "cannot be sent to other processes"),
     ],

@@ -94,7 +94,7 @@ def test_bad_sweeps_are_refused_before_anything_is_made(train, tmp_path):
         code, _, error = train(CIRCUIT2, "--out", "s", *SHORT, *words)
         assert code == 2 and message in error, (words, error)
     assert not (tmp_path / "s").exists()
-    assert "as it is" in train("--resume", "s", "--sweep", "alpha=0.1")[2]
+    assert "continues a run with its own settings" in train("--resume", "s", "--sweep", "alpha=0.1")[2]
 
 
 def test_a_sweep_does_not_mix_with_other_runs(train, tmp_path):

@@ -117,7 +117,7 @@ def test_only_discrete_spaces_have_tables():
     assert Table.for_spaces(gym.spaces.Discrete(16), three).size == 16
     with pytest.raises(AgentError, match="observation = digits"):
         Table.for_spaces(gym.spaces.Box(0.0, 1.0, (5,)), three)
-    with pytest.raises(AgentError, match="action = discrete"):
+    with pytest.raises(AgentError, match="--option action=discrete"):
         Table.for_spaces(digits, gym.spaces.Box(0.0, 1.0, (1,)))
     with pytest.raises(AgentError, match="too many"):
         Table.for_spaces(gym.spaces.MultiDiscrete([100] * 12), three)

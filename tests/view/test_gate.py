@@ -94,7 +94,7 @@ def test_tokens_that_are_none_are_named() -> None:
     [
         (["--view", "--view-address", "0.0.0.0"], "go together"),
         (["--view", "--view-token", TOKEN], "go together"),
-        (["--view-address", "0.0.0.0", "--view-token", TOKEN], "with --view or --view-only"),
+        (["--view-address", "0.0.0.0", "--view-token", TOKEN], "--view-address needs --view or --view-only"),
     ],
 )
 def test_an_address_needs_a_token_and_a_page(capsys: pytest.CaptureFixture[str], words: list[str], says: str) -> None:
