@@ -9,12 +9,34 @@ from ..run.watched import Watched
 from ..simulation import Simulation
 from .fleet import FleetPage
 from .live_page import LivePage
+from .page import Page
 
 _LOOK_US = 20_000
 """Simulated time between two looks at the wall clock [us]."""
 
 
-class InlineView:
+class _Inline:
+    """A page as the value of a cell.
+
+    Args:
+        page: what is shown.
+        height: of the cell's output [pixels].
+    """
+
+    def __init__(self, page: Page, height: int) -> None:
+        self.page, self._height = page, height
+
+    def refresh(self) -> None:
+        """Show what the page is of as it is now."""
+        self.page.capture(0.0)
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of the notebook."""
+        self.refresh()
+        return f'<iframe src="{self.page.address}" width="100%" height="{self._height}" style="border:0"></iframe>'
+
+
+class InlineView(_Inline):
     """The page of a simulation that others advance, shown by a notebook as the value of a cell. Cells command the
     vehicle, the page has no controls.
 
@@ -29,8 +51,8 @@ class InlineView:
     """
 
     def __init__(self, simulation: Simulation, height: int = 480, port: int = 0) -> None:
-        self._simulation, self._height = simulation, height
-        self.page = LivePage(simulation, None, port, controls=False)
+        super().__init__(LivePage(simulation, None, port, controls=False), height)
+        self._simulation = simulation
         self._watched = Watched(self.page, lambda: simulation.time_us)
         self.due_us = simulation.time_us
         """When it looks next (``sitl.simulation.Observer``)."""
@@ -42,23 +64,14 @@ class InlineView:
         self.due_us = self._simulation.time_us + _LOOK_US
         self._watched()
 
-    def refresh(self) -> None:
-        """Show the vehicle as it is now."""
-        self.page.capture(0.0)
-
     def close(self) -> None:
         """Look on no longer, and close the page."""
         observers = self._simulation.observers
         observers[:] = [each for each in observers if each is not self]
         self.page.close()
 
-    def _repr_html_(self) -> str:
-        """The page in a frame of the notebook."""
-        self.refresh()
-        return _frame(self.page.address, self._height)
 
-
-class FleetView:
+class FleetView(_Inline):
     """The page of a fleet that others advance, shown by a notebook as the value of a cell. It has a frame after a call
     of ``advance``, at most 30 a second.
 
@@ -73,27 +86,14 @@ class FleetView:
     """
 
     def __init__(self, fleet: Fleet, height: int = 480, port: int = 0) -> None:
-        self._fleet, self._height = fleet, height
-        self.page = FleetPage(fleet, port)
+        super().__init__(FleetPage(fleet, port), height)
+        self._fleet = fleet
         self._watched = Watched(self.page, lambda: int(fleet.time_us.max()))
         fleet.observers.append(self._watched)
         self.refresh()
-
-    def refresh(self) -> None:
-        """Show the fleet as it is now."""
-        self.page.capture(0.0)
 
     def close(self) -> None:
         """Look on no longer, and close the page."""
         observers = self._fleet.observers
         observers[:] = [each for each in observers if each is not self._watched]
         self.page.close()
-
-    def _repr_html_(self) -> str:
-        """The page in a frame of the notebook."""
-        self.refresh()
-        return _frame(self.page.address, self._height)
-
-
-def _frame(address: str, height: int) -> str:
-    return f'<iframe src="{address}" width="100%" height="{height}" style="border:0"></iframe>'
