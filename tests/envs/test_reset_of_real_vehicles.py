@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import socket
 import threading
 from typing import Any
@@ -42,7 +41,8 @@ def height(simulation: Simulation) -> float:
 
 
 _STEP_US = 20_000
-_SILENCE_US = 200_000
+_SILENCE_US = 120_000  # longer than a step of an environment
+_PATIENCE = 1.0  # with a client that flies [s of wall time]
 
 
 class RealVehicle:
@@ -53,8 +53,9 @@ class RealVehicle:
         hidden: whether its SIM_ parameters are kept from clients.
         unsent: messages that it does not send at an interval.
         step_us: time from one look at the socket to the next [us]; a look takes a millisecond of wall time, or more.
-        waits: while its client is silent for longer than a step of an environment, time goes on no faster than the wall
-            clock, so that a client that flies is not late where the machine is busy.
+        waits: while its client is silent for longer than a step of an environment, time waits for the client's next
+            set-point, if a set-point came last, and else goes on no faster than the wall clock: so a client that flies
+            is not late where the machine is busy.
     """
 
     def __init__(
@@ -88,15 +89,20 @@ class RealVehicle:
         self._socket.close()
 
     def _serve(self) -> None:
-        peer, heard_us = None, self.simulation.time_us
+        peer, heard_us, is_flown = None, self.simulation.time_us, False
         while not self._stop.is_set():
             is_silent = self._waits and self.simulation.time_us - heard_us > _SILENCE_US
-            self._socket.settimeout(self._step_us * 1e-6 if is_silent else 0.001)
-            with contextlib.suppress(TimeoutError):
+            pace = _PATIENCE if is_flown else self._step_us * 1e-6
+            self._socket.settimeout(pace if is_silent else 0.001)
+            try:
                 data, peer = self._socket.recvfrom(1 << 16)
+            except TimeoutError:
+                is_flown = is_flown and not is_silent
+            else:
                 heard_us = self.simulation.time_us
                 for frame in self._splitter.feed(data):
                     self._take(frame)
+                    is_flown = frame.kind.name.startswith("SET_")
             self.simulation.advance_to(self.simulation.time_us + self._step_us)
             said = self._client.link.receive() + b"".join(self._refusals)
             self._refusals.clear()
