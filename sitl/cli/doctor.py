@@ -42,6 +42,7 @@ EXTRAS = {
     "jsbsim": (("jsbsim",), "--physics jsbsim"),
     "serial": (("serial",), "connections of the form serial:"),
     "ray": (("ray",), "many machines: --backend ray"),
+    "libraries": (("sb3_contrib", "tree", "skrl", "tianshou", "supersuit"), "training with libraries other than ours"),
     "cuda": (("numba_cuda",), "fleets on NVIDIA GPUs"),
 }
 """Extra -> (the modules that it brings, what they are for)."""

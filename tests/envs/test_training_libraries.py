@@ -206,11 +206,13 @@ def test_skrl(tmp_path, name, options):
                 observation_space=env.observation_space, action_space=env.action_space, device=env.device)  # fmt: skip
     before = weights(models["value"])
     SequentialTrainer(
-        cfg={"timesteps": 64, "headless": True, "disable_progressbar": True}, env=env, agents=agent
+        cfg={"timesteps": 64, "headless": True, "disable_progressbar": True, "close_environment_at_exit": False},
+        env=env, agents=agent,
     ).train()
     assert has_learnt(before, weights(models["value"]))
 
 
+@pytest.mark.parametrize("many", [False, True], ids=["single", "vector"])
 @pytest.mark.parametrize(
     ("name", "options"),
     [
@@ -221,20 +223,22 @@ def test_skrl(tmp_path, name, options):
         ("sitl/CopterHover-v0", {}),
     ],
 )
-def test_rllib(name, options):
+def test_rllib(name, options, many):
+    """By the id alone, which RLlib makes as often as it needs it, and by the vector environment behind the id."""
     pytest.importorskip("ray.rllib", reason="needs ray[rllib]")
     from ray.rllib.algorithms.ppo import PPOConfig
 
+    runners = {"num_envs_per_env_runner": 8, "gym_env_vectorize_mode": "vector_entry_point"} if many else {}
     config = (
         PPOConfig()
         .environment(f"{sitl.envs.__name__}:{name}", env_config=options)
-        .env_runners(num_env_runners=0, num_envs_per_env_runner=8, gym_env_vectorize_mode="vector_entry_point")
+        .env_runners(num_env_runners=0, **runners)
         .training(train_batch_size=512, minibatch_size=128, num_epochs=2)
         .debugging(seed=1)
     )
     algorithm = config.build_algo()
     try:
-        assert type(algorithm.env_runner.env.unwrapped).__name__.endswith("Vector")
+        assert type(algorithm.env_runner.env.unwrapped).__name__.endswith("Vector") or not many
         result = algorithm.train()
         assert result["env_runners"]["num_env_steps_sampled"] >= 512
         assert np.isfinite(result["learners"]["default_policy"]["total_loss"])
