@@ -18,7 +18,7 @@ from typing import Any
 import gymnasium
 
 from sitl import cli
-from sitl.cli import parser
+from sitl.cli import parser, plugins
 from sitl.cli.commands import COMMANDS
 
 FILE = Path(__file__).with_name("public_surface.txt")
@@ -44,7 +44,7 @@ def lines() -> list[str]:
     found = [line for name in MODULES for line in of_module(import_module(name))]
     found += [f"command {line}" for line in of_commands()]
     found += [f"environment {name}" for name in sorted(gymnasium.registry) if is_ours(name)]
-    found += [f"entry points {cli.GROUP}"]
+    found += [f"entry points {group}" for group in (cli.GROUP, plugins.GROUP)]
     return found
 
 

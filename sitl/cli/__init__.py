@@ -2,7 +2,7 @@
 """The ``sitl`` command.
 
 Other packages add subcommands by the entry-point group ``sitl.commands``: its name is the subcommand's, its object a
-module with ``add_parser(commands)`` like those here.
+module with ``add_parser(commands)`` like those here. What they add to the simulator itself is in their ``plugins``.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any
 
 from .. import __version__
 from ..errors import SitlError
+from . import plugins
 from .commands import COMMANDS, WELCOME
 from .parser import Parser
 
@@ -78,6 +79,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     command = words[0]
     try:
+        if command != "doctor":  # which tells what of them is broken
+            plugins.load()
         options = parser(words).parse_args(words)
         return int(options.function(options))
     except SitlError as error:

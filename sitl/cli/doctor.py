@@ -20,6 +20,7 @@ from ..run import runner
 from ..vehicle.kinds import KINDS
 from ..warp import CannotBuild
 from ..warp.build import compiler as c_compiler
+from . import plugins
 from .cache import entries
 from .output import add_json_option, print_json
 
@@ -71,7 +72,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def doctor(options: argparse.Namespace) -> int:
     """Print what was found; returns 1 when something that is needed is broken."""
-    found = [*system(), *extras(), *clock(), *cache(), *ports(), *display()]
+    found = [*system(), *extras(), *other_packages(), *clock(), *cache(), *ports(), *display()]
     if options.json:
         print_json([asdict(one) for one in found])
     else:
@@ -117,6 +118,18 @@ def extras() -> Iterator[Finding]:
             yield Finding(extra, ABSENT, what, f"pip install 'gym-sitl[{extra}]'")
         else:
             yield Finding(extra, OK, use)
+
+
+def other_packages() -> Iterator[Finding]:
+    """The plugins of other packages."""
+    for entry in plugins.installed():
+        try:
+            entry.load()
+        except Exception as error:  # whatever its package does
+            package = entry.dist.name if entry.dist is not None else entry.value
+            yield Finding(f"plugin {entry.name}", BROKEN, f"{entry.value}: {error!r}", f"pip uninstall {package}")
+        else:
+            yield Finding(f"plugin {entry.name}", OK, plugins.described(entry))
 
 
 def clock() -> Iterator[Finding]:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from ..drop_in import server
 from ..errors import SitlError
+from . import plugins
 from .progress import CompileProgress
 
 
@@ -28,6 +29,7 @@ def run(program: str, words: Sequence[str]) -> int:
 
 def _main(program: str) -> int:
     try:
+        plugins.load()
         return run(program, sys.argv[1:])
     except SitlError as error:
         print(f"{program}: {error}", file=sys.stderr)
