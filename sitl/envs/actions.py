@@ -116,7 +116,7 @@ class Discrete:
         if not rows:
             raise EnvOptionError("a table of actions needs a row")
         self.table = np.array(list(rows.values()), np.float64)
-        self.space = gym.spaces.Discrete(len(rows))
+        self.space: gym.spaces.Discrete = gym.spaces.Discrete(len(rows))
         self._count = len(rows)
 
     def room(self, count: int) -> npt.NDArray[Any]:

@@ -207,7 +207,8 @@ def test_skrl(tmp_path, name, options):
     before = weights(models["value"])
     SequentialTrainer(
         cfg={"timesteps": 64, "headless": True, "disable_progressbar": True, "close_environment_at_exit": False},
-        env=env, agents=agent,
+        env=env,
+        agents=agent,
     ).train()
     assert has_learnt(before, weights(models["value"]))
 
