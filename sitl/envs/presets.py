@@ -87,8 +87,8 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
 
 
 def _among(**others: Any) -> Task:
-    """One place among solids; touching one is a crash."""
-    return Among(crash_reward=-20.0, **others)
+    """One place among solids. To leave the arena costs as much as a crash, or robots that are stuck learn to leave."""
+    return Among(crash_reward=-20.0, out_reward=-20.0, **others)
 
 
 def _slow() -> Normalised:
