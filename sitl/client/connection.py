@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import time
 import warnings
 from collections.abc import Callable, Sequence
@@ -13,6 +14,7 @@ from ..bridge.dialect import message
 from ..bridge.links.inprocess import InProcessLink
 from ..bridge.services.commands import GRANT, RESEED
 from ..errors import LinkLostError
+from ..warp.page import CLOCK_PAGE
 from .byte_socket import ByteStream, open_stream
 from .commands import arguments, command_number
 from .endpoint import Endpoint, Inbox
@@ -363,7 +365,8 @@ def connect(
 ) -> Lockstep | RealTime:
     """Find the vehicle, whether it proves to be a simulator, and whether its time can be held.
 
-    It is only asked questions. One whose time cannot be held is used in real time, with a warning.
+    It is only asked questions. One whose time cannot be held is used in real time, with a warning, but not in a script
+    under ``sitl exec``.
 
     Args:
         text: a form of ``open_stream``.
@@ -399,7 +402,8 @@ def connect(
     if can_be_held():
         found = Lockstep(stream, inbox, patience, acks[GRANT].result_param2, system, component)
     else:
-        warn(f"connection {text}: the vehicle's clock cannot be held (no sitl run --lockstep); real time")
+        if CLOCK_PAGE not in os.environ:  # there this process's own clock is the vehicle's
+            warn(f"connection {text}: the vehicle's clock cannot be held (no sitl run --lockstep); real time")
         found = RealTime(stream, inbox, patience, system, component)
     found.endpoint, found.is_simulator = probe.endpoint, probe.is_simulator
     inbox.system = inbox.system or 1

@@ -7,7 +7,6 @@ It writes on_board_log.bin, draws on_board_log.png and needs matplotlib.
 """
 
 import sys
-import warnings
 
 from pymavlink import DFReader
 
@@ -30,7 +29,6 @@ PLOTS = (
 
 def main() -> None:
     """Fly a bit, then read the log."""
-    warnings.filterwarnings("ignore", message=".*clock cannot be held")  # sitl exec gives this script its clock
     vehicle = Client(sys.argv[1] if len(sys.argv) > 1 else "udp:127.0.0.1:14550")
     vehicle.wait_ready()
     vehicle.take_off(10)

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sitl.warp.build import CannotBuild, preload_library, static_runtime
-from sitl.warp.page import ClockPage
+from sitl.warp.page import CLOCK_PAGE, ClockPage
 
 
 def script_environment(page: ClockPage, env: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -23,7 +23,7 @@ def script_environment(page: ClockPage, env: Mapping[str, str] | None = None) ->
     result = dict(os.environ if env is None else env)
     others = [name for name in result.get("LD_PRELOAD", "").split(":") if name]
     result["LD_PRELOAD"] = ":".join([str(preload_library()), *others])
-    result["SITL_WARP_PAGE"] = page.path
+    result[CLOCK_PAGE] = page.path
     # Only gRPC generations of MAVSDK need it; other processors than it is written for do without.
     with contextlib.suppress(CannotBuild):
         result["SITL_WARP_RUNTIME"] = str(static_runtime())

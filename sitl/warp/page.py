@@ -32,6 +32,8 @@ PID_SLOTS = 256
 FOREVER_NS = 2**63 - 1
 
 WAITING, RUNNING, RELEASED = 0, 1, 2
+CLOCK_PAGE = "SITL_WARP_PAGE"
+"""Environment variable of a program that is on the clock of a page: the page's path."""
 
 _PREFIX, _SUFFIX = "sitl-clock-", ".page"
 

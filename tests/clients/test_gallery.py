@@ -121,6 +121,7 @@ def test_a_script_of_a_client_draws(name: str, fly: Fly, tmp_path: Path) -> None
     words = EXAMPLES[name].command.split()
     speedup = words[words.index("--speedup") + 1]
     said = fly(ROOT / "examples" / f"{name}.py", URLS.get(name, URL), speedup=speedup, folder=tmp_path)
+    assert "clock cannot be held" not in said, "sitl exec gives it the vehicle's"
     check(name, said, tmp_path / f"{name}.png")
 
 
