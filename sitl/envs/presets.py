@@ -86,9 +86,9 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
     }  # fmt: skip
 
 
-def _among(**others: Any) -> Task:
+def _among(crash: float = -20.0, **others: Any) -> Task:
     """One place among solids. To leave the arena costs as much as a crash, or robots that are stuck learn to leave."""
-    return Among(crash_reward=-20.0, out_reward=-20.0, **others)
+    return Among(crash_reward=crash, out_reward=crash, **others)
 
 
 def _slow() -> Normalised:
@@ -116,7 +116,9 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-land": lambda: _copter(Land()),
     "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_WAY),
     "copter-forest": lambda: _copter(_among(ceiling=3.0), AMONG, world="forest:seed=1", take_off=1.5, action=_slow()),
-    "copter-rooms": lambda: _copter(_among(ceiling=3.0), INDOORS, world="rooms:seed=1", take_off=1.5, action=_slow()),
+    "copter-rooms": lambda: _copter(
+        _among(-10.0, ceiling=3.0), INDOORS, world="rooms:seed=1", take_off=1.5, action=_slow()
+    ),
     "rover-waypoint": lambda: _rover(Waypoints(1)),
     "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
     "rover-labyrinth": lambda: _rover(
