@@ -34,7 +34,7 @@ COMMANDS = {
     "arducopter": Listed("sitl.cli.drop_in", "run a copter in place of ArduPilot's arducopter"),
     "ardurover": Listed("sitl.cli.drop_in", "run a rover in place of ArduPilot's ardurover"),
     "examples": Listed("sitl.cli.examples", "list and copy the example programs"),
-    "params": Listed("sitl.cli.params", "list the parameters, as a .parm file"),
+    "params": Listed("sitl.cli.params", "list the parameters, or look for some"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),
     "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),
     "doctor": Listed("sitl.cli.doctor", "check the installation, and print the commands that complete it"),

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import socket
 import subprocess
@@ -271,6 +272,22 @@ def test_params_of_the_rover(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["params", "--vehicle", "rover", "--markdown"]) == 0
     page = capsys.readouterr().out
     assert page.startswith("# Parameters of the rover") and "## ATC" in page
+
+
+def test_parameters_are_looked_for_by_words(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["params", "wpnav", "Climb"]) == 0
+    assert capsys.readouterr().out == "WPNAV_SPEED_UP = 250 cm/s (10 .. 5000)\n    Climb speed limit in missions\n"
+    assert main(["params", "--frame", "erle_copter", "MOT_THST_EXPO"]) == 0
+    assert "(-1 .. 1, default 0.65)" in capsys.readouterr().out
+    assert main(["params", "--json", "WPNAV_SPEED"]) == 0
+    assert [one["name"] for one in json.loads(capsys.readouterr().out)] == [
+        "RTL_SPEED", "LAND_SPEED_HIGH", "WPNAV_SPEED", "WPNAV_SPEED_UP", "WPNAV_SPEED_DN",
+    ]  # fmt: skip
+    assert main(["params", "WPNAV_SPED"]) == 2
+    assert "no parameter of the copter has 'WPNAV_SPED'; did you mean 'WPNAV_SPEED'?" in capsys.readouterr().err
+    assert main(["params", "wpnav", "parachute"]) == 2
+    assert "no parameter of the copter has 'wpnav' and 'parachute'" in capsys.readouterr().err
+    assert main(["params", "--markdown", "wpnav"]) == 2
 
 
 @pytest.mark.slow
