@@ -19,7 +19,7 @@ from sitl.errors import MissingExtra
 
 def _import_all() -> None:
     for module in pkgutil.walk_packages(sitl.__path__, "sitl."):
-        if not re.search(r"\.(__main__|preload|static)", module.name):
+        if not re.search(r"\.(__main__|preload|static|examples\.)", module.name):
             try:
                 importlib.import_module(module.name)
             except (MissingExtra, ImportError):  # of an extra that is not installed: it has no laws
