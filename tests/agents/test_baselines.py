@@ -22,6 +22,12 @@ def test_it_is_of_a_recipe_and_in_the_table(name: str) -> None:
     assert row["solved"] + row["crashed"] <= row["episodes"]
 
 
+def test_every_id_of_a_task_has_one_that_solves_nine_of_ten_episodes() -> None:
+    results = table.kept()
+    assert {row["env"] for row in results.values()} == set(ids.NEW)
+    assert not [name for name, row in results.items() if row["solved"] < 0.9 * row["episodes"]]
+
+
 def test_the_page_shows_what_was_measured() -> None:
     page, results = table.PAGE.read_text(encoding="utf-8"), table.kept()
     assert list(results) == list(baselines.names())
