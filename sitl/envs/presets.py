@@ -116,6 +116,7 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
     "copter-land": lambda: _copter(Land()),
     "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_WAY),
     "copter-forest": lambda: _copter(_among(ceiling=3.0), AMONG, world="forest:seed=1", take_off=1.5, action=_slow()),
+    # Rooms: a crash costs less than to hover until the time limit, or policies learn to hover.
     "copter-rooms": lambda: _copter(
         _among(-10.0, ceiling=3.0), INDOORS, world="rooms:seed=1", take_off=1.5, action=_slow()
     ),
