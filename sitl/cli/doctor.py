@@ -43,6 +43,7 @@ EXTRAS = {
     "jsbsim": (("jsbsim",), "--physics jsbsim"),
     "serial": (("serial",), "connections of the form serial:"),
     "ray": (("ray",), "many machines: --backend ray"),
+    # "tree" is what only RLlib brings; Ray's other parts are the extra ray.
     "libraries": (("sb3_contrib", "tree", "skrl", "tianshou", "supersuit"), "training with libraries other than ours"),
     "cuda": (("numba_cuda",), "fleets on NVIDIA GPUs"),
 }
@@ -122,14 +123,12 @@ def extras() -> Iterator[Finding]:
 
 def other_packages() -> Iterator[Finding]:
     """The plugins of other packages."""
-    for entry in plugins.installed():
-        try:
-            entry.load()
-        except Exception as error:  # whatever its package does
+    for entry, error in plugins.installed():
+        if error is None:
+            yield Finding(f"plugin {entry.name}", OK, plugins.described(entry))
+        else:
             package = entry.dist.name if entry.dist is not None else entry.value
             yield Finding(f"plugin {entry.name}", BROKEN, f"{entry.value}: {error!r}", f"pip uninstall {package}")
-        else:
-            yield Finding(f"plugin {entry.name}", OK, plugins.described(entry))
 
 
 def clock() -> Iterator[Finding]:

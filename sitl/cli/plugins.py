@@ -7,6 +7,7 @@ package adds to the simulator: modes, parameters, messages, faults, services, ph
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from importlib import metadata
 
 from ..errors import SitlError
@@ -18,9 +19,15 @@ class PluginError(SitlError):
     """A plugin cannot be imported; without it vehicles would not be those that the user has set up."""
 
 
-def installed() -> list[metadata.EntryPoint]:
-    """The entry points of all plugins, by name."""
-    return sorted(metadata.entry_points(group=GROUP), key=lambda entry: entry.name)
+def installed() -> Iterator[tuple[metadata.EntryPoint, Exception | None]]:
+    """Import all plugins, by name; of each the error that it raised, or None."""
+    for entry in sorted(metadata.entry_points(group=GROUP), key=lambda entry: entry.name):
+        try:
+            entry.load()
+        except Exception as error:  # whatever its package does
+            yield entry, error
+        else:
+            yield entry, None
 
 
 def described(entry: metadata.EntryPoint) -> str:
@@ -35,10 +42,8 @@ def load() -> None:
     Raises:
         PluginError: one of them cannot be imported; the message names it and its package.
     """
-    for entry in installed():
-        try:
-            entry.load()
-        except Exception as error:  # whatever its package does
+    for entry, error in installed():
+        if error is not None:
             raise PluginError(
                 f"{described(entry)} cannot be loaded: {error!r}; mend or uninstall the package"
             ) from error
