@@ -239,7 +239,7 @@ def test_rllib(name, options, many):
     )
     algorithm = config.build_algo()
     try:
-        assert type(algorithm.env_runner.env.unwrapped).__name__.endswith("Vector") or not many
+        assert type(algorithm.env_runner.env.unwrapped).__name__.endswith("Vector") == many
         result = algorithm.train()
         assert result["env_runners"]["num_env_steps_sampled"] >= 512
         assert np.isfinite(result["learners"]["default_policy"]["total_loss"])
