@@ -94,8 +94,10 @@ def test_a_script_is_run_on_the_clock_of_a_program(arducopter, tmp_path):
     with command("exec", "--vehicle", "copter", *run, cwd=tmp_path) as process:
         out, err = process.communicate(timeout=200)
     assert process.returncode == 3, err
-    slept, passed = map(float, line_with(iter(out.split("\n")), "slept").split()[1:])
-    assert slept == pytest.approx(5.0, abs=0.1) and passed == pytest.approx(5.0, abs=0.5)
+    *slept, since, passed = map(float, line_with(iter(out.split("\n")), "slept").split()[1:])
+    # A busy machine wakes a sleeper late: 10 ms of its time are 0.2 s of the script's. One of five is on time.
+    assert 1.0 <= min(slept) < 1.1, slept
+    assert passed == pytest.approx(since, rel=0.2)  # a wrong clock is wrong by a factor of 20
 
 
 class AsFastAsItGoes:
@@ -142,11 +144,15 @@ link = mavutil.mavlink_connection(f"tcp:127.0.0.1:{sys.argv[1]}")
 link.wait_heartbeat()
 link.mav.command_long_send(1, 1, 511, 0, 30, 20000, 0, 0, 0, 0, 0)
 first, began = link.recv_match(type="ATTITUDE", blocking=True), time.monotonic()
-time.sleep(5.0)
+slept = []
+for _ in range(5):
+    before = time.monotonic()
+    time.sleep(1.0)
+    slept.append(time.monotonic() - before)
 while link.recv_match(type="ATTITUDE", blocking=False):
     pass
 last = link.recv_match(type="ATTITUDE", blocking=True)
-print("slept", time.monotonic() - began, (last.time_boot_ms - first.time_boot_ms) * 1e-3)
+print("slept", *slept, time.monotonic() - began, (last.time_boot_ms - first.time_boot_ms) * 1e-3)
 raise SystemExit(3)
 """
 
