@@ -87,6 +87,7 @@ class Toy:
         env = {**os.environ, "SITL_CACHE_DIR": str(self.folder / "cache")}
         env["PYTHONPATH"] = os.pathsep.join([str(self.folder), root])
         env.pop("NUMBA_DISABLE_JIT", None)
+        env["PYTHONDONTWRITEBYTECODE"] = "1"  # Python takes an edit of equal length in the same second for no edit
         result = subprocess.run(
             [sys.executable, "run.py", *arguments], cwd=self.folder, env=env, capture_output=True, text=True
         )
