@@ -62,10 +62,13 @@ def run_script(
     command = [sys.executable, "-m", "sitl", "exec", "--vehicle", vehicle, "--quiet", "--speedup", speedup]
     command += ["--tcp", "0", "--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
     command += ["--", sys.executable, str(script), url.replace("PORT", port)]
-    done = subprocess.run(
-        command, cwd=folder, env=environment(), text=True, timeout=WALL_S,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-    )  # fmt: skip
+    try:
+        done = subprocess.run(
+            command, cwd=folder, env=environment(), text=True, timeout=WALL_S,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as late:
+        pytest.fail(f"{script.name} has not ended after {WALL_S:g} s; it printed:\n{(late.stdout or b'').decode()}")
     assert done.returncode == 0, done.stdout
     return done.stdout
 

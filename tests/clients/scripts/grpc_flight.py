@@ -86,6 +86,6 @@ async def main() -> None:
 failure = None
 try:
     asyncio.run(main())
-except Failed as error:
-    failure = f"FAILED: {error}"  # without its traceback, which would keep mavsdk_server running
+except Exception as error:
+    failure = f"FAILED: {error!r}"  # without its traceback, which would keep mavsdk_server running
 sys.exit(failure)
