@@ -20,7 +20,7 @@ from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import KINDS
 from . import execute, recordings
 from .options import add_vehicle_options, build_simulation, open_folder
-from .view_options import add_view_options, default_speedup, shown
+from .view_options import add_view_options, check_view, default_speedup, shown
 
 _SHOWN_US = 200_000
 
@@ -38,6 +38,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def demo(options: argparse.Namespace) -> int:
     """Run the example, print the figures, draw."""
+    check_view(options)
     options.speedup = options.speedup or default_speedup(options)
     name = KINDS[options.vehicle].demo_script
     if name is None:

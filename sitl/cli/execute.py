@@ -26,7 +26,7 @@ from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
 from . import foreign, recordings, run, swarm
 from .status import StatusLine
-from .view_options import DEFAULT_TEXT, shown, wants_view
+from .view_options import DEFAULT_TEXT, check_view, shown
 
 DEFAULT_SPEEDUP = "20"
 
@@ -64,7 +64,7 @@ def execute(options: argparse.Namespace) -> int:
     if shutil.which(command[0]) is None:
         raise OptionError(f"command {command[0]!r} is not found or not executable")
     parse_speedup(options.speedup)
-    wants_view(options)  # refuses what cannot be before anything is compiled
+    check_view(options)
     choice = choose(options.autopilot, options.vehicle)
     if choice is not None:
         return _execute_foreign(options, choice, command)

@@ -15,7 +15,7 @@ from ..plants.local import LocalPlant, stand_alone
 from ..vehicle.kinds import KINDS
 from . import options as shared
 from .progress import CompileProgress
-from .view_options import add_view_options, shown, wants_view
+from .view_options import add_view_options, check_view, shown
 
 Serve = Callable[[LocalPlant, str, int, Callable[[str], None], Callable[[], bool]], None]
 """``serve(plant, address, instance, say, running)``: listens at the address until ``running()`` is false."""
@@ -67,7 +67,7 @@ def physics(options: argparse.Namespace) -> int:
     Raises:
         OptionError: an option that cannot be taken.
     """
-    wants_view(options)  # refuses what cannot be before anything is compiled
+    check_view(options)
     kind, _, address = options.listen.partition(":")
     if kind not in LISTENERS:
         raise OptionError(f"--listen {options.listen!r}: {kind!r} is not known; it is one of {', '.join(LISTENERS)}")

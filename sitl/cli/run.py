@@ -20,7 +20,7 @@ from . import foreign, recordings, swarm
 from .link_options import add_link_options, link_faults
 from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
 from .status import StatusLine
-from .view_options import add_view_options, shown, wants_view
+from .view_options import add_view_options, check_view, shown
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -117,7 +117,7 @@ def open_servers(options: argparse.Namespace) -> list[TcpServerLink]:
 
 def run(options: argparse.Namespace) -> int:
     """Serve the vehicle until Ctrl-C, SIGTERM or the end of ``--duration``."""
-    wants_view(options)  # refuses what cannot be before anything is compiled
+    check_view(options)
     choice = choose(options.autopilot, options.vehicle)
     if choice is not None:
         return foreign.fly(options, choice)

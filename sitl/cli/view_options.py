@@ -51,6 +51,24 @@ def default_speedup(options: argparse.Namespace) -> str:
     return "1" if wants_view(options) else MAX
 
 
+def check_view(options: argparse.Namespace) -> None:
+    """Refuse what cannot be before anything is compiled or written.
+
+    Raises:
+        OptionError, MissingExtra: as of ``wants_view``.
+        sitl.view.page.PageAddressError, sitl.view.gate.GateError: as of ``shown``.
+    """
+    if not wants_view(options):
+        return
+    from ..view import gate
+    from ..view.page import free_port
+
+    if options.view_address is None:
+        free_port(options.view_port)
+    else:
+        gate.check(options.view_address, options.view_port, options.view_token)
+
+
 def wants_view(options: argparse.Namespace) -> bool:
     """Whether a page is asked for.
 
@@ -61,8 +79,9 @@ def wants_view(options: argparse.Namespace) -> bool:
     wanted = bool(options.view or options.view_only)
     if (options.view_address is None) != (options.view_token is None):
         raise OptionError("--view-address and --view-token go together: without a token anybody could fly the vehicle")
-    if options.view_address is not None and not wanted:
-        raise OptionError("--view-address needs --view or --view-only")
+    for name, given in (("address", options.view_address is not None), ("port", options.view_port)):
+        if given and not wanted:
+            raise OptionError(f"--view-{name} needs --view or --view-only")
     if wanted:
         library.require()
     return wanted

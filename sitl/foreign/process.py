@@ -49,7 +49,8 @@ class AutopilotProcess:
         grace_s: float = GRACE_S,
     ) -> None:
         self._owned, self._grace_s = folder is None, grace_s
-        self.folder = Path(tempfile.mkdtemp(prefix="gym-sitl-")) if folder is None else folder
+        # Whole: the program is started in it, and is given paths in it.
+        self.folder = Path(tempfile.mkdtemp(prefix="gym-sitl-")) if folder is None else folder.resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.command = [word.replace("{folder}", str(self.folder)) for word in command]
         for name, text in files.items():

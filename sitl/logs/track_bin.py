@@ -39,10 +39,14 @@ class _Reader:
         self.modes: list[tuple[float, int]] = []
         self.homes: list[tuple[float, float, float, float]] = []
         self._takes_off = 0
+        self.began: float | None = None
+        """Time of the first message [s]."""
 
     def take(self, m: Any) -> None:
         """One message."""
         t, name = m.TimeUS * 1e-6, m.get_type()
+        if self.began is None:
+            self.began = t
         if name == "POS":
             self.rows["place"].append((t, m.Lat * 1e7, m.Lng * 1e7, m.Alt))
         elif name == "XKF1" and m.C == 0:
@@ -64,6 +68,8 @@ class _Reader:
             self._text(t, m.Message)
 
     def _arm(self, t: float, state: bool) -> None:
+        if not self.track.armed and not state:  # LOG_DISARMED 0: the log was opened by the arming, which it misses
+            self.track.armed.append((t if self.began is None else self.began, True))
         if not self.track.armed or self.track.armed[-1][1] != state:
             self.track.armed.append((t, state))
 

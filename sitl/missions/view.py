@@ -98,7 +98,11 @@ def together(found: list[flight.Flight], align: str = "auto", frame: str | None 
             raise OptionError(f"{found[0].name}: no samples: its estimator never had an origin")
         track = found[0].track if align == "auto" else alignment.part(found[0].track, align)
         return [of_track(names[0], track, frame)], {}
-    pairs = [alignment.pair(found[0].track, each.track, align, found[0].coarse or each.coarse) for each in found[1:]]
+    first, *others = found
+    pairs = [
+        alignment.pair(first.track, each.track, align, first.coarse or each.coarse, (first.name, each.name))
+        for each in others
+    ]
     tracks = [pairs[0].golden, *(each.new for each in pairs)]
     measured = flight_differences(pairs[0])
     return [of_track(name, track, frame) for name, track in zip(names, tracks, strict=True)], measured

@@ -14,16 +14,21 @@ class Player:
     """Shows one moment after another.
 
     Args:
-        length: of what is played [s].
+        length: end of what is played [s].
         show: shows a moment [s]; called by this thread while it plays, by ``go_to`` otherwise.
         clock: gives the wall time [s].
+        begin: of what is played [s].
     """
 
     def __init__(
-        self, length: float, show: Callable[[float], None], clock: Callable[[], float] = time.monotonic
+        self,
+        length: float,
+        show: Callable[[float], None],
+        clock: Callable[[], float] = time.monotonic,
+        begin: float = 0.0,
     ) -> None:
-        self.length, self._show, self._clock = length, show, clock
-        self.time = 0.0
+        self.length, self._show, self._clock, self._begin = length, show, clock, begin
+        self.time = begin
         """The moment that is shown [s]."""
         self.speed = 1.0
         """Seconds of what is played a second of wall time."""
@@ -38,7 +43,7 @@ class Player:
         """Go on from here; from the beginning when it is at its end."""
         with self._changed:
             if self.time >= self.length:
-                self.time = 0.0
+                self.time = self._begin
             self.is_playing, self._last = True, self._clock()
             self._changed.notify()
 
@@ -48,9 +53,9 @@ class Player:
             self.is_playing = False
 
     def go_to(self, moment: float) -> None:
-        """Show a moment [s] within the length, and go on from there if it plays."""
+        """Show a moment [s] between begin and end, and go on from there if it plays."""
         with self._changed:
-            self.time, self._last = min(max(moment, 0.0), self.length), self._clock()
+            self.time, self._last = min(max(moment, self._begin), self.length), self._clock()
             self._show(self.time)
 
     def advance(self) -> None:

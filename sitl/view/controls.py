@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from ..autopilot.params.parameter import Parameter
 from ..run.pacing import MAX, StoppablePacing
 from ..simulation import Simulation
+from ..vehicle.faults import FORM
 from .frame import Stage
 from .pilot import Pilot
 from .sticks import Sticks
@@ -150,7 +151,7 @@ class Weather:
             slider = gui.add_slider(label, min=0.0, max=high, step=0.1, initial_value=now, hint=name)
             slider.on_update(_setter(ask, pilot, name))
             self.sliders[name] = slider
-        self.fault = gui.add_text("Fault", "gps", hint="UNIT[/TYPE][:N][=AMOUNT][@FROM[..TO]], docs/faults.md")
+        self.fault = gui.add_text("Fault", "gps", hint=f"{FORM}, docs/faults.md")
         self.fail = gui.add_button("Let it fail")
         self.fail.on_click(lambda event: ask(lambda: pilot().fail(self.fault.value), event))
         self.repair = gui.add_button("Repair all")

@@ -103,6 +103,8 @@ class FlightPage:
         self.scene = FlightScene(self.server, flights)
         self.cameras = Cameras(self.scene.stage, flights[0].shape.size, FREE)
         self._look_at_all()
+        self.begin = min(float(flight.track.t[0]) for flight in flights)
+        """First sample [s]: an on-board log may begin minutes after power-on."""
         self.length = max(flight.length for flight in flights)
         self.events = [(event.time, f"{flight.name}: {event.text}" if len(flights) > 1 else event.text)
                        for flight in flights for event in flight.events()]  # fmt: skip
@@ -111,8 +113,8 @@ class FlightPage:
         """What is shown, of each flight."""
         self._add_widgets(differences or {})
         self._moves_bar = False
-        self.player = Player(self.length, self._show)
-        self.player.go_to(0.0)
+        self.player = Player(self.length, self._show, begin=self.begin)
+        self.player.go_to(self.begin)
 
     def _look_at_all(self) -> None:
         """Browsers begin with a view of the whole way."""
@@ -127,8 +129,9 @@ class FlightPage:
         gui = self.server.gui
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
         gui.main_panel.dock_right()
-        self.bar = gui.add_slider("Time [s]", min=0.0, max=max(self.length, 0.1), step=0.05, initial_value=0.0)
-        self._band = gui.add_html(band(self.flights, self.length))
+        low, high = self.begin, max(self.length, self.begin + 0.1)
+        self.bar = gui.add_slider("Time [s]", min=low, max=high, step=0.05, initial_value=low)
+        self._band = gui.add_html(band(self.flights, self.begin, self.length))
         self.play = gui.add_button("Play")
         self.stop = gui.add_button("Stop")
         self.speed = gui.add_dropdown("Speed", SPEEDS, initial_value="1")
@@ -193,10 +196,10 @@ class FlightPage:
         Raises:
             SitlError: the file cannot be written.
         """
-        step = max(1.0 / _SAVED_RATE, self.length / frames)
-        self.scene.show(0.0)
+        step = max(1.0 / _SAVED_RATE, (self.length - self.begin) / frames)
+        self.scene.show(self.begin)
         serializer = self.server.get_scene_serializer()
-        for time in np.arange(step, self.length, step):
+        for time in np.arange(self.begin + step, self.length, step):
             serializer.insert_sleep(step)
             self.scene.show(float(time))
         text = serializer.as_html()
@@ -211,20 +214,24 @@ class FlightPage:
         library.stop(self.server)
 
 
-def band(flights: Sequence[Flight], length: float) -> str:
-    """Modes over time as coloured bars, a row a flight, with marks where items were reached."""
+def band(flights: Sequence[Flight], begin: float, end: float) -> str:
+    """Modes between two times [s] as coloured bars, a row a flight, with marks where items were reached."""
+
+    def across(time: float) -> float:
+        return 100.0 * (min(max(time, begin), end) - begin) / (end - begin)
+
     rows = []
     for k, flight in enumerate(flights):
         modes = [*flight.track.modes, (flight.length, "")]
-        for (begin, mode), (end, _) in pairwise(modes):
-            x, w = 100.0 * max(begin, 0.0) / length, 100.0 * (min(end, length) - max(begin, 0.0)) / length
+        for (since, mode), (until, _) in pairwise(modes):
+            x, w = across(since), across(until) - across(since)
             if w > 0.0:
                 rows.append(
                     f'<rect x="{x:.2f}%" y="{14 * k}" width="{w:.2f}%" height="12" fill="{css(of_mode(mode))}">'
-                    f"<title>{escape(flight.name)}: {escape(mode)} from {begin:.1f} s</title></rect>"
+                    f"<title>{escape(flight.name)}: {escape(mode)} from {since:.1f} s</title></rect>"
                 )
         rows += [
-            f'<rect x="{100.0 * t / length:.2f}%" y="{14 * k}" width="1.5" height="12" fill="#fff"/>'
+            f'<rect x="{across(t):.2f}%" y="{14 * k}" width="1.5" height="12" fill="#fff"/>'
             for t, _ in flight.track.items
         ]
     used = sorted({mode for flight in flights for _, mode in flight.track.modes})

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import hmac
+import socket
 import threading
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
@@ -29,6 +30,32 @@ class GateError(SitlError, ValueError):
     """An address that the page cannot be offered at, or a token that is none."""
 
 
+def check(host: str, port: int, token: str) -> None:
+    """Whether a gate can be opened there now.
+
+    Raises:
+        GateError: the token is too short, or the address cannot be had.
+    """
+    check_token(token)
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+        with socket.socket(family, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as asyncio's server does
+            probe.bind(address)
+    except OSError as error:
+        raise _not_had(host, port, error) from None
+
+
+def check_token(token: str) -> None:
+    """GateError for a token that is easily guessed, or no part of an address."""
+    if len(token) < LEAST or not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
+        raise GateError(f"--view-token: {LEAST} characters or more are needed, of letters, digits, - and _")
+
+
+def _not_had(host: str, port: int, error: OSError) -> GateError:
+    return GateError(f"--view-address {host}, port {port}: cannot be had: {error.strerror or error}")
+
+
 class Gate:
     """Listens at an address of this machine.
 
@@ -43,17 +70,16 @@ class Gate:
     """
 
     def __init__(self, host: str, port: int, token: str, target: int) -> None:
-        if len(token) < LEAST or not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
-            raise GateError(f"--view-token: {LEAST} characters or more are needed, of letters, digits, - and _")
+        check_token(token)
         self._token, self._target = token, target
         self._loop = asyncio.new_event_loop()
         try:
             self._server = self._loop.run_until_complete(asyncio.start_server(self._visit, host, port))
         except OSError as error:
             self._loop.close()
-            raise GateError(f"--view-address {host}:{port} cannot be had: {error.strerror or error}") from None
+            raise _not_had(host, port, error) from None
         self.port = int(self._server.sockets[0].getsockname()[1])
-        self.address = f"http://{host}:{self.port}/?token={token}"
+        self.address = f"http://{f'[{host}]' if ':' in host else host}:{self.port}/?token={token}"
         """What visitors open."""
         self._thread = threading.Thread(target=self._loop.run_forever, name="sitl-view-gate", daemon=True)
         self._thread.start()

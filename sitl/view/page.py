@@ -75,7 +75,13 @@ class Page:
             return
         number = gui.add_number("Vehicle", 1, min=1, max=count, step=1, hint=f"1 to {count}: shown in full")
         source = cast(CompanyOfSources, self.source)
-        number.on_update(self.guarded(lambda event: source.choose(int(number.value) - 1)))
+
+        def choose(event: Any) -> None:
+            if not 1 <= number.value <= count:  # a browser lets its user type anything
+                raise SitlError(f"vehicle {number.value:g}: there are vehicles 1 to {count}")
+            source.choose(int(number.value) - 1)
+
+        number.on_update(self.guarded(choose))
         self.vehicle_number = number
 
     def _add_instruments(self, gui: Any) -> Any:

@@ -159,17 +159,25 @@ class Pilot:
         self._simulation.repair()
 
     def keep(self) -> None:
-        """Keep this moment."""
+        """Keep this moment.
+
+        Raises:
+            OptionError: the run is being recorded: what a snapshot does cannot be replayed.
+        """
+        self._refuse_if_recorded()
         self._snapshot = self._simulation.snapshot()
 
     def go_back(self) -> None:
         """Go on from the moment that was kept.
 
         Raises:
-            OptionError: none was, or the run is being recorded: what a snapshot does cannot be replayed.
+            OptionError: none was, or the run is being recorded.
         """
+        self._refuse_if_recorded()
         if self._snapshot is None:
             raise OptionError("no moment was kept")
-        if isinstance(self._simulation.bridge.board.journal, Recorder):
-            raise OptionError("the run is being recorded (--record): it cannot go back to another moment")
         self._simulation.restore(self._snapshot)
+
+    def _refuse_if_recorded(self) -> None:
+        if isinstance(self._simulation.bridge.board.journal, Recorder):
+            raise OptionError("the run is being recorded (--rec): it cannot go back to another moment")

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from sitl.cli.view_options import add_view_options, wants_view
+from sitl.cli.view_options import add_view_options, check_view, wants_view
 from sitl.errors import MissingExtra
 
 from .. import algorithms, environments, recipes
@@ -188,6 +188,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def train(options: argparse.Namespace) -> int:
     """Run the command."""
+    check_view(options)
     pool = workers(options)
     if wants_view(options) and (pool.jobs > 1 or options.backend != BACKENDS[0]):
         raise AgentError("--view shows a run that is trained in this process: leave --jobs and --backend out")

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
+from sitl.cli.execute import terminable
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
-from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, default_speedup, shown, wants_view
+from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown, wants_view
 from sitl.errors import OptionError
 from sitl.run import runner
 from sitl.run.pacing import StoppablePacing, parse_speedup
@@ -55,7 +56,12 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 def run(options: argparse.Namespace) -> int:
     """Fly it; 0 when the mission was completed, 1 when it was not."""
-    speedup = parse_speedup(options.speedup or default_speedup(options))
+    check_view(options)
+    with terminable():
+        return _fly(options, parse_speedup(options.speedup or default_speedup(options)))
+
+
+def _fly(options: argparse.Namespace, speedup: float | None) -> int:
     name = options.mission
     entry = library.find(name) if name in library.entries() else None
     if entry is None and not Path(name).exists() and not Path(name).suffix:

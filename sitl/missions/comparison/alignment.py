@@ -50,20 +50,27 @@ class Pair:
     notes: tuple[str, ...]
 
 
-def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -> Pair:
+def pair(
+    golden: Track,
+    new: Track,
+    align: str = "auto",
+    coarse: bool = False,
+    names: tuple[str, str] = ("golden", "the new flight"),
+) -> Pair:
     """Align two flights in time.
 
     Args:
         golden, new: the two.
         align: as a tolerance has it.
         coarse: the start of one is known to a heartbeat only: then their ways bring the clocks together.
+        names: what errors call them.
 
     Raises:
         AlignmentError: they are of different kinds of vehicles, or one lacks the start that is asked for.
     """
     if golden.kind != new.kind:
-        raise AlignmentError(f"golden is a {golden.kind}'s flight, the new one a {new.kind}'s")
-    for title, track in (("golden", golden), ("the new flight", new)):
+        raise AlignmentError(f"{names[0]} is of a {golden.kind}, {names[1]} of a {new.kind}")
+    for title, track in zip(names, (golden, new), strict=True):
         if len(track) < 2:
             raise AlignmentError(f"{title} has no samples: its estimator never had an origin")
     golden, new = golden.quantised(), new.quantised()
@@ -81,7 +88,7 @@ def pair(golden: Track, new: Track, align: str = "auto", coarse: bool = False) -
         if first is not None and second is not None:
             found = Pair(_from(golden, first), _from(new, second), name, (first, second), tuple(notes))
             return _with_aligned_clocks(found, golden, new) if coarse else found
-    which = "golden" if begin(golden, align) is None else "the new flight"
+    which = names[0] if begin(golden, align) is None else names[1]
     raise AlignmentError(f"align = {align!r}: {which} has no such moment ({START_NAMES.get(align, align)})")
 
 
@@ -128,6 +135,16 @@ def part(track: Track, align: str) -> Track:
     return _from(track, start)
 
 
+def _end(track: Track, start: float) -> float:
+    """Time of the first disarming after a time, or of the last sample [s]."""
+    was_armed = False  # a ground station's log begins with a heartbeat that says "disarmed": that ends nothing
+    for t, state in track.armed:
+        if was_armed and not state and t > start:
+            return t
+        was_armed = state
+    return float(track.t[-1])
+
+
 def _from(track: Track, start: float, logged: float | None = None) -> Track:
     """The part of a track from a time [s] to the next disarming or the end, with its clock starting there.
 
@@ -136,7 +153,7 @@ def _from(track: Track, start: float, logged: float | None = None) -> Track:
         start: where the clock begins [s].
         logged: time at which the log records that moment [s]; events count from there. None: at ``start``.
     """
-    stop = next((t for t, state in track.armed if not state and t > start), float(track.t[-1]))
+    stop = _end(track, start)
     t = track.t
     times = start + np.arange(int((min(stop, t[-1]) - start) / STEP + 1e-6) + 1) * STEP
     times = times[times >= t[0] - 1e-6]

@@ -50,7 +50,7 @@ class PlanNodes:
             self._draw(frame.plan)
 
     def _draw(self, plan: Plan) -> None:
-        for node in self._nodes:
+        for node in reversed(self._nodes):  # a label goes before the ball that it belongs to
             node.remove()
         self._nodes = []
         if plan.items:

@@ -123,7 +123,7 @@ def test_a_golden_that_is_of_no_use_is_replaced_only_when_asked(folder: Path) ->
     copter, rover = find(folder)
     fly_case(rover, update=True)
     copter.golden.write_bytes(rover.golden.read_bytes())
-    assert fly_case(copter).words == "golden is a rover's flight, the new one a copter's"
+    assert fly_case(copter).words == "golden is of a rover, the new flight of a copter"
     copter.golden.write_text("junk")
     assert fly_case(copter).status == FAILED
     assert copter.golden.read_text() == "junk"
