@@ -12,6 +12,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 
 from ..foreign.choice import ARDUPILOT, Choice, choose
@@ -29,6 +30,8 @@ from .status import StatusLine
 from .view_options import DEFAULT_TEXT, check_view, shown
 
 DEFAULT_SPEEDUP = "20"
+LATE = 124
+"""Exit code when the script has not ended within ``--duration``."""
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -36,7 +39,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "exec",
         usage="sitl exec [options] -- COMMAND [ARGUMENT ...]",
-        epilog="{tcp} in an argument of COMMAND is replaced by the first TCP port. The exit code is that of COMMAND.",
+        epilog="{tcp} in an argument of COMMAND is replaced by the first TCP port. The exit code is that "
+        f"of COMMAND, or {LATE} when COMMAND has not ended within --duration.",
     )
     parser.add_argument("--vehicle", choices=sorted(KINDS), default=DEFAULT)
     add_speedup(parser)
@@ -134,7 +138,7 @@ def run_script(
 ) -> int:
     """Run ``command`` on the vehicle's clock until it ends; its exit code (128 + n for signal n).
 
-    After ``duration_s`` simulated seconds it is ended, which is no failure: 0.
+    After ``duration_s`` simulated seconds it is ended, which is a failure: 124, as of timeout(1).
     At ``speedup`` "1" a script of our autopilot needs no clock of its own where none can be had.
 
     Raises:
@@ -167,7 +171,8 @@ def run_script(
         elif pace is not None:
             vehicle.serve_slices(pace, until_us=until, running=running, on_slice=on_slice)
         if script.poll() is None:
-            return 0
+            print(f"sitl: {command[0]} has not ended within --duration {duration_s:g} s", file=sys.stderr, flush=True)
+            return LATE
     code = script.returncode
     return code if code >= 0 else 128 - code
 

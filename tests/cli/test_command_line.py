@@ -174,6 +174,16 @@ def test_exec_runs_a_script_on_the_vehicles_clock_and_returns_its_code(core: Cor
     assert flown["ATTITUDE"][-1, 0] > 39.0
 
 
+@pytest.mark.parametrize("count", [(), ("--count", "2")])
+def test_a_script_that_has_not_ended_within_the_duration_has_failed(
+    core: Core, tmp_path: Path, count: tuple[str, ...]
+) -> None:
+    options = ("--out", "none", "--tcp", "0", "--speedup", "max", "--duration", "3", *count)
+    result = sitl("exec", *options, "--", sys.executable, "-c", "import time; time.sleep(1e6)", folder=tmp_path)
+    assert result.returncode == 124
+    assert f"{sys.executable} has not ended within --duration 3 s" in result.stderr
+
+
 @pytest.mark.slow
 def test_the_demo_flies_its_mission_and_draws_it(core: Core, tmp_path: Path) -> None:
     pytest.importorskip("mavsdk")

@@ -79,6 +79,16 @@ def test_a_folder_that_was_named_stays(tmp_path):
     assert process.last_output() == "said"
 
 
+def test_a_folder_may_be_named_from_here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    process = AutopilotProcess(
+        [*python("import sys", "print(open(sys.argv[1]).read())"), "{folder}/a.txt"], {"a.txt": "read"}, {}, Path("its")
+    )
+    process._process.wait()
+    process.stop()
+    assert process.last_output() == "read"
+
+
 def test_a_program_that_ends_is_told_of_with_its_last_words():
     process = AutopilotProcess(python("print('no eeprom')", "raise SystemExit(3)"), {}, {})
     process._process.wait()

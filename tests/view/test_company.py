@@ -51,6 +51,15 @@ def test_each_vehicle_is_drawn_where_it_truly_is(page: LivePage) -> None:
     assert tuple(page.scene.vehicle.body.wxyz) == pytest.approx(turn(bodies[0].q))
 
 
+def test_a_number_that_no_vehicle_has_is_said_and_changes_nothing(page: LivePage) -> None:
+    said: list[str] = []
+    page.notify = lambda text, client=None, title="": said.append(text)  # type: ignore[method-assign]
+    for number in (9, 0):
+        page.vehicle_number.value = number
+    assert said == ["vehicle 9: there are vehicles 1 to 3", "vehicle 0: there are vehicles 1 to 3"]
+    assert page.chosen == 0
+
+
 def test_another_one_is_chosen_shown_and_commanded(page: LivePage) -> None:
     page.plots.add("physics.body.pos[0]")
     page.vehicle_number.value = 3

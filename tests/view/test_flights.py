@@ -75,7 +75,7 @@ def test_one_flight_can_begin_at_its_arming() -> None:
 
 def test_what_cannot_be_shown_together_is_said() -> None:
     rover = next(GOLDEN.glob("rover-*.rec"))
-    with pytest.raises(AlignmentError, match="is of a copter, .* of a rover"):
+    with pytest.raises(AlignmentError, match=r"is of a copter, .* of a rover"):
         together([flight.read(CIRCLES), flight.read(rover)])
     empty = flight.Flight("nothing.rec", Track("copter", np.zeros((0, len(NAMES)))))
     with pytest.raises(OptionError, match=r"nothing\.rec: no samples"):
@@ -102,6 +102,19 @@ def test_a_player_follows_its_clock_and_stops_at_the_end() -> None:
         player.close()
 
 
+def test_a_player_goes_back_to_where_what_it_plays_begins() -> None:
+    player = Player(50.0, lambda moment: None, begin=43.5)
+    try:
+        assert player.time == 43.5
+        player.go_to(0.0)
+        assert player.time == 43.5
+        player.go_to(50.0)
+        player.play()
+        assert player.time == 43.5
+    finally:
+        player.close()
+
+
 class TestPage:
     """Of flights, asked through its server."""
 
@@ -119,6 +132,23 @@ class TestPage:
             page.jump(next(k for k, (_, text) in enumerate(page.events) if "item 2" in text))
             assert page.player.time == page.bar.value == 6.0
             assert tuple(page.scene.vehicles[0].body.position) == pytest.approx((12.0, 0.0, 3.0))
+        finally:
+            page.close()
+
+    def test_it_begins_with_the_first_sample(self) -> None:
+        pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
+        from sitl.view.flight_page import FlightPage, band
+
+        late = track()
+        late.data[:, 0] += 300.0
+        late.modes[:] = [(0.0, "GUIDED"), (305.0, "AUTO")]
+        page = FlightPage([of_track("late", late)])
+        try:
+            assert page.bar.min == page.bar.value == 300.0 and page.bar.max == pytest.approx(310.0)
+            page.bar.value = 305.0
+            assert tuple(page.scene.vehicles[0].body.position) == pytest.approx((10.0, 0.0, 3.0))
+            drawn = band(page.flights, page.begin, page.length)
+            assert drawn.count('width="50.00%"') == 2 and 'x="0.00%"' in drawn and 'x="50.00%"' in drawn
         finally:
             page.close()
 

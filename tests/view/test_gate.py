@@ -6,6 +6,7 @@ from __future__ import annotations
 import socket
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -95,8 +96,36 @@ def test_tokens_that_are_none_are_named() -> None:
         (["--view", "--view-address", "0.0.0.0"], "go together"),
         (["--view", "--view-token", TOKEN], "go together"),
         (["--view-address", "0.0.0.0", "--view-token", TOKEN], "--view-address needs --view or --view-only"),
+        (["--view-port", "8080"], "--view-port needs --view or --view-only"),
+        (["--view", "--view-address", "127.0.0.1", "--view-token", "short"], "8 characters or more"),
+        (["--view", "--view-address", "192.0.2.1", "--view-token", TOKEN], "192.0.2.1, port 0: cannot be had"),
     ],
 )
-def test_an_address_needs_a_token_and_a_page(capsys: pytest.CaptureFixture[str], words: list[str], says: str) -> None:
-    assert main(["run", "copter", *words]) == 2
+def test_a_page_that_cannot_be_is_refused_before_anything_is_written(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, words: list[str], says: str
+) -> None:
+    assert main(["run", "copter", "--rec", f"{tmp_path}/a.rec", "--log-dir", f"{tmp_path}/logs", *words]) == 2
     assert says in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_port_that_is_taken_is_refused_before_anything_is_written(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        words = ["--view", "--view-port", port, "--rec", f"{tmp_path}/a.rec", "--log-dir", f"{tmp_path}/logs"]
+        assert main(["run", "copter", *words]) == 2
+    assert f"port {port} for the page cannot be had" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_address_of_ip_version_6_is_written_as_browsers_read_it() -> None:
+    try:
+        gate = Gate("::1", 0, TOKEN, 1)
+    except GateError:
+        pytest.skip("this machine has no IPv6")
+    try:
+        assert gate.address == f"http://[::1]:{gate.port}/?token={TOKEN}"
+    finally:
+        gate.close()

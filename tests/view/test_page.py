@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import socket
+import warnings
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +15,9 @@ from sitl import Simulation
 from sitl.client import Client, Endpoint
 from sitl.core.algebra import rotate_inverse
 from sitl.core.vectors import Vec3
-from sitl.errors import SitlError
+from sitl.errors import OptionError, SitlError
 from sitl.physics.native.records import GROUND_AIRBORNE
+from sitl.recording import Recorder
 from sitl.run.pacing import StoppablePacing
 from sitl.run.runner import serve
 from sitl.run.watched import Watched
@@ -22,6 +25,7 @@ from sitl.simulation import Core
 from sitl.view import page as pages
 from sitl.view.axes import place, turn
 from sitl.view.controls import on_ground
+from sitl.view.frame import Mark, Plan
 from sitl.view.page import PageAddressError, free_port
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
@@ -165,6 +169,22 @@ def test_back_to_a_moment_that_was_kept(page: LivePage) -> None:
     page.ask(page.pilot.go_back)
     page.attend()
     assert page.simulation.fleet.tobytes() == kept
+
+
+def test_no_moment_is_kept_in_a_run_that_is_recorded(page: LivePage, tmp_path: Path) -> None:
+    Recorder(page.simulation, tmp_path / "a.rec")
+    for deed in (page.pilot.keep, page.pilot.go_back):
+        with pytest.raises(OptionError, match=r"recorded \(--rec\)"):
+            deed()
+
+
+def test_a_plan_that_changes_is_drawn_anew_without_a_warning(page: LivePage) -> None:
+    nodes = page.scene.plan
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for heights in ((5.0, 0.0), (7.0,), ()):
+            marks = tuple(Mark(f"item {k}", Vec3(k, 0.0, -height)) for k, height in enumerate(heights))
+            nodes._draw(Plan(items=marks))
 
 
 def test_plots_take_signals_by_name(page: LivePage) -> None:

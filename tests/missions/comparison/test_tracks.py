@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ from hypothesis import strategies as st
 
 from sitl.logs.tlog import LogError
 from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
+from sitl.logs.track_bin import _Reader as Reader
 from sitl.logs.track_observer import TrackObserver
-from sitl.missions.comparison.alignment import AlignmentError, match, pair
+from sitl.missions.comparison.alignment import AlignmentError, match, pair, part
 from sitl.missions.comparison.flight import measure, read
 from sitl.recording.entries import of_state
 from sitl.simulation import Core, Simulation
@@ -226,6 +228,26 @@ def test_matching_never_goes_back() -> None:
     golden, new = straight(20.0), moved(straight(20.0, wait=0.8), slice(1, 3), (0.05, -0.04))
     index = match(new, golden).index
     assert (np.diff(np.round(index)) >= -1.0).all()
+
+
+def test_only_what_was_armed_is_disarmed() -> None:
+    track = replace(straight(60.0), armed=[(0.4, False), (10.0, True), (50.0, False)])
+    whole = part(track, "start")  # a heartbeat that says "disarmed" ends nothing
+    assert whole.t[-1] == pytest.approx(50.0) and whole.armed[:2] == [(0.4, False), (10.0, True)]
+    assert part(track, "armed").t[-1] == pytest.approx(40.0)
+
+
+def test_a_log_that_arming_has_opened_is_armed_from_its_beginning() -> None:
+    """As of the real ArduPilot with LOG_DISARMED 0: its first record of arming is that it is over."""
+    reader = Reader()
+    reader.take(SimpleNamespace(TimeUS=43_500_000, get_type=lambda: "PARM"))
+    reader.take(SimpleNamespace(TimeUS=44_000_000, ArmState=1, get_type=lambda: "ARM"))
+    assert reader.track.armed == [(44.0, True)]
+    reader = Reader()
+    reader.take(SimpleNamespace(TimeUS=43_500_000, get_type=lambda: "PARM"))
+    reader.take(SimpleNamespace(TimeUS=90_000_000, Id=11, get_type=lambda: "EV"))
+    reader.take(SimpleNamespace(TimeUS=90_000_001, ArmState=0, get_type=lambda: "ARM"))
+    assert reader.track.armed == [(43.5, True), (90.0, False)]
 
 
 def test_another_kind_or_nothing_flown_is_said() -> None:
