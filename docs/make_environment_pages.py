@@ -17,6 +17,8 @@ import sitl.envs
 from sitl.envs.actions import Discrete
 from sitl.envs.arena import Arena
 from sitl.envs.boxes import GoalConditioned
+from sitl.envs.targets.gates import Gates
+from sitl.envs.targets.landing import Land
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
@@ -177,8 +179,8 @@ def page(name: str) -> str:
         "An episode starts at the world's start pose" + (", in the air." if name.startswith("Copter") else "."),
         "It terminates",
         "", f"- with a crash, when the robot touches an obstacle: reward {number(task.crash_reward)};",
-        f"- more than 5 m outside of the arena: {number(task.out_reward)} is added to the reward;",
-        "- as the section on the reward says.",
+        f"- more than 5 m outside of the arena{ceiling(task)}: {number(task.out_reward)} is added to the reward;",
+        "- as the section on the reward says.", "", *judged(task),
         "", f"## Arguments of the task: `task={type(task).__name__}(...)`", "",
         f"`from {type(task).__module__} import {type(task).__name__}`", "",
         "| argument | value here | meaning |", "|---|---:|---|",
@@ -191,6 +193,31 @@ def page(name: str) -> str:
     continuous.close()
     discrete.close()
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines))
+
+
+def ceiling(task: Any) -> str:
+    """Where a task ends above its ceiling."""
+    height = getattr(task, "ceiling", None) if task.flies else None
+    return "" if height is None else f", or higher than {number(height)} m above the floor"
+
+
+def judged(task: Any) -> list[str]:
+    """By what a task judges, and what the floor does."""
+    lines = []
+    if not isinstance(task, Gates | Land):
+        lines += [
+            "Reward, success and end are judged by the position that the autopilot estimates and reports. With the",
+            'usual errors of GPS it is within about a metre of the true one, which is `info["true_pose"]`; a fault of',
+            "GPS moves it.",
+        ]
+    if task.flies and not isinstance(task, Land):
+        lines += [
+            "The floor is no obstacle: a copter that sinks to it has landed, and set-points do not lift it again; the",
+            "episode goes on until the time limit.",
+        ]
+    if getattr(task, "is_sparse", False):
+        lines += ["The end outside of the arena is not in `compute_reward`, which knows positions only."]
+    return lines
 
 
 def space(of: Any) -> str:
