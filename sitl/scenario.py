@@ -17,6 +17,7 @@ from typing import Any, TypedDict
 from . import vehicles, worlds
 from .errors import OptionError, did_you_mean
 from .physics.engines import NATIVE
+from .physics.native import atmosphere
 from .physics.native.power_on import DEFAULT_HOME, Home
 from .vehicle.faults import Failure
 from .vehicle.kind import Kind
@@ -49,7 +50,8 @@ class Scenario:
 
     Args:
         frame: airframe name (``sitl.vehicles.names()``), path of a file that defines one, or an Airframe.
-        home: where it stands at power-on: latitude, longitude [deg], altitude [m], heading [deg]; None: Canberra.
+        home: where it stands at power-on: latitude, longitude [deg], altitude [m] from -2000 to 11000, heading [deg];
+            None: Canberra.
         seed: seed of all sensor noise and turbulence; None: 0.
         estimator: "ekf", or "truth" for work on controllers.
         params: values under ArduPilot's names, over the airframe's own and the defaults.
@@ -226,7 +228,9 @@ def _world_to_json(world: str | Path | World | None) -> dict[str, Any] | None:
 
 
 def checked_home(home: Home) -> Home:
-    """``home`` as floats; OptionError when it is not four numbers or not on the globe."""
+    """``home`` as floats; OptionError when it is not four numbers, not on the globe, or where there is no model of the
+    air: the standard atmosphere is that of the troposphere.
+    """
     try:
         lat, lon, alt, heading = (float(number) for number in home)
     except (TypeError, ValueError):
@@ -234,6 +238,9 @@ def checked_home(home: Home) -> Home:
         raise OptionError(f"home {home!r} is not {wanted}") from None
     if not (abs(lat) <= 90 and abs(lon) <= 180 and math.isfinite(alt) and math.isfinite(heading)):
         raise OptionError(f"home {home}: latitude is within +-90, longitude within +-180 degrees, the rest finite")
+    if not atmosphere.LOWEST <= alt <= atmosphere.HIGHEST:
+        limits = f"{atmosphere.LOWEST:.0f} to {atmosphere.HIGHEST:.0f} m"
+        raise OptionError(f"home {home}: altitude is within {limits} above mean sea level, where the air is modelled")
     return (lat, lon, alt, heading)
 
 

@@ -26,6 +26,8 @@ def test_its_options_as_keywords_are_its_fields() -> None:
         ({"estimator": "gps"}, "estimator 'gps' is not known; it is one of ekf, truth"),
         ({"home": (1.0, 2.0)}, r"home \(1.0, 2.0\) is not \(latitude, longitude, altitude, heading\)"),
         ({"home": (91.0, 0.0, 0.0, 0.0)}, "latitude is within"),
+        ({"home": (0.0, 0.0, 45000.0, 0.0)}, "altitude is within -2000 to 11000 m above mean sea level"),
+        ({"home": (0.0, 0.0, -2001.0, 0.0)}, "altitude is within -2000 to 11000 m above mean sea level"),
         ({"seed": 1.5}, "seed 1.5 is not a whole number"),
         ({"sed": 1}, "option 'sed' is none of frame, home, seed, .*; did you mean 'seed'"),
     ],
@@ -35,6 +37,11 @@ def test_what_cannot_be_taken_is_named(options: dict[str, Any], message: str) ->
         Scenario.of("erle_copter", **options)
     with pytest.raises(OptionError, match=message):
         Simulation("erle_copter", **options)
+
+
+@pytest.mark.parametrize("altitude", [-2000.0, 11000.0])
+def test_home_may_be_as_low_and_as_high_as_the_air_is_modelled(altitude: float) -> None:
+    assert Scenario(home=(0.0, 0.0, altitude, 0.0)).home == (0.0, 0.0, altitude, 0.0)
 
 
 def test_airframe_and_start_are_refused_when_they_are_looked_up() -> None:

@@ -18,6 +18,7 @@ from ..bridge.services.setpoints import (
     YAWS_IGNORED,
 )
 from ..core.geodesy import add_offset, offset_ne
+from ..errors import OptionError
 from .errors import UnknownNameError
 from .parameters import Parameters
 from .waits import Waits
@@ -41,6 +42,16 @@ AT_REST = 0.3
 """Slower than this a vehicle stands, or hovers [m/s]."""
 REST_US = 3_000_000
 _VELOCITY, _STICKS = "velocity", "sticks"
+
+
+def check_finite(**arguments: float | None) -> None:
+    """OptionError with name and value of an argument that is no finite number; None is one that is not given.
+
+    A message can carry such a number, but a vehicle ignores it without an answer, and the wait ends for no reason.
+    """
+    for name, value in arguments.items():
+        if value is not None and not math.isfinite(value):
+            raise OptionError(f"{name} = {value}: a finite number is needed")
 
 
 class Controls(Waits):
@@ -92,6 +103,7 @@ class Controls(Waits):
 
     def take_off(self, altitude: float = 10.0, timeout: float = 60.0) -> None:
         """GUIDED, arm if need be, climb to an altitude above home [m], and wait until it is there."""
+        check_finite(altitude=altitude)
         self.guided_and_armed()
         self.command("NAV_TAKEOFF", altitude=altitude, subject="the take-off")
         self.wait_altitude(altitude - max(0.5, 0.05 * altitude), altitude + 2.0, timeout)
@@ -133,6 +145,7 @@ class Controls(Waits):
 
     def set_position(self, north: float, east: float, altitude: float | None = None, yaw: float | None = None) -> None:
         """In GUIDED: go to a place from home [m], at an altitude above home (None: its present one) and a yaw [deg]."""
+        check_finite(north=north, east=east, altitude=altitude, yaw=yaw)
         self._stop_sending(_VELOCITY)
         lat, lon = self.location_of(north, east)
         self.send(
@@ -191,6 +204,7 @@ class Controls(Waits):
             north, east, down: with ``body``: forward, right, down.
             yaw: [deg]; yaw_rate: [deg/s].
         """
+        check_finite(north=north, east=east, down=down, yaw=yaw, yaw_rate=yaw_rate)
         mask = VELOCITY_ONLY
         mask &= ~(YAW_IGNORED if yaw is not None else 0) & ~(YAW_RATE_IGNORED if yaw_rate is not None else 0)
         self._keep_sending(_VELOCITY, "SET_POSITION_TARGET_LOCAL_NED", {

@@ -85,6 +85,7 @@ def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> N
         (("--out", "carrier:pigeon"), "'carrier' is not a kind of link; allowed: udp:HOST:PORT"),
         (("--home", "1,2"), "is not LAT,LON,ALT,HEADING"),
         (("--home", "95,0,0,0"), "latitude is within +-90"),
+        (("--home", "0,0,45000,0"), "altitude is within -2000 to 11000 m"),
         (("--instance", "-1"), "is not a whole number from 0 to 254"),
         (("--duration", "-5"), "is not a positive number of simulated seconds"),
         (("--tcp", "99999"), "is not a port"),

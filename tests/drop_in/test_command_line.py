@@ -50,6 +50,7 @@ def test_serial_ports() -> None:
         (["--warp", "9"], "option --warp not recognized"),
         (["--home", "CMAC"], "--home 'CMAC' is not LAT,LON,ALT,HEADING"),
         (["--home", "95,0,0,0"], "latitude is within"),
+        (["--home", "0,0,45000,0"], "altitude is within"),
         (["--speedup", "fast"], "--speedup 'fast' is not a number"),
         (["-I", "-1"], "--instance '-1' is not a whole number from 0"),
         (["--sysid", "256"], "--sysid '256' is not a whole number from 0 to 255"),

@@ -35,7 +35,7 @@ def hover(copter: Copter, height: float = 10.0) -> None:
 def fly(tmp_path: Path) -> Iterator[Fly]:
     """Makes copters that hover."""
     factory = VehicleFactory(Defaults(folders=(tmp_path,)), GoldenStore(tmp_path, test="a fault"), tmp_path / "logs")
-    yield lambda after=hover, **options: factory("copter", frame=FRAME, after=after, **options)
+    yield lambda after=hover, frame=FRAME, **options: factory("copter", frame=frame, after=after, **options)
     factory.close()
 
 
@@ -421,6 +421,36 @@ def test_a_battery_that_sags_and_one_that_is_small(fly: Fly) -> None:
     copter.delay(20)
     left = copter.simulation.v.physics.battery.charge
     assert left == pytest.approx(1.0 - 0.01 * status.current_battery * 20 / 3600 / 2.0, abs=0.01)
+
+
+@pytest.mark.parametrize("frame", ["ardupilot_quad", "erle_copter"])
+def test_an_empty_battery_brings_it_down(fly: Fly, frame: str) -> None:
+    """Without failsafes. ArduPilot's resting voltage, too, falls to 0 as the last 2 % of the charge go."""
+    copter = fly(frame=frame)
+    battery = copter.simulation.v.physics.battery
+    copter.fail("SIM_BATT_CAP_AH", amount=0.02)
+    copter.wait_until(lambda: battery.charge < 0.03, 40.0)
+    assert where(copter)[2] == pytest.approx(10.0, abs=0.7)  # what is left in use still holds it
+    seen = watch(copter, 12)
+    assert battery.charge == 0.0
+    assert seen[-1, 2] < 0.5
+    v = copter.simulation.v
+    body, estimate = v.physics.body, v.autopilot.estimate
+    for values in (seen, *body.pos, *body.vel, *body.rates, *estimate.pos, *estimate.vel, battery.current):
+        assert np.isfinite(values).all()
+    motors = v.autopilot.control.motors
+    for value in (motors.voltage_ratio, motors.lift_max, motors.compensation_gain, motors.resistance):
+        assert math.isfinite(value) and value >= 0.0
+    full = v.physics.airframe.battery_voltage_full
+    assert copter.message("SYS_STATUS").voltage_battery == pytest.approx(1000.0 * 0.1 * full, abs=2)
+
+
+def test_a_failsafe_lands_it_before_its_battery_is_empty(fly: Fly) -> None:
+    copter = fly(params={"BATT_FS_LOW_ACT": 1, "BATT_LOW_VOLT": 11.5, "BATT_LOW_TIMER": 1})
+    copter.fail("SIM_BATT_CAP_AH", amount=0.6)
+    copter.wait_mode("LAND", timeout=60)
+    copter.wait_disarmed(40)
+    assert copter.simulation.v.physics.battery.charge > 0.02
 
 
 def test_a_weak_motor(fly: Fly) -> None:

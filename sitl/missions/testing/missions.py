@@ -32,7 +32,7 @@ def find(given: str | Path, folders: Sequence[Path]) -> Path:
             return folder / given
     if str(given) in library.entries():
         return library.find(str(given)).path
-    searched = ", ".join(str(folder) for folder in folders)
+    searched = ", ".join(dict.fromkeys(str(folder) for folder in folders))  # the test's is often pytest's own, too
     raise OptionError(f"there is no mission file {str(given)!r} in {searched}, and none in the library")
 
 

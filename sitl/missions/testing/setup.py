@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from inspect import signature
 from pathlib import Path
 
 from sitl import vehicles
@@ -13,7 +14,7 @@ from sitl.autopilot.params import files
 from sitl.client.endpoint import Inbox
 from sitl.core.compile import Progress
 from sitl.envs.mavlink.foreign import Foreign, launch
-from sitl.errors import OptionError
+from sitl.errors import OptionError, did_you_mean
 from sitl.foreign.choice import NATIVE as OURS
 from sitl.foreign.choice import choose
 from sitl.physics.engines import NATIVE
@@ -115,6 +116,7 @@ def setup(
     autopilot: str | None = None,
     wind: float | Sequence[float] | None = None,
     mission: str | Path | None = None,
+    **unknown: object,
 ) -> Setup:
     """A set-up from what a test says and what holds for all.
 
@@ -128,10 +130,13 @@ def setup(
         wind: speed [m/s], or (speed, where it comes from [deg], turbulence [m/s]).
         mission: a file, or a name of the library, whose home, and in the library whose frame, world and parameters,
             the vehicle gets.
+        unknown: what there is no option for, to be named.
 
     Raises:
         OptionError, AirframeError, ParameterError: what cannot be taken.
     """
+    for name in unknown:
+        raise OptionError(f"option {name!r} is none of {', '.join(OPTIONS)}{did_you_mean(name, OPTIONS)}")
     values: dict[str, float] = {}
     if mission is not None:
         file = load(find(mission, defaults.folders))
@@ -168,6 +173,13 @@ def setup(
         tuple(start) if isinstance(start, list) else start, physics or defaults.physics,
         autopilot or defaults.autopilot,
     )  # type: ignore[arg-type]  # fmt: skip
+
+
+OPTIONS = (
+    *(name for name, option in signature(setup).parameters.items() if option.kind is option.KEYWORD_ONLY),
+    *("ready", "after", "name", "link_faults"),  # those that the factory takes itself
+)
+"""What a marker or a call of the factory may say."""
 
 
 def _beside(name: str | Path, folders: Sequence[Path]) -> Path:

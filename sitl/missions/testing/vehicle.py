@@ -11,6 +11,7 @@ from typing import Any
 from sitl.bridge.links import LinkFaults
 from sitl.client import Position as Place
 from sitl.client import Text
+from sitl.client.controls import check_finite
 from sitl.errors import OptionError
 from sitl.vehicle.faults import Failure
 
@@ -151,6 +152,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         self, north: float, east: float, height: float | None = None, yaw: float | None = None
     ) -> None:
         """In GUIDED: go to a place from home [m], at a height above home (None: its present one) and a yaw [deg]."""
+        check_finite(height=height)
         super().set_position(north, east, height, yaw)
 
     def wait_location(  # type: ignore[override]
@@ -207,6 +209,7 @@ class Copter(Vehicle):
 
     def takeoff(self, height: float = 10.0, timeout: float = 60.0) -> None:
         """GUIDED, arm if need be, climb to a height above home [m], and wait until it is there."""
+        check_finite(height=height)
         self.take_off(height, timeout)
 
 

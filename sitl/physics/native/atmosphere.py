@@ -13,6 +13,10 @@ SEA_LEVEL_TEMPERATURE = 288.15
 LAPSE_RATE = 0.0065
 GAS_CONSTANT = 287.05287
 EXPONENT = 9.80665 / (GAS_CONSTANT * LAPSE_RATE)
+LOWEST, HIGHEST = -2000.0, 11000.0
+"""Altitudes above mean sea level [m] between which the formulas hold: the standard's tables begin at -2 km, and the
+temperature falls linearly to the tropopause at 11 km. At 44.3 km it would be 0 K, and there is no air to compute.
+"""
 
 
 @law

@@ -33,6 +33,23 @@ def test_a_velocity_stays_until_another_order(make: VehicleFactory) -> None:
     assert copter.groundspeed < 0.5
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_what_is_no_finite_number_is_no_order(make: VehicleFactory, value: float) -> None:
+    copter = make("copter")
+    for order, name in (
+        (lambda: copter.fly_to(north=value, east=0), "north"),
+        (lambda: copter.fly_to(0, value), "east"),
+        (lambda: copter.fly_to(0, 0, height=value), "height"),
+        (lambda: copter.set_position(0, 0, yaw=value), "yaw"),
+        (lambda: copter.set_velocity(0, 0, value), "down"),
+        (lambda: copter.takeoff(value), "height"),
+        (lambda: copter.take_off(value), "altitude"),
+    ):
+        with pytest.raises(OptionError, match=f"^{name} = {value}: a finite number is needed"):
+            order()
+    assert not copter.armed
+
+
 def test_velocities_of_the_body(make: VehicleFactory) -> None:
     copter = make("copter")
     copter.takeoff(10)
@@ -250,7 +267,8 @@ def test_mission_files_are_found_beside_the_test(make: VehicleFactory, tmp_path:
     (tmp_path / "mine.plan").write_bytes(entries()["copter/square"].path.read_bytes())
     copter = make("copter")
     assert len(copter.upload("mine.plan")) == 7
-    with pytest.raises(OptionError, match="no mission file 'yours"):
+    folder = re.escape(str(tmp_path))
+    with pytest.raises(OptionError, match=f"no mission file 'yours.plan' in {folder}, and none in the library"):
         copter.upload("yours.plan")
 
 

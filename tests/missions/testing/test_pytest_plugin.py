@@ -58,10 +58,26 @@ def test_fixtures_and_markers(project: pytest.Pytester) -> None:
                 vehicle_factory("copter", params={"NO_SUCH": 1})
             with pytest.raises(ValueError, match="wind"):
                 vehicle_factory("copter", wind=(1, 2, 3, 4))
+            with pytest.raises(ValueError, match="'hight' is none of frame, home, .*, mission, ready, "):
+                vehicle_factory("copter", hight=3)
         """
     )
     result = project.runpytest_inprocess()
     result.assert_outcomes(passed=3)  # a rover has no RTL_ALT, and does without
+
+
+def test_an_option_that_there_is_not_is_named(project: pytest.Pytester) -> None:
+    project.makepyfile(
+        """
+        import pytest
+
+        @pytest.mark.sitl(wrld="maze_erlerover")
+        def test_copter(copter): pass
+        """
+    )
+    result = project.runpytest_inprocess()
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["E *OptionError: option 'wrld' is none of frame, home, *; did you mean 'world'?"])
 
 
 @pytest.fixture

@@ -17,7 +17,21 @@ from sitl.physics.native.records import Wind
 @given(st.floats(-0.5, 1.5), st.floats(0.0, 0.5))
 def test_open_circuit_voltage_rises_with_charge(charge, more):
     low, high = battery.open_circuit(charge), battery.open_circuit(charge + more)
-    assert 0.7 < low <= high <= 1.0
+    assert 0.0 <= low <= high <= 1.0
+    assert low > 0.7 or charge < battery.EMPTY
+    assert low > 0.0 or charge <= 0.0
+
+
+@given(st.floats(battery.EMPTY, 1.0))
+def test_open_circuit_voltage_of_a_pack_in_use_is_the_curve(charge):
+    k = min(int(charge * 10.0), 9)
+    low, high = battery.OPEN_CIRCUIT[k : k + 2]
+    assert battery.open_circuit(charge) == low + (charge * 10.0 - k) * (high - low)
+
+
+def test_open_circuit_voltage_of_an_empty_pack_collapses():
+    shares = [battery.open_circuit(battery.EMPTY * part) for part in (0.999999, 0.5, 0.01, 0.0)]
+    assert shares == approx([0.740, 0.364, 0.00714, 0.0], rel=2e-3)
 
 
 def discharge(rig, power):
@@ -36,7 +50,11 @@ def test_voltage_sags_under_load_and_falls_with_charge(rig):
     assert 1.0 - r.p.battery.charge == approx(current * 1.0 / 3600.0 / 5.0, rel=0.01)
     r.p.battery.charge = 0.0
     discharge(r, 150.0)
-    assert r.p.battery.voltage < 9.0
+    assert r.p.battery.voltage == battery.LEAST * r.p.airframe.battery_voltage_full
+    for _ in range(400):
+        discharge(r, 150.0)
+    assert r.p.battery.charge == 0.0
+    assert math.isfinite(r.p.battery.current)
 
 
 def test_empty_battery_limits_top_speed(rig):
