@@ -116,6 +116,9 @@ def test_home(bench: Bench) -> None:
     assert command_int(bench, 179, 0, HOME[0], HOME[1], 590.0) == ACCEPTED
     assert command_int(bench, 179, 3, HOME[0], HOME[1], 5.0) == ACCEPTED
     assert command_int(bench, 179, 1, HOME[0], HOME[1], 5.0) == DENIED
+    assert command_int(bench, 179, 0, 990_000_000, HOME[1], 5.0) == FAILED
+    assert command_int(bench, 179, 0, HOME[0], 1_900_000_000, 5.0) == FAILED
+    assert bench.command(179, 0, 0, 0, 0, 99, 0, 0) == FAILED
     calls = bench.autopilot.calls
     assert [c[0] for c in calls] == ["set_home_here", "set_home_here", "set_home", "set_home"]
     assert calls[2][1:4] == (*HOME[:2], 590.0) and calls[3][3] == 589.0

@@ -132,6 +132,13 @@ def test_a_bad_item_ends_the_upload_and_leaves_the_old_mission(bench: Bench, bad
     assert bench.autopilot.items is old and bench.bridge.next_due_us() < 10**7
 
 
+def test_a_command_that_missions_do_not_take_is_named(bench: Bench) -> None:
+    bench.ask(count(2))
+    bench.ask(item_int(0, SQUARE[0]))
+    text, ack = bench.ask(item_int(1, SQUARE[2]._replace(command=31000)), "STATUSTEXT", "MISSION_ACK")
+    assert ack.type == UNSUPPORTED and text.text == "Mission: item 1 command 31000 not supported"
+
+
 def test_a_wrong_number_ends_the_upload(bench: Bench) -> None:
     bench.autopilot.items = old = tuple(SQUARE)
     bench.ask(count(4))

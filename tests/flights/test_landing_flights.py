@@ -87,7 +87,7 @@ def test_modes_that_cannot_be_armed(core: Core, mode: int) -> None:
     p = Aviator(core).ready()
     p.set_mode(mode)
     assert p.ask(ARM, 1) == FAILED
-    assert p.said("Mode not armable")
+    assert p.said("mode not armable")
 
 
 def test_disarming_in_the_air_needs_force(core: Core) -> None:

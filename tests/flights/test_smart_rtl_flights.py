@@ -87,7 +87,7 @@ def test_a_path_without_room_is_given_up(core: Core) -> None:
         p.fly(3.5)
     assert p.said("SmartRTL Low on space!") and p.said("SmartRTL deactivated: buffer full")
     assert not p.set_mode(SMART_RTL) and p.mode == GUIDED
-    assert p.said("Mode change to SMART_RTL failed: init failed")
+    assert p.said("Mode change to SMARTRTL failed: init failed")
 
 
 def test_without_a_position_there_is_no_path(core: Core) -> None:

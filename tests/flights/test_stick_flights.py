@@ -176,7 +176,7 @@ def test_rudder_arms_after_two_seconds_and_not_in_guided(core: Core) -> None:
     p = with_sticks(core, "erle_copter", GUIDED)
     p.sticks(4.0, throttle=LOW, yaw=2000)
     assert not p.armed
-    assert p.said("Mode not armable")
+    assert p.said("GUIDED mode not armable")
 
 
 def test_rudder_does_not_disarm_in_the_air(core: Core) -> None:

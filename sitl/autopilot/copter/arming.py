@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.kernels import inlined, law
 from .. import arming_checks, home, smart_rtl_path
-from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, refuse
+from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, MODE, refuse
 from ..events import ARMED, emit
 from ..fence.checks import switch_on_arming
 from ..state import Arming
@@ -13,7 +13,7 @@ from .arming_checks import CALIBRATED, MANDATORY, TEXTS, arm_checks, check, stic
 from .control.motors import ARMING_DELAY_US
 from .modes import ground, simple
 from .modes.state import Modes
-from .modes.table import has_manual_throttle, idles_armed
+from .modes.table import TITLES, has_manual_throttle, idles_armed
 from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]
@@ -116,5 +116,6 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
 
 def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
     """Status texts of failed checks, each after ``prefix``."""
-    own = {**TEXTS, **arming_checks.receiver_texts(v.sensors, v.autopilot.params)}
+    mode = {MODE: f"{TITLES.get(v.autopilot.modes.number)} mode not armable"}
+    own = {**TEXTS, **mode, **arming_checks.receiver_texts(v.sensors, v.autopilot.params)}
     return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix, own)

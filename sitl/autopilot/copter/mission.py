@@ -122,6 +122,7 @@ class CopterCommands(Commands[Vehicle]):
             nav.delay = whole_seconds(item)
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)
+            return [Text(INFO, f"Delaying {int(nav.delay)} sec")]
         elif kind == kinds.LOITER_TURNS:
             nav.turns = turns(item)
         return []

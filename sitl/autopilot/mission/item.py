@@ -92,8 +92,8 @@ COMMANDS = {
     DO_CHANGE_SPEED: Command("ChangeSpeed", False, False),
     DO_SET_HOME: Command("SetHome", False, True),
     DO_SET_REVERSE: Command("SetReverse", False, False),
-    DO_SET_ROI_LOCATION: Command("SetROI", False, True),
-    DO_SET_ROI_NONE: Command("SetROI", False, False),
+    DO_SET_ROI_LOCATION: Command("SetROILocation", False, True),
+    DO_SET_ROI_NONE: Command("SetROINone", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
     DO_FENCE_ENABLE: Command("FenceEnable", False, False),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
@@ -108,7 +108,7 @@ COMMANDS = {
     DO_PARACHUTE: Command("Parachute", False, False),
     DO_GRIPPER: Command("Gripper", False, False),
     DO_SPRAYER: Command("Sprayer", False, False),
-    JUMP_TAG: Command("JumpTag", False, False),
+    JUMP_TAG: Command("Tag", False, False),
     DO_JUMP_TAG: Command("DoJumpTag", False, False),
     DO_WINCH: Command("Winch", False, False),
     DO_DIGICAM_CONFIGURE: Command("DigiCamCfg", False, False),
@@ -179,6 +179,11 @@ class MissionItem(NamedTuple):
     def name(self) -> str:
         """The command's short name, "?" when unknown."""
         return COMMANDS[self.command].name if self.command in COMMANDS else "?"
+
+    @property
+    def title(self) -> str:
+        """What is said when the command begins; ArduPilot puts a 0 after a tag, whatever its number is."""
+        return f"{self.name} 0" if self.command == JUMP_TAG else self.name
 
     @property
     def no_place(self) -> bool:

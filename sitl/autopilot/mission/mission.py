@@ -15,6 +15,7 @@ from .item import COMMANDS, JUMP_TAG, MissionItem, home_item
 from .validate import ACCEPTED, check_all
 
 RESULT_NAMES = {
+    1: "jump to an item that is not there",
     2: "unsupported frame",
     3: "unsupported command",
     4: "too many items",

@@ -27,12 +27,15 @@ from ..navigation.state import (
     JUMPS,
     LANDING,
     LEG_REQUEST,
+    LOITER_TIME,
+    LOITER_UNLIMITED,
     NONE,
     OUTWARD,
     RETURN_PATH,
     RUNNING,
     SPEED_REQUEST,
     STOPPED,
+    WAYPOINT,
     Nav,
 )
 from ..state import Vehicle
@@ -45,10 +48,12 @@ from .item import (
     NAV_TAKEOFF,
     NAV_VTOL_TAKEOFF,
     TERRAIN_FRAMES,
-    MissionItem,
 )
 from .mission import Mission
 from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
+
+LEGS = (WAYPOINT, LOITER_UNLIMITED, LOITER_TIME)
+"""Kinds of commands that begin anew when a mission is uploaded, the same one too."""
 
 
 class Holder(Protocol):
@@ -102,25 +107,29 @@ class Sequencer:
         )
 
     def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
-        """Take a new mission. One under way goes on: with its present command, from the start if that has changed.
+        """Take a new mission. One under way goes on with its present command.
+
+        A leg begins anew. When its item is no longer there, the vehicle goes on to where it was going.
 
         Raises:
             MissionError: it holds a command that this firmware does not take.
         """
         nav = v.autopilot.modes.nav
         seq = nav.command_seq
-        before = self.mission.get(seq)
         self._holder.mission = Mission.of(mission.items, self.commands.taken)
         self._publish(v)
         jumps.keep(nav, {})
         notes: list[Note] = []
         if nav.mission_state == RUNNING:
             nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
-            if _same(self.mission.get(seq), before):
-                self._look_ahead(v)
-            else:
-                notes.append(Text(CRITICAL, "Auto mission changed, restarted command"))
+            is_leg = nav.command_kind in LEGS
+            if is_leg and self.mission.get(seq) is not None:
                 self._run_from(v, seq, notes)
+                notes.append(Text(CRITICAL, "Auto mission changed, restarted command"))
+            else:
+                self._look_ahead(v)
+                if is_leg:
+                    notes.append(Text(CRITICAL, "Auto mission changed but failed to restart command"))
             return notes
         nav.mission_state = STOPPED
         self._set_current(nav, 0, notes)
@@ -173,12 +182,14 @@ class Sequencer:
         nav = v.autopilot.modes.nav
         notes: list[Note] = []
         jumps.keep(nav, {})
-        if nav.mission_state == RUNNING and self.mission.present:
+        if nav.mission_state == RUNNING:
             give_none(nav)
             self.commands.reset(v)
-            self._run_from(v, 1, notes)
-        else:
-            self._set_current(nav, 0, notes)
+            if self.mission.present:
+                self._run_from(v, 1, notes)
+                return notes
+            nav.mission_state = STOPPED
+        self._set_current(nav, 0, notes)
         return notes
 
     def set_current(self, v: Vehicle, seq: int, reset: bool = False) -> tuple[bool, list[Note]]:
@@ -261,7 +272,7 @@ class Sequencer:
         """Go on at item ``seq``, and what is done on the way to a navigation command there, when the mission runs."""
         nav.mission_state, nav.mission_resume = STOPPED, True
         following = jumps.next_nav(self.mission, seq, jumps.runs(nav), JUMPS) or seq
-        notes += [Text(INFO, f"Mission: {k} {self.mission.items[k].name}") for k in dict.fromkeys((seq, following))]
+        notes += [Text(INFO, f"Mission: {k} {self.mission.items[k].title}") for k in dict.fromkeys((seq, following))]
         self._resume_at(nav, seq, notes)
 
     def _resume_at(self, nav: Nav, seq: int, notes: list[Note]) -> None:
@@ -332,7 +343,7 @@ class Sequencer:
         item = self.mission.items[seq]
         if item.command in returning.LANDINGS:
             nav.mission_part = LANDING
-        notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
+        notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
         self._set_current(nav, seq, notes)
         notes += self.commands.give(v, seq, item)
         self._look_ahead(v)
@@ -366,7 +377,7 @@ class Sequencer:
 
     def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
         item = self.mission.items[seq]
-        notes.append(Text(INFO, f"Mission: {seq} {item.name}"))
+        notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
         nav = v.autopilot.modes.nav
         nav.mission_do = seq
         if item.command == DO_LAND_START:
@@ -384,10 +395,3 @@ class Sequencer:
         notes: list[Note] = [ItemReached(seq)]
         self._run_do(v, notes)
         return notes
-
-
-def _same(a: MissionItem | None, b: MissionItem | None) -> bool:
-    """Whether two items ask for the same; ``current`` is a mark of the upload."""
-    if a is None or b is None:
-        return a is b
-    return a._replace(current=0) == b._replace(current=0)

@@ -10,6 +10,7 @@ from collections.abc import Container, Sequence
 
 from .item import (
     COMMANDS,
+    DO_JUMP,
     GLOBAL,
     GLOBAL_INT,
     MISSION,
@@ -84,6 +85,8 @@ def check(item: MissionItem, taken: Container[int] = COMMANDS) -> int:
         return INVALID_PARAM6_Y
     elif not math.isfinite(item.z):
         return INVALID_PARAM7
+    if item.command == DO_JUMP and int(item.p1) < 1:
+        return ERROR  # to home, which is not flown
     return ACCEPTED
 
 
@@ -98,6 +101,8 @@ def check_all(items: Sequence[MissionItem], taken: Container[int] = COMMANDS) ->
         return (NO_SPACE, MAX_ITEMS)
     for seq, item in enumerate(items):
         result = check(item, taken)
+        if result == ACCEPTED and item.command == DO_JUMP and int(item.p1) >= len(items):
+            result = ERROR
         if result != ACCEPTED:
             return (result, seq)
     return (ACCEPTED, -1)

@@ -56,6 +56,8 @@ class Entry(NamedTuple):
     """Frame of a COMMAND_LONG, which has none."""
     takes_nan: bool = False
     """A NaN stays one."""
+    off_earth: bool = False
+    """``run`` answers a place that is not on Earth, too; else that is DENIED."""
 
 
 def from_long(fields: Any, entry: Entry) -> Command | None:
@@ -78,10 +80,15 @@ def from_long(fields: Any, entry: Entry) -> Command | None:
     p1, p2, p3, p4, p5, p6, p7 = clean
     lat = lon = 0
     if entry.place:
-        if not (abs(p5) <= 90.0 and abs(p6) <= 180.0):
+        if not entry.off_earth and not (abs(p5) <= 90.0 and abs(p6) <= 180.0):
             return None
         lat, lon = round(p5 * 1e7), round(p6 * 1e7)
     return Command(fields.command, p1, p2, p3, p4, lat, lon, p7, entry.long_frame, p5, p6)
+
+
+def is_on_earth(lat: int, lon: int) -> bool:
+    """Whether there is such a latitude and longitude [degE7]."""
+    return abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000
 
 
 def from_int(fields: Any, entry: Entry) -> Command | None:
@@ -99,7 +106,7 @@ def from_int(fields: Any, entry: Entry) -> Command | None:
     if clean is None:
         return None
     p1, p2, p3, p4, p5, p6, p7 = clean
-    if entry.place and not (abs(fields.x) <= 900_000_000 and abs(fields.y) <= 1_800_000_000):
+    if entry.place and not entry.off_earth and not is_on_earth(fields.x, fields.y):
         return None
     return Command(fields.command, p1, p2, p3, p4, fields.x, fields.y, p7, fields.frame, p5, p6)
 

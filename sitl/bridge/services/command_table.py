@@ -19,7 +19,7 @@ from ..telemetry.shell import banner
 from . import calibration
 from .calibration import CalibrationService
 from .camera import CameraService
-from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry
+from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry, is_on_earth
 from .compass_calibration import CompassCalibrationService
 from .faults import FaultService
 from .gripper import GripperService
@@ -369,6 +369,8 @@ def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
         return _home_result(bridge, bridge.autopilot.set_home_here())
     if command.p1 != 0.0 or command.frame not in GLOBAL_FRAMES:
         return DENIED
+    if not is_on_earth(command.lat, command.lon):
+        return FAILED
     alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
@@ -452,7 +454,7 @@ COMMANDS: dict[int, Entry] = {
     520: Entry(request_version, required=(1,)),
     20: Entry(return_to_launch),
     176: Entry(do_set_mode, required=(1, 2)),
-    179: Entry(set_home, required=(5, 6, 7), place=True, long_frame=0),
+    179: Entry(set_home, required=(5, 6, 7), place=True, off_earth=True, long_frame=0),
     181: Entry(set_relay, required=(1, 2)),
     182: Entry(repeat_relay, required=(1, 2, 3)),
     183: Entry(set_servo, required=(1, 2)),

@@ -193,8 +193,11 @@ class MissionService(Service):
             if fields.count > (room := self._room(kind)):
                 self.bridge.get(StatusTextService).say(WARNING, f"Only {room} items are supported")
                 self._ack(channel, sender, NO_SPACE, kind)
-            elif fields.count == 0:  # taken while the mission runs, too: it has come to its end then
-                self._ack(channel, sender, self._replace(kind, ()), kind)
+            elif fields.count == 0:  # taken while the mission runs, too: the command under way goes on
+                result = self._replace(kind, ())
+                self._ack(channel, sender, result, kind)
+                if kind == MISSION and result == ACCEPTED:
+                    self._say_received(kind)
                 self.bridge.say_pending()
             else:
                 self._begin(channel, sender, kind, 0, fields.count, ())
@@ -271,6 +274,9 @@ class MissionService(Service):
         elif fields.seq != upload.next:
             self._cancel(INVALID_SEQUENCE)
         elif result != ACCEPTED:
+            if kind == MISSION and result == UNSUPPORTED:  # else the user must guess which of the items it was
+                text = f"Mission: item {fields.seq} command {fields.command} not supported"
+                self.bridge.get(StatusTextService).say(WARNING, text)
             self._cancel(result)
         else:
             upload.add(item, self.bridge.now_us)

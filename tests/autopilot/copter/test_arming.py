@@ -7,10 +7,11 @@ import pytest
 
 from sitl.autopilot.arming_checks import BY_CRASH, BY_MAVLINK, BY_RUDDER
 from sitl.autopilot.copter import arming
+from sitl.autopilot.copter.modes.table import TITLES
 from sitl.autopilot.events import ARMED, ARMING_REFUSED, DISARMED
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 
-STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE = 0, 2, 3, 4, 5, 6, 9, 17
+STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE, SMART_RTL = 0, 2, 3, 4, 5, 6, 9, 17, 21
 S = 1_000_000
 
 
@@ -55,11 +56,11 @@ def test_forcing_skips_all_but_the_position_that_the_mode_needs(vehicle):
     assert arming.arm(vehicle, BY_MAVLINK, True) == (True, [])
 
 
-@pytest.mark.parametrize("mode", (RTL, LAND, BRAKE, AUTO))
+@pytest.mark.parametrize("mode", (RTL, LAND, BRAKE, AUTO, SMART_RTL))
 def test_modes_that_cannot_be_armed(vehicle, mode):
     vehicle.autopilot.modes.number = mode
     vehicle.autopilot.modes.mission_count = 2
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (False, ["Arm: Mode not armable"])
+    assert arming.arm(vehicle, BY_MAVLINK, False) == (False, [f"Arm: {TITLES[mode]} mode not armable"])
 
 
 def test_auto_can_be_armed_with_the_option(vehicle):

@@ -42,6 +42,8 @@ CASES = [
     (WP._replace(frame=8), 2),
     (MissionItem(c.DO_JUMP, frame=1, p1=1.0), 0),
     (MissionItem(c.NAV_RETURN_TO_LAUNCH, frame=99), 0),
+    (MissionItem(c.DO_JUMP), 1),
+    (MissionItem(c.DO_JUMP, p1=-1.0), 1),
     (MissionItem(c.DO_JUMP, z=math.nan), 12),
     (MissionItem(c.DO_JUMP, x=2**40), 10),
 ]
@@ -67,6 +69,12 @@ def test_count() -> None:
     assert check_all([WP] * (MAX_ITEMS + 1))[0] == 4
     assert check_all([WP, WP._replace(command=999)]) == (3, 1)
     assert check_all([]) == (0, -1)
+
+
+def test_jumps_lead_to_an_item_that_is_there() -> None:
+    assert check_all([WP, WP, MissionItem(c.DO_JUMP, p1=2.0)]) == (0, -1)
+    assert check_all([WP, WP, MissionItem(c.DO_JUMP, p1=3.0)]) == (1, 2)
+    assert check_all([WP, MissionItem(c.DO_JUMP, p1=2.0), WP]) == (0, -1)
 
 
 anything = st.one_of(st.floats(), st.just(0.0))

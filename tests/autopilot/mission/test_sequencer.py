@@ -330,7 +330,7 @@ def test_new_mission_in_flight() -> None:
     p.complete()
     assert not p.sequencer.may_clear(p.v)
     land = MissionItem(c.NAV_LAND)
-    assert p.sequencer.set_mission(p.v, Mission((*p.mission.items[:3], land))) == []
+    p.sequencer.set_mission(p.v, Mission((*p.mission.items[:3], land)))
     assert p.nav.command_kind == WAYPOINT
     assert p.complete() == 3
     assert p.nav.command_kind == LAND
@@ -340,18 +340,55 @@ def test_new_mission_in_flight() -> None:
     assert p.v.autopilot.params.MIS_TOTAL == 2
 
 
-def test_a_changed_command_under_way_begins_anew() -> None:
+RESTARTED = [Text(6, "Mission: 1 WP"), Text(2, "Auto mission changed, restarted command")]
+
+
+def test_a_leg_under_way_begins_anew_with_each_upload() -> None:
     p = Vehicle(WP, WP, WP).start()
-    elsewhere = WP._replace(y=LON + 5000)
-    same = p.mission.items[1]._replace(current=1)
-    assert p.sequencer.set_mission(p.v, Mission((p.mission.items[0], same, WP))) == []
-    begun = int(p.nav.command_count)
-    notes = p.sequencer.set_mission(p.v, Mission((p.mission.items[0], elsewhere, WP)))
-    assert Text(2, "Auto mission changed, restarted command") in notes
-    assert p.nav.command_count == begun + 1 and p.nav.command_seq == 1
+    for place in (WP, WP._replace(y=LON + 5000)):
+        begun = int(p.nav.command_count)
+        assert p.sequencer.set_mission(p.v, Mission((p.mission.items[0], place, WP))) == RESTARTED
+        assert p.nav.command_count == begun + 1 and p.nav.command_seq == 1
     assert p.nav.target[1] == pytest.approx(5000 * 0.009, abs=5.0)
-    p.sequencer.set_mission(p.v, Mission(p.mission.items[:1]))
+
+
+def test_other_commands_under_way_go_on_as_they_are() -> None:
+    p = Vehicle(TAKEOFF, WP).start()
+    begun = int(p.nav.command_count)
+    assert p.sequencer.set_mission(p.v, Mission((p.mission.items[0], TAKEOFF._replace(z=20.0), WP))) == []
+    assert p.nav.command_count == begun and p.nav.target[2] == pytest.approx(-10.0)
+
+
+@pytest.mark.parametrize("left", [2, 1, 0])
+def test_a_leg_goes_on_to_its_end_when_its_item_is_gone(left: int) -> None:
+    """The mission stays under way until the vehicle is there; disarmed it is over."""
+    p = Vehicle(WP, WP).start()
+    assert p.complete() == 2
+    target, begun = p.nav.target, int(p.nav.command_count)
+    notes = p.sequencer.set_mission(p.v, Mission(p.mission.items[:left]))
+    assert notes == [Text(2, "Auto mission changed but failed to restart command")]
+    assert p.nav.command_count == begun and p.nav.target == target
+    assert (p.nav.mission_state, p.nav.mission_current) == (RUNNING, 2)
+    assert p.complete() == 0
     assert p.nav.mission_state == COMPLETE
+
+
+def test_disarmed_without_a_mission_nothing_is_under_way() -> None:
+    p = Vehicle(WP).start()
+    p.sequencer.set_mission(p.v, Mission())
+    p.sequencer.reset(p.v)
+    assert (p.nav.mission_state, p.nav.mission_current, p.nav.command_kind) == (STOPPED, 0, NONE)
+
+
+def test_texts_of_items_that_have_no_other_effect() -> None:
+    p = Vehicle(
+        tag(7),
+        MissionItem(c.DO_SET_ROI_LOCATION, x=LAT, y=LON),
+        MissionItem(c.DO_SET_ROI_NONE),
+        MissionItem(c.NAV_DELAY, p1=3.7),
+    ).start()
+    said = ["Mission: 1 Tag 0", "Mission: 4 Delay", "Delaying 3 sec", "Mission: 2 SetROILocation"]
+    assert p.texts() == [*said, "Mission: 3 SetROINone"]
 
 
 def test_corner_is_planned_ahead() -> None:

@@ -113,6 +113,7 @@ def run_way(v: Vehicle) -> None:
 MODE = CopterMode(
     number=SMART_RTL,
     name="SMART_RTL",
+    title="SMARTRTL",
     start=start,
     run=run,
     needs_position=True,
