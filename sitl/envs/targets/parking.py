@@ -118,7 +118,8 @@ class Park(PlacesTask):
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
-        return *super().memory(index), float(self.headings[index]), float(self._left[index]), float(self._distance[index])
+        mine = float(self.headings[index]), float(self._left[index]), float(self._distance[index])
+        return *super().memory(index), *mine
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
