@@ -112,7 +112,29 @@ def test_rewards_are_what_is_gained() -> None:
     task = Formation(3)
     before, places, goals = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
     goals[:, 0], places[:, 0] = 5.0, (1.0, 0.0, 4.5)
-    assert task.rewards(Scene(places, before, goals)) == pytest.approx([1.0, 0.0, 4.6])
+    assert task.rewards(Scene(places, before, goals, goals)) == pytest.approx([1.0, 0.0, 4.6])
+    moved = goals + (2.0, 0.0, 0.0)
+    assert task.rewards(Scene(places, before, moved, goals)) == pytest.approx([-1.0, -2.0, 2.5])
+
+
+@pytest.mark.parametrize("task", ["formation", "crossing", "escort"])
+def test_an_episode_pays_its_first_distance_minus_its_last(task: str) -> None:
+    """Also where goals move; without what is paid for being there, and for hits."""
+    env = SwarmEnv(task, steps=12)
+    observations, _ = env.reset(seed=3)
+
+    def far() -> Any:
+        places = env._true_places()
+        return np.linalg.norm(places - env.task.goals(places, 0.2 * env._count), axis=1)
+
+    first, paid = far(), np.zeros(len(env.agents))
+    while env.agents:
+        observations, rewards, *_, infos = env.step(to_goals(env, observations))
+        for k, agent in enumerate(env.possible_agents):
+            paid[k] += rewards[agent] - 0.1 * infos[agent]["is_success"]
+            assert not infos[agent]["was_hit"]
+    assert paid == pytest.approx(first - far(), abs=1e-9)
+    env.close()
 
 
 def test_what_cannot_be_is_refused() -> None:

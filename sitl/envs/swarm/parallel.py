@@ -143,9 +143,9 @@ class SwarmEnv(ParallelEnv):
         self.swarm.advance_to(self.swarm.time_us + self.step_us)
         self._listen()
         self.task.begin(self._true_places(), self._rng)
-        goals = self.task.goals(self._true_places(), 0.0)
+        self._goals = self.task.goals(self._true_places(), 0.0).copy()
         self._sight.start(noise)
-        return self._observe(goals), {agent: {} for agent in self.agents}
+        return self._observe(self._goals), {agent: {} for agent in self.agents}
 
     def _prepared(self) -> SwarmSnapshot:
         """All of them ready to be flown."""
@@ -186,7 +186,8 @@ class SwarmEnv(ParallelEnv):
         self._count += 1
         places = self._true_places()
         goals = self.task.goals(places, 1e-6 * self.step_us * self._count)
-        scene = Scene(places, before, goals)
+        scene = Scene(places, before, goals, self._goals)
+        self._goals = goals.copy()
         rewards, is_success = self.task.rewards(scene), self.task.is_success(scene)
         over, hits = self.task.is_over(scene), self._hit_counts()
         was_hit = hits > self._hits
@@ -285,7 +286,7 @@ class SwarmEnv(ParallelEnv):
             "task": self.task, "given": self._given, "rng": self._rng, "agents": self.agents,
             "begun": (
                 self.swarm.snapshot(), self._told, self._count, self._hits, [end.sequence for end in self._ends],
-                self._sight.memory(),
+                self._sight.memory(), self._goals,
             )
             if begun
             else None,
@@ -296,7 +297,7 @@ class SwarmEnv(ParallelEnv):
         self._rng, self.agents = state["rng"], list(state["agents"])
         if state["begun"] is not None:
             self._ready = self._prepared()  # it is the same each time
-            now, told, self._count, self._hits, sequences, seen = state["begun"]
+            now, told, self._count, self._hits, sequences, seen, self._goals = state["begun"]
             self.swarm.restore(now)
             self._sight.recall(seen)
             self._told = told.copy()
