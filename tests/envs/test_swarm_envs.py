@@ -120,7 +120,7 @@ def test_rewards_are_what_is_gained() -> None:
 @pytest.mark.parametrize("task", ["formation", "crossing", "escort"])
 def test_an_episode_pays_its_first_distance_minus_its_last(task: str) -> None:
     """Also where goals move; without what is paid for being there, and for hits."""
-    env = SwarmEnv(task, steps=12)
+    env = SwarmEnv(task, steps=6)
     observations, _ = env.reset(seed=3)
 
     def far() -> Any:

@@ -93,10 +93,14 @@ class MovingTask(PlacesTask):
         near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
         rewards += near
         step.note(nearness=near)
+        self.success = self._note_errors(time, squared) & (self._errors() < self.radius)
+        terminated |= distance > self.lost
+
+    def _note_errors(self, time: Floats, squared: Floats) -> npt.NDArray[np.bool_]:
+        """Note squared distances [m^2] for the error; tells for which robots they count."""
         counts = time >= self.settle
         self.sums[counts] += np.stack([squared, np.ones(len(squared))], axis=1)[counts]
-        self.success = counts & (self._errors() < self.radius)
-        terminated |= distance > self.lost
+        return counts
 
     def _errors(self) -> Floats:
         out: Floats = np.sqrt(self.sums[:, 0] / np.maximum(self.sums[:, 1], 1.0))
