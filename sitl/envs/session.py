@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -359,6 +359,8 @@ class Session:
 
 
 def _checked_details(given: Any) -> tuple[str, ...]:
+    if not isinstance(given, str | Iterable):
+        raise EnvOptionError(f"info = {given!r}; it must be names of {', '.join(DETAILS)}, or () for none")
     details = (given,) if isinstance(given, str) else tuple(given)
     for name in details:
         if name not in DETAILS:
