@@ -87,7 +87,7 @@ class MovingTask(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = step.robot.time
         self.places[:, 0] = self.along(time[:, None])[:, 0]
-        way = self.places[:, 0] - step.pose[:, :3]
+        way = self.axes * (self.places[:, 0] - step.pose[:, :3])
         squared = (way * way).sum(axis=1)
         distance = np.sqrt(squared)
         near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
