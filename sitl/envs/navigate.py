@@ -13,7 +13,7 @@ from sitl.view import library
 from sitl.worlds import World
 
 from .boxes import GoalConditioned
-from .options import unknown
+from .options import EnvOptionError, unknown
 from .page.watchers import Directly, Watcher, opened
 from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
@@ -89,6 +89,8 @@ class Navigate(gym.Env[Any, Any]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """See ``gymnasium.Env.reset``; options: "pose", the start pose of this episode."""
+        if options and "reset_mask" in options:
+            raise EnvOptionError("reset: option 'reset_mask' is for vector environments only")
         super().reset(seed=seed)
         self._session.reset(0, self.np_random, options)
         self._session.look()

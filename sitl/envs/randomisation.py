@@ -88,8 +88,11 @@ class Randomisation:
             for name, values in self.ranges.items()
         }
 
-    def draw(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
-        """Give one robot its figures for the next episode."""
+    def draw(self, index: int, robot: Robot, seed: tuple[int, int]) -> None:
+        """Give one robot its figures for the next episode; ``seed`` is of the random numbers that draw them."""
+        if not self.ranges and self._sets is None:
+            return  # most environments: to make a generator would take longer than the rest of their reset
+        rng = np.random.default_rng(seed)
         figures = self._drawn(rng) if self._sets is None else self._sets[int(rng.integers(len(self._sets)))]
         self._failing[index] = []
         for name, value in figures.items():

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -42,6 +42,9 @@ RESET_OPTIONS = ("pose", "reset_mask")
 """Options of ``reset``; the second one only in vector environments."""
 MAX_STEP_S = 3600.0
 """Longest step, in simulated time [s]."""
+RANDOMISE_STREAM, FAULTS_STREAM = 2 << 40, 3 << 40
+"""Second words of the seeds of these random numbers. They have streams of their own, so that an episode with the same
+seed has the same start and task with and without them."""
 
 
 @dataclass(frozen=True)
@@ -252,13 +255,13 @@ class Session:
         if options and options.get("pose") is not None:
             pose = self.starts.pose(options["pose"])
         seed = int(rng.integers(1 << 32))
-        self.randomisation.draw(index, self.robot, rng)
+        self.randomisation.draw(index, self.robot, (seed, RANDOMISE_STREAM))
         if self.latency is not None:
             self.latency.begin(index)
         self.robot.reset(index, pose, seed)
         self.randomisation.begin(index, self.robot)
         if self.faults is not None:
-            self.faults.begin(index, rng)
+            self.faults.begin(index, np.random.default_rng((seed, FAULTS_STREAM)))
         self.task.start(index, self.robot, rng)
         for k, piece in enumerate(self.remembers):
             piece.start(index, seed + (k << 32))  # noise of its own
@@ -356,6 +359,8 @@ class Session:
 
 
 def _checked_details(given: Any) -> tuple[str, ...]:
+    if not isinstance(given, str | Iterable):
+        raise EnvOptionError(f"info = {given!r}; it must be names of {', '.join(DETAILS)}, or () for none")
     details = (given,) if isinstance(given, str) else tuple(given)
     for name in details:
         if name not in DETAILS:

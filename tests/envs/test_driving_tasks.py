@@ -121,3 +121,26 @@ def test_bays_that_cannot_be_are_refused():
         Park([(1.0, 2.0)])
     with pytest.raises(EnvOptionError, match="angle=0"):
         Park(angle=0.0)
+
+
+@pytest.mark.parametrize("name", ["Waypoint", "ReachGoal"])
+def test_a_rover_is_judged_in_x_and_y(name):
+    """Its height is barometric: here it drifts by 1 m/s, beyond the radius of the place and out of the arena."""
+    env = gym.make(f"sitl/Rover{name}-v0", randomise={"SIM_BARO_DRIFT": (1.0, 1.0)})
+    env.reset(seed=1)
+    robot, task = env.unwrapped.robot, env.unwrapped.task
+    for _ in range(60):
+        _, _, terminated, _, info = env.step(np.zeros(2, np.float32))
+        assert not terminated and not info["outside"]
+    assert abs(robot.pose[0, 2]) > 6.0
+    task.places[0, 0, :2] = robot.pose[0, :2]
+    for _ in range(30):
+        observation, reward, terminated, _, info = env.step(np.zeros(2, np.float32))
+        if terminated:
+            break
+    assert info["is_success"]
+    if name == "ReachGoal":
+        assert (
+            reward == env.unwrapped.compute_reward(observation["achieved_goal"], observation["desired_goal"], {}) == 0
+        )
+    env.close()

@@ -60,6 +60,40 @@ def test_a_vector_environment_and_snapshots_have_the_same() -> None:
     many.close()
 
 
+def drawn_places(count: int, **options: Any) -> list[list[float]]:
+    """Start poses and places of the task of three episodes of each robot, in their order."""
+    env = gym.make_vec("sitl/RoverCourse-v0", num_envs=count, start="turned", **options)
+    env.reset(seed=7)
+    found = []
+    for episode in range(3):
+        if episode:
+            env.reset()
+        task: Any = env.unwrapped.task  # type: ignore[attr-defined]
+        found.append([*task.places.ravel(), *env.unwrapped.robot.pose[:, 3]])  # type: ignore[attr-defined]
+    env.close()
+    return found
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"faults": {"gps": (50.0, 60.0), "": 0.0}},
+        {"randomise": {"mass": (4.0, 6.0), "latency": (0.0, 0.1)}},
+        {"randomise": {"grip": (0.6, 0.8), "draws": 3}, "faults": {"gps": 50.0}},
+        {"randomise": {"battery": lambda rng: float(rng.uniform(11.0, 12.0))}},
+    ],
+)
+def test_the_task_is_the_same_with_and_without(options: dict[str, Any]) -> None:
+    assert np.allclose(drawn_places(2, **options), drawn_places(2), atol=0.05)
+    single = []
+    for given in ({}, options):
+        env = gym.make("sitl/RoverCourse-v0", **given)
+        env.reset(seed=8)
+        single.append(env.unwrapped.task.places.tolist())  # type: ignore[attr-defined]
+        env.close()
+    assert single[0] == single[1]
+
+
 def test_amounts_are_drawn_for_each_episode() -> None:
     ranges = {"motor:3": (0.3, 0.9), "battery": lambda rng: float(rng.integers(10, 13)), "SIM_GPS1_NOISE": (1.0, 2.0)}
     options = {**ROVER, "randomise": ranges, "faults": {"gps/garbage": 0.0}}

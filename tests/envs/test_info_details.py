@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from sitl.envs import EnvOptionError
+from sitl.envs import EnvOptionError, ids
 from sitl.envs.rewards import EachStep, Forward
 from sitl.envs.tasks import ReachGoal, Task
 from tests.envs.vector_equality import same
@@ -28,6 +28,30 @@ def test_terms_add_up_to_the_reward(name):
         assert {"is_success", "crashed", "touched", "outside", "true_pose"} <= info.keys()
         if terminated:
             env.reset()
+
+
+@pytest.mark.parametrize("name", [*ids.PAPER, *ids.NEW, "sitl/Navigate-v0"])
+def test_terms_of_every_id_add_up_to_the_reward(name):
+    env = gym.make(name, info=["rewards"])
+    env.action_space.seed(3)
+    env.reset(seed=3)
+    for _ in range(4):
+        _, reward, terminated, truncated, info = env.step(env.action_space.sample())
+        assert add_up(info) == pytest.approx(reward, abs=1e-9)
+        if terminated or truncated:
+            env.reset()
+    env.close()
+
+
+def test_terms_of_parking_add_up_to_the_end():
+    """Also those of the step that parks."""
+    env = gym.make("sitl/RoverParking-v0")
+    env.reset(seed=3)
+    task, place = env.unwrapped.task, env.unwrapped.robot.pose[0]
+    task.places[0, 0], task.headings[0] = place[:3], place[3]
+    _, reward, terminated, _, info = env.step(np.zeros(2, np.float32))
+    assert terminated and info["reward_parked"] == 20.0
+    assert add_up(info) == pytest.approx(reward, abs=1e-9)
 
 
 @pytest.mark.parametrize(

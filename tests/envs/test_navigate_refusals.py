@@ -71,12 +71,19 @@ def test_actions_outside_of_a_box_are_refused(action):
         ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics, .*did you mean 'lidar'"),
         ({"wrld": "maze"}, r"option 'wrld' .*did you mean 'world'"),
         ({"render_mode": "ascii"}, r"render_mode 'ascii' is not known"),
+        ({"info": None}, r"info = None; it must be names of rewards, true_pose, events"),
+        ({"robot": "erle_rover", "start": (1e9, 0.0, 0.0)}, r"start: north = 1000000000.*-100000 .. 100000 m"),
     ],
 )
 @pytest.mark.filterwarnings("ignore:.*render_mode.*")
 def test_wrong_options_are_named_with_what_is_allowed(options, message):
     with pytest.raises(EnvOptionError, match=message):
         gym.make(NAVIGATE, **options)
+
+
+def test_a_single_environment_has_no_reset_mask():
+    with pytest.raises(EnvOptionError, match="'reset_mask' is for vector environments only"):
+        make().reset(options={"reset_mask": np.array([True])})
 
 
 def test_the_options_that_messages_list_are_those_that_there_are():

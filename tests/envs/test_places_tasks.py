@@ -156,6 +156,24 @@ def test_one_that_is_not_asked_does_not():
     assert env.robot.view(0).autopilot.arming.landed and env.robot.has_landed().tolist() == [False]
 
 
+@pytest.mark.parametrize(("lost", "ends"), [(3.6, True), (None, False)])
+def test_a_landing_ends_far_from_the_pad_if_asked_to(lost, ends):
+    """The copter climbs away from the pad below it; the error is the distance since the given time."""
+    given = {} if lost is None else {"lost": lost}
+    env = gym.make("sitl/CopterLand-v0", task=Land(offset=0.0, settle=0.5, **given))
+    env.reset(seed=1)
+    far, errors, terminated = [], [], False
+    while not terminated and len(far) < 20:
+        _, _, terminated, _, info = env.step(np.array([0.0, 0.0, 1.0, 0.0], np.float32))
+        x, y, z = env.unwrapped.task.targets[0] - info["true_pose"][:3]
+        far.append(float(np.sqrt(x * x + y * y + z * z)))
+        errors.append(info["error"])
+    assert terminated == ends and (far[-1] > 3.6 >= max(far[:-1]) or not ends)
+    assert not any(errors[:4])
+    assert errors[-1] == pytest.approx(np.sqrt(np.mean(np.square(far[4:]))), abs=1e-6)
+    env.close()
+
+
 def test_an_autopilot_that_says_that_it_has_landed_ends_a_landing(monkeypatch):
     env = gym.make("sitl/CopterLand-v0", task=Land(offset=0.0, pad=2.0)).unwrapped
     env.reset(seed=1)

@@ -11,6 +11,7 @@ import pytest
 
 pytest.importorskip("pettingzoo", reason="PettingZoo is not installed")
 
+from gymnasium.error import InvalidAction, ResetNeeded
 from pettingzoo.test import parallel_api_test
 
 from sitl.envs.options import EnvOptionError
@@ -111,13 +112,79 @@ def test_rewards_are_what_is_gained() -> None:
     task = Formation(3)
     before, places, goals = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
     goals[:, 0], places[:, 0] = 5.0, (1.0, 0.0, 4.5)
-    assert task.rewards(Scene(places, before, goals)) == pytest.approx([1.0, 0.0, 4.6])
+    assert task.rewards(Scene(places, before, goals, goals)) == pytest.approx([1.0, 0.0, 4.6])
+    moved = goals + (2.0, 0.0, 0.0)
+    assert task.rewards(Scene(places, before, moved, goals)) == pytest.approx([-1.0, -2.0, 2.5])
+
+
+@pytest.mark.parametrize("task", ["formation", "crossing", "escort"])
+def test_an_episode_pays_its_first_distance_minus_its_last(task: str) -> None:
+    """Also where goals move; without what is paid for being there, and for hits."""
+    env = SwarmEnv(task, steps=6)
+    observations, _ = env.reset(seed=3)
+
+    def far() -> Any:
+        places = env._true_places()
+        return np.linalg.norm(places - env.task.goals(places, 0.2 * env._count), axis=1)
+
+    first, paid = far(), np.zeros(len(env.agents))
+    while env.agents:
+        observations, rewards, *_, infos = env.step(to_goals(env, observations))
+        for k, agent in enumerate(env.possible_agents):
+            paid[k] += rewards[agent] - 0.1 * infos[agent]["is_success"]
+            assert not infos[agent]["was_hit"]
+    assert paid == pytest.approx(first - far(), abs=1e-9)
+    env.close()
 
 
 def test_what_cannot_be_is_refused() -> None:
-    for options, needed in (({"task": "dance"}, "formation"), ({"count": 1}, "from 2"), ({"step": 0.001}, "multiple")):
+    for options, needed in (
+        ({"task": "dance"}, "formation"),
+        ({"count": 1}, "from 2"),
+        ({"step": 0.001}, "multiple"),
+        ({"step": float("inf")}, "multiple"),
+        ({"steps": 0}, "whole number from 1 on"),
+        ({"steps": 2.5}, "whole number from 1 on"),
+    ):
         with pytest.raises(EnvOptionError, match=needed):
             SwarmEnv(**options)  # type: ignore[arg-type]
+
+
+NAN = np.array([0.0, np.nan, 0.0], np.float32)
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ({"copter_1": NAN}, r"agent 'copter_1': action array\(\[ 0., nan,  0.\].* is not in Box.*north -1 .. 1, east"),
+        ({"copter_0": [0.0, 0.0, 1.5]}, r"agent 'copter_0': action \[0.0, 0.0, 1.5\] is not in Box.*up -1 .. 1"),
+        ({"copter_0": [0.0, 0.0]}, "agent 'copter_0'"),
+        ({"copter_0": None}, "agent 'copter_0'"),
+        ({"rover_2": [0.0, 0.0, 0.0]}, "agent 'rover_2': .*: north -1 .. 1, east -1 .. 1$"),
+        ({"copter_9": [0.0, 0.0, 0.0]}, "agent 'copter_9': agents are copter_0, copter_1, rover_2"),
+    ],
+)
+def test_actions_that_cannot_be_are_refused_and_nothing_moves(changed: dict[str, Any], why: str) -> None:
+    env = SwarmEnv("escort")
+    env.reset(seed=1)
+    still = {agent: np.zeros(env.action_space(agent).shape, np.float32) for agent in env.agents}
+    time = env.swarm.time_us
+    with pytest.raises(InvalidAction, match=why):
+        env.step({**still, **changed})
+    assert env.swarm.time_us == time
+    env.close()
+
+
+def test_each_agent_needs_an_action_and_the_first_step_a_reset() -> None:
+    env = SwarmEnv("crossing")
+    with pytest.raises(ResetNeeded, match="call reset"):
+        env.step({})
+    env.reset(seed=1)
+    with pytest.raises(InvalidAction, match="no action of agent copter_1, copter_2, copter_3"):
+        env.step({"copter_0": np.zeros(3, np.float32)})
+    with pytest.raises(InvalidAction, match="no dict"):
+        env.step(np.zeros((4, 3), np.float32))  # type: ignore[arg-type]
+    env.close()
 
 
 def test_the_examples_of_the_page_run() -> None:

@@ -78,11 +78,16 @@ def test_what_cannot_be_is_refused() -> None:
         with pytest.raises(EnvOptionError, match=needed):
             SwarmVectorEnv(*arguments)
     env = SwarmVectorEnv("formation", count=2)
+    with pytest.raises(gym.error.ResetNeeded):
+        env.step(np.zeros((2, 3)))
     with pytest.raises(ValueError, match="1 seeds for num_envs = 2"):
         env.reset(seed=[1])
     env.reset(seed=1)
     with pytest.raises(gym.error.InvalidAction, match=r"shape \(2, 2\); it must be \(2, 3\)"):
         env.step(np.zeros((2, 2)))
+    for value in (np.nan, 1.5):
+        with pytest.raises(gym.error.InvalidAction, match="agent 'copter_1'"):
+            env.step(np.array([[0.0, 0.0, 0.0], [0.0, value, 0.0]]))
     env.close()
 
 

@@ -21,6 +21,7 @@ from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import PX4, Choice, choose
+from sitl.move import Move
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
 from sitl.simulation import OptionError, Simulation
@@ -29,7 +30,7 @@ from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World, planar
-from sitl.worlds.shapes import from_heading, from_ned
+from sitl.worlds.shapes import from_heading, from_ned, to_ned
 
 from ..actions import MOTORS, Action, Continuous, Setpoint
 from ..mavlink.compiled import robot_arrays
@@ -151,7 +152,16 @@ class AutopilotRobot:
         self._vehicles.changed[index][name] = value
 
     def prepare_at(self, pose: Pose) -> None:
-        """Where a vehicle is prepared that is moved to other start poses; before the first reset."""
+        """Where a vehicle is prepared that is moved to other start poses; before the first reset.
+
+        Raises:
+            EnvOptionError: a place so far away that no vehicle can be moved there.
+        """
+        north, east, _ = to_ned(*pose[:3])
+        try:
+            Move(north, east).check(self.airframe)
+        except OptionError as error:
+            raise EnvOptionError(f"start: {error}") from None
         self._vehicles.base = pose
 
     @property

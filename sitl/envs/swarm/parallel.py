@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
+from gymnasium.error import InvalidAction, ResetNeeded
 
 from ...client.endpoint import Endpoint
 from ...client.session import RATES_HZ
@@ -79,8 +81,10 @@ class SwarmEnv(ParallelEnv):
                 raise EnvOptionError(f"count = {count!r}; a whole number from 2 to 250 is needed")
             task = TASKS[task]() if count is None else TASKS[task](count)
         assert not isinstance(task, str)
-        if not (step > 0.0 and round(step * 400) == step * 400):
+        if not (0.0 < step < math.inf and round(step * 400) == step * 400):
             raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
+        if not isinstance(steps, int | np.integer) or steps < 1:
+            raise EnvOptionError(f"steps = {steps!r}; a whole number from 1 on is needed")
         self._given = {"step": step, "steps": steps, "observation": observation, **options}
         self.task, self.step_us, self.steps = task, round(step * 1e6), steps
         self.metadata = {"name": "sitl_swarm_v0", "render_modes": [], "is_parallelizable": True}
@@ -139,9 +143,9 @@ class SwarmEnv(ParallelEnv):
         self.swarm.advance_to(self.swarm.time_us + self.step_us)
         self._listen()
         self.task.begin(self._true_places(), self._rng)
-        goals = self.task.goals(self._true_places(), 0.0)
+        self._goals = self.task.goals(self._true_places(), 0.0).copy()
         self._sight.start(noise)
-        return self._observe(goals), {agent: {} for agent in self.agents}
+        return self._observe(self._goals), {agent: {} for agent in self.agents}
 
     def _prepared(self) -> SwarmSnapshot:
         """All of them ready to be flown."""
@@ -166,17 +170,24 @@ class SwarmEnv(ParallelEnv):
     def step(
         self, actions: dict[str, Narrow]
     ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives."""
+        """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives.
+
+        Raises:
+            InvalidAction: an agent has no action or one outside of its space, or there is no such agent.
+            ResetNeeded: before the first ``reset``.
+        """
+        given = self.check(actions)
         acting = self.agents
         before = self._true_places()
         for agent, k in self._number.items():
-            self._send(k, actions[agent] if agent in acting else np.zeros(3, np.float32))
+            self._send(k, given.get(agent, (0.0, 0.0, 0.0)))
         self.swarm.advance_to(self.swarm.time_us + self.step_us)
         self._listen()
         self._count += 1
         places = self._true_places()
         goals = self.task.goals(places, 1e-6 * self.step_us * self._count)
-        scene = Scene(places, before, goals)
+        scene = Scene(places, before, goals, self._goals)
+        self._goals = goals.copy()
         rewards, is_success = self.task.rewards(scene), self.task.is_success(scene)
         over, hits = self.task.is_over(scene), self._hit_counts()
         was_hit = hits > self._hits
@@ -199,11 +210,40 @@ class SwarmEnv(ParallelEnv):
             },
         )
 
+    def check(self, actions: Mapping[str, Any]) -> dict[str, Sequence[float]]:
+        """Actions of a step as numbers, each -1 .. 1, of the agents whose episode goes on; others are left out.
+
+        Raises:
+            InvalidAction, ResetNeeded: see ``step``.
+        """
+        if self._ready is None:
+            raise ResetNeeded("step() before the first reset(): call reset() first")
+        if not isinstance(actions, Mapping):
+            raise InvalidAction(f"actions {actions!r} are no dict of agents' actions")
+        for agent in actions:
+            if agent not in self._number:
+                raise InvalidAction(f"action of agent {agent!r}: agents are {', '.join(self.possible_agents)}")
+        missing = [agent for agent in self.agents if agent not in actions]
+        if missing:
+            raise InvalidAction(f"no action of agent {', '.join(missing)}: each one in `agents` needs one")
+        return {agent: self._checked(agent, actions[agent]) for agent in self.agents}
+
+    def _checked(self, agent: str, action: Any) -> Sequence[float]:
+        names = ("north", "east", "up")[: len(FASTEST[self._flies[self._number[agent]]])]
+        try:
+            numbers: list[float] = np.asarray(action, np.float32).tolist()
+            if len(numbers) == len(names) and all(-1.0 <= number <= 1.0 for number in numbers):
+                return numbers
+        except (TypeError, ValueError):
+            pass
+        allowed = ", ".join(f"{name} -1 .. 1" for name in names)
+        raise InvalidAction(f"agent {agent!r}: action {action!r} is not in {self.action_space(agent)}: {allowed}")
+
     # ------------------------------------------------------------------ the vehicles
 
-    def _send(self, k: int, action: Narrow) -> None:
+    def _send(self, k: int, action: Sequence[float]) -> None:
         scale = FASTEST[self._flies[k]]
-        north, east, *up = (float(np.clip(a, -1.0, 1.0)) * most for a, most in zip(action, scale))
+        north, east, *up = (a * most for a, most in zip(action, scale))
         velocity = {"vx": north, "vy": east, "vz": -up[0] if up else 0.0}
         fields = {"target_system": k + 1, "coordinate_frame": 1, "type_mask": VELOCITY_ONLY[self._flies[k]], **velocity}
         self._ends[k].send("SET_POSITION_TARGET_LOCAL_NED", **fields)
@@ -246,7 +286,7 @@ class SwarmEnv(ParallelEnv):
             "task": self.task, "given": self._given, "rng": self._rng, "agents": self.agents,
             "begun": (
                 self.swarm.snapshot(), self._told, self._count, self._hits, [end.sequence for end in self._ends],
-                self._sight.memory(),
+                self._sight.memory(), self._goals,
             )
             if begun
             else None,
@@ -257,7 +297,7 @@ class SwarmEnv(ParallelEnv):
         self._rng, self.agents = state["rng"], list(state["agents"])
         if state["begun"] is not None:
             self._ready = self._prepared()  # it is the same each time
-            now, told, self._count, self._hits, sequences, seen = state["begun"]
+            now, told, self._count, self._hits, sequences, seen, self._goals = state["begun"]
             self.swarm.restore(now)
             self._sight.recall(seen)
             self._told = told.copy()

@@ -25,6 +25,8 @@ class Scene(NamedTuple):
     """The same before the step."""
     goals: Floats
     """Where they are to be [m], shape (n, 3)."""
+    goals_before: Floats
+    """Where they were to be before the step [m], shape (n, 3)."""
 
 
 class Task(Protocol):
@@ -75,8 +77,12 @@ class _Task:
         return self._goals
 
     def rewards(self, scene: Scene) -> Floats:
-        """What the step brought it nearer to its place [m], and 0.1 for being there."""
-        nearer: Floats = np.linalg.norm(scene.before - scene.goals, axis=1) - distances(scene)
+        """How much less far it is from its place than before the step [m], and 0.1 for being there.
+
+        Each distance is to the place of its time. So an episode pays what the distance has become less from its
+        beginning to its end, however the place moves: to chase it earns nothing.
+        """
+        nearer: Floats = np.linalg.norm(scene.before - scene.goals_before, axis=1) - distances(scene)
         return nearer + 0.1 * self.is_success(scene)
 
     def is_success(self, scene: Scene) -> npt.NDArray[np.bool_]:

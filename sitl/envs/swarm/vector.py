@@ -121,7 +121,8 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             actions: shape (num_envs, 3), or (num_envs, 2) where all are rovers.
 
         Raises:
-            InvalidAction: they have another shape.
+            InvalidAction: they have another shape, or one is outside of its space.
+            ResetNeeded: before the first ``reset``.
         """
         actions = np.asarray(actions, np.float32)
         if actions.shape != self.action_space.shape:
@@ -133,13 +134,12 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             "was_hit": np.zeros(self.num_envs, np.bool_),
             "true_place": np.zeros((self.num_envs, 3)),
         }
+        given = [self._given(actions, k) for k in range(len(self.swarms))]
+        for swarm, theirs in zip(self.swarms, given, strict=True):
+            swarm.check(theirs)  # all of them before the first swarm moves
         for k, swarm in enumerate(self.swarms):
             first = k * len(self.agents)
-            given = {
-                agent: actions[row, :width]
-                for row, (agent, width) in enumerate(zip(self.agents, self._widths, strict=True), first)
-            }
-            observations, paid, terminations, _, infos = swarm.step(given)
+            observations, paid, terminations, _, infos = swarm.step(given[k])
             self._see(k, observations)
             over = len(swarm.agents) < len(self.agents)
             for row, agent in enumerate(self.agents, first):
@@ -149,6 +149,11 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
                     values[row] = infos[agent][name]
         ended = terminated | truncated
         return self._seen_after(ended), rewards, terminated, truncated, self._infos(told, ended)
+
+    def _given(self, actions: npt.NDArray[Any], k: int) -> dict[str, Any]:
+        """Actions of a swarm's agents."""
+        rows = enumerate(zip(self.agents, self._widths, strict=True), k * len(self.agents))
+        return {agent: actions[row, :width] for row, (agent, width) in rows}
 
     def _seen_after(self, ended: Flags) -> Any:
         """Observations, of the next episode where one has ended; keeps the last ones of those."""

@@ -64,7 +64,7 @@ class Hold(PlacesTask):
         self.at[index], self.since[index], self.success[index] = 0, 0.0, False
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        way = self.places[:, 0] - step.pose[:, :3]
+        way = self.axes * (self.places[:, 0] - step.pose[:, :3])
         distance = np.sqrt((way * way).sum(axis=1))
         if self.is_sparse:
             paid = self.compute_reward(self.achieved(), self.targets, None)
@@ -86,7 +86,7 @@ class Hold(PlacesTask):
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
         """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3)."""
-        way = np.asarray(achieved, np.float64) - np.asarray(desired, np.float64)
+        way = self.axes * (np.asarray(achieved, np.float64) - np.asarray(desired, np.float64))
         out: Floats = np.where(np.sqrt((way * way).sum(axis=-1)) < self.radius, 0.0, -1.0)
         return out
 

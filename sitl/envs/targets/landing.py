@@ -45,7 +45,8 @@ class Land(MovingTask):
         progress: reward for each metre nearer.
         each_second: reward per second.
         success_reward: reward for a landing on the pad.
-        others: further arguments of ``MovingTask``.
+        lost: distance from the pad beyond which the episode ends [m]; infinite: the arena alone ends it.
+        others: further arguments of ``MovingTask``; ``radius`` and ``scale`` have no effect.
     """
 
     lands = True
@@ -59,9 +60,10 @@ class Land(MovingTask):
         progress: float = 1.0,
         each_second: float = -0.2,
         success_reward: float = 20.0,
+        lost: float = math.inf,
         **others: Any,
     ) -> None:
-        super().__init__(**{"lost": 30.0, **others})
+        super().__init__(**others, lost=lost)
         if not (offset >= 0.0 and pad > 0.0 and speed >= 0.0):
             raise EnvOptionError(f"Land(offset={offset}, pad={pad}, speed={speed}); none below 0, pad above 0")
         self.offset, self.pad, self.speed = offset, pad, speed
@@ -111,7 +113,9 @@ class Land(MovingTask):
         time, state = step.robot.time, self._sensing.judged_state()
         self.places[:, 0] = pad = self.along(time[:, None])[:, 0]
         way = pad - state[:, :3]
-        distance = np.sqrt((way * way).sum(axis=1))
+        squared = (way * way).sum(axis=1)
+        distance = np.sqrt(squared)
+        self._note_errors(time, squared)
         gain, spent = self.progress * (self._distance - distance), self.each_second * step.seconds
         rewards += gain + spent
         self._distance = distance
@@ -128,7 +132,7 @@ class Land(MovingTask):
         rewards[down & ~self.success] += self.crash_reward
         landing = self.success_reward * self.success + self.crash_reward * (down & ~self.success)
         step.note(progress=gain, time=spent, landing=landing)
-        terminated |= down
+        terminated |= down | (distance > self.lost)
         is_agents = height > (LET_DOWN if self._lets_down else -math.inf)
         self._sinking = np.where(is_agents, 0.0 - state[:, 6], self._sinking)
 

@@ -87,16 +87,20 @@ class MovingTask(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = step.robot.time
         self.places[:, 0] = self.along(time[:, None])[:, 0]
-        way = self.places[:, 0] - step.pose[:, :3]
+        way = self.axes * (self.places[:, 0] - step.pose[:, :3])
         squared = (way * way).sum(axis=1)
         distance = np.sqrt(squared)
         near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
         rewards += near
         step.note(nearness=near)
+        self.success = self._note_errors(time, squared) & (self._errors() < self.radius)
+        terminated |= distance > self.lost
+
+    def _note_errors(self, time: Floats, squared: Floats) -> npt.NDArray[np.bool_]:
+        """Note squared distances [m^2] for the error; tells for which robots they count."""
         counts = time >= self.settle
         self.sums[counts] += np.stack([squared, np.ones(len(squared))], axis=1)[counts]
-        self.success = counts & (self._errors() < self.radius)
-        terminated |= distance > self.lost
+        return counts
 
     def _errors(self) -> Floats:
         out: Floats = np.sqrt(self.sums[:, 0] / np.maximum(self.sums[:, 1], 1.0))

@@ -76,13 +76,16 @@ class Park(PlacesTask):
         """Of each robot's bay [rad], shape (count,)."""
         self._left = np.zeros(robot.count)
         """What each robot's way is still worth."""
+        self._distance = np.zeros(robot.count)
+        """From each robot to its bay [m]."""
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         x, y, yaw = self._bays[int(rng.integers(len(self._bays)))].tolist()
         self.places[index, 0] = x, y, robot.pose[index, 2]
         self.headings[index], self.at[index], self.success[index] = yaw, 0, False
-        self._left[index] = self._worth(robot.pose)[2][index]
+        distance, _, left = self._worth(robot.pose)
+        self._distance[index], self._left[index] = distance[index], left[index]
 
     def turns(self) -> Floats:
         """How far each robot has to turn to the bay's heading, counter-clockwise, within -pi .. pi [rad]."""
@@ -103,18 +106,22 @@ class Park(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         distance, error, left = self._worth(step.pose)
-        rewards += self._left - left + self.each_second * step.seconds
-        self._left = left
+        paid, time, gain = self._left - left, self.each_second * step.seconds, self._distance - distance
+        rewards += paid + time
+        self._left, self._distance = left, distance
         stands = np.abs(step.velocity[:, 0]) < self.speed
         self.success = (distance < self.radius) & (error < self.angle) & stands
         rewards[self.success] += self.success_reward
+        progress, parked = self.progress * gain, self.success_reward * self.success
+        step.note(progress=progress, turn=paid - progress, time=time, parked=parked)
         terminated |= self.success
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
-        return *super().memory(index), float(self.headings[index]), float(self._left[index])
+        mine = float(self.headings[index]), float(self._left[index]), float(self._distance[index])
+        return *super().memory(index), *mine
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
         super().recall(index, memory)
-        self.headings[index], self._left[index] = memory[3:5]
+        self.headings[index], self._left[index], self._distance[index] = memory[3:6]

@@ -50,6 +50,9 @@ _ways = Kernel(write_ways)
 class PlacesTask(Task):
     """Base of tasks with target positions ("places"); subclasses draw them and judge steps.
 
+    Distances of robots that do not fly, and whether they are in the arena, are judged in x and y: their heights are
+    barometric, and drift by metres.
+
     Args:
         arena: box in which targets are drawn; None: a box around the world and ``reach`` about the start.
         reach: see ``arena_of`` [m].
@@ -57,6 +60,9 @@ class PlacesTask(Task):
         out_reward: added to the reward of a step that ends more than 5 m outside of the arena.
         others: further arguments of ``Task``.
     """
+
+    axes: Floats = np.ones(3)
+    """What x, y and z count in distances: 1, or 0 for z of a robot that does not fly. Valid after ``prepare``."""
 
     def __init__(
         self, arena: Arena | None = None, reach: float = REACH, crash_reward: float = -10.0, out_reward: float = -10.0,
@@ -75,7 +81,11 @@ class PlacesTask(Task):
         if self._fixed is not None and self._given is None:
             self.arena = self.arena.around(self._fixed[:, :3])
         self.flies = flies(robot)
+        self.axes = np.array((1.0, 1.0, float(self.flies)))
         self._limits = self.arena.grown(BEYOND)
+        if not self.flies:
+            (x0, y0, _), (x1, y1, _) = self._limits
+            self._limits = self._limits._replace(low=(x0, y0, -math.inf), high=(x1, y1, math.inf))
         self.places = np.zeros((count, self.per_robot, 3))
         """x, y, z of each robot's places [m], shape (count, per_robot, 3)."""
         self.at = np.zeros(count, np.int64)
