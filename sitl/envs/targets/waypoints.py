@@ -21,14 +21,13 @@ from .places import PlacesTask
 
 @law
 def pass_places(
-    pose: Table, places: Table, upwards: float, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
+    pose: Table, places: Table, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
 ) -> None:
     """Judge a step on the way along places.
 
     Args:
         pose: x, y, z [m], yaw [rad], shape (count, 4).
         places: x, y, z [m], one robot after another, shape (count * n, 3).
-        upwards: what z counts in distances: 1, or 0 for robots that do not fly.
         radius: distance at which a place is passed [m].
         at: number of each robot's present place; goes on where that is passed, shape (count,).
         distance: to each robot's present place [m]: of the step before, becomes that of now, shape (count,).
@@ -38,8 +37,7 @@ def pass_places(
     per_robot = places.shape[0] // at.shape[0]
     for i in range(at.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
-        x, y = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1]
-        z = upwards * (places[row, 2] - pose[i, 2])
+        x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
         now = (x * x + y * y + z * z) ** 0.5
         gain[i] = distance[i] - now
         passed[i] = now < radius and at[i] < per_robot
@@ -48,8 +46,7 @@ def pass_places(
             at[i] += 1
             if at[i] < per_robot:
                 row += 1
-                x, y = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1]
-                z = upwards * (places[row, 2] - pose[i, 2])
+                x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
                 distance[i] = (x * x + y * y + z * z) ** 0.5
 
 
@@ -130,8 +127,10 @@ class Waypoints(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         pose = np.ascontiguousarray(step.pose)
-        places = self.places.reshape(-1, 3)
-        _pass(pose, places, float(self.axes[2]), self.radius, self.at, self._distance, self._gain, self._passed)
+        places, judged = self.places.reshape(-1, 3), pose
+        if not self.flies:
+            places, judged = self.axes * places, np.append(self.axes, 1.0) * pose  # without heights
+        _pass(judged, places, self.radius, self.at, self._distance, self._gain, self._passed)
         gain, places_paid = self.progress * self._nearer(pose), self.place_reward * self._passed
         time = self.each_second * step.seconds
         rewards += gain + places_paid + time
