@@ -155,12 +155,14 @@ class RoverSoak(ByDice, Driver):
 
     def load_mission(self) -> None:
         items = [Item(c.NAV_WAYPOINT, (self.dice.uniform(0.0, self.size), 0.0))]
-        items += [self.item() for _ in range(self.dice.randint(1, 8))]
+        count = self.dice.randint(1, 8)
+        items += [self.item(1 + count) for _ in range(count)]
         assert self.upload(*items) == 0, self.story()
         if self.dice.random() < 0.5:
             self.set_mode(AUTO)
 
-    def item(self) -> Item:
+    def item(self, last: int) -> Item:
+        """Any item of a mission; ``last``: number of its last one."""
         d, v, far = self.dice, self.cruise, self.size
         place = (d.uniform(-far, far), d.uniform(-far, far))
         return d.choice(
@@ -176,7 +178,7 @@ class RoverSoak(ByDice, Driver):
              Item(c.DO_SET_REVERSE, None, 0, (d.choice((0, 1)),)), Item(c.DO_SET_ROI_LOCATION, place),
              Item(c.NAV_GUIDED_ENABLE, None, 0, (d.choice((0, 1)),)),
              Item(c.DO_GUIDED_LIMITS, None, 0, (d.uniform(1, 9),)),
-             Item(c.DO_JUMP, None, 0, (d.randint(1, 3), d.randint(1, 2))), Item(c.NAV_RETURN_TO_LAUNCH))
+             Item(c.DO_JUMP, None, 0, (min(d.randint(1, 3), last), d.randint(1, 2))), Item(c.NAV_RETURN_TO_LAUNCH))
         )  # fmt: skip
 
 

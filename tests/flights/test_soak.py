@@ -158,10 +158,12 @@ class Soak(ByDice, Aviator):
         self.set_parameter("SIM_WIND_TURB", self.dice.uniform(0, 1.5))
 
     def load_mission(self) -> None:
-        items = [Item(c.NAV_TAKEOFF, None, 8.0), *(self.item() for _ in range(self.dice.randint(1, 8)))]
+        count = self.dice.randint(1, 8)
+        items = [Item(c.NAV_TAKEOFF, None, 8.0), *(self.item(1 + count) for _ in range(count))]
         assert self.upload(*items) == 0, self.story()
 
-    def item(self) -> Item:
+    def item(self, last: int) -> Item:
+        """Any item of a mission; ``last``: number of its last one."""
         d = self.dice
         place = (d.uniform(-50, 50), d.uniform(-50, 50))
         height = d.uniform(3, 25)
@@ -174,7 +176,7 @@ class Soak(ByDice, Aviator):
              Item(c.CONDITION_YAW, None, 0, (d.uniform(0, 360), d.uniform(10, 60), d.choice((-1, 0, 1)), 0)),
              Item(c.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
              Item(c.DO_SET_ROI_LOCATION, place, 0), Item(c.DO_SET_ROI_NONE),
-             Item(c.DO_JUMP, None, 0, (d.randint(1, 3), d.randint(1, 2))),
+             Item(c.DO_JUMP, None, 0, (min(d.randint(1, 3), last), d.randint(1, 2))),
              Item(c.NAV_RETURN_TO_LAUNCH), Item(c.NAV_LAND), Item(c.NAV_LAND, place))
         )  # fmt: skip
 
