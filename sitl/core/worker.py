@@ -2,8 +2,9 @@
 """``python -m sitl.core.worker RECORD JOBS MODULE:UNIT ...``: compile units side by side (started by ``build``).
 
 The units' modules and Numba are loaded once; each unit is compiled by a copy of this process, because what is compiled
-in one process is compiled in one way. With ``kernels`` for RECORD, they are kernels on arrays (``array_kernels.py``). One line on standard output for each step: "begin UNIT", "end UNIT" or
-"fail UNIT". Where a process cannot be copied, each unit has a process of its own.
+in one process is compiled in one way. With ``kernels`` for RECORD, they are kernels on arrays (``array_kernels.py``).
+One line on standard output for each step: "begin UNIT", "end UNIT" or "fail UNIT". Where a process cannot be copied,
+each unit has a process of its own.
 """
 
 from __future__ import annotations

@@ -29,7 +29,9 @@ def test_code_within_code_and_sets_are_written_alike_in_every_process() -> None:
 
 def test_every_kernel_has_one_fingerprint_in_all_processes() -> None:
     show = (
-        "from importlib import import_module\nfrom sitl.cli.cache import KERNEL_MODULES\nfrom sitl.core import array_kernels as k\n"
+        "from importlib import import_module\n"
+        "from sitl.cli.cache import KERNEL_MODULES\n"
+        "from sitl.core import array_kernels as k\n"
         "for name in {order}(KERNEL_MODULES): import_module(name)\n"
         "print(*sorted(k._folder(x, k._signature(x.law)).name for x in k.KERNELS.values()), sep='\\n')"
     )
