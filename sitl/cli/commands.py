@@ -53,6 +53,7 @@ Autopilot-in-the-loop simulator in simulated time. Five things to begin with:
   sitl mission fly FILE.plan    fly a mission file; `sitl mission suite` is for regression tests
   sitl train --recipe NAME      let an agent learn, by the vehicle's real command interface
 
-All commands: sitl --help. Options of a command: sitl COMMAND --help. Documentation: sitl help. Is all installed? sitl doctor
+All commands: sitl --help. Options of a command: sitl COMMAND --help. Documentation: sitl help.
+Is all installed? sitl doctor
 """
 """What ``sitl`` alone prints."""
