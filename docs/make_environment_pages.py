@@ -17,31 +17,14 @@ import sitl.envs
 from sitl.envs.actions import Discrete
 from sitl.envs.arena import Arena
 from sitl.envs.boxes import GoalConditioned
+from sitl.envs.ids import TASKS, camel_case
 from sitl.envs.targets.gates import Gates
 from sitl.envs.targets.landing import Land
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
-    "CopterHover": ("Hover in wind", "Hold a target position near the start in wind and gusts."),
-    "CopterReachGoal": ("Fly to a goal (goal-conditioned)", "Fly to a random goal. The reward is sparse."),
-    "CopterWaypoint": ("Fly to a waypoint", "Fly to one random waypoint."),
-    "CopterCourse": ("Fly a course of waypoints", "Pass five random waypoints in order."),
-    "CopterGates": ("Race through gates", "Fly one lap through an oval of six gates, against the clock."),
-    "CopterRace": ("Race three laps", "Fly three laps through the same six gates; `info` has lap times."),
-    "CopterTrajectory": ("Follow a figure of eight", "Track a point that moves along a figure of eight."),
-    "CopterFollow": ("Follow a moving target", "Track a target that moves at random."),
-    "CopterLand": ("Land on a pad", "Land softly on a pad near the start."),
-    "CopterLandMoving": ("Land on a moving pad", "Land softly on a pad that moves at 0.5 m/s."),
-    "CopterForest": ("Fly through a forest", "Fly to a waypoint among trees, by lidar."),
-    "CopterRooms": ("Fly through rooms", "Fly to a waypoint in a house, by lidar."),
-    "RoverReachGoal": ("Drive to a goal (goal-conditioned)", "Drive to a random goal. The reward is sparse."),
-    "RoverWaypoint": ("Drive to a waypoint", "Drive to one random waypoint."),
-    "RoverCourse": ("Drive a course of waypoints", "Pass four random waypoints in order."),
-    "RoverLabyrinth": ("Drive through a labyrinth", "Drive to a waypoint in a maze, by lidar."),
-    "RoverSlalom": ("Drive a slalom", "Pass poles on alternate sides."),
-    "RoverRace": ("Race two laps", "Drive two laps of a walled track, by lidar; `info` has lap times."),
-    "RoverParking": ("Park in a bay", "Park in a free bay between cars, by lidar."),
-}  # fmt: skip
+    camel_case(preset): (task.title, task.aim.replace("info has", "`info` has")) for preset, task in TASKS.items()
+}
 OTHERS = {
     "CopterForest": "forest:seed=7", "CopterRooms": "rooms:seed=7", "RoverSlalom": "slalom:seed=7",
     "RoverLabyrinth": "labyrinth:seed=7,size=60,scale=3", "RoverRace": "track:seed=7",

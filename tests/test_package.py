@@ -15,6 +15,7 @@ import pytest
 
 import sitl
 from sitl import vehicles, worlds
+from sitl.cli import help
 from sitl.fleet import Fleet
 from sitl.simulation import Simulation
 
@@ -65,7 +66,7 @@ def test_readers_find_the_rooms_at_the_top_and_code_does_not() -> None:
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A wheel of this tree, built in a copy of it."""
     source = tmp_path_factory.mktemp("source") / "tree"
-    without = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "dist", "tests", "docs")
+    without = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "build", "dist", "tests")
     shutil.copytree(ROOT, source, symlinks=True, ignore=without)
     command = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", "out", "."]
     done = subprocess.run(command, cwd=source, capture_output=True, text=True)
@@ -84,7 +85,8 @@ def test_a_wheel_holds_one_package_with_all_its_files(wheel: Path) -> None:
         for path in (ROOT / "sitl").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    assert {name for name in names if name.startswith("sitl/")} == there
+    pages = {f"sitl/docs/{page.relative_to(ROOT / 'docs').as_posix()}" for page in help.pages().values()}
+    assert {name for name in names if name.startswith("sitl/") and not name.endswith("/index.md")} == there | pages
 
 
 @pytest.mark.slow
@@ -117,6 +119,7 @@ def test_the_commands_for_newcomers_work_without_the_repository(wheel: Path, tmp
         return done.stdout
 
     assert typed("-c", "import sitl; print(sitl.__file__)").startswith(str(site))
+    assert typed("-m", "sitl", "help", "faults") == (ROOT / "docs/faults.md").read_text(encoding="utf-8")
     typed("-m", "sitl", "world", "show", "maze")
     assert (desk / "maze.png").read_bytes().startswith(b"\x89PNG")
     typed("-m", "sitl", "examples", "--copy")

@@ -9,10 +9,37 @@ from typing import TYPE_CHECKING
 
 from ..core import code_cache
 from ..core import compile as compiler
+from ..core.array_kernels import KERNELS, build_kernels, missing_kernels
 from .output import add_json_option, print_json
 
 if TYPE_CHECKING:
     from ..vehicle.kind import Kind
+
+KERNEL_MODULES = (
+    "sitl.agents.tabular.compiled_loop",
+    "sitl.agents.tabular.exploration",
+    "sitl.agents.tabular.learn",
+    "sitl.agents.ways",
+    "sitl.envs.free_ways",
+    "sitl.envs.mavlink.compiled",
+    "sitl.envs.observations",
+    "sitl.envs.pictures",
+    "sitl.envs.robots.truth",
+    "sitl.envs.starts",
+    "sitl.envs.targets.gates",
+    "sitl.envs.targets.places",
+    "sitl.envs.targets.waypoints",
+    "sitl.envs.tasks",
+    "sitl.fleet",
+    "sitl.logs.dataflash.derived",
+    "sitl.physics.native.traffic",
+    "sitl.physics.native.turtlebot.fleet",
+    "sitl.worlds.camera",
+    "sitl.worlds.contact",
+    "sitl.worlds.planar",
+    "sitl.worlds.raycast",
+)
+"""Modules that make kernels; loaded by name, because some are of packages above this one."""
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -33,6 +60,7 @@ def cache(options: argparse.Namespace) -> int:
     elif options.action == "build":
         with CompileProgress() as progress:
             took = sum(compiler.build(all_entries(kind), kind.record_path, progress) for kind in KINDS.values())
+            took += build_kernels(KERNEL_MODULES, progress)
         print(f"built in {took:.1f} s")
     elif options.json:
         rows = [{"vehicle": kind, "unit": unit, "ready": ready} for kind, unit, ready in units()]
@@ -45,13 +73,17 @@ def cache(options: argparse.Namespace) -> int:
 
 
 def units() -> Iterator[tuple[str, str, bool]]:
-    """(kind of vehicle, name, whether there is machine code) of each unit of the core."""
+    """(kind of vehicle, name, whether there is machine code) of each unit of the core, and of the kernels of fleets,
+    environments, worlds and agents, which are of "every kind"."""
     from ..vehicle.kinds import KINDS
 
     for kind in KINDS.values():
         absent = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
         for unit in dict.fromkeys(unit for entry in entries(kind) for unit in compiler.reached(entry)):
             yield kind.name, unit.name, unit not in absent
+    absent_kernels = {task.partition(":")[2] for task in missing_kernels(KERNEL_MODULES)}
+    for name in sorted(KERNELS):
+        yield "every kind", name, name not in absent_kernels
 
 
 def entries(kind: Kind) -> tuple[Callable[..., None], ...]:

@@ -36,7 +36,9 @@ COMMANDS = {
     "examples": Listed("sitl.cli.examples", "list and copy the example programs"),
     "params": Listed("sitl.cli.params", "list the parameters, or look for some"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),
+    "envs": Listed("sitl.envs.listing", "list the environments, or describe one"),
     "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),
+    "help": Listed("sitl.cli.help", "print a page of the documentation"),
     "doctor": Listed("sitl.cli.doctor", "check the installation, and print the commands that complete it"),
     "completion": Listed("sitl.cli.completion", "print the completion script for a shell"),
 }
@@ -51,6 +53,7 @@ Autopilot-in-the-loop simulator in simulated time. Five things to begin with:
   sitl mission fly FILE.plan    fly a mission file; `sitl mission suite` is for regression tests
   sitl train --recipe NAME      let an agent learn, by the vehicle's real command interface
 
-All commands: sitl --help. Options of a command: sitl COMMAND --help. Is all installed? sitl doctor
+All commands: sitl --help. Options of a command: sitl COMMAND --help. Documentation: sitl help.
+Is all installed? sitl doctor
 """
 """What ``sitl`` alone prints."""

@@ -16,12 +16,13 @@ from pathlib import Path
 
 from ..core import code_cache
 from ..core import compile as compiler
+from ..core.array_kernels import missing_kernels
 from ..run import runner
 from ..vehicle.kinds import KINDS
 from ..warp import CannotBuild
 from ..warp.build import compiler as c_compiler
 from . import plugins
-from .cache import entries
+from .cache import KERNEL_MODULES, entries
 from .output import add_json_option, print_json
 
 OLDEST = (3, 11)
@@ -133,6 +134,9 @@ def other_packages() -> Iterator[Finding]:
 
 def clock() -> Iterator[Finding]:
     """Whether scripts can be put on simulated time."""
+    if sys.platform != "linux":
+        yield Finding("exec", ABSENT, f"scripts in simulated time need Linux; on {sys.platform} they run in real time")
+        return
     try:
         yield Finding("exec", OK, f"sitl exec compiles its clock library with {' '.join(c_compiler())}")
     except CannotBuild:
@@ -156,6 +160,9 @@ def cache() -> Iterator[Finding]:
         units = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
         state = f"not compiled ({len(units)} parts); the first start compiles it" if units else "compiled"
         yield Finding(f"core of {kind.name}", ABSENT if units else OK, state, "sitl cache build" if units else "")
+    kernels = len(missing_kernels(KERNEL_MODULES))
+    state = f"not compiled ({kernels} parts); the first uses compile them" if kernels else "compiled"
+    yield Finding("environments", ABSENT if kernels else OK, state, "sitl cache build" if kernels else "")
 
 
 def ports() -> Iterator[Finding]:

@@ -67,9 +67,11 @@ def execute(options: argparse.Namespace) -> int:
         raise OptionError("no command given: sitl exec [options] -- python script.py")
     if shutil.which(command[0]) is None:
         raise OptionError(f"command {command[0]!r} is not found or not executable")
-    parse_speedup(options.speedup)
+    factor = parse_speedup(options.speedup)
     check_view(options)
     choice = choose(options.autopilot, options.vehicle)
+    if (factor != 1.0 or choice is not None) and (reason := can_warp()):
+        raise CannotBuild(reason)  # before a vehicle is started
     if choice is not None:
         return _execute_foreign(options, choice, command)
     if options.count > 1:

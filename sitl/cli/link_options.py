@@ -11,7 +11,7 @@ from ..bridge.links.faults import OPTIONS
 
 def add_link_options(parser: argparse.ArgumentParser) -> None:
     """Add them: each word is kept as it stands."""
-    group = parser.add_argument_group("faults of the links to clients, in simulated time (docs/faults.md)")
+    group = parser.add_argument_group("faults of the links to clients, in simulated time (sitl help faults)")
     for name, (metavar, text) in OPTIONS.items():
         group.add_argument(f"--link-{name}", action="append", default=[], metavar=metavar, help=text)
 

@@ -83,7 +83,7 @@ def seconds(text: str) -> float:
 
 def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe the vehicle and its start."""
-    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (docs/vehicles.md)")
+    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (sitl help vehicles)")
     parser._negative_number_matcher = re.compile(r"-[\d.]")  # a value such as -35.3,149.1,584,0 is no option
     parser.add_argument(
         "--home",
@@ -112,7 +112,7 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FAULT",
-        help=f"inject a fault: {FORM}, such as gps@12 or motor:2=0.5@20..30 (repeatable; docs/faults.md)",
+        help=f"inject a fault: {FORM}, such as gps@12 or motor:2=0.5@20..30 (repeatable; sitl help faults)",
     )
     parser.add_argument(
         "--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="folder for the .tlog and .bin logs"

@@ -8,24 +8,31 @@ from types import TracebackType
 
 from tqdm import tqdm
 
+from ..core.build_work import FIRST_LINE, ProgressLines
+
 
 class CompileProgress:
     """A progress bar that appears only when something is compiled; call it as ``core.compile.Progress``.
 
-    It moves by the work that is done, and tells the time that is left at the speed so far.
+    It moves by the work that is done, and tells the time that is left at the speed so far. Where standard error is no
+    terminal, lines appear instead.
     """
 
     def __init__(self) -> None:
         self._bar: tqdm[None] | None = None
+        self._lines = None if sys.stderr.isatty() else ProgressLines()
 
     def __call__(self, unit: str, done: float, total: float) -> None:
         """Work ``done`` of ``total``; ``unit`` is the one that was begun or completed last."""
+        if self._lines is not None:
+            self._lines(unit, done, total)
+            return
         if self._bar is None or total != self._bar.total:  # another part of the core
             self.__exit__(None, None, None)
             if self._bar is None:
-                print("Compiling the core (once; later starts load it from the cache)", file=sys.stderr)
+                print(FIRST_LINE, file=sys.stderr)
             self._bar = tqdm(
-                total=total, leave=False, file=sys.stderr, disable=None, ascii=True, smoothing=0.0,
+                total=total, leave=False, file=sys.stderr, ascii=True, smoothing=0.0,
                 bar_format="{percentage:3.0f}% |{bar:30}| {elapsed}, {remaining} left  {desc}",
             )  # fmt: skip
         self._bar.set_description_str(unit, refresh=False)

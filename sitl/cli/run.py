@@ -29,7 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("vehicle", choices=sorted(KINDS))
     clock = parser.add_mutually_exclusive_group()
     clock.add_argument("--speedup", default="1", metavar="K|max", help="simulated seconds a second (default 1)")
-    clock.add_argument("--lockstep", action="store_true", help="a MAVLink client controls the time (docs/mavlink.md)")
+    clock.add_argument("--lockstep", action="store_true", help="a MAVLink client controls the time (sitl help mavlink)")
     add_run_options(parser)
     foreign.add_autopilot_options(parser)
     recordings.add_from_option(parser)

@@ -43,7 +43,7 @@ def spacing(text: str) -> float:
 
 def add_swarm_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of several vehicles."""
-    group = parser.add_argument_group("several vehicles in one world (docs/swarm.md)")
+    group = parser.add_argument_group("several vehicles in one world (sitl help swarm)")
     group.add_argument(
         "--count", type=count, default=1, metavar="N", help="how many, with system ids 1 to N (default 1)"
     )

@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 
 def add_view_options(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("--view", action="store_true", help="show the vehicle on a page in the browser (docs/view.md)")
+    parser.add_argument(
+        "--view", action="store_true", help="show the vehicle on a page in the browser (sitl help view)"
+    )
     parser.add_argument("--view-only", action="store_true", help="the same, without controls")
     parser.add_argument(
         "--view-port", type=port, default=0, metavar="PORT", help="port of the page (default: a free one)"

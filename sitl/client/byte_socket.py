@@ -15,6 +15,7 @@ FORMS = (
     '"udp:HOST:PORT" (listen there for a vehicle), "udpout:HOST:PORT" (speak to one there), '
     f'"tcp:HOST:PORT" (connect to one) or {FORM}'
 )
+KINDS = ("udp", "udpin", "udpout", "tcp")
 _BUFFER = 1 << 21
 
 
@@ -58,8 +59,11 @@ class ByteSocket:
 
     def __init__(self, text: str) -> None:
         kind, _, rest = text.partition(":")
-        host, _, port = rest.rpartition(":")
-        if kind not in ("udp", "udpin", "udpout", "tcp") or not host or not port.isdigit() or not 0 < int(port) < 65536:
+        host, colon, port = rest.rpartition(":")
+        if kind in KINDS and port and not colon:
+            part = "host" if port.isdigit() else "port"
+            raise OptionError(f"connection {text!r}: the {part} is missing; it is {FORMS}")
+        if kind not in KINDS or not host or not port.isdigit() or not 0 < int(port) < 65536:
             raise OptionError(f"connection {text!r} is none of {FORMS}")
         self.name = text
         self._stream = kind == "tcp"

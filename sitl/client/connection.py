@@ -6,7 +6,6 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-import warnings
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -361,19 +360,19 @@ def connect(
     *,
     system: int = 255,
     component: int = 190,
-    warn: Callable[[str], object] = warnings.warn,
+    warn: Callable[[str], object] = lambda _: None,
 ) -> Lockstep | RealTime:
     """Find the vehicle, whether it proves to be a simulator, and whether its time can be held.
 
-    It is only asked questions. One whose time cannot be held is used in real time, with a warning, but not in a script
-    under ``sitl exec``.
+    It is only asked questions. One whose time cannot be held is used by its own clock.
 
     Args:
         text: a form of ``open_stream``.
         inbox: gets what comes back.
         patience: wall time [s] without a message after which the vehicle is lost.
         system, component: MAVLink ids of the client.
-        warn: gets the warning.
+        warn: is told when the time cannot be held, but not in a script under ``sitl exec``, whose clock is the
+            vehicle's.
 
     Raises:
         OptionError: no such form of connection.

@@ -8,17 +8,21 @@ after the fingerprint of all that it reaches (``sitl.core.fingerprint``), so sta
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import importlib
+import time
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
+from pathlib import Path
 from typing import Annotated, Any, Generic, NamedTuple, ParamSpec, TypeVar, get_args, get_origin, get_type_hints
 
-from .code_cache import ENTRY, cache_folder, load_entry
-from .compile import make_jitable, toolchain
+from .code_cache import ENTRY, build_lock, cache_folder, is_built, load_entry
+from .compile import Progress, compile_tasks, make_jitable, toolchain
 from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
 from .numba_tuning import COMMON
 from .records import FloatRows, Floats, IntRows, Ints, Records
 from .vectors import Value
+from .worker import KERNELS_PATH
 
 KERNELS: dict[str, Kernel[..., Any]] = {}
 P = ParamSpec("P")
@@ -154,14 +158,47 @@ def _layouts(types: Any) -> Iterator[str]:
             yield f"{kind.dtype} {kind.dtype.dtype} {kind.dtype.values}"
 
 
+def _folder(kernel: Kernel[..., Any], signature: Any) -> Path:
+    """Where the kernel's current machine code is or will be."""
+    layouts = " ".join(_layouts(signature.args))
+    key = fingerprint(_unit(kernel), layouts, f"{toolchain()} {signature} {kernel.lets_others_run}")
+    return cache_folder() / f"{kernel.name}-{key}"
+
+
+def _unit(kernel: Kernel[..., Any]) -> Unit:
+    return Unit(kernel.name, kernel.law, 0)
+
+
+def missing_kernels(modules: Iterable[str]) -> dict[str, Kernel[..., Any]]:
+    """ "MODULE:NAME" -> a kernel that one of these modules makes, and whose present source has no machine code."""
+    found: dict[str, Kernel[..., Any]] = {}
+    for module in modules:
+        for made in vars(importlib.import_module(module)).values():
+            if isinstance(made, Kernel) and not is_built(_folder(made, _signature(made.law))):
+                found[f"{module}:{made.name}"] = made
+    return found
+
+
+def build_kernels(modules: Iterable[str], progress: Progress | None = None) -> float:
+    """Compile the kernels of these modules that miss in the cache, side by side; returns the seconds.
+
+    A kernel compiles itself when it is called first; this is for doing it beforehand.
+
+    Raises:
+        BuildError: one failed to compile.
+    """
+    start = time.monotonic()
+    with build_lock():
+        units = {task: _unit(kernel) for task, kernel in missing_kernels(modules).items()}
+        compile_tasks(units, KERNELS_PATH, progress)
+    return time.monotonic() - start
+
+
 def _load(wanted: Kernel[..., Any]) -> Callable[..., Any]:
     import numba
 
-    unit = Unit(wanted.name, wanted.law, 0)
     signature = _signature(wanted.law)
-    layouts = " ".join(_layouts(signature.args))
-    key = fingerprint(unit, layouts, f"{toolchain()} {signature} {wanted.lets_others_run}")
-    folder = cache_folder() / f"{wanted.name}-{key}"
+    folder = _folder(wanted, signature)
     make_jitable()
     names = ", ".join(f"a{k}" for k in range(wanted.law.__code__.co_argcount))
     source = f"# The entry of kernel {wanted.name}.\ndef {ENTRY}({names}):\n    return law({names})\n"

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import sys
+import time
+from collections.abc import Callable, Mapping
 
 _ALMOST = 0.95
 """A unit that is being compiled counts for at most this share of its work."""
@@ -43,3 +45,37 @@ class BuildWork:
         )
         self._told = max(self._told, self._complete + running)
         return self._told
+
+
+FIRST_LINE = "gym-sitl compiles its core (once; later starts load it from the cache)"
+
+
+class ProgressLines:
+    """Progress as lines on standard error, for logs and for programs without a bar: the first at once, then one each
+    quarter of a minute. Call it as ``core.compile.Progress``.
+
+    Args:
+        clock: wall time [s].
+    """
+
+    EVERY_S = 15.0
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._begun = self._said = -1.0
+        self._total = 0.0
+
+    def __call__(self, unit: str, done: float, total: float) -> None:
+        """Work ``done`` of ``total``; ``unit`` is the one that was begun or completed last."""
+        now = self._clock()
+        if self._begun < 0.0:
+            self._say(FIRST_LINE)
+        if total != self._total:  # another part of the core
+            self._begun, self._said, self._total = now, now, total
+        elif now - self._said >= self.EVERY_S:
+            self._said = now
+            self._say(f"  {100.0 * done / total:3.0f} % after {now - self._begun:.0f} s ({unit})")
+
+    @staticmethod
+    def _say(line: str) -> None:
+        print(line, file=sys.stderr, flush=True)

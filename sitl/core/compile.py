@@ -18,15 +18,14 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
-from .build_work import BuildWork
+from .build_work import BuildWork, ProgressLines
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
 from .fingerprint import fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
@@ -186,12 +185,6 @@ def load_unit(unit: Unit, path: str) -> Any:
     return function
 
 
-@cache
-def _announce() -> None:
-    """Say once what takes so long, where nobody follows the progress: a first start takes minutes."""
-    print("gym-sitl compiles its core (once; later starts load it from the cache) ...", file=sys.stderr, flush=True)
-
-
 def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress | None = None, jobs: int = 0) -> float:
     """Compile what ``entries``, for the record type at ``path``, miss in the cache, side by side; returns the seconds.
 
@@ -201,19 +194,33 @@ def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress |
     start = time.monotonic()
     with build_lock():
         entry_of = {unit: entry for entry in entries for unit in missing(entry, path)}
-        todo = sorted(entry_of, key=lambda u: -_weight(u))  # the longest first
-        if todo:
-            tasks = [f"{entry_of[unit].__module__}:{unit.name}" for unit in todo]
-            work = BuildWork({unit.name: _weight(unit) for unit in todo})
-            if progress is None:
-                _announce()
-            with _workers(path, jobs or min(len(todo), os.cpu_count() or 1), tasks) as process:
-                _follow(process, work, progress)
-            drop_old_versions()
+        compile_tasks({f"{entry_of[unit].__module__}:{unit.name}": unit for unit in entry_of}, path, progress, jobs)
     return time.monotonic() - start
 
 
-def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress | None) -> None:
+def compile_tasks(tasks: Mapping[str, Unit], path: str, progress: Progress | None = None, jobs: int = 0) -> None:
+    """Compile what worker processes know as ``tasks``, side by side, while the caller holds the lock of the cache.
+
+    Args:
+        tasks: "MODULE:NAME" -> what is compiled.
+        path: as the worker takes it (``worker.py``).
+        progress: told of it; None: lines on standard error.
+        jobs: processes; 0: one for each processor.
+
+    Raises:
+        BuildError: one failed to compile.
+    """
+    if not tasks:
+        return
+    weights = {task: _weight(unit) for task, unit in tasks.items()}
+    work = BuildWork({task.partition(":")[2]: weight for task, weight in weights.items()})
+    longest_first = sorted(tasks, key=lambda task: -weights[task])
+    with _workers(path, jobs or min(len(tasks), os.cpu_count() or 1), longest_first) as process:
+        _follow(process, work, progress or ProgressLines())
+    drop_old_versions()
+
+
+def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress) -> None:
     """Tell of the progress of workers until all units are compiled.
 
     Raises:
@@ -242,7 +249,7 @@ def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress 
             work.end(name, now)
         elif step == "fail":
             failed = name
-        if progress and name:
+        if name:
             progress(name, work.done(now), work.total)
     if process.wait() != 0:
         what = f"unit {failed}" if failed else "the core"

@@ -21,11 +21,25 @@ from .kernels import INLINED, UNITS, Unit
 from .records import PROPERTIES, Record
 
 
-def _code(function: types.FunctionType) -> str:
-    """The function's bytecode with its constants and names: no docstring, comments, layout or line numbers."""
-    code = function.__code__
-    constants = tuple(c for c in code.co_consts if c is None or c != function.__doc__)
+class _Written(str):
+    """A text that stands for itself in the ``repr`` of a tuple."""
+
+    __repr__ = str.__str__
+
+
+def _code(code: types.CodeType, doc: str | None = None) -> str:
+    """A function's bytecode with its constants and names: no docstring, comments, layout or line numbers."""
+    constants = tuple(_constant(c) for c in code.co_consts if c is None or c != doc)
     return f"{code.co_code.hex()} {constants!r} {code.co_names} {code.co_varnames} {code.co_argcount}"
+
+
+def _constant(value: Any) -> Any:
+    """A constant whose ``repr`` is the same in every process: that of code has an address, that of a set no order."""
+    if isinstance(value, types.CodeType):
+        return _Written(f"<{_code(value)}>")
+    if isinstance(value, frozenset):
+        return _Written(sorted(map(repr, value)))
+    return value
 
 
 def _referenced(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
@@ -48,7 +62,9 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
         return
     seen.add(id(function))
     inlined = " inlined" if function in INLINED else ""
-    lines.append(f"def {function.__module__}.{function.__qualname__}{inlined} {_code(function)}")
+    lines.append(
+        f"def {function.__module__}.{function.__qualname__}{inlined} {_code(function.__code__, function.__doc__)}"
+    )
     for name in function.__code__.co_names:
         for law in PROPERTIES.get(name, ()):
             _walk(law, seen, units, lines)

@@ -2,8 +2,9 @@
 """``python -m sitl.core.worker RECORD JOBS MODULE:UNIT ...``: compile units side by side (started by ``build``).
 
 The units' modules and Numba are loaded once; each unit is compiled by a copy of this process, because what is compiled
-in one process is compiled in one way. One line on standard output for each step: "begin UNIT", "end UNIT" or
-"fail UNIT". Where a process cannot be copied, each unit has a process of its own.
+in one process is compiled in one way. With ``kernels`` for RECORD, they are kernels on arrays (``array_kernels.py``).
+One line on standard output for each step: "begin UNIT", "end UNIT" or "fail UNIT". Where a process cannot be copied,
+each unit has a process of its own.
 """
 
 from __future__ import annotations
@@ -19,9 +20,17 @@ from collections.abc import Callable, Sequence
 FORKS = sys.platform == "linux"
 """Copies of a process that has loaded Numba work there."""
 
+KERNELS_PATH = "kernels"
+"""In place of the path of a record type: what is compiled are kernels."""
+
 
 def compile_one(path: str, name: str) -> None:
-    """Compile a unit, whose module is loaded, for the record type at ``path``."""
+    """Compile a unit, whose module is loaded, for the record type at ``path``; or a kernel."""
+    if path == KERNELS_PATH:
+        from .array_kernels import KERNELS
+
+        KERNELS[name].function()
+        return
     import llvmlite.binding
 
     from .compile import load_unit, symbol

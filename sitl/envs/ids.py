@@ -29,36 +29,58 @@ PAPER = {
 }
 """The paper's environments -> their presets (``paper.PRESETS``)."""
 
-_STEPS = {
-    "copter-hover": 200,
-    "copter-reach-goal": 100,
-    "rover-reach-goal": 100,
-    "copter-waypoint": 200,
-    "copter-course": 500,
-    "copter-gates": 400,
-    "copter-race": 900,
-    "copter-trajectory": 400,
-    "copter-follow": 400,
-    "copter-land": 300,
-    "copter-land-moving": 300,
-    "copter-forest": 400,
-    "copter-rooms": 600,
-    "rover-waypoint": 300,
-    "rover-course": 600,
-    "rover-labyrinth": 1000,
-    "rover-slalom": 400,
-    "rover-race": 900,
-    "rover-parking": 300,
+
+class Described(NamedTuple):
+    """A task."""
+
+    steps: int
+    """Steps after which an episode is truncated."""
+    title: str
+    """Of its page."""
+    aim: str
+    """What the robot is to do, in a sentence."""
+
+
+TASKS = {
+    "copter-hover": Described(200, "Hover in wind", "Hold a target position near the start in wind and gusts."),
+    "copter-reach-goal": Described(
+        100, "Fly to a goal (goal-conditioned)", "Fly to a random goal. The reward is sparse."
+    ),
+    "rover-reach-goal": Described(
+        100, "Drive to a goal (goal-conditioned)", "Drive to a random goal. The reward is sparse."
+    ),
+    "copter-waypoint": Described(200, "Fly to a waypoint", "Fly to one random waypoint."),
+    "copter-course": Described(500, "Fly a course of waypoints", "Pass five random waypoints in order."),
+    "copter-gates": Described(
+        400, "Race through gates", "Fly one lap through an oval of six gates, against the clock."
+    ),
+    "copter-race": Described(900, "Race three laps", "Fly three laps through the same six gates; info has lap times."),
+    "copter-trajectory": Described(
+        400, "Follow a figure of eight", "Track a point that moves along a figure of eight."
+    ),
+    "copter-follow": Described(400, "Follow a moving target", "Track a target that moves at random."),
+    "copter-land": Described(300, "Land on a pad", "Land softly on a pad near the start."),
+    "copter-land-moving": Described(300, "Land on a moving pad", "Land softly on a pad that moves at 0.5 m/s."),
+    "copter-forest": Described(400, "Fly through a forest", "Fly to a waypoint among trees, by lidar."),
+    "copter-rooms": Described(600, "Fly through rooms", "Fly to a waypoint in a house, by lidar."),
+    "rover-waypoint": Described(300, "Drive to a waypoint", "Drive to one random waypoint."),
+    "rover-course": Described(600, "Drive a course of waypoints", "Pass four random waypoints in order."),
+    "rover-labyrinth": Described(1000, "Drive through a labyrinth", "Drive to a waypoint in a maze, by lidar."),
+    "rover-slalom": Described(400, "Drive a slalom", "Pass poles on alternate sides."),
+    "rover-race": Described(900, "Race two laps", "Drive two laps of a walled track, by lidar; info has lap times."),
+    "rover-parking": Described(300, "Park in a bay", "Park in a free bay between cars, by lidar."),
 }
+"""Flight and driving tasks by the name of their presets."""
 
 
-def _id(preset: str) -> str:
-    return "sitl/" + "".join(word.capitalize() for word in preset.split("-"))
+def camel_case(preset: str) -> str:
+    """A task's name in its ids and on its page: "CopterHover" for "copter-hover"."""
+    return "".join(word.capitalize() for word in preset.split("-"))
 
 
 NEW = {
-    f"{_id(preset)}{form}-v0": Listed(preset + form.lower(), steps)
-    for preset, steps in _STEPS.items()
+    f"sitl/{camel_case(preset)}{form}-v0": Listed(preset + form.lower(), task.steps)
+    for preset, task in TASKS.items()
     for form in ("", "Discrete")
 }
 """Flight and driving tasks; "...Discrete" has discrete actions."""

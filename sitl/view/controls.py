@@ -151,7 +151,7 @@ class Weather:
             slider = gui.add_slider(label, min=0.0, max=high, step=0.1, initial_value=now, hint=name)
             slider.on_update(_setter(ask, pilot, name))
             self.sliders[name] = slider
-        self.fault = gui.add_text("Fault", "gps", hint=f"{FORM}, docs/faults.md")
+        self.fault = gui.add_text("Fault", "gps", hint=f"{FORM}, sitl help faults")
         self.fail = gui.add_button("Let it fail")
         self.fail.on_click(lambda event: ask(lambda: pilot().fail(self.fault.value), event))
         self.repair = gui.add_button("Repair all")

@@ -52,9 +52,9 @@ def compiler() -> list[str]:
     if importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc"]
     raise CannotBuild(
-        "sitl exec needs a C compiler to put a script on simulated time, and found none of $CC, cc, gcc, "
-        "clang. Install one (Debian: apt install gcc; anywhere: pip install 'gym-sitl[exec]'), or run the script "
-        "without sitl exec against a vehicle at --speedup 1."
+        "a script in simulated time needs a C compiler, and there is none of $CC, cc, gcc, clang. Install one "
+        "(Debian: apt install gcc; anywhere: pip install 'gym-sitl[exec]'), or run it in real time "
+        "(sitl exec --speedup 1)."
     )
 
 
@@ -65,9 +65,8 @@ def preload_library() -> Path:
     """
     if sys.platform != "linux":
         raise CannotBuild(
-            f"sitl exec: scripts on simulated time are supported on Linux, not on {sys.platform}. "
-            "Run the script without sitl exec against a vehicle at --speedup 1, or on Linux (a container "
-            "will do)."
+            f"a script's clock follows simulated time on Linux alone, and this is {sys.platform}. In real time "
+            "(sitl exec --speedup 1) it runs here; faster on Linux, in a container, too."
         )
     folder = cache_folder()
     if any(character in str(folder) for character in " :"):

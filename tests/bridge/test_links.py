@@ -259,6 +259,14 @@ def test_bad_addresses_say_what_is_allowed(text: str) -> None:
         parse(text)
 
 
+@pytest.mark.parametrize(
+    ("text", "part"), [("udp:127.0.0.1", "port"), ("tcp:", "port"), ("tcp:h:", "port"), ("udp:14550", "host")]
+)
+def test_what_an_address_lacks_is_named(text: str, part: str) -> None:
+    with pytest.raises(LinkAddressError, match=f"link '{text}': the {part} is missing"):
+        parse(text)
+
+
 def test_a_port_in_use_is_named() -> None:
     link = TcpServerLink(0)
     port = link.local_address[1]

@@ -9,6 +9,7 @@ import random
 import socket
 import subprocess
 import sys
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -114,7 +115,8 @@ def test_in_lockstep_it_is_the_flight_in_process(core: Core, tmp_path: Path) -> 
 
 def test_by_the_vehicles_own_clock(core: Core, tmp_path: Path) -> None:
     with served(tmp_path, "--speedup", "20") as (address, _):
-        with pytest.warns(UserWarning, match="clock cannot be held"):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # a first script is not told of what it did not ask for
             vehicle = Client(address)
         hop(vehicle)
         assert vehicle.position.altitude == pytest.approx(6, abs=1.1)
@@ -129,6 +131,9 @@ def test_by_the_vehicles_own_clock(core: Core, tmp_path: Path) -> None:
 def test_addresses_are_checked() -> None:
     with pytest.raises(OptionError, match="connection 'http:COM1' is none of"):
         Client("http:COM1")
+    for text, part in (("udp:127.0.0.1", "port"), ("tcp:5760", "host")):
+        with pytest.raises(OptionError, match=f"connection '{text}': the {part} is missing"):
+            Client(text)
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

@@ -152,7 +152,7 @@ def test_machine_code_belongs_to_a_processor(monkeypatch: pytest.MonkeyPatch) ->
 def test_a_first_start_without_progress_says_what_takes_so_long(toy: Toy) -> None:
     (toy.folder / "run.py").write_text(RUN.replace(", lambda name, done, total: built.append(name))", ")"))
     cold, warm = toy.said("compiled"), toy.said("compiled")
-    assert cold == "gym-sitl compiles its core (once; later starts load it from the cache) ...\n" and warm == ""
+    assert cold == "gym-sitl compiles its core (once; later starts load it from the cache)\n" and warm == ""
 
 
 def failed(toy: Toy) -> str:

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compiling on the user's machine: what goes wrong is said in words."""
 
+import sys
+
 import pytest
 
+from sitl.cli import execute, main
 from sitl.warp import CannotBuild, build
 
 
@@ -43,6 +46,16 @@ def test_another_system_is_told_what_to_do(monkeypatch):
     monkeypatch.setattr(build.sys, "platform", "darwin")
     with pytest.raises(CannotBuild, match="Linux"):
         build.preload_library()
+
+
+def test_exec_says_so_before_it_starts_a_vehicle(monkeypatch, capsys, tmp_path):
+    monkeypatch.setattr(build.sys, "platform", "darwin")
+    monkeypatch.setattr(execute, "preload_library", build.preload_library)  # not what this process has found before
+    monkeypatch.chdir(tmp_path)
+    assert main(["exec", "--", sys.executable, "-c", "pass"]) == 2
+    out, err = capsys.readouterr()
+    assert err.startswith("sitl exec: a script's clock follows simulated time on Linux alone") and err.count("\n") == 1
+    assert not out and not list(tmp_path.iterdir())
 
 
 def test_second_build_is_the_first(monkeypatch):

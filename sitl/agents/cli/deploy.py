@@ -28,7 +28,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "policy",
         type=baselines.find,
         metavar="POLICY",
-        help="run folder, policy file of `sitl export` (.npz), or name of a baseline (docs/baselines.md)",
+        help="run folder, policy file of `sitl export` (.npz), or name of a baseline (sitl help baselines)",
     )
     parser.add_argument(
         "--connection", required=True, metavar="URL",

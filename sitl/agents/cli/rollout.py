@@ -34,7 +34,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "policy",
         metavar="POLICY",
-        help=f"run folder, policy file (.npz), name of a baseline (docs/baselines.md), MODULE:FUNCTION from "
+        help=f"run folder, policy file (.npz), name of a baseline (sitl help baselines), MODULE:FUNCTION from "
         f"observations to actions, or {RANDOM}",
     )
     parser.add_argument("env", nargs="?", metavar="ENV", help="id of the environment (default: that of the run)")

@@ -168,7 +168,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         type=assignment,
         action="append",
         metavar="NAME=VALUE",
-        help="hyperparameter, such as alpha=0.1 (docs/learning.md)",
+        help="hyperparameter, such as alpha=0.1 (sitl help learning)",
     )
     parser.add_argument(
         "--option",

@@ -18,7 +18,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser(
         "watch",
-        description="Shows greedy episodes of a run's best agent: in the browser (extra view, docs/view.md), in a "
+        description="Shows greedy episodes of a run's best agent: in the browser (extra view, sitl help view), in a "
         "window, or as a GIF or MP4.",
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="run folder; of several runs the first is shown")

@@ -121,7 +121,7 @@ def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[An
     if not (seen.has_goals and figures.frames == 1):
         raise AgentError(
             f"hindsight = {figures.hindsight}, frames = {figures.frames} in {config.env}: replay with other goals "
-            "needs a goal-conditioned environment (docs/envs/) and frames = 1"
+            "needs a goal-conditioned environment (sitl envs) and frames = 1"
         )
 
 

@@ -132,7 +132,9 @@ def plan_for(robot: str) -> Plan:
         plan = load(name)
         if robot in plan.robots:
             return plan
-    raise AgentError(f"there is no plan for robot {robot!r}: give one of your own by --plan (docs/mental-rehearsal.md)")
+    raise AgentError(
+        f"there is no plan for robot {robot!r}: give one of your own by --plan (sitl help mental-rehearsal)"
+    )
 
 
 def _read(path: Path) -> Plan:

@@ -27,7 +27,9 @@ def parse(text: str) -> tuple[str, str, int]:
     kinds = {"udp": "udpout", "udpout": "udpout", "udpin": "udpin", "tcp": "tcp", "tcpin": "tcp"}
     if kind not in kinds:
         raise LinkAddressError(f"link {text!r}: {kind!r} is not a kind of link; allowed: {ALLOWED}")
-    host, _, port_text = rest.removeprefix("//").rpartition(":")
+    host, colon, port_text = rest.removeprefix("//").rpartition(":")
+    if not port_text or (not colon and not port_text.isdigit()):
+        raise LinkAddressError(f"link {text!r}: the port is missing; allowed: {ALLOWED}")
     if not host and kinds[kind] == "udpout":
         raise LinkAddressError(f"link {text!r}: the host is missing; allowed: {ALLOWED}")
     if not (port_text.isascii() and port_text.isdigit() and 0 < int(port_text) < 65536):
