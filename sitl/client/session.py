@@ -12,6 +12,7 @@ from ..errors import OptionError, did_you_mean
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .companion import Companion
 from .connection import Connection, InProcess, connect
+from .endpoint import AUTOPILOT
 from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError
 from .telemetry import Attitude, Position, Telemetry, Text
 
@@ -130,7 +131,7 @@ class Session:
     @property
     def system(self) -> int:
         """MAVLink id of the vehicle."""
-        return int(self.connection.inbox.system) or 1
+        return self.connection.system
 
     @property
     def mode(self) -> str:
@@ -316,7 +317,7 @@ class Session:
         if "target_system" in known:
             fields.setdefault("target_system", self.system)
         if "target_component" in known:
-            fields.setdefault("target_component", 1)
+            fields.setdefault("target_component", AUTOPILOT)
         for key, value in fields.items():
             if isinstance(value, str):
                 fields[key] = constant(value)
