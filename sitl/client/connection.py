@@ -446,8 +446,8 @@ def connect(
 ) -> Lockstep | RealTime:
     """Find the vehicle, whether it seems to be a simulator, and whether its time can be held.
 
-    It is only asked questions. ``prove`` is the proof, when something depends on it. One whose time cannot be held is used in real time, with a warning, but not in a script
-    under ``sitl exec``.
+    It is only asked questions. ``prove`` is the proof, when something depends on it. One whose time cannot be held is
+    used in real time, with a warning, but not in a script under ``sitl exec``.
 
     Args:
         text: a form of ``open_stream``.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a vehicle is a simulator. Only one that proves it may be disarmed by force and rebooted without being told to.
+"""Whether a vehicle is a simulator. Only one that proves it may be disarmed by force and rebooted unasked.
 
 The vehicle that is meant is asked, by its system and component, and by questions that change no vehicle. Three signs
 must be there, and nothing may speak against them:
@@ -11,7 +11,7 @@ must be there, and nothing may speak against them:
   flight controller has none, and refuses.
 - Its AUTOPILOT_VERSION names no board and no USB device. A flight controller's does.
 
-A vehicle that answers more often than it was asked is two vehicles under the same ids: none of them has proved anything.
+A vehicle that answers more often than it was asked is two vehicles with the same ids: none of them has proved anything.
 """
 
 from __future__ import annotations

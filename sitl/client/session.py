@@ -13,7 +13,14 @@ from .commands import arguments, command_name, command_number, constant, entry_n
 from .companion import Companion
 from .connection import Connection, InProcess, connect
 from .endpoint import AUTOPILOT
-from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError
+from .errors import (
+    ClientError,
+    CommandRefusedError,
+    ImpossibleWaitError,
+    InvariantError,
+    UnknownNameError,
+    WaitTimeoutError,
+)
 from .telemetry import Attitude, Position, Telemetry, Text
 
 if TYPE_CHECKING:
@@ -256,6 +263,7 @@ class Session:
         what: str = "the condition",
         last: Callable[[], str] = lambda: "",
         hold: float = 0.0,
+        in_vain: Callable[[], str] = lambda: "",
     ) -> None:
         """Wait until a condition holds, and has held for ``hold`` seconds; looked at ten times a second.
 
@@ -264,10 +272,15 @@ class Session:
             timeout: [simulated s].
             what: is awaited; for the error.
             last: tells what was seen last; for the error.
+            in_vain: tells why it cannot come to hold, looked at while it does not; "": it can.
 
         Raises:
             WaitTimeoutError: it did not come to hold in time.
+            ImpossibleWaitError: it cannot.
+            OptionError: ``hold`` is longer than ``timeout``.
         """
+        if not hold <= timeout:
+            raise OptionError(f"{what}: hold = {hold:g} s within timeout = {timeout:g} s cannot be")
         begin = self.connection.time_us
         stop, since = begin + round(timeout * 1e6), -1
         while True:
@@ -278,6 +291,9 @@ class Session:
                     return
             else:
                 since = -1
+                why = in_vain()
+                if why:
+                    self.raise_error(ImpossibleWaitError(what, why, begin / 1e6))
             if now >= stop:
                 kept = f", for {hold:g} s" if hold else ""
                 self.raise_error(WaitTimeoutError(f"{what}{kept}", timeout, last(), begin / 1e6))
@@ -464,6 +480,7 @@ class Session:
         return result
 
     def _mode_number(self, name: str) -> int:
+        self.passes(lambda: self.telemetry.mode_names, ANSWER_S)  # the vehicle's first HEARTBEAT tells its kind
         numbers = {mode: number for number, mode in self.telemetry.mode_names.items()}
         if name not in numbers:
             close = did_you_mean(name, numbers)

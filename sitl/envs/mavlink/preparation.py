@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From power-on until an episode may begin: armed, in GUIDED, a copter in the air. It sees only telemetry.
 
-A reset disarms by force and reboots, whatever the vehicle is doing: in the air it would fall. Only a vehicle that proves
-to be a simulator (``sitl.client.proof``) is reset without a word of the user's.
+A reset disarms by force and reboots, whatever the vehicle is doing: in the air it would fall. Only a vehicle that
+proves to be a simulator (``sitl.client.proof``) is reset without a user's word.
 """
 
 from __future__ import annotations
