@@ -43,11 +43,10 @@ class Signs:
 
     Args:
         link: to the vehicle.
-        counts: whether more answers than questions speak against it.
     """
 
-    def __init__(self, link: Connection, counts: bool = True) -> None:
-        self._link, self._counts = link, counts
+    def __init__(self, link: Connection) -> None:
+        self._link = link
         self._asked = self._answers = 0
         self._given: set[MessageType] = set()
         """Which of the signs are there, each by its message."""
@@ -110,7 +109,7 @@ class Signs:
                 board = f"{fields.board_version >> 16}, USB {fields.vendor_id:04x}:{fields.product_id:04x}"
                 self.against = f"its AUTOPILOT_VERSION names a flight controller (board {board})"
             self._given.add(kind)
-        if self._counts and self._answers > self._asked:
+        if self._answers > self._asked:
             self.against = f"system {system} answers more often than it is asked, as two vehicles with its ids would"
 
     def _answered(self, fields: Any) -> None:
@@ -133,15 +132,15 @@ def ask(link: Connection, tries: int = TRIES, is_first: bool = False) -> Signs:
     Args:
         link: to the vehicle, which has been heard.
         tries: how often it is asked for what does not come.
-        is_first: it is asked for a first impression, to be followed by another call. That is quicker, as nobody waits
+        is_first: for a first impression, to be followed by another call before anything depends on it: nobody waits
             for a slower vehicle with the same ids.
 
     Raises:
         LinkLostError: the connection is lost.
     """
-    signs, inbox = Signs(link, counts=not is_first), link.inbox
+    signs, inbox = Signs(link), link.inbox
     look_us, looks = (0, 1) if link.is_exact else (LOOK_US, LOOKS)
-    for _ in range(1 if link.is_exact or is_first else QUIET_LOOKS):
+    for _ in range(1 if link.is_exact else QUIET_LOOKS):
         link.pause(look_us)
     inbox.witness = signs.take
     try:
