@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
 from typing import Any
 
+from ..autopilot.params.table import Values
 from .errors import ClientError, ParameterRefusedError, UnknownNameError, WaitTimeoutError
 from .session import ANSWER_S, REPEAT_US, Session
 
@@ -33,6 +34,12 @@ class Parameters(Mapping[str, float]):
 
     def __init__(self, session: Session) -> None:
         self._session = session
+
+    @property
+    def _values(self) -> Values | None:
+        """Those of a vehicle in this process."""
+        simulation = self._session.connection.simulation
+        return None if simulation is None else simulation.parameters
 
     def __getitem__(self, name: str) -> float:
         """Ask the vehicle for a parameter's present value.
@@ -64,25 +71,25 @@ class Parameters(Mapping[str, float]):
 
     def __contains__(self, name: object) -> bool:
         """Whether the vehicle has a parameter; one that is elsewhere is asked, and says no by not answering."""
-        simulation = self._session.connection.simulation
-        if simulation is not None:
-            return name in simulation.firmware.table
+        values = self._values
+        if values is not None:
+            return name in values.table
         return isinstance(name, str) and self.get(name) is not None
 
     def get(self, name: str, default: Any = None) -> Any:  # type: ignore[override]
         """A parameter's present value; ``default``: the vehicle has no such parameter."""
         session = self._session
-        simulation = session.connection.simulation
-        if simulation is not None:
-            return self[name] if name in simulation.firmware.table else default
+        values = self._values
+        if values is not None:
+            return self[name] if name in values.table else default
         refused: list[Any]
         with session.messages("PARAM_ERROR") as refused:
             return self._ask(name, lambda: any(_named(m) == name for m in refused), default)
 
     def __iter__(self) -> Iterator[str]:
-        simulation = self._session.connection.simulation
-        if simulation is not None:
-            return iter([parameter.name for parameter in simulation.parameters.listed()])
+        values = self._values
+        if values is not None:
+            return iter([parameter.name for parameter in values.listed()])
         return iter(self.read_all())
 
     def __len__(self) -> int:
@@ -151,10 +158,10 @@ class Parameters(Mapping[str, float]):
 
     def check(self, name: str) -> None:
         """Raise UnknownNameError when the vehicle, in this process, has no such parameter."""
-        simulation = self._session.connection.simulation
-        if simulation is None or name in simulation.firmware.table:
+        values = self._values
+        if values is None or name in values.table:
             return
-        near = difflib.get_close_matches(name, simulation.firmware.table.names(), 5, 0.5)
+        near = difflib.get_close_matches(name, values.table.names(), 5, 0.5)
         hint = f"; near to it: {', '.join(near)}" if near else ""
         raise UnknownNameError(f"the {self._session.kind} has no parameter {name!r}{hint}")
 
