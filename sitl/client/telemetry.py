@@ -97,16 +97,8 @@ class Telemetry:
     """[V]"""
     remaining: float = math.nan
     """Of the battery [%]."""
-    disarmed_since: float = math.nan
-    """Time since which all HEARTBEATs have said that it is disarmed [s]; NaN: the last did not."""
-    heartbeat_at: float = -math.inf
-    """Time of the last HEARTBEAT [s]."""
     item: int = 0
     """Mission item under way."""
-    last_item: int = -1
-    """Of its mission, 0: it has none; -1: it does not say."""
-    mission_at: float = -math.inf
-    """Time at which it said so last [s]."""
     items: list[int] = field(default_factory=list)
     """Mission items that were under way while it was armed."""
     parameters: dict[str, float] = field(default_factory=dict)
@@ -116,6 +108,14 @@ class Telemetry:
     """(time [s], mission item)"""
     pieces: dict[int, str] = field(default_factory=dict)
     """Beginnings of long texts."""
+    disarmed_since: float = math.nan
+    """Time since which all HEARTBEATs have said that it is disarmed [s]; NaN: the last did not."""
+    heartbeat_at: float = -math.inf
+    """Time of the last HEARTBEAT [s]."""
+    last_item: int = -1
+    """Of its mission, 0: it has none; -1: it does not say."""
+    mission_at: float = -math.inf
+    """Time at which it said so last [s]."""
 
     def copy(self) -> Telemetry:
         """As it is now."""
