@@ -473,8 +473,8 @@ def connect(
         probe.find()
         probe.prove_at_first()
         if probe.is_simulator:  # to others it is somebody else's command
-            target = {"target_system": probe.system, "target_component": AUTOPILOT}
-            probe.endpoint.send("COMMAND_INT", command=GRANT, x=0, **target)
+            found_at = {"target_system": probe.system, "target_component": AUTOPILOT}
+            probe.endpoint.send("COMMAND_INT", command=GRANT, x=0, **found_at)
             probe.exchange(lambda: GRANT in acks, within=patience)
     except LinkLostError:
         stream.close()
