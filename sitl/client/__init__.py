@@ -12,6 +12,7 @@ from .errors import (
     ClientError,
     CommandRefusedError,
     FileRefusedError,
+    ImpossibleWaitError,
     InvariantError,
     MissionRefusedError,
     ParameterRefusedError,
@@ -23,6 +24,6 @@ from .telemetry import Attitude, Position, Telemetry, Text
 
 __all__ = [
     "Attitude", "Client", "ClientError", "CommandRefusedError", "Connection", "Endpoint", "FileRefusedError",
-    "InProcess", "InvariantError", "LinkLostError", "Log", "MissionRefusedError", "Moment", "ParameterRefusedError",
-    "Position", "Telemetry", "Text", "UnknownNameError", "WaitTimeoutError", "connect",
+    "ImpossibleWaitError", "InProcess", "InvariantError", "LinkLostError", "Log", "MissionRefusedError", "Moment",
+    "ParameterRefusedError", "Position", "Telemetry", "Text", "UnknownNameError", "WaitTimeoutError", "connect",
 ]  # fmt: skip

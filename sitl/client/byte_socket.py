@@ -67,7 +67,11 @@ class ByteSocket:
             raise OptionError(f"connection {text!r} is none of {FORMS}")
         self.name = text
         self._stream = kind == "tcp"
-        self._peer: tuple[str, int] | None = None
+        self.listens = kind in ("udp", "udpin")
+        """Whether it waits to be spoken to, by anybody who knows its port."""
+        self.peer: tuple[str, int] | None = None
+        """Where datagrams go to: the first that was heard, until ``settle``."""
+        self._is_settled = False
         address = (host, int(port))
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM if self._stream else socket.SOCK_DGRAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
@@ -80,7 +84,7 @@ class ByteSocket:
                 refuse_echo(self._socket)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             elif kind == "udpout":
-                self._peer = (socket.gethostbyname(host), int(port))
+                self.peer = (socket.gethostbyname(host), int(port))
             else:
                 self._socket.bind(address)
         except OSError as error:
@@ -111,13 +115,17 @@ class ByteSocket:
                 self._socket.sendall(data)
             except OSError as error:
                 raise LinkLostError(f"connection {self.name} is lost: {error.strerror or error}") from None
-        elif self._peer is not None and data:
+        elif self.peer is not None and data:
             with contextlib.suppress(OSError):  # the answer that does not come is noticed
-                self._socket.sendto(data, self._peer)
+                self._socket.sendto(data, self.peer)
 
     def wait(self, seconds: float) -> bool:
         """Until something can be read, at most so long [s of wall time]. True when it can."""
         return bool(select.select([self._socket], [], [], seconds)[0])
+
+    def settle(self, address: tuple[str, int] | None) -> None:
+        """Send datagrams to this address, and hear no others, from now on."""
+        self.peer, self._is_settled = address, True
 
     def receive(self) -> bytes:
         """All bytes that are there.
@@ -125,7 +133,15 @@ class ByteSocket:
         Raises:
             LinkLostError: the connection is closed.
         """
-        parts: list[bytes] = []
+        return b"".join(data for data, _ in self.receive_each())
+
+    def receive_each(self) -> list[tuple[bytes, tuple[str, int] | None]]:
+        """The same in the pieces that came, with the address of each one's sender; None: of a stream.
+
+        Raises:
+            LinkLostError: the connection is closed.
+        """
+        parts: list[tuple[bytes, tuple[str, int] | None]] = []
         while self.wait(0.0):
             try:
                 data, address = self._socket.recvfrom(1 << 16)
@@ -138,10 +154,13 @@ class ByteSocket:
                 if parts:
                     break
                 raise LinkLostError(f"connection {self.name} is lost: the vehicle has closed it")
-            if not self._stream and self._peer is None:
-                self._peer = address
-            parts.append(data)
-        return b"".join(parts)
+            if not self._stream:
+                if self.peer is None:
+                    self.peer = address
+                elif self._is_settled and address != self.peer:
+                    continue
+            parts.append((data, address))
+        return parts
 
     def close(self) -> None:
         """Close the socket; may be called twice."""

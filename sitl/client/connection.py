@@ -3,37 +3,35 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import time
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..bridge.dialect import message
+from ..bridge.dialect import MessageType
 from ..bridge.links.inprocess import InProcessLink
 from ..bridge.services.commands import GRANT, RESEED
 from ..errors import LinkLostError
 from ..warp.page import CLOCK_PAGE
-from .byte_socket import ByteStream, open_stream
+from . import proof
+from .byte_socket import ByteSocket, ByteStream, open_stream
 from .commands import arguments, command_number
-from .endpoint import Endpoint, Inbox
+from .endpoint import ACCEPTED, AUTOPILOT, HEARTBEAT, Endpoint, Inbox
+from .proof import REQUEST_MESSAGE
 
 if TYPE_CHECKING:
     from ..simulation import Simulation
     from ..vehicle.kind import Kind
 
-REQUEST_MESSAGE, AUTOPILOT_VERSION = command_number("REQUEST_MESSAGE"), message("AUTOPILOT_VERSION").id
-ACCEPTED = 0
-"""MAV_RESULT"""
 TRIES = 4
 """A command that is not answered is sent so many times."""
-PROOF = "SIM_WIND_SPD"
-"""A parameter that only simulators have."""
 _ANSWER_US = 1_000_000
 """Time within which a parameter is answered by a vehicle that goes by its own clock [us]."""
 _LOOK_US = 20_000
 _PROOF_S = 3.0
-"""Wall time that a vehicle which answers other questions has for the parameter that proves a simulator [s]."""
+"""Wall time that a vehicle which was just found has for the signs of a simulator [s]."""
+EVERYBODY = 0
+"""The target of the question who is there."""
 _REPEAT_S = 0.5
 """Wall time after which a datagram that is not answered is taken for lost."""
 
@@ -50,8 +48,8 @@ class Connection:
     """Whether its clock goes exactly as far as it is told to."""
     is_held = True
     """Whether its clock stands between two calls."""
-    is_simulator = False
-    """Whether it has proved to be one; a vehicle in this process need not."""
+    doubt = "it has not been asked"
+    """Why it may be real; "": it has proved to be a simulator (``proof``). A vehicle in this process need not."""
     simulation: Simulation | None = None
     """The vehicle itself, when it is in this process."""
     kind: Kind | None = None
@@ -60,8 +58,43 @@ class Connection:
     """Its end of the way to it, then."""
 
     def __init__(self, endpoint: Endpoint, inbox: Inbox | None = None) -> None:
-        self.endpoint = endpoint
         self.inbox: Any = inbox if inbox is not None else Inbox()
+        self.endpoint = endpoint
+
+    @property
+    def endpoint(self) -> Endpoint:
+        """Encodes what is sent; the vehicle answers to its ids."""
+        return self._endpoint
+
+    @endpoint.setter
+    def endpoint(self, endpoint: Endpoint) -> None:
+        self._endpoint = self.inbox.own = endpoint
+
+    @property
+    def system(self) -> int:
+        """MAVLink id of the vehicle.
+
+        Raises:
+            LinkLostError: it has not been heard, so nothing can be sent to it.
+        """
+        if self.inbox.system == 0:
+            raise LinkLostError(f"connection {self.name}: no vehicle has been heard yet")
+        return int(self.inbox.system)
+
+    @property
+    def is_simulator(self) -> bool:
+        """Whether the vehicle has proved to be one, when it was asked last."""
+        return not self.doubt
+
+    def prove(self) -> bool:
+        """Ask the vehicle, now, for the signs of a simulator (``proof``); whether it has given all of them.
+
+        Raises:
+            LinkLostError: the connection is lost.
+        """
+        self.doubt = "it has not answered yet"
+        self.doubt = proof.ask(self).doubt
+        return self.is_simulator
 
     @property
     def name(self) -> str:
@@ -86,6 +119,11 @@ class Connection:
         """The same for a vehicle whose clock may not be known yet."""
         self.run(us)
 
+    def listen(self, us: int) -> None:
+        """``pause`` in small steps: something may come that was not asked for."""
+        for _ in range(us // _LOOK_US):
+            self.pause(_LOOK_US)
+
     def request(
         self,
         number: int,
@@ -107,7 +145,7 @@ class Connection:
         acks, wait = self.inbox.acks, wait or self.wait_answer
         acks.pop(number, None)
         for attempt in range(tries):
-            self.endpoint.command(number, *params, target=self.inbox.system or 1, confirmation=attempt)
+            self.endpoint.command(number, *params, target=self.system, confirmation=attempt)
             if wait(lambda: number in acks):
                 return int(acks[number].result)
         return None
@@ -130,15 +168,16 @@ class Connection:
         values = self.inbox.parameters
         values.pop(name, None)
         for _ in range(TRIES):
-            self._ask_parameter(name)
+            self.ask_parameter(name)
             for _ in range(1 if self.is_exact else _ANSWER_US // _LOOK_US):
                 self.pause(0 if self.is_exact else _LOOK_US)
                 if name in values:
                     return float(values[name])
         return None
 
-    def _ask_parameter(self, name: str) -> None:
-        target = {"target_system": self.inbox.system, "target_component": 1}
+    def ask_parameter(self, name: str) -> None:
+        """Ask the vehicle for a parameter by its name."""
+        target = {"target_system": self.system, "target_component": AUTOPILOT}
         self.endpoint.send("PARAM_REQUEST_READ", param_id=name.encode(), param_index=-1, **target)
 
     def wait_answer(self, done: Callable[[], bool]) -> bool:
@@ -216,6 +255,8 @@ class Remote(Connection):
         patience: wall time [s] without a message after which it is lost.
     """
 
+    is_exact = False
+
     def __init__(
         self, stream: ByteStream, inbox: Inbox | None, patience: float, system: int = 255, component: int = 190
     ) -> None:
@@ -260,21 +301,58 @@ class Remote(Connection):
                 sent = now
             self.stream.wait(_REPEAT_S)
 
-    def ask_who_it_is(self) -> None:
-        """Find out whether it is a simulator, by questions that change no vehicle.
+    def find(self) -> None:
+        """Listen until a HEARTBEAT of an autopilot says where the vehicle is; ask for one meanwhile.
 
         Raises:
-            LinkLostError: it answers none of them.
+            LinkLostError: none comes.
         """
-        parameters, acks = self.inbox.parameters, self.inbox.acks
-        self._ask_parameter(PROOF)
-        self.endpoint.command(REQUEST_MESSAGE, AUTOPILOT_VERSION, target=self.inbox.system)
-        self.exchange(lambda: PROOF in parameters or REQUEST_MESSAGE in acks, within=self.patience)
-        if PROOF not in parameters:
-            self._ask_parameter(PROOF)
-            with contextlib.suppress(LinkLostError):
-                self.exchange(lambda: PROOF in parameters, within=min(self.patience, _PROOF_S))
-        self.is_simulator = PROOF in parameters
+        heard: list[MessageType] = []
+        self.inbox.witness = lambda kind, _: heard.append(kind)
+        try:
+            if isinstance(self.stream, ByteSocket) and self.stream.listens:
+                self._find_sender(self.stream, lambda: HEARTBEAT in heard)
+            else:
+                self.endpoint.command(REQUEST_MESSAGE, HEARTBEAT.id, target=self.inbox.system or EVERYBODY)
+                self.exchange(lambda: HEARTBEAT in heard, within=self.patience)
+        finally:
+            self.inbox.witness = None
+
+    def _find_sender(self, stream: ByteSocket, is_found: Callable[[], bool]) -> None:
+        """The first sender of such a HEARTBEAT is the one that is spoken to and heard from now on."""
+        end = time.monotonic() + self.patience
+        while not is_found():
+            left = end - time.monotonic()
+            if not stream.wait(max(left, 0.0)) and left <= 0.0:
+                raise LinkLostError(f"connection {self.name}: no HEARTBEAT of an autopilot")
+            for data, address in stream.receive_each():
+                if not is_found():
+                    self.inbox.feed(data)
+                    if is_found():
+                        stream.settle(address)
+                elif address == stream.peer:
+                    self.inbox.feed(data)
+
+    def prove_at_first(self) -> None:
+        """A first impression of whether it is a simulator (``proof``).
+
+        Raises:
+            LinkLostError: it answers no question.
+        """
+        signs = proof.ask(self, max(round(min(self.patience, _PROOF_S) / _REPEAT_S), 1), is_first=True)
+        if not signs.heard:
+            self.exchange(lambda: REQUEST_MESSAGE in self.inbox.acks, within=self.patience)
+        self.doubt = signs.doubt
+
+    def pause(self, us: int) -> None:
+        self.stream.flush()
+        end = time.monotonic() + 1e-6 * us
+        while True:
+            left = end - time.monotonic()
+            if self.stream.wait(max(left, 0.0)):
+                self.inbox.feed(self.stream.receive())
+            elif left <= 0.0:
+                return
 
     def close(self) -> None:
         self.stream.close()
@@ -286,6 +364,9 @@ class Lockstep(Remote):
     Args:
         time_ms: its simulated time since the start [ms].
     """
+
+    is_exact = True
+    _has_listened = False
 
     def __init__(
         self, stream: ByteStream, inbox: Inbox | None, patience: float, time_ms: int, system: int = 255,
@@ -309,6 +390,15 @@ class Lockstep(Remote):
             self.time_ms = before
             raise
 
+    def pause(self, us: int) -> None:
+        self.run(us)
+
+    def listen(self, us: int) -> None:
+        """By the wall clock, and once: a vehicle with the same ids that does not wait for grants is slower."""
+        if not self._has_listened:
+            super().pause(us)
+        self._has_listened = True
+
     def _reached(self, goal: int) -> bool:
         ack = self.inbox.acks.get(GRANT)
         if ack is None or ack.result != ACCEPTED or ack.result_param2 < goal:
@@ -322,13 +412,13 @@ class Lockstep(Remote):
         self.run(0)
 
     def _send(self, number: int, x: int) -> None:
-        self.endpoint.send("COMMAND_INT", target_system=self.inbox.system, target_component=1, command=number, x=x)
+        target = {"target_system": self.system, "target_component": AUTOPILOT}
+        self.endpoint.send("COMMAND_INT", command=number, x=x, **target)
 
 
 class RealTime(Remote):
     """One that goes by its own clock; ``run`` ends with the first message that is late enough."""
 
-    is_exact = False
     is_held = False
 
     def run(self, us: int) -> None:
@@ -337,16 +427,6 @@ class RealTime(Remote):
             return
         goal = self.inbox.time_ms + max(us // 1000 - 1, 1)
         self.exchange(lambda: self.inbox.time_ms >= goal, repeat=False, within=self.patience + 1e-6 * us)
-
-    def pause(self, us: int) -> None:
-        self.stream.flush()
-        end = time.monotonic() + 1e-6 * us
-        while True:
-            left = end - time.monotonic()
-            if self.stream.wait(max(left, 0.0)):
-                self.inbox.feed(self.stream.receive())
-            elif left <= 0.0:
-                return
 
     def wait_answer(self, done: Callable[[], bool]) -> bool:
         self.exchange(done, within=self.patience)
@@ -358,18 +438,21 @@ def connect(
     inbox: Inbox | None = None,
     patience: float = 10.0,
     *,
+    target: int = 0,
     system: int = 255,
     component: int = 190,
     warn: Callable[[str], object] = lambda _: None,
 ) -> Lockstep | RealTime:
-    """Find the vehicle, whether it proves to be a simulator, and whether its time can be held.
+    """Find the vehicle, whether it seems to be a simulator, and whether its time can be held.
 
-    It is only asked questions. One whose time cannot be held is used by its own clock.
+It is only asked questions. ``prove`` is the proof, when something depends on it. One whose time cannot be held is
+    used by its own clock.
 
     Args:
         text: a form of ``open_stream``.
         inbox: gets what comes back.
         patience: wall time [s] without a message after which the vehicle is lost.
+        target: MAVLink id of the vehicle, where several share the link; 0: the first whose HEARTBEAT is heard.
         system, component: MAVLink ids of the client.
         warn: is told when the time cannot be held, but not in a script under ``sitl exec``, whose clock is the
             vehicle's.
@@ -381,22 +464,22 @@ def connect(
     stream = open_stream(text)
     probe = Remote(stream, inbox, patience, system, component)
     inbox, acks = probe.inbox, probe.inbox.acks
+    inbox.system = target
 
     def can_be_held() -> bool:
         return GRANT in acks and acks[GRANT].result == ACCEPTED
 
     try:
-        if text.startswith(("udp:", "udpin:")):
-            probe.exchange(lambda: inbox.system != 0, within=patience)
-        probe.ask_who_it_is()
+        probe.find()
+        probe.prove_at_first()
         if probe.is_simulator:  # to others it is somebody else's command
-            probe.endpoint.send("COMMAND_INT", target_component=1, command=GRANT, x=0)
+            found_at = {"target_system": probe.system, "target_component": AUTOPILOT}
+            probe.endpoint.send("COMMAND_INT", command=GRANT, x=0, **found_at)
             probe.exchange(lambda: GRANT in acks, within=patience)
-        if inbox.system == 0 and not can_be_held():
-            probe.exchange(lambda: inbox.system != 0, within=patience)
     except LinkLostError:
         stream.close()
-        raise LinkLostError(f"connection {text}: no vehicle answers within {patience:g} s") from None
+        who = f"no vehicle of system {target}" if target else "no vehicle"
+        raise LinkLostError(f"connection {text}: {who} answers within {patience:g} s") from None
     found: Lockstep | RealTime
     if can_be_held():
         found = Lockstep(stream, inbox, patience, acks[GRANT].result_param2, system, component)
@@ -404,6 +487,5 @@ def connect(
         if CLOCK_PAGE not in os.environ:  # there this process's own clock is the vehicle's
             warn(f"connection {text}: the vehicle's clock cannot be held (no sitl run --lockstep); real time")
         found = RealTime(stream, inbox, patience, system, component)
-    found.endpoint, found.is_simulator = probe.endpoint, probe.is_simulator
-    inbox.system = inbox.system or 1
+    found.endpoint, found.doubt = probe.endpoint, probe.doubt
     return found

@@ -21,7 +21,7 @@ from ..core.geodesy import add_offset, offset_ne
 from ..errors import OptionError
 from .errors import UnknownNameError
 from .parameters import Parameters
-from .waits import Waits
+from .waits import SURE_S, Waits
 
 __tracebackhide__ = True
 
@@ -41,6 +41,8 @@ STICKS |= {"steering": "RCMAP_ROLL"}
 AT_REST = 0.3
 """Slower than this a vehicle stands, or hovers [m/s]."""
 REST_US = 3_000_000
+OBEYING = ("GUIDED", "AUTO", "FOLLOW", "GUIDED_NOGPS", "AVOID_ADSB")
+"""Modes in which positions may be obeyed; in AUTO, while an item of the mission says so (NAV_GUIDED_ENABLE)."""
 _VELOCITY, _STICKS = "velocity", "sticks"
 
 
@@ -106,7 +108,8 @@ class Controls(Waits):
         check_finite(altitude=altitude)
         self.guided_and_armed()
         self.command("NAV_TAKEOFF", altitude=altitude, subject="the take-off")
-        self.wait_altitude(altitude - max(0.5, 0.05 * altitude), altitude + 2.0, timeout)
+        low, high = altitude - max(0.5, 0.05 * altitude), altitude + 2.0
+        self._wait_range("an altitude", "m", lambda t: t.altitude, low, high, timeout, 0.0, self._disarmed())
 
     def land(self, timeout: float = 120.0) -> None:
         """LAND, and wait until it is disarmed, at most ``timeout`` [simulated s]."""
@@ -168,14 +171,32 @@ class Controls(Waits):
         """``set_position``, and wait until it is there, within ``accuracy`` [m].
 
         The order is not answered: a vehicle that has stood elsewhere for ``REST_US`` is told again.
+
+        Raises:
+            ImpossibleWaitError: the vehicle is disarmed, or in a mode that takes no such order.
         """
-        self._order = partial(self.set_position, north, east, altitude, yaw)
-        self._order()
-        self._moved_us = self.connection.time_us
+        order = partial(self.set_position, north, east, altitude, yaw)
+        order()
+        self._order, self._moved_us = order, self.connection.time_us
         try:
-            self.wait_location(north, east, altitude if self.flies else None, accuracy, timeout)
+            height = altitude if self.flies else None
+            self._wait_location(north, east, height, accuracy, timeout, in_vain=self._not_going())
         finally:
             self._order = None
+
+    def _not_going(self) -> Callable[[], str]:
+        """Tells why the vehicle does not go where it is sent: it is disarmed, or it was never in GUIDED since now."""
+        disarmed, begin, obeyed = self._disarmed(), self.now, list[str]()
+
+        def why() -> str:
+            if self.mode in OBEYING or "GUIDED" not in self.telemetry.mode_names.values():
+                obeyed.append(self.mode)
+            reason = disarmed()
+            if not (reason or obeyed) and self.telemetry.heartbeat_at - begin >= SURE_S:
+                reason = f"the {self.kind} is in mode {self.mode}, and goes where it is sent in GUIDED only"
+            return reason
+
+        return why
 
     def step(self, stop_us: int | None = None) -> None:
         super().step(stop_us)

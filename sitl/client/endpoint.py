@@ -64,7 +64,7 @@ class Endpoint:
         self.sequence = (self.sequence + 1) & 0xFF
 
     def command(self, number: int, *params: float, target: int = 1, confirmation: int = 0) -> None:
-        """Send a COMMAND_LONG (MAV_CMD ``number``) with up to seven parameters."""
+        """Send a COMMAND_LONG (MAV_CMD ``number``) with up to seven parameters to the autopilot of a system."""
         if len(params) > 7:
             raise FieldError("COMMAND_LONG", f"param{len(params)}", params[-1], "param1 .. param7")
         values = dict(zip(("param1", "param2", "param3", "param4", "param5", "param6", "param7"), params))
@@ -95,13 +95,18 @@ class Endpoint:
 HEARTBEAT, ACK, TEXT, PARAMETER = (message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "PARAM_VALUE"))
 AUTOPILOT = 1
 """MAV_COMP_ID_AUTOPILOT1: messages of other components do not count."""
-IN_PROGRESS = 5
-"""MAV_RESULT of a command whose last answer is still to come."""
+GROUND_STATION, NO_AUTOPILOT = 6, 8
+"""MAV_TYPE and MAV_AUTOPILOT of a HEARTBEAT that is not a vehicle's, whatever ids it has."""
+ACCEPTED, BUSY, IN_PROGRESS = 0, 1, 5
+"""MAV_RESULT of a command that is carried out, that is to be sent again later, whose last answer is still to come."""
 KEPT_TEXTS = 10
 
 
 class Inbox:
     """Takes bytes from the vehicle apart and passes each message on.
+
+    Only the autopilot of one system counts. Which one, the first HEARTBEAT of an autopilot says, unless ``system`` is
+    set before; until then nothing counts. What another client was answered does not count either.
 
     Args:
         on_message: gets the name and the fields of each message.
@@ -109,6 +114,8 @@ class Inbox:
 
     def __init__(self, on_message: Callable[[str, Any], None] = lambda name, fields: None) -> None:
         self.on_message = on_message
+        self.own: Endpoint | None = None
+        """The client's other direction, whose ids answers are for; None: whoever was answered counts."""
         self.system = 0
         """MAVLink id of the vehicle; 0 before it was heard."""
         self.acks: dict[int, Any] = {}
@@ -121,6 +128,8 @@ class Inbox:
         """Messages so far that a vehicle whose time stands does not send: all but HEARTBEAT and texts."""
         self.boots = 0
         """How often the vehicle's clock has gone back."""
+        self.witness: Callable[[MessageType, Any], None] | None = None
+        """Gets kind and fields of what the vehicle answers, while somebody wants to know (``proof``)."""
         self._time_ms = self._before_boot_ms = 0
         self._splitter = Splitter()
 
@@ -132,12 +141,29 @@ class Inbox:
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
         for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
-            if component == AUTOPILOT and system == (self.system or system):
+            if self._is_of_vehicle(kind, system, component):
                 fields = kind.decode(payload)
-                self._note(kind, fields, system)
-                self.on_message(kind.name, fields)
+                if self._is_for_us(kind, fields):
+                    self._note(kind, fields, system)
+                    self.on_message(kind.name, fields)
+
+    def _is_of_vehicle(self, kind: MessageType, system: int, component: int) -> bool:
+        """Whether a message may count, by its sender."""
+        return component == AUTOPILOT and (system == self.system or (self.system == 0 and kind is HEARTBEAT))
+
+    def _is_for_us(self, kind: MessageType, fields: Any) -> bool:
+        """Whether a message of the vehicle counts, by what it says: no heartbeat that is not an autopilot's, and no
+        answer to another client. A target of 0 is everybody, or of an autopilot that does not tell."""
+        if kind is HEARTBEAT:
+            return fields.autopilot != NO_AUTOPILOT and fields.type != GROUND_STATION
+        if self.own is None or not hasattr(fields, "target_system"):
+            return True
+        component = getattr(fields, "target_component", 0)
+        return fields.target_system in (0, self.own.system) and component in (0, self.own.component)
 
     def _note(self, kind: MessageType, fields: Any, system: int) -> None:
+        if self.witness is not None:
+            self.witness(kind, fields)
         if kind is TEXT:
             self.last_texts = [*self.last_texts[1 - KEPT_TEXTS :], fields.text.decode("ascii", "replace")]
         elif kind is HEARTBEAT:
@@ -145,7 +171,6 @@ class Inbox:
         else:
             self.count += 1
             if kind is ACK:
-                self.system = system
                 if fields.result != IN_PROGRESS:
                     self.acks[int(fields.command)] = fields
             elif kind is PARAMETER:

@@ -79,5 +79,18 @@ class WaitTimeoutError(ClientError, TimeoutError):
         self.what, self.seconds, self.last = what, seconds, last
 
 
+class ImpossibleWaitError(ClientError):
+    """What is awaited cannot come true, by what the vehicle says now.
+
+    Args:
+        what: was awaited.
+        why: it cannot come.
+    """
+
+    def __init__(self, what: str, why: str, since: float = 0.0) -> None:
+        super().__init__(f"waiting for {what}", f"is in vain: {why}", since)
+        self.what, self.why = what, why
+
+
 class InvariantError(ClientError):
     """Something that had to hold at all times does not."""

@@ -58,15 +58,17 @@ class Files(Missions):
         """
         size = int.from_bytes(self._ask_ftp(OPEN_READ, path.encode(), what=f"file {path}"), "little")
         found: dict[int, bytes] = {}
+        asked: dict[int, int] = {}
+        """Number of an answer -> offset that was asked for: another client may read another file."""
 
         def ask(missing: list[int] | None) -> int:
             for at in (missing or ())[:AT_ONCE]:
-                self._send_ftp(READ, b"", at, DATA_BYTES)
+                asked[self._send_ftp(READ, b"", at, DATA_BYTES) + 1 & 0xFFFF] = at
             return min(len(missing or ()), AT_ONCE)
 
         def take(m: Any) -> None:
             head, data = _unpack(m)
-            if head[2] == ACK and head[4] == READ:
+            if head[2] == ACK and head[4] == READ and asked.get(head[0]) == head[7]:
                 found[head[7]] = data
 
         places = range(0, size, DATA_BYTES)

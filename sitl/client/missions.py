@@ -104,15 +104,18 @@ class Missions(Controls):
                 self.send("MISSION_REQUEST_INT", seq=seq)
             return min(len(which or ()), AT_ONCE)
 
+        def take_count(m: Any) -> None:
+            if m.mission_type == MISSION:  # another client may ask for the fence
+                counts.append(m.count)
+
         def take(m: Any) -> None:
-            found[m.seq] = MissionItem(
-                m.command, m.frame, m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.autocontinue
-            )
+            if m.mission_type == MISSION:
+                found[m.seq] = MissionItem(
+                    m.command, m.frame, m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.autocontinue
+                )
 
         what = "the mission"
-        self.collect(
-            "MISSION_COUNT", lambda: None if not counts else [], ask_count, lambda m: counts.append(m.count), what
-        )
+        self.collect("MISSION_COUNT", lambda: None if not counts else [], ask_count, take_count, what)
         self.collect("MISSION_ITEM_INT", lambda: [k for k in range(counts[0]) if k not in found], ask, take, what)
         self.send("MISSION_ACK")
         return tuple(found[k] for k in range(counts[0]))

@@ -6,9 +6,10 @@ from __future__ import annotations
 import contextlib
 import difflib
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
 from typing import Any
 
+from ..autopilot.params.table import Values
 from .errors import ClientError, ParameterRefusedError, UnknownNameError, WaitTimeoutError
 from .session import ANSWER_S, REPEAT_US, Session
 
@@ -24,14 +25,21 @@ EVERY = 1 << 16
 """No list is longer."""
 
 
-class Parameters:
+class Parameters(Mapping[str, float]):
     """The parameters of a vehicle: ``vehicle.params["WPNAV_SPEED"] = 500`` sets one, and sees that it took it.
 
-    Values are asked for each time; values are in ArduPilot's own units.
+    Values are asked for each time; values are in ArduPilot's own units. As a mapping it has the names that the vehicle
+    lists; ``in`` and ``get`` know those that it keeps to itself while they have no effect, too.
     """
 
     def __init__(self, session: Session) -> None:
         self._session = session
+
+    @property
+    def _values(self) -> Values | None:
+        """Those of a vehicle in this process."""
+        simulation = self._session.connection.simulation
+        return None if simulation is None else simulation.parameters
 
     def __getitem__(self, name: str) -> float:
         """Ask the vehicle for a parameter's present value.
@@ -60,6 +68,40 @@ class Parameters:
             if self._session.passes(is_taken, REPEAT_US / 1e6):
                 return
         self._session.raise_error(ParameterRefusedError(name, value, kept))
+
+    def __contains__(self, name: object) -> bool:
+        """Whether the vehicle has a parameter; one that is elsewhere is asked, and says no by not answering."""
+        values = self._values
+        if values is not None:
+            return name in values.table
+        return isinstance(name, str) and self.get(name) is not None
+
+    def get(self, name: str, default: Any = None) -> Any:  # type: ignore[override]
+        """A parameter's present value; ``default``: the vehicle has no such parameter."""
+        session = self._session
+        values = self._values
+        if values is not None:
+            return self[name] if name in values.table else default
+        refused: list[Any]
+        with session.messages("PARAM_ERROR") as refused:
+            return self._ask(name, lambda: any(_named(m) == name for m in refused), default)
+
+    def __iter__(self) -> Iterator[str]:
+        values = self._values
+        if values is not None:
+            return iter([parameter.name for parameter in values.listed()])
+        return iter(self.read_all())
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def items(self) -> ItemsView[str, float]:
+        """All with their values, read together (``read_all``)."""
+        return self.read_all().items()
+
+    def values(self) -> ValuesView[float]:
+        """All values, read together (``read_all``)."""
+        return self.read_all().values()
 
     def update(self, values: Mapping[str, float] | None = None, **more: float) -> None:
         """Set several, each in its unit; all names are checked first."""
@@ -116,12 +158,22 @@ class Parameters:
 
     def check(self, name: str) -> None:
         """Raise UnknownNameError when the vehicle, in this process, has no such parameter."""
-        simulation = self._session.connection.simulation
-        if simulation is None or name in simulation.firmware.table:
+        values = self._values
+        if values is None or name in values.table:
             return
-        near = difflib.get_close_matches(name, simulation.firmware.table.names(), 5, 0.5)
+        near = difflib.get_close_matches(name, values.table.names(), 5, 0.5)
         hint = f"; near to it: {', '.join(near)}" if near else ""
         raise UnknownNameError(f"the {self._session.kind} has no parameter {name!r}{hint}")
+
+    def _ask(self, name: str, is_refused: Callable[[], bool], default: Any) -> Any:
+        """Ask for a parameter until its value or a refusal comes; ``default``: it does not have it."""
+        values = self._session.telemetry.parameters
+        values.pop(name, None)
+        for _ in range(round(ANSWER_S * 1e6 / REPEAT_US)):
+            self._session.send("PARAM_REQUEST_READ", param_id=name.encode(), param_index=-1)
+            if self._session.passes(lambda: name in values or is_refused(), REPEAT_US / 1e6):
+                break
+        return values.get(name, default)
 
     def _exchange(self, name: str, what: str, message: str, **fields: Any) -> float:
         """Send a message until the parameter's value comes."""
@@ -134,3 +186,8 @@ class Parameters:
             if session.passes(arrived, REPEAT_US / 1e6):
                 return values[name]
         session.raise_error(WaitTimeoutError(what, ANSWER_S, "", begin))
+
+
+def _named(m: Any) -> str:
+    """Name of the parameter that a message is about."""
+    return str(m.param_id.decode("ascii", "replace"))

@@ -12,7 +12,15 @@ from ..errors import OptionError, did_you_mean
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .companion import Companion
 from .connection import Connection, InProcess, connect
-from .errors import ClientError, CommandRefusedError, InvariantError, UnknownNameError, WaitTimeoutError
+from .endpoint import AUTOPILOT
+from .errors import (
+    ClientError,
+    CommandRefusedError,
+    ImpossibleWaitError,
+    InvariantError,
+    UnknownNameError,
+    WaitTimeoutError,
+)
 from .telemetry import Attitude, Position, Telemetry, Text
 
 if TYPE_CHECKING:
@@ -130,7 +138,7 @@ class Session:
     @property
     def system(self) -> int:
         """MAVLink id of the vehicle."""
-        return int(self.connection.inbox.system) or 1
+        return self.connection.system
 
     @property
     def mode(self) -> str:
@@ -255,6 +263,7 @@ class Session:
         what: str = "the condition",
         last: Callable[[], str] = lambda: "",
         hold: float = 0.0,
+        in_vain: Callable[[], str] = lambda: "",
     ) -> None:
         """Wait until a condition holds, and has held for ``hold`` seconds; looked at ten times a second.
 
@@ -263,10 +272,15 @@ class Session:
             timeout: [simulated s].
             what: is awaited; for the error.
             last: tells what was seen last; for the error.
+            in_vain: tells why it cannot come to hold, looked at while it does not; "": it can.
 
         Raises:
             WaitTimeoutError: it did not come to hold in time.
+            ImpossibleWaitError: it cannot.
+            OptionError: ``hold`` is longer than ``timeout``.
         """
+        if not hold <= timeout:
+            raise OptionError(f"{what}: hold = {hold:g} s within timeout = {timeout:g} s cannot be")
         begin = self.connection.time_us
         stop, since = begin + round(timeout * 1e6), -1
         while True:
@@ -277,6 +291,9 @@ class Session:
                     return
             else:
                 since = -1
+                why = in_vain()
+                if why:
+                    self.raise_error(ImpossibleWaitError(what, why, begin / 1e6))
             if now >= stop:
                 kept = f", for {hold:g} s" if hold else ""
                 self.raise_error(WaitTimeoutError(f"{what}{kept}", timeout, last(), begin / 1e6))
@@ -316,7 +333,7 @@ class Session:
         if "target_system" in known:
             fields.setdefault("target_system", self.system)
         if "target_component" in known:
-            fields.setdefault("target_component", 1)
+            fields.setdefault("target_component", AUTOPILOT)
         for key, value in fields.items():
             if isinstance(value, str):
                 fields[key] = constant(value)
@@ -463,6 +480,7 @@ class Session:
         return result
 
     def _mode_number(self, name: str) -> int:
+        self.passes(lambda: self.telemetry.mode_names, ANSWER_S)  # the vehicle's first HEARTBEAT tells its kind
         numbers = {mode: number for number, mode in self.telemetry.mode_names.items()}
         if name not in numbers:
             close = did_you_mean(name, numbers)

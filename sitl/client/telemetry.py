@@ -16,6 +16,8 @@ READY_BITS = 0x10 | 0x01
 """EKF_STATUS_REPORT: attitude, absolute position."""
 PREARM_BIT = 0x10000000
 """SYS_STATUS: MAV_SYS_STATUS_PREARM_CHECK."""
+NO_MISSION = 1
+"""MISSION_CURRENT: MISSION_STATE_NO_MISSION."""
 ON_GROUND = 1
 """EXTENDED_SYS_STATE: MAV_LANDED_STATE_ON_GROUND."""
 
@@ -106,6 +108,14 @@ class Telemetry:
     """(time [s], mission item)"""
     pieces: dict[int, str] = field(default_factory=dict)
     """Beginnings of long texts."""
+    disarmed_since: float = math.nan
+    """Time since which all HEARTBEATs have said that it is disarmed [s]; NaN: the last did not."""
+    heartbeat_at: float = -math.inf
+    """Time of the last HEARTBEAT [s]."""
+    last_item: int = -1
+    """Of its mission, 0: it has none; -1: it does not say."""
+    mission_at: float = -math.inf
+    """Time at which it said so last [s]."""
 
     def copy(self) -> Telemetry:
         """As it is now."""
@@ -148,13 +158,19 @@ class Telemetry:
         elif name == "ATTITUDE":
             self.attitude = Attitude(m.roll, m.pitch, m.yaw)
         elif name == "HEARTBEAT":
-            self.mode_number, self.armed = int(m.custom_mode), bool(m.base_mode & ARMED)
+            self.mode_number, self.armed, self.heartbeat_at = int(m.custom_mode), bool(m.base_mode & ARMED), time
+            if self.armed:
+                self.disarmed_since = math.nan
+            elif math.isnan(self.disarmed_since):
+                self.disarmed_since = time
         elif name == "STATUSTEXT":
             self._text(time, m)
         elif name == "MISSION_ITEM_REACHED":
             self.reached.append((time, int(m.seq)))
         elif name == "MISSION_CURRENT":
             self.item = int(m.seq)
+            if m.mission_state:  # else it is an autopilot that does not tell
+                self.last_item, self.mission_at = 0 if m.mission_state == NO_MISSION else int(m.total), time
             if self.armed and self.item not in self.items[-1:]:
                 self.items.append(self.item)
         elif name == "PARAM_VALUE":

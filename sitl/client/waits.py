@@ -7,6 +7,8 @@ import math
 import re
 from collections.abc import Callable
 
+from ..bridge.dialect import message
+from ..errors import OptionError
 from .session import Session
 from .telemetry import ON_GROUND, Telemetry, Text
 
@@ -16,6 +18,10 @@ BOOT_S = 120.0
 """A vehicle that is not ready by then has a fault."""
 READY = "a vehicle that is ready to arm"
 """What ``wait_ready`` waits for, in its error."""
+
+
+SURE_S = 1.0
+"""When a vehicle has said for so long what makes a wait vain, it is over: what was asked before may act late."""
 
 
 def turn(degrees: float) -> float:
@@ -43,7 +49,13 @@ class Waits(Session):
         self.wait(lambda t: t.has_position and t.checked, timeout, READY, last)
 
     def wait_mode(self, name: str, timeout: float = 30.0) -> None:
-        """Until it is in a mode, at most ``timeout`` [simulated s]."""
+        """Until it is in a mode, at most ``timeout`` [simulated s].
+
+        Raises:
+            UnknownNameError: the vehicle has no such mode.
+        """
+        if not name.isdecimal():  # a mode without a name is shown by its number
+            self._mode_number(name)
         self.wait(lambda _: self.mode == name, timeout, f"mode {name}", lambda: f"mode {self.mode}")
 
     def wait_armed(self, timeout: float = 30.0) -> None:
@@ -74,10 +86,39 @@ class Waits(Session):
 
     def _wait_range(
         self, what: str, unit: str, value: Callable[[Telemetry], float], low: float, high: float, timeout: float,
-        hold: float,
+        hold: float, in_vain: Callable[[], str] = lambda: "",
     ) -> None:  # fmt: skip
+        if not low <= high:
+            raise OptionError(f"{what} from {low:g} to {high:g} {unit} cannot be")
         self.wait(lambda t: low <= value(t) <= high, timeout, f"{what} of {_range(low, high, unit)}",
-                  lambda: f"{value(self.telemetry):.2f} {unit}", hold)  # fmt: skip
+                  lambda: f"{value(self.telemetry):.2f} {unit}", hold, in_vain)  # fmt: skip
+
+    def _disarmed(self) -> Callable[[], str]:
+        """Tells that the vehicle does not move by itself, once it has said so for ``SURE_S`` from now on."""
+        begin = self.now
+
+        def why() -> str:
+            t = self.telemetry
+            if self.armed or not t.heartbeat_at - max(begin, t.disarmed_since) >= SURE_S:
+                return ""
+            return f"the {self.kind} is disarmed; arm it first"
+
+        return why
+
+    def _without_item(self, item: int) -> Callable[[], str]:
+        """Tells that the vehicle's mission has no such item, once it has said so ``SURE_S`` from now on."""
+        begin, asked = self.now, list[float]()
+
+        def why() -> str:
+            t = self.telemetry
+            if not asked and self.now - begin >= SURE_S:
+                asked.append(self.now)
+                self.send_command("REQUEST_MESSAGE", message("MISSION_CURRENT").id)  # few are sent unasked
+            if t.last_item < 0 or t.mission_at - begin < SURE_S or item <= t.last_item:
+                return ""
+            return f"its mission ends with item {t.last_item}" if t.last_item else f"the {self.kind} has no mission"
+
+        return why
 
     def wait_heading(self, degrees: float, accuracy: float = 5.0, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until its nose points to ``degrees``, within ``accuracy`` [deg]."""
@@ -106,6 +147,14 @@ class Waits(Session):
         hold: float = 0.0,
     ) -> None:
         """Until it is at a place from home [m], along the ground and in altitude each within ``accuracy``."""
+        self._wait_location(north, east, altitude, accuracy, timeout, hold)
+
+    def _wait_location(
+        self, north: float, east: float, altitude: float | None, accuracy: float, timeout: float, hold: float = 0.0,
+        in_vain: Callable[[], str] = lambda: "",
+    ) -> None:  # fmt: skip
+        if not accuracy >= 0.0:
+            raise OptionError(f"accuracy = {accuracy:g} m; it must be 0 or more")
 
         def away() -> float:
             return math.dist(self.position[:2], (north, east))
@@ -118,9 +167,8 @@ class Waits(Session):
         def last() -> str:
             return f"{away():.2f} m away" + (f", {off():.2f} m off its altitude" if altitude is not None else "")
 
-        self.wait(
-            lambda _: away() <= accuracy and off() <= accuracy, timeout, f"{where}, within {accuracy:g} m", last, hold
-        )
+        what = f"{where}, within {accuracy:g} m"
+        self.wait(lambda _: away() <= accuracy and off() <= accuracy, timeout, what, last, hold, in_vain)
 
     def wait_waypoint(self, item: int, timeout: float = 300.0) -> None:
         """Until a mission item was reached (MISSION_ITEM_REACHED) [simulated s]; an item that was, at once."""
@@ -128,12 +176,14 @@ class Waits(Session):
         def last() -> str:
             return f"reached {', '.join(map(str, self.reached)) or 'none'}; on the way to {self.telemetry.item}"
 
-        self.wait(lambda _: item in self.reached, timeout, f"mission item {item} to be reached", last)
+        what, in_vain = f"mission item {item} to be reached", self._without_item(item)
+        self.wait(lambda _: item in self.reached, timeout, what, last, in_vain=in_vain)
 
     def wait_current_waypoint(self, item: int, timeout: float = 300.0) -> None:
         """Until a mission item is under way (MISSION_CURRENT), at most ``timeout`` [simulated s]."""
         what = f"mission item {item} to be under way"
-        self.wait(lambda t: t.item == item, timeout, what, lambda: f"item {self.telemetry.item}")
+        last, in_vain = lambda: f"item {self.telemetry.item}", self._without_item(item)
+        self.wait(lambda t: t.item == item, timeout, what, last, in_vain=in_vain)
 
     def wait_statustext(self, text: str | re.Pattern[str], timeout: float = 60.0, since: float = -1.0) -> Text:
         """Until it sends a text: part of it, or a compiled regular expression that is found in it.

@@ -26,15 +26,16 @@ class Copter:
 
     def __init__(self, url: str) -> None:
         self.link = mavutil.mavlink_connection(url)
-        if self.link.wait_heartbeat(timeout=30) is None:
-            raise SystemExit(f"no heartbeat on {url}")
         self.start = time.monotonic()
+        self.wait("HEARTBEAT", f"vehicle {url}", lambda m: True, 30.0)  # its system is pymavlink's target from now on
 
     def wait(self, kind: str, what: str, condition, timeout_s: float):
         """The first message of this kind for which ``condition`` holds; SystemExit when none comes in time."""
         end = time.monotonic() + timeout_s
         while time.monotonic() < end:
             message = self.link.recv_match(type=[kind, "STATUSTEXT"], blocking=True, timeout=1.0)
+            if message is not None and message.get_srcSystem() != self.link.target_system:
+                continue  # of another vehicle or ground station, or the vehicle is not known yet
             if message is not None and message.get_type() == "STATUSTEXT":
                 print("         ", message.text)
             elif message is not None and condition(message):

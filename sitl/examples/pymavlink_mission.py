@@ -27,6 +27,8 @@ def wait(link, kinds, condition=lambda message: True, timeout_s: float = 30.0):
     end = time.monotonic() + timeout_s
     while time.monotonic() < end:
         message = link.recv_match(type=kinds, blocking=True, timeout=1.0)
+        if message is not None and message.get_srcSystem() != link.target_system:
+            continue  # of another vehicle or ground station, or the vehicle is not known yet
         if message is not None and condition(message):
             return message
     raise SystemExit(f"gave up after {timeout_s:.0f} s: {kinds}")
@@ -50,8 +52,7 @@ def main() -> None:
     """Fly it, and draw it."""
     url = sys.argv[1] if len(sys.argv) > 1 else "udpin:0.0.0.0:14550"
     link = mavutil.mavlink_connection(url)
-    if link.wait_heartbeat(timeout=30) is None:
-        raise SystemExit(f"no heartbeat on {url}")
+    wait(link, "HEARTBEAT")  # pymavlink takes the first vehicle's system for its target
     link.set_mode("GUIDED")
     wait(link, "HEARTBEAT", lambda m: link.flightmode == "GUIDED")
     checked = mavlink.MAV_SYS_STATUS_PREARM_CHECK

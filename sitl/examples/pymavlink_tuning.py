@@ -29,6 +29,8 @@ def wait(link, kind: str, condition=lambda message: True, timeout_s: float = 30.
     end = time.monotonic() + timeout_s
     while time.monotonic() < end:
         message = link.recv_match(type=kind, blocking=True, timeout=1.0)
+        if message is not None and message.get_srcSystem() != link.target_system:
+            continue  # of another vehicle or ground station, or the vehicle is not known yet
         if message is not None and condition(message):
             return message
     raise SystemExit(f"gave up after {timeout_s:.0f} s: {kind}")

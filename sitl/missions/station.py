@@ -72,7 +72,8 @@ class Station(Client):
             raise StationError(f"{error.subject} was refused (MAV_RESULT {error.result}){why}")
         if isinstance(error, MissionRefusedError):
             raise StationError(f"{error}{self.why()}")
-        assert isinstance(error, WaitTimeoutError)
+        if not isinstance(error, WaitTimeoutError):
+            raise StationError(ClientError.__str__(error))
         if error.what == READY:
             raise StationError(f"not ready to arm after {self.now:.0f} s{self.why()}")
         raise StationError(f"waited {error.seconds:g} s for {error.what}")

@@ -72,12 +72,23 @@ class RealVehicle:
         """Name and fields of each message that came from the client."""
         self._client, self._splitter, self._sequence = Endpoint(), Splitter(), 0
         simulation.bridge.add_link(self._client.link)
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.bind(("127.0.0.1", 0))
+        self._socket = self._open()
         self.port = self._socket.getsockname()[1]
         self._stop, self._came = threading.Event(), threading.Event()
         self._refusals: list[bytes] = []
         self._thread = threading.Thread(target=self._serve)
+
+    def _open(self) -> socket.socket:
+        made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        made.bind(("127.0.0.1", 0))
+        return made
+
+    def _advance(self) -> None:
+        self.simulation.advance_to(self.simulation.time_us + self._step_us)
+
+    def _said(self) -> bytes:
+        """All that is to be sent to the client."""
+        return self._client.link.receive()
 
     def __enter__(self) -> RealVehicle:
         self._thread.start()
@@ -103,8 +114,8 @@ class RealVehicle:
                 for frame in self._splitter.feed(data):
                     self._take(frame)
                     is_flown = frame.kind.name.startswith("SET_")
-            self.simulation.advance_to(self.simulation.time_us + self._step_us)
-            said = self._client.link.receive() + b"".join(self._refusals)
+            self._advance()
+            said = self._said() + b"".join(self._refusals)
             self._refusals.clear()
             for at in range(0, len(said) if peer else 0, 8192):
                 self._socket.sendto(said[at : at + 8192], peer)

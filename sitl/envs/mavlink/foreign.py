@@ -15,8 +15,8 @@ from typing import Protocol
 from sitl.bridge.hil.protocol import BASE_PORT
 from sitl.client.byte_socket import ByteStream, open_stream
 from sitl.client.commands import command_number
-from sitl.client.connection import ACCEPTED, Connection
-from sitl.client.endpoint import Endpoint, Inbox
+from sitl.client.connection import Connection
+from sitl.client.endpoint import ACCEPTED, Endpoint, Inbox
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, WIND, Choice

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From power-on until an episode may begin: armed, in GUIDED, a copter in the air. It sees only telemetry.
 
-Whether the vehicle at the other end is a simulator: only then may an environment reset it without being told to.
-
-A reset disarms by force and reboots, whatever the vehicle is doing: in the air it would fall. What proves a simulator
-is a parameter that flight controllers do not have: ArduPilot's SIM_ parameters are compiled into its simulator builds
-only (https://ardupilot.org/dev/docs/sitl-parameters.html), and this simulator has some of them. Reading one changes
-nothing on any vehicle.
+A reset disarms by force and reboots, whatever the vehicle is doing: in the air it would fall. Only a vehicle that
+proves to be a simulator (``sitl.client.proof``) is reset without a user's word.
 """
 
 from __future__ import annotations
@@ -15,7 +11,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from sitl.client.connection import ACCEPTED, PROOF, TRIES, Connection
+from sitl.client.connection import TRIES, Connection
+from sitl.client.endpoint import ACCEPTED
 from sitl.errors import NotASimulatorError, NotReadyError
 
 from .reports import LANDED
@@ -284,18 +281,13 @@ RESETS = (REBOOT, BY_FORCE, NONE, RETURN)
 vehicle is where an episode can begin; fly or drive back to where the first one began."""
 
 
-def is_simulator(link: Connection) -> bool:
-    """Whether the vehicle has a parameter that only simulators have; it is asked now."""
-    return link.parameter(PROOF) is not None
-
-
 def refusal(link: Connection) -> NotASimulatorError:
     """The error for a vehicle that has not proved to be a simulator."""
     inbox: Any = link.inbox
     mode = f"{'armed' if inbox.armed else 'disarmed'}, in mode {inbox.mode}" if inbox.mode >= 0 else "no HEARTBEAT yet"
     return NotASimulatorError(
-        f"connection {link.name}: the vehicle (system {inbox.system}, {mode}) does not prove to be a simulator: it "
-        f"does not give its parameter {PROOF}. It was only asked questions. A reset would disarm it by force and "
+        f"connection {link.name}: the vehicle (system {inbox.system}, {mode}) does not prove to be a simulator: "
+        f"{link.doubt}. It was only asked questions. A reset would disarm it by force and "
         "reboot it, in the air, too: that is done to simulators only (sitl run, ArduPilot's SITL). For a vehicle that "
         f'may be treated so, whatever it is: reset="{BY_FORCE}" when the environment is made. One that flies is taken '
         f'over where it is with reset="{NONE}" or "{RETURN}"'

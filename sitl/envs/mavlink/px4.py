@@ -14,7 +14,8 @@ from sitl.bridge.services.setpoints import (
     YAW_IGNORED,
     YAW_RATE_IGNORED,
 )
-from sitl.client.connection import ACCEPTED, Connection
+from sitl.client.connection import Connection
+from sitl.client.endpoint import ACCEPTED
 from sitl.errors import NotReadyError
 
 from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, check_reports, set_intervals, until

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
-from sitl.client.endpoint import AUTOPILOT, HEARTBEAT, TEXT, Inbox
+from sitl.client.endpoint import HEARTBEAT, TEXT, Inbox
 
 from .reports import LANDED, ON_GROUND, REPORTED, LandedState, note_report
 
@@ -93,7 +93,7 @@ class StepTelemetry(Inbox):
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
         for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
-            if component != AUTOPILOT or system != (self.system or system):
+            if not self._is_of_vehicle(kind, system, component):
                 continue
             if kind is POSITION:
                 self.position = _seven(payload.ljust(28, b"\0"))
@@ -138,6 +138,8 @@ class StepTelemetry(Inbox):
 
     def _other(self, kind: MessageType, payload: bytes, system: int) -> None:
         fields = kind.decode(payload)
+        if not self._is_for_us(kind, fields):
+            return
         self._note(kind, fields, system)
         if kind is HEARTBEAT:
             self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & ARMED)

@@ -11,7 +11,8 @@ from typing import ClassVar
 
 from gymnasium import logger
 
-from sitl.client.connection import ACCEPTED, Connection, Lockstep, connect
+from sitl.client.connection import Connection, Lockstep, connect
+from sitl.client.endpoint import ACCEPTED, AUTOPILOT
 from sitl.core.algebra import quat_from_euler
 from sitl.core.vectors import Euler
 from sitl.errors import LinkLostError, NotReadyError, OptionError
@@ -27,7 +28,6 @@ from ..mavlink.preparation import (
     RETURN,
     has_landed,
     height_above_home,
-    is_simulator,
     join,
     reboot,
     refusal,
@@ -50,6 +50,11 @@ _PAUSE_US, _PAUSES = 200_000, 5
 """Wall time from one such set-point to the next, much less than GUID_TIMEOUT at four times real time, too [us]; number
 of them in a second."""
 Origin = tuple[float, float, float]
+
+
+def _meant(link: Connection) -> dict[str, int]:
+    """The target of a message: the autopilot of this vehicle."""
+    return {"target_system": link.system, "target_component": AUTOPILOT}
 
 
 class SocketVehicles(Vehicles):
@@ -115,11 +120,11 @@ class SocketVehicles(Vehicles):
             self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
         if self.options.reset in (NONE, RETURN):
             origin = self._joined(link, pose)  # at once: a copter that has landed disarms after DISARM_DELAY
-            if was_open:
-                link.is_simulator = is_simulator(link)
+            if link.is_simulator:  # one that may be real stays so
+                link.prove()
         else:
-            if was_open:
-                link.is_simulator = is_simulator(link)
+            if was_open or link.is_simulator:
+                link.prove()
             if not link.is_simulator and self.options.reset != BY_FORCE:
                 self.close()
                 raise refusal(link)
@@ -177,7 +182,7 @@ class SocketVehicles(Vehicles):
         """Ask for no speed, in GUIDED, but ``sinking`` [m/s]."""
         mask = VELOCITY_ONLY | YAWS_IGNORED
         fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "vx": 0, "vy": 0, "vz": sinking}
-        link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=link.inbox.system, **fields))
+        link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
 
     def _stands(self, down: float) -> None:
         """The vehicle is on the floor and believes that it is at ``down`` [m]: its height, which drifts with the air
@@ -215,7 +220,7 @@ class SocketVehicles(Vehicles):
         inbox = link.inbox
         level = quat_from_euler(Euler(0.0, 0.0, inbox.attitude[3]))
         fields = {"type_mask": ATTITUDE_ALONE, "q": level, "thrust": _SINKING_THRUST}
-        link.endpoint.send_payload(TARGET, TARGET.payload(target_system=inbox.system, target_component=1, **fields))
+        link.endpoint.send_payload(TARGET, TARGET.payload(**_meant(link), **fields))
 
     def _go_back(self, link: Connection) -> None:
         """In GUIDED, if the vehicle still is; of one that is not, or is disarmed, ``join`` says so."""
@@ -228,7 +233,7 @@ class SocketVehicles(Vehicles):
         mask = PLACE_ONLY | YAWS_IGNORED
         for _ in range(max(round(self.options.wait), 1)):
             fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
-            link.endpoint.send_payload(LOCAL, LOCAL.payload(target_system=inbox.system, **fields))
+            link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
             link.pause(1_000_000)
             away = math.dist(inbox.position[1:4], place)
             if away < NEAR or not inbox.armed or inbox.mode != self.setup.kind.guided:

@@ -16,7 +16,7 @@ from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
 
 from ..mavlink.foreign import Foreign, launch
-from ..mavlink.preparation import BY_FORCE, is_simulator, refusal
+from ..mavlink.preparation import BY_FORCE, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
@@ -98,7 +98,7 @@ class ForeignVehicles(Vehicles):
 
     def _check(self, link: Foreign) -> None:
         """Refuse one that was found where it runs and may be no simulator: before it is disarmed or armed."""
-        if self._choice.program is None and self.options.reset != BY_FORCE and not is_simulator(link):
+        if self._choice.program is None and self.options.reset != BY_FORCE and not link.prove():
             raise refusal(link)
 
     def physics(self, index: int) -> Any:

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether a vehicle is a simulator. Only one that proves it may be disarmed by force and rebooted unasked.
+
+The vehicle that is meant is asked, by its system and component, and by questions that change no vehicle. Three signs
+must be there, and nothing may speak against them:
+
+- It gives its parameter SIM_WIND_SPD when it is asked for that by name. ArduPilot's SIM_ parameters are compiled into
+  its simulator builds only (https://ardupilot.org/dev/docs/sitl-parameters.html). What it sends for another client's
+  list of parameters has a number and does not count.
+- It accepts the request for SIMSTATE, in an answer to this client, and sends it. That is the truth of a simulation: a
+  flight controller has none, and refuses.
+- Its AUTOPILOT_VERSION names no board and no USB device. A flight controller's does.
+
+A vehicle that answers more often than it was asked is two vehicles with the same ids: none of them has proved anything.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..bridge.dialect import MessageType, message
+from .commands import command_number
+from .endpoint import ACCEPTED, ACK, BUSY, IN_PROGRESS, PARAMETER
+
+if TYPE_CHECKING:
+    from .connection import Connection
+
+PARAMETER_NAME = "SIM_WIND_SPD"
+REQUEST_MESSAGE = command_number("REQUEST_MESSAGE")
+VERSION, TRUTH, ERROR = (message(name) for name in ("AUTOPILOT_VERSION", "SIMSTATE", "PARAM_ERROR"))
+BY_NAME = 0xFFFF
+"""``param_index`` of a PARAM_VALUE that was asked for by name."""
+LOOK_US, LOOKS, TRIES = 20_000, 25, 6
+"""Time between two looks at a vehicle that goes by its own clock, looks after a question, and how often it is asked."""
+QUIET_LOOKS = 5
+"""So long is it listened to before: what it was asked earlier is answered by then."""
+CONTRADICTION_US = 300_000
+"""So long is it listened to after all signs have come: another one with its ids may be slower."""
+
+
+class Signs:
+    """What a vehicle has answered.
+
+    Args:
+        link: to the vehicle.
+    """
+
+    def __init__(self, link: Connection) -> None:
+        self._link = link
+        self._asked = self._answers = 0
+        self._given: set[MessageType] = set()
+        """Which of the signs are there, each by its message."""
+        self._accepted = 0
+        self.against = ""
+        """What speaks against a simulator; "": nothing."""
+
+    @property
+    def heard(self) -> bool:
+        """Whether it has answered anything."""
+        return bool(self._given or self._answers or self.against)
+
+    @property
+    def _shows_truth(self) -> bool:
+        """Both requests are accepted, so that of SIMSTATE is, and it has come."""
+        return TRUTH in self._given and self._accepted >= 2
+
+    @property
+    def doubt(self) -> str:
+        """Why this is no proof; "": it is one."""
+        if self.against:
+            return self.against
+        missing = []
+        if PARAMETER not in self._given:
+            missing.append(f"it does not give its parameter {PARAMETER_NAME}")
+        if not self._shows_truth:
+            missing.append("it does not send SIMSTATE when it is asked to")
+        if VERSION not in self._given:
+            missing.append("it does not send AUTOPILOT_VERSION")
+        return ", ".join(missing)
+
+    def ask(self) -> None:
+        """Ask for the signs that are missing."""
+        link = self._link
+        if PARAMETER not in self._given:
+            link.ask_parameter(PARAMETER_NAME)
+        if VERSION not in self._given:
+            self._request(VERSION)
+        if not self._shows_truth:
+            self._request(TRUTH)
+
+    def _request(self, kind: MessageType) -> None:
+        self._asked += 1
+        self._link.endpoint.command(REQUEST_MESSAGE, kind.id, target=self._link.system)
+
+    def take(self, kind: MessageType, fields: Any) -> None:
+        """A message of the vehicle."""
+        system = self._link.system
+        if kind is PARAMETER and fields.param_id.decode("ascii", "replace") == PARAMETER_NAME:
+            if fields.param_index == BY_NAME:
+                self._given.add(kind)
+        elif kind is ERROR and fields.param_id.decode("ascii", "replace") == PARAMETER_NAME:
+            self.against = f"it says that it has no parameter {PARAMETER_NAME}"
+        elif kind is ACK and fields.command == REQUEST_MESSAGE:
+            self._answered(fields)
+        elif kind is TRUTH and self._asked:
+            self._given.add(kind)
+        elif kind is VERSION:
+            if fields.board_version or fields.vendor_id or fields.product_id:
+                board = f"{fields.board_version >> 16}, USB {fields.vendor_id:04x}:{fields.product_id:04x}"
+                self.against = f"its AUTOPILOT_VERSION names a flight controller (board {board})"
+            self._given.add(kind)
+        if self._answers > self._asked:
+            self.against = f"system {system} answers more often than it is asked, as two vehicles with its ids would"
+
+    def _answered(self, fields: Any) -> None:
+        own = self._link.endpoint
+        if (fields.target_system, fields.target_component) != (own.system, own.component):
+            return  # an answer to everybody may be to anybody
+        if fields.result in (BUSY, IN_PROGRESS):
+            self._asked -= 1  # and is not counted
+            return
+        self._answers += 1
+        if fields.result == ACCEPTED:
+            self._accepted += 1
+        else:
+            self.against = f"it refuses SIMSTATE or AUTOPILOT_VERSION (MAV_RESULT {fields.result})"
+
+
+def ask(link: Connection, tries: int = TRIES, is_first: bool = False) -> Signs:
+    """Ask a vehicle for the signs.
+
+    Args:
+        link: to the vehicle, which has been heard.
+        tries: how often it is asked for what does not come.
+        is_first: for a first impression, to be followed by another call before anything depends on it: nobody waits
+            for a slower vehicle with the same ids.
+
+    Raises:
+        LinkLostError: the connection is lost.
+    """
+    signs, inbox = Signs(link), link.inbox
+    look_us, looks = (0, 1) if link.is_exact else (LOOK_US, LOOKS)
+    for _ in range(1 if link.is_exact else QUIET_LOOKS):
+        link.pause(look_us)
+    inbox.witness = signs.take
+    try:
+        for _ in range(tries):
+            signs.ask()
+            for _ in range(looks):
+                link.pause(look_us)
+                if signs.against or not signs.doubt:
+                    break
+            if signs.against or not signs.doubt:
+                break
+        if not signs.doubt and not is_first:
+            link.listen(CONTRADICTION_US)
+    finally:
+        inbox.witness = None
+    return signs
