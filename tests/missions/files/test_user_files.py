@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files as users have them: numbered otherwise, old, of fences and rally points; read as pymavlink's loaders read them."""
+"""Files as users have them: numbered otherwise, old, of fences and rally points; read as by pymavlink."""
 
 from __future__ import annotations
 
