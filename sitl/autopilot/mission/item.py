@@ -20,6 +20,7 @@ NAV_LOITER_TO_ALT = 31
 NAV_SPLINE_WAYPOINT = 82
 NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
+NAV_PAYLOAD_PLACE = 94
 CONDITION_DELAY = 112
 CONDITION_DISTANCE = 114
 CONDITION_YAW = 115
@@ -85,6 +86,7 @@ COMMANDS = {
     NAV_SPLINE_WAYPOINT: Command("SplineWP", True, True),
     NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
+    NAV_PAYLOAD_PLACE: Command("PayloadPlace", True, True),
     NAV_SET_YAW_SPEED: Command("SetYawSpd", True, False),
     CONDITION_DELAY: Command("CondDelay", False, False),
     CONDITION_DISTANCE: Command("CondDist", False, False),
