@@ -21,8 +21,9 @@ from sitl.autopilot.mission.item import GLOBAL, NAV_WAYPOINT, RELATIVE, TERRAIN,
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.validate import MAX_ITEMS
 
-from .document import FencePolygon, MissionFile, MissionFileError, Place, make
+from .document import FencePolygon, MissionFile, MissionFileError, make
 from .json_reader import shown
+from .plane import Place
 
 LARGEST, LARGEST_TEXT = 16 * 1024 * 1024, 1024 * 1024
 """Of a document, unpacked, and of the text of one element [bytes]."""

@@ -20,7 +20,8 @@ from sitl.autopilot.mission.item import (
 )
 from sitl.autopilot.mission.mission import Mission
 
-from .document import FenceCircle, FencePolygon, MissionFile, MissionFileError, Place, RallyPoint, degrees
+from .document import FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint, degrees
+from .plane import Place
 
 RALLY_WORD = "RALLY"
 RALLY_COLUMNS = 7

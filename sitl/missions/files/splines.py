@@ -21,7 +21,8 @@ from sitl.autopilot.mission.item import (
 )
 from sitl.autopilot.mission.mission import Mission, MissionError
 
-from .document import MissionFile, MissionFileError, Plane
+from .document import MissionFile, MissionFileError
+from .plane import Plane
 
 PIECE = 5.0
 """A curve is cut into pieces of about this length [m], at least two; shorter ones make the vehicle slow."""

@@ -44,6 +44,8 @@ def load(path: str | Path, altitude: float | None = None) -> MissionFile:
         return kml.parse(kml.unpack(data, name), name, altitude)
     content = _decoded(data, name)
     start = content.lstrip()[:1]
+    if not start:
+        raise MissionFileError(f"{name}: there is nothing in it; {READ_TEXT} are read")
     if start == "<":
         return kml.parse(data if data.startswith(UTF_16) else data.lstrip(), name, altitude)
     if altitude is not None:

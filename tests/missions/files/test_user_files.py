@@ -79,6 +79,7 @@ def test_without_item_0_it_is_said_what_counts_as_home(tmp_path: Path) -> None:
         (HEAD + HOME + TAKE_OFF.replace("\t22\t", "\t0\t"), r"m\.txt:3: command 0 is not known"),
         (HEAD + HOME + "1 0 3 20 0 0 0 0 300 0 0 1\n", r"m\.txt:3: parameter 5 is 300.0: it is within \+-214\.7"),
         (HEAD + HOME + "1 0 3 203 0 0 0 0 0.5 0 0 1\n", r"m\.txt:3: parameter 5 is 0.5: a whole number is needed"),
+        (" \n", r"m\.txt: there is nothing in it; QGC WPL text"),
         ("QGC WPL 120\n" + HOME, r"m\.txt:1: 'QGC WPL 120' is not read, .*save it as 'QGC WPL 110' or \.plan"),
         ("QGC WPL PB 110\n", r"m\.txt:1: 'QGC WPL PB 110' is not read"),
         ("QGC WPL 100\n0 0 16 0 0 0 0 1 -35.36 149.16 584 0 1\n", r"m\.txt:2: action 16 .*QGC WPL 100.*save it as"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AUTO's PAYLOAD_PLACE: to the place at the present height, down until the load stands on the ground, release, up again.
+"""AUTO's PAYLOAD_PLACE: to the place at the present height, down until the load stands, release, up again.
 
 The load stands when the descent needs less thrust than before: below PLDP_THRESH times the least of its first two
 seconds, for half a second. Then the gripper opens, and after PLDP_DELAY the vehicle climbs to where the descent began.
