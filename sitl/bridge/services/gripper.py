@@ -42,7 +42,7 @@ class GripperService(PayloadService):
         self._state = State()
         if self._there:
             self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
-        self._tell()
+            self._tell()
 
     def snapshot(self) -> Any:
         return (tuple(self._state), self.due_us)
