@@ -7,6 +7,7 @@ import argparse
 import math
 from pathlib import Path
 
+from sitl.autopilot.mission.item import NAV_SPLINE_WAYPOINT
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.execute import terminable
@@ -19,7 +20,7 @@ from sitl.vehicle.kinds import DEFAULT, KINDS
 from sitl.vehicles import load as load_airframe
 
 from .. import library
-from ..files import MissionFile, as_flight, for_vehicle
+from ..files import MissionFile, for_vehicle
 from ..files.document import kind_of_type
 from ..files.store import READ_TEXT
 from ..fly import LIMIT_S, Outcome, checked, fly
@@ -76,9 +77,9 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
             f"(sitl mission fly MISSION --{'fence' if file.fence_items else 'rally'} {name})"
         )
     params = prepare(options, file, entry)
-    if KINDS[options.vehicle].flies:
-        file = as_flight(file)
-    curved, file = len(file.mission), for_vehicle(file, KINDS[options.vehicle].firmware.commands.taken)
+    taken = KINDS[options.vehicle].firmware.commands.taken
+    has_curves = any(item.command == NAV_SPLINE_WAYPOINT for item in file.mission.items)
+    file = for_vehicle(file, taken)
     say_notes(file)
     folder = open_folder(options.log_dir)
     links = [open_link(text) for text in options.out]
@@ -92,7 +93,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
         log = runner.open_log(simulation, folder, stem)
         if not options.quiet:
             print(f"{file.name}: {len(file.mission) - 1} items, {simulation.airframe.name}")
-            if len(file.mission) != curved:
+            if has_curves and NAV_SPLINE_WAYPOINT not in taken:
                 print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
             if file.has_fence_or_rally:
                 say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)

@@ -7,8 +7,9 @@ https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
 """
 
 from .document import Complex, FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint
-from .splines import for_vehicle, straightened
-from .store import as_flight, joined, load, save
+from .flight import as_flight, for_vehicle
+from .splines import straightened
+from .store import joined, load, save
 
 __all__ = [
     "Complex",

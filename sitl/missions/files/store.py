@@ -6,9 +6,6 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from sitl.autopilot.mission.item import NAV_RETURN_TO_LAUNCH, NAV_TAKEOFF, MissionItem
-from sitl.autopilot.mission.mission import Mission
-
 from . import kml, lists, plan, wpl
 from .document import MissionFile, MissionFileError
 
@@ -104,15 +101,6 @@ def joined(file: MissionFile, *others: MissionFile) -> MissionFile:
             notes=file.notes + other.notes,
         )
     return file
-
-
-def as_flight(file: MissionFile) -> MissionFile:
-    """A bare path with a take-off to its first height before it and a return to launch behind it."""
-    if not file.is_path:
-        return file
-    home, *path = file.mission.items
-    take_off = MissionItem(NAV_TAKEOFF, path[0].frame, z=path[0].z)
-    return replace(file, is_path=False, mission=Mission.of([home, take_off, *path, MissionItem(NAV_RETURN_TO_LAUNCH)]))
 
 
 def save(file: MissionFile, path: str | Path) -> None:

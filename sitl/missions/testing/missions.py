@@ -13,7 +13,7 @@ from sitl.client import Client, ClientError
 from sitl.errors import OptionError
 
 from .. import library
-from ..files import as_flight, for_vehicle, load
+from ..files import for_vehicle, load
 from ..fly import STANDING_S, STANDS, checked
 
 __tracebackhide__ = True
@@ -51,8 +51,7 @@ class MissionFlier(Client):
         if isinstance(given, str | Path):
             kind = self.connection.kind
             assert kind is not None
-            file = load(find(given, self.folders))
-            mission = for_vehicle(as_flight(file) if kind.flies else file, kind.firmware.commands.taken).mission
+            mission = for_vehicle(load(find(given, self.folders)), kind.firmware.commands.taken).mission
         else:
             mission = given if isinstance(given, Mission) else Mission(tuple(given))
         simulation = self.connection.simulation
