@@ -42,6 +42,8 @@ from .worlds import World, heights
 Array = np.ndarray[Any, Any]
 _WARNING = 4
 """MAV_SEVERITY"""
+ROUNDS = 8
+"""So often at once a mission goes on with what came of its own do-commands."""
 
 
 class Observer(Protocol):
@@ -475,7 +477,11 @@ class Simulation:
         self.bridge.tell(self.aux.attend())  # first: what switches do makes events of its own
         self.v.autopilot.events.attention = False
         self.bridge.on_events()
-        self.bridge.tell(self.sequencer.attend())
+        for _ in range(ROUNDS):
+            notes = self.sequencer.attend()
+            if not notes:
+                break
+            self.bridge.tell(notes)  # what a do-command asks for may make events, too
         self._events_seen = int(self._event_count())
 
     def _do_reboot(self) -> None:

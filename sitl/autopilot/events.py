@@ -35,7 +35,7 @@ GUIDED_REACHED = 23  # rover: the position target of GUIDED
 CRASH_HOLD = 24  # rover: crashed or blocked
 PATH_LOST = 25  # SMART_RTL has no path any more; a: reason (smart_rtl_path.py)
 CIRCLE_ADAPTED = 26  # rover; a: what (circle.py), b: the value now
-COMMAND_ARRIVED = 27  # rover: the navigation command under way is at its place, b: its count (nav.command_count)
+COMMAND_ARRIVED = 27  # the navigation command under way is at its place, b: its count (nav.command_count)
 HIT_OBSTACLE = 28  # a: speed [m/s] (from physics)
 SETPOINT_IGNORED = 29  # rover: it has an acceleration; a: number of the MAVLink message
 AUX_SWITCH = 30  # a: channel, b: position (aux_switch.py), negative the first one since boot
@@ -75,6 +75,7 @@ BATTERY_LOW, BATTERY_CRITICAL, BATTERY_MISSING = 80, 81, 82  # a: voltage, b: ch
 BENDY_RULER_LOOKED = 72  # a: margin [m], b: 1 it steers, 3 and goes on as before
 FENCE_LOADED = 73  # areas of the fence
 RALLY_LOADED = 74  # rally points
+PAYLOAD_PLACE_DID = 77  # copter; a: what (payload_place.py), b: a number of it
 WAY_LAID = 75  # the way around areas has turns
 
 FENCE_TEXTS = (FENCE_BREACHED, FENCE_CLEAR, FENCE_SWITCHED, FENCE_NEAR, FENCE_RECOVERY)

@@ -35,6 +35,7 @@ MEANINGS = {
     "GRIP_TYPE": "1: a gripper moved by the outputs of function 28, from the next boot on",
     "GRIP_GRAB": "Pulse that closes the gripper [us]",
     "GRIP_RELEASE": "Pulse that opens the gripper [us]",
+    "GRIP_NEUTRAL": "Pulse of the gripper from boot until it is first told to move [us]",
     "GRIP_AUTOCLOSE": "The gripper closes by itself so long after it was told to open [s]; 0: it stays open",
     "WINCH_TYPE": "1: a winch driven by the outputs of function 88, from the next boot on",
     "WINCH_RATE_MAX": "Fastest winding of the winch's line [m/s]",

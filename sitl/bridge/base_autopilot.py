@@ -105,6 +105,9 @@ class BaseAutopilot:
         self._notes.extend(notes)
         return bool(ok)
 
+    def gripper_is(self, there: bool, is_open: bool) -> None:
+        """The gripper has moved, or is there no more: nothing depends on it."""
+
     def set_roi(self, place: Vector | None) -> None:
         """Keep the nose on a point, NED [m], or (None) no longer: not in vehicles that steer with it."""
 

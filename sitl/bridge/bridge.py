@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..autopilot.mission.item import MissionItem
+from ..autopilot.mission.item import DO_AUX_FUNCTION, MissionItem
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -25,7 +25,7 @@ from .profile import load
 from .services import all_services
 from .services.commands import Grants
 from .services.faults import FaultService
-from .services.fitted import CARRIED_OUT_BY, switched
+from .services.fitted import CARRIED_OUT_BY, run_aux_function, switched
 from .services.log_download import LogStore
 from .services.mission import MissionService
 from .services.outputs import OutputService
@@ -552,7 +552,10 @@ class Bridge:
             self.flush()
 
     def carry_out(self, item: MissionItem) -> None:
-        """Do what a mission asks of servo outputs, relays, camera, gimbal and payload."""
+        """Do what a mission asks of servo outputs, relays, camera, gimbal, payload and switches."""
+        if item.command == DO_AUX_FUNCTION:
+            run_aux_function(self, item)
+            return
         self.get(CARRIED_OUT_BY.get(item.command, OutputService)).carry_out(item)
 
     def keep_parameters(self, names: Sequence[str]) -> None:

@@ -56,8 +56,9 @@ GRIP = {"GRIP_ENABLE": 1.0, "GRIP_TYPE": 1.0, "SERVO9_FUNCTION": 28.0}
 @pytest.mark.parametrize("vehicle", [FakeVehicle, FakeRover])
 def test_a_gripper_closes_and_opens(vehicle: type[FakeVehicle]) -> None:
     b = bench(vehicle(), **GRIP)
-    assert pulse(b) == 1100
-    assert "Gripper load released" in texts(b, 3.0)
+    assert (pulse(b), texts(b, 3.0)) == (1500, [])
+    assert b.command(GRIPPER, 1, 0) == ACCEPTED
+    assert (texts(b, 1.0), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1100)
     assert b.command(GRIPPER, 1, 0) == ACCEPTED
     assert texts(b) == ["Gripper load released"]
     assert b.command(GRIPPER, 1, 1) == ACCEPTED
@@ -81,6 +82,27 @@ def test_a_gripper_by_switch_and_by_mission_closes_by_itself() -> None:
     b.bridge.carry_out(MissionItem(GRIPPER, p1=1.0, p2=0.0))
     assert (texts(b, 2.9), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1300)
     assert (texts(b, 1.0), pulse(b)) == (["Gripper load grabbing", "Gripper load grabbed"], 1700)
+
+
+def test_the_autopilot_knows_what_the_gripper_does() -> None:
+    """Missions that place a load wait for it: whether it is there, and whether it is open."""
+    b = bench(**GRIP)
+
+    def told() -> tuple[bool, bool]:
+        found = [call[1:] for call in b.autopilot.calls if call[0] == "gripper_is"]
+        return found[-1]
+
+    assert told() == (True, False)
+    b.command(GRIPPER, 1, 0)
+    texts(b, 0.4)
+    assert told() == (True, False), "it moves"
+    texts(b, 0.2)
+    assert told() == (True, True)
+    b.command(GRIPPER, 1, 1)
+    assert told() == (True, False)
+    b.vehicle.parameters["GRIP_ENABLE"] = 0.0
+    b.bridge.parameter_changed("GRIP_ENABLE")
+    assert told() == (False, False)
 
 
 def test_without_payload() -> None:

@@ -9,7 +9,7 @@ import pytest
 from sitl.autopilot.mission import item as c
 from sitl.simulation import Core
 from tests.drives.rover_driver import AUTO, HOLD, LOITER, MANUAL, STEERING, Driver
-from tests.pilots.witness import KEEP, LOW
+from tests.pilots.witness import KEEP, LOW, Item
 
 HIGH = 2000
 AUX = 218
@@ -84,3 +84,15 @@ def test_a_mission_is_saved_by_switch(core: Core) -> None:
 @pytest.mark.parametrize(("function", "result"), [(54, 0), (154, 4), (3, 4)])
 def test_it_has_the_rovers_functions_only(core: Core, function: int, result: int) -> None:
     assert with_switch(core, 0).ask(AUX, function, 2) == result
+
+
+def test_a_mission_moves_switches(core: Core) -> None:
+    """DO_AUX_FUNCTION 54: HOLD; the mission stops there."""
+    d = Driver(core, "ardupilot_rover").ready()
+    d.arm()
+    here, there = Item(c.NAV_WAYPOINT, (3.0, 0.0)), Item(c.NAV_WAYPOINT, (30.0, 0.0))
+    d.start_mission(here, Item(c.DO_AUX_FUNCTION, p=(54.0, 2.0)), there)
+    d.fly(15.0)
+    assert d.said("Mission: 2 AuxFunction")
+    assert d.mode == HOLD
+    assert d.reached == [1, 2]

@@ -215,3 +215,43 @@ def test_switches_of_modes_of_the_real_one_are_there(core: Core) -> None:
     for function, mode in ((18, LAND), (55, GUIDED), (68, STABILIZE), (70, ALT_HOLD)):
         assert p.ask(AUX, function, 2) == 0
         assert p.mode == mode
+
+
+def flown(core: Core, *items: Item) -> Aviator:
+    """After a mission with a take-off, these items, and a return: disarmed, or a minute later."""
+    p = Aviator(core).ready()
+    p.start_mission(Item(c.NAV_TAKEOFF, None, 10.0), *items, Item(c.NAV_RETURN_TO_LAUNCH))
+    p.fly(60.0, lambda: not p.armed)
+    return p
+
+
+def test_a_mission_moves_switches(core: Core) -> None:
+    """DO_AUX_FUNCTION: whatever the position, the mission goes on; a function that is not known is told."""
+    function = c.DO_AUX_FUNCTION
+    p = flown(
+        core, Item(function, p=(999.0, 2.0)), Item(c.NAV_WAYPOINT, (3.0, 0.0), 10.0),
+        Item(function, p=(58.0, 3.0)), Item(c.NAV_WAYPOINT, (0.0, 0.0), 10.0),
+    )  # fmt: skip
+    assert not p.armed
+    assert p.said("Mission: 2 AuxFunction")
+    assert p.said("Invalid channel option (999)")
+    assert p.reached == [1, 2, 3, 4, 5, 6]
+
+
+def test_a_mission_leaves_itself_by_a_switch(core: Core) -> None:
+    """BRAKE by function 33: the mission stops, and its next command is not flown."""
+    p = flown(core, Item(c.DO_AUX_FUNCTION, p=(33.0, 2.0)), Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0))
+    assert p.armed
+    assert p.mode == BRAKE
+    assert abs(p.pos[0]) < 1.0
+    assert p.said("Mission: 2 AuxFunction")
+    assert not p.said("Reached command #3")
+
+
+def test_a_mission_that_starts_itself_again_goes_on(core: Core) -> None:
+    """Function 24 sets the mission back to its start, again and again: time goes on, and the vehicle flies."""
+    p = Aviator(core).ready()
+    p.start_mission(Item(c.NAV_TAKEOFF, None, 10.0), Item(c.DO_AUX_FUNCTION, p=(24.0, 2.0)))
+    p.fly(20.0)
+    assert p.armed
+    assert p.pos[2] < -8.0

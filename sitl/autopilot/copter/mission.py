@@ -9,7 +9,7 @@ from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import TERRAIN_FRAMES, MissionItem
-from ..mission.notes import INFO, Note, Text
+from ..mission.notes import INFO, Note, OutputItem, Text
 from ..mission.place import down, point
 from ..navigation import command
 from ..navigation import state as kinds
@@ -29,6 +29,10 @@ EDGE = 3.0
 """A vehicle this near to the circle starts it where it is [m]."""
 WIDEST = 2550.0
 """Greatest radius of circles that ArduPilot's mission storage holds [m]."""
+DEEPEST = 655.35
+"""Greatest limit of PAYLOAD_PLACE's descent that the storage holds [m]."""
+GRIPPER_RELEASE = 0.0
+"""GRIPPER_ACTIONS"""
 LEAST_CLIMB = 1.0
 """Of a take-off from the ground [m]."""
 CLIMB_SPEED, DESCENT_SPEED = 2, 3
@@ -48,6 +52,7 @@ KINDS = {
     commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
     commands.NAV_VTOL_LAND: kinds.LAND,
     commands.NAV_GUIDED_ENABLE: kinds.GUIDED,
+    commands.NAV_PAYLOAD_PLACE: kinds.PAYLOAD_PLACE,
 }
 OTHERS = (
     commands.CONDITION_DELAY,
@@ -110,7 +115,7 @@ class CopterCommands(Commands[Vehicle]):
             PLANNER.begin(ap, time_us, here)
         elif kind == kinds.LOITER_TURNS:
             _circle(ap, time_us, item, here)
-        elif kind == kinds.LAND and not item.no_place:
+        elif kind in (kinds.LAND, kinds.PAYLOAD_PLACE) and not item.no_place:
             PLANNER.begin(ap, time_us, point(ap, item, here).replace(z=here.z))  # at the present height
         else:
             _end_path(nav)
@@ -125,6 +130,8 @@ class CopterCommands(Commands[Vehicle]):
             return [Text(INFO, f"Delaying {int(nav.delay)} sec")]
         elif kind == kinds.LOITER_TURNS:
             nav.turns = turns(item)
+        elif kind == kinds.PAYLOAD_PLACE:
+            ap.modes.payload_place.limit = int(min(max(item.p1, 0.0), DEEPEST) * 100.0) * 0.01
         return []
 
     def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
@@ -147,6 +154,10 @@ class CopterCommands(Commands[Vehicle]):
             PLANNER.look_ahead_spline(ap, following)
         else:
             PLANNER.look_ahead(ap, following.place)
+
+    def arrived(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
+        """A load that stands is let go."""
+        return [OutputItem(MissionItem(commands.DO_GRIPPER, p2=GRIPPER_RELEASE))]
 
     def completed(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Some say so."""

@@ -20,6 +20,7 @@ NAV_LOITER_TO_ALT = 31
 NAV_SPLINE_WAYPOINT = 82
 NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
+NAV_PAYLOAD_PLACE = 94
 CONDITION_DELAY = 112
 CONDITION_DISTANCE = 114
 CONDITION_YAW = 115
@@ -41,6 +42,7 @@ NAV_VTOL_LAND = 85
 DO_PARACHUTE = 208
 DO_GRIPPER = 211
 DO_SPRAYER = 216
+DO_AUX_FUNCTION = 218
 JUMP_TAG = 600
 DO_JUMP_TAG = 601
 DO_WINCH = 42600
@@ -84,6 +86,7 @@ COMMANDS = {
     NAV_SPLINE_WAYPOINT: Command("SplineWP", True, True),
     NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
+    NAV_PAYLOAD_PLACE: Command("PayloadPlace", True, True),
     NAV_SET_YAW_SPEED: Command("SetYawSpd", True, False),
     CONDITION_DELAY: Command("CondDelay", False, False),
     CONDITION_DISTANCE: Command("CondDist", False, False),
@@ -108,6 +111,7 @@ COMMANDS = {
     DO_PARACHUTE: Command("Parachute", False, False),
     DO_GRIPPER: Command("Gripper", False, False),
     DO_SPRAYER: Command("Sprayer", False, False),
+    DO_AUX_FUNCTION: Command("AuxFunction", False, False),
     JUMP_TAG: Command("Tag", False, False),
     DO_JUMP_TAG: Command("DoJumpTag", False, False),
     DO_WINCH: Command("Winch", False, False),
@@ -136,13 +140,15 @@ VIDEO_COMMANDS = (VIDEO_START_CAPTURE, VIDEO_STOP_CAPTURE)
 """Taken, and without effect: no vehicle here has a video camera."""
 OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
 MOUNT_COMMANDS = (DO_MOUNT_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
-PAYLOAD_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH)
+PAYLOAD_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH, DO_AUX_FUNCTION)
 """In missions of all firmwares."""
+NUMBER_COMMANDS = (DO_DIGICAM_CONFIGURE, DO_DIGICAM_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
+"""Parameters 5 and 6 are numbers of their own. Of every other command they are a place or stand where one does."""
 ROI_COMMANDS = (DO_SET_ROI_LOCATION, DO_SET_ROI_NONE, DO_SET_ROI)
 CARRIED_OUT = frozenset(
     (*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS, DO_PARACHUTE)
 )
-"""By what is fitted to the vehicle, besides what the autopilot does with them."""
+"""By the bridge and what is fitted to the vehicle, besides what the autopilot does with them."""
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""
 

@@ -25,6 +25,7 @@ GUIDED = 9  # set-points drive, until a limit is reached (a rover: or target, wh
 YAW_SPEED = 10  # rover: turn to a heading at a speed
 PASSED_OVER = 11  # complete at once
 LOITER_TO_ALT = 12  # copter: fly the leg to target, then climb or sink to its height
+PAYLOAD_PLACE = 13  # copter: at target when has_place, else where it is: down, release, up again
 
 # Conditions that hold back the do-commands that follow them (``condition_kind``)
 CONDITION_NONE = 0

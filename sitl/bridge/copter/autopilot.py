@@ -15,6 +15,7 @@ from ...autopilot.copter.modes import (
     commands,
     ground,
     guided_setpoints,
+    payload_place,
     set_mode,
     simple,
     systemid,
@@ -75,6 +76,8 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(WARNING, _INSTEAD[int(a)] if b else f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
         if code == events.TERRAIN_DID:
             return [Text(CRITICAL, TERRAIN_TEXTS[int(a)])]
+        if code == events.PAYLOAD_PLACE_DID:
+            return [Text(*payload_place.text(int(a), b))]
         if code == events.CIRCLE_BEGINS:
             return [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")]
         if code == events.RETURN_ACTIVE:
@@ -135,7 +138,11 @@ class CopterAutopilot(BaseAutopilot):
         """Stop the motors, in flight too."""
         failsafe.terminate(self._v)
 
-    # ------------------------------------------------------------------ parachute
+    # ------------------------------------------------------------------ gripper, parachute
+
+    def gripper_is(self, there: bool, is_open: bool) -> None:
+        grip = payload_place.HOLDS if there else payload_place.NO_GRIPPER
+        self._v.autopilot.modes.payload_place.gripper = payload_place.OPEN if there and is_open else grip
 
     def is_landed(self) -> bool:
         return bool(self._v.autopilot.arming.landed)

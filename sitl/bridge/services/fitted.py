@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...autopilot import payload
 from ...autopilot.aux_switch import HIGH, LOW, MIDDLE
 from ...autopilot.mission import item as commands
+from ...autopilot.mission.item import MissionItem
 from .camera import CameraService
 from .gripper import GripperService
 from .mount import MountService
@@ -53,6 +54,14 @@ _SWITCHES: dict[int, tuple[type[Service], Callable[[Any, int], None]]] = {
 }
 """By function."""
 _PARACHUTE = (payload.SWITCH_PARACHUTE_ENABLE, payload.SWITCH_PARACHUTE_RELEASE, payload.SWITCH_PARACHUTE)
+
+
+def run_aux_function(bridge: Bridge, item: MissionItem) -> None:
+    """A mission's DO_AUX_FUNCTION: parameter 1 a function of switches, 2 its position (0 low, 1 middle, 2 high)."""
+    function, position = int(item.p1), LOW + int(item.p2)
+    if position in (LOW, MIDDLE, HIGH):
+        bridge.autopilot.run_aux_function(function, position)
+        bridge.say_pending()
 
 
 def switched(bridge: Bridge, function: int, position: int) -> None:

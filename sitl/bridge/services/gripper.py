@@ -14,10 +14,10 @@ from .statustext import StatusTextService
 
 RELEASE, GRAB = 0, 1
 """GRIPPER_ACTIONS"""
+NEUTRAL = -1
+"""It was not told to move since boot."""
 MOVES_US = 500_000
 """So long it moves."""
-READY_US = 2_000_000
-"""After boot."""
 TEXTS = {RELEASE: ("Gripper load releasing", "Gripper load released"),
          GRAB: ("Gripper load grabbing", "Gripper load grabbed")}  # fmt: skip
 """By action: when it begins, and when it is done."""
@@ -26,9 +26,9 @@ TEXTS = {RELEASE: ("Gripper load releasing", "Gripper load released"),
 class State(NamedTuple):
     """What it does. Times since boot [us]."""
 
-    action: int = RELEASE
-    done_us: int = READY_US + MOVES_US
-    is_done: bool = False
+    action: int = NEUTRAL
+    done_us: int = 0
+    is_done: bool = True
     released_us: int = 0
     """When it was told to open."""
 
@@ -41,8 +41,8 @@ class GripperService(PayloadService):
         self._there = self._value("GRIP_ENABLE") != 0.0 and self._value("GRIP_TYPE") == payload.BY_SERVO
         self._state = State()
         if self._there:
-            self._send(payload.GRIPPER, self._values["GRIP_RELEASE"])
-            self.due_us = self._state.done_us
+            self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
+            self._tell()
 
     def snapshot(self) -> Any:
         return (tuple(self._state), self.due_us)
@@ -55,6 +55,15 @@ class GripperService(PayloadService):
     def is_there(self) -> bool:
         """Whether there is one, and switched on."""
         return self._there and self._values["GRIP_ENABLE"] != 0.0
+
+    def parameter_changed(self, name: str) -> None:
+        if name == "GRIP_ENABLE":
+            self._tell()
+
+    def _tell(self) -> None:
+        """Tell the autopilot, which waits for it where it places a load."""
+        state = self._state
+        self.bridge.autopilot.gripper_is(self.is_there, state.action == RELEASE and state.is_done)
 
     def carry_out(self, item: MissionItem) -> None:
         """A mission's DO_GRIPPER."""
@@ -90,11 +99,13 @@ class GripperService(PayloadService):
         say(INFO, TEXTS[action][0])
         self._state = State(action, now + MOVES_US, False, now if action == RELEASE else state.released_us)
         self.due_us = now + MOVES_US
+        self._tell()
 
     def service(self, now_us: int) -> None:
         state, self.due_us = self._state, NEVER
         if not state.is_done and now_us >= state.done_us:
             self._state = state._replace(is_done=True)
+            self._tell()
             self.bridge.get(StatusTextService).say(INFO, TEXTS[state.action][1])
         if self._state.action == RELEASE and self._state.is_done:
             self._close_in_time(now_us)

@@ -7,6 +7,7 @@ import argparse
 import math
 from pathlib import Path
 
+from sitl.autopilot.mission.item import NAV_SPLINE_WAYPOINT
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.execute import terminable
@@ -19,9 +20,11 @@ from sitl.vehicle.kinds import DEFAULT, KINDS
 from sitl.vehicles import load as load_airframe
 
 from .. import library
-from ..files import MissionFile, for_vehicle, load
+from ..files import MissionFile, for_vehicle
 from ..files.document import kind_of_type
+from ..files.store import READ_TEXT
 from ..fly import LIMIT_S, Outcome, checked, fly
+from .options import add_file_options, load_all, say_notes
 
 GENERIC = 0
 """MAV_TYPE_GENERIC"""
@@ -33,7 +36,7 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser.add_argument(
         "mission",
         metavar="FILE|NAME",
-        help=".plan, .waypoints or .txt file, or a mission of the library (sitl mission library)",
+        help=f"a file: {READ_TEXT}; or a mission of the library (sitl mission library)",
     )
     parser.add_argument("--vehicle", choices=sorted(KINDS), help="default: the vehicle type of the file, or a copter")
     parser.add_argument("--speedup", metavar="K|max", help=f"simulated seconds a second (default {DEFAULT_TEXT})")
@@ -44,6 +47,7 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         metavar="SIM_SECONDS",
         help=f"simulated seconds since arming (default {LIMIT_S:g})",
     )
+    add_file_options(parser)
     recordings.add_recording_option(parser)
     parser.add_argument(
         "--out", action="append", default=[], metavar="udp:HOST:PORT", help="also send telemetry to this address"
@@ -66,9 +70,17 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
     entry = library.find(name) if name in library.entries() else None
     if entry is None and not Path(name).exists() and not Path(name).suffix:
         library.find(name)  # says what there is
-    file = load(entry.path if entry else name)
+    file = load_all(str(entry.path) if entry else name, options)
+    if not file.mission.items:
+        raise OptionError(
+            f"{file.name}: no mission, but a geofence or rally points: they are given beside a mission "
+            f"(sitl mission fly MISSION --{'fence' if file.fence_items else 'rally'} {name})"
+        )
     params = prepare(options, file, entry)
-    curved, file = len(file.mission), for_vehicle(file, KINDS[options.vehicle].firmware.commands.taken)
+    taken = KINDS[options.vehicle].firmware.commands.taken
+    has_curves = any(item.command == NAV_SPLINE_WAYPOINT for item in file.mission.items)
+    file = for_vehicle(file, taken)
+    say_notes(file)
     folder = open_folder(options.log_dir)
     links = [open_link(text) for text in options.out]
     simulation = build_simulation(options, params)
@@ -81,7 +93,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
         log = runner.open_log(simulation, folder, stem)
         if not options.quiet:
             print(f"{file.name}: {len(file.mission) - 1} items, {simulation.airframe.name}")
-            if len(file.mission) != curved:
+            if has_curves and NAV_SPLINE_WAYPOINT not in taken:
                 print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
             if file.has_fence_or_rally:
                 say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)

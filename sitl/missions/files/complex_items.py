@@ -12,8 +12,9 @@ import math
 from sitl.autopilot.mission.item import GLOBAL, NAV_WAYPOINT, RELATIVE, TERRAIN, MissionItem
 from sitl.autopilot.mission.validate import HIGHEST, MAX_ITEMS
 
-from .document import Plane, Point, along, area, make, moved, shifted
+from .document import make
 from .json_reader import Node
+from .plane import Plane, Point, along, area, moved, shifted
 
 Line = list[Point]
 FROM_RIGHT, FROM_END = 1, 2

@@ -18,15 +18,17 @@ from sitl.autopilot.mission.item import (
     FENCE_RETURN_POINT,
     NAV_LAND,
     NAV_TAKEOFF,
+    NUMBER_COMMANDS,
     RALLY_POINT,
     RELATIVE,
     MissionItem,
 )
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.validate import HIGHEST, PLACE_FRAMES
-from sitl.core.geodesy import add_offset, offset_ne
 from sitl.errors import OptionError
 from sitl.vehicle.kinds import KINDS
+
+from .plane import Place
 
 FIXED_WING, QUADROTOR, GROUND_ROVER, BOAT = 1, 2, 10, 11
 """MAV_TYPE"""
@@ -40,10 +42,6 @@ def kind_of_type(vehicle_type: int | None) -> str | None:
     return kind.name if kind is not None else None
 
 
-Place = tuple[float, float]
-"""Latitude, longitude [deg]."""
-
-
 @dataclass(frozen=True)
 class FenceCircle:
     """A geofence circle."""
@@ -53,6 +51,8 @@ class FenceCircle:
     """[m]"""
     inclusion: bool = True
     """To stay inside; else to stay out."""
+    frame: int = RELATIVE
+    """MAV_FRAME of the items; a fence has no height of its own."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,7 @@ class FencePolygon:
 
     corners: tuple[Place, ...]
     inclusion: bool = True
+    frame: int = RELATIVE
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,9 @@ class RallyPoint:
 
     place: Place
     height: float
-    """Height above home [m]."""
+    """[m] in the frame."""
+    frame: int = RELATIVE
+    """MAV_FRAME; RELATIVE: above home."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,10 @@ class MissionFile:
     """Return point after a fence breach: latitude, longitude [deg], height above home [m]."""
     rally: tuple[RallyPoint, ...] = ()
     complexes: tuple[Complex, ...] = ()
+    is_path: bool = False
+    """It is a bare path: waypoints without a take-off and an end."""
+    notes: tuple[str, ...] = ()
+    """What the user should know of how the file was read."""
 
     @property
     def home(self) -> tuple[float, float, float] | None:
@@ -138,15 +145,16 @@ class MissionFile:
         items = [] if back is None else [_at(FENCE_RETURN_POINT, (back[0], back[1]), z=back[2])]
         for polygon in self.polygons:
             command = FENCE_INCLUSION if polygon.inclusion else FENCE_EXCLUSION
-            items += [_at(command, corner, len(polygon.corners)) for corner in polygon.corners]
+            items += [_at(command, corner, len(polygon.corners), frame=polygon.frame) for corner in polygon.corners]
         for circle in self.circles:
-            items.append(_at(FENCE_CIRCLE if circle.inclusion else FENCE_CIRCLE_OUT, circle.centre, circle.radius))
+            command = FENCE_CIRCLE if circle.inclusion else FENCE_CIRCLE_OUT
+            items.append(_at(command, circle.centre, circle.radius, frame=circle.frame))
         return tuple(items)
 
     @property
     def rally_items(self) -> tuple[MissionItem, ...]:
         """The rally points as a vehicle takes them."""
-        return tuple(_at(RALLY_POINT, point.place, z=point.height) for point in self.rally)
+        return tuple(_at(RALLY_POINT, point.place, z=point.height, frame=point.frame) for point in self.rally)
 
     def simple(self) -> MissionFile:
         """A copy in which complex items are replaced by their simple items."""
@@ -166,8 +174,8 @@ LARGEST = 3.4028234663852886e38
 
 
 def has_degrees(command: int) -> bool:
-    """Whether parameters 5 and 6 are latitude and longitude."""
-    return command not in COMMANDS or COMMANDS[command].has_place
+    """Whether parameters 5 and 6 are latitude and longitude, or stand where these do: MAVLink carries them as degE7."""
+    return command not in NUMBER_COMMANDS
 
 
 def make(
@@ -191,7 +199,10 @@ def make(
             raise MissionFileError(
                 f"{where}: parameter {k + 1} is {values[k]}: it is within +-{LARGEST:.2g}, MAVLink's single precision"
             )
-    scale = 1e7 if COMMANDS[command].has_place else 1.0
+    scale = 1e7 if has_degrees(command) else 1.0
+    if scale == 1.0 and (x != int(x) or y != int(y)):
+        k = 5 if x != int(x) else 6
+        raise MissionFileError(f"{where}: parameter {k} is {values[k - 1]}: a whole number is needed{_of(command)}")
     item = MissionItem(command, frame, p1, p2, p3, p4, round(x * scale), round(y * scale), z, autocontinue, current)
     result = validate.check(item)
     if result != validate.ACCEPTED:
@@ -199,15 +210,25 @@ def make(
     return item
 
 
+def _of(command: int) -> str:
+    return f" (command {command} {COMMANDS[command].name})"
+
+
 def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) -> str:
     """Reason for the refusal of an item, in words."""
-    of = f" (command {command} {COMMANDS[command].name})"
+    of = _of(command)
     if result == validate.UNSUPPORTED_FRAME:
         known = ", ".join(f"{number} {FRAME_NAMES[number]}" for number in PLACE_FRAMES)
         return f"frame {frame} is not known for places; known are {known}{of}"
+    if result == validate.ERROR:
+        said = "item 0 is home" if int(values[0]) == 0 else "items are numbered from 1, home is 0"
+        return f"DO_JUMP to item {values[0]:g} cannot be flown: {said}{of}"
     k = result - validate.INVALID_PARAM1
-    value = values[k] if 0 <= k < 7 else math.nan
+    value = values[k]
     if not COMMANDS[command].has_place or k < 4:
+        if math.isfinite(value):
+            limit = f"{validate.INT32_MAX * (1e-7 if has_degrees(command) else 1.0):.10g}"
+            return f"parameter {k + 1} is {value}: it is within +-{limit}, which MAVLink carries{of}"
         return f"parameter {k + 1} is {value}: a finite number is needed{of}"
     if result == validate.INVALID_PARAM5_X:
         return f"latitude {value} is not within -90 .. 90 degrees{of}"
@@ -216,68 +237,17 @@ def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) ->
     return f"altitude {value} is not a number of metres within +-{HIGHEST:g}{of}"
 
 
+def degrees(item: MissionItem) -> Place:
+    """Place of an item [deg]."""
+    return (round(item.x * 1e-7, 8), round(item.y * 1e-7, 8))
+
+
 def numbers(item: MissionItem) -> tuple[float, ...]:
     """The seven parameters of an item, places in degrees."""
-    if has_degrees(item.command):
-        return (item.p1, item.p2, item.p3, item.p4, round(item.x * 1e-7, 8), round(item.y * 1e-7, 8), item.z)
-    return (item.p1, item.p2, item.p3, item.p4, item.x, item.y, item.z)
+    x, y = degrees(item) if has_degrees(item.command) else (item.x, item.y)
+    return (item.p1, item.p2, item.p3, item.p4, x, y, item.z)
 
 
-Point = tuple[float, float]
-"""North, east [m]."""
-
-
-class Plane:
-    """Flat earth around an origin, as the vehicle's own navigation has it."""
-
-    def __init__(self, origin: Place) -> None:
-        self._lat, self._lon = origin[0] * 1e7, origin[1] * 1e7
-
-    def point(self, place: Place) -> Point:
-        """Metres of a place."""
-        north, east = offset_ne(self._lat, self._lon, place[0] * 1e7, place[1] * 1e7)
-        return (float(north), float(east))
-
-    def place(self, point: Point) -> Place:
-        """Degrees of a point."""
-        lat, lon = add_offset(self._lat, self._lon, point[0], point[1])
-        return (float(lat) * 1e-7, float(lon) * 1e-7)
-
-
-def along(a: Point, b: Point) -> Point:
-    """Unit vector from ``a`` to ``b``; zero when they are the same."""
-    north, east = b[0] - a[0], b[1] - a[1]
-    length = math.hypot(north, east)
-    return (north / length, east / length) if length > 0.0 else (0.0, 0.0)
-
-
-def moved(p: Point, direction: Point, distance: float) -> Point:
-    """``p`` moved by a distance [m] along a unit vector."""
-    return (p[0] + direction[0] * distance, p[1] + direction[1] * distance)
-
-
-def shifted(line: list[Point], distance: float, closed: bool = False) -> list[Point]:
-    """A line (or the corners of a polygon) moved to its right by a distance [m], corners mitred, at most threefold."""
-    count = len(line)
-    moved_points = []
-    for k, p in enumerate(line):
-        before = line[k - 1] if closed or k > 0 else None
-        after = line[(k + 1) % count] if closed or k < count - 1 else None
-        into = along(before, p) if before is not None else along(p, line[k + 1])
-        out = along(p, after) if after is not None else into
-        right_in, right_out = (-into[1], into[0]), (-out[1], out[0])
-        north, east = right_in[0] + right_out[0], right_in[1] + right_out[1]
-        half = math.hypot(north, east) / 2.0  # cosine of half the turn
-        reach = distance / max(half, 1.0 / 3.0)
-        moved_points.append(moved(p, along((0.0, 0.0), (north, east)), reach))
-    return moved_points
-
-
-def area(polygon: list[Point]) -> float:
-    """Area [m^2]; positive when its corners go round clockwise, seen from above."""
-    return 0.5 * sum(polygon[k - 1][0] * polygon[k][1] - polygon[k][0] * polygon[k - 1][1] for k in range(len(polygon)))
-
-
-def _at(command: int, place: Place, p1: float = 0.0, z: float = 0.0) -> MissionItem:
+def _at(command: int, place: Place, p1: float = 0.0, z: float = 0.0, frame: int = RELATIVE) -> MissionItem:
     lat, lon = place
-    return MissionItem(command, RELATIVE, float(p1), x=round(lat * 1e7), y=round(lon * 1e7), z=z)
+    return MissionItem(command, frame, float(p1), x=round(lat * 1e7), y=round(lon * 1e7), z=z)

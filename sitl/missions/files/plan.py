@@ -11,7 +11,7 @@ import json
 import math
 from typing import Any
 
-from sitl.autopilot.mission.item import COMMANDS, DO_JUMP, GLOBAL, NAV_WAYPOINT, RELATIVE, MissionItem
+from sitl.autopilot.mission.item import COMMANDS, DO_JUMP, GLOBAL, NAV_WAYPOINT, RELATIVE, RELATIVE_FRAMES, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
 
 from . import complex_items
@@ -24,7 +24,6 @@ from .document import (
     MissionFile,
     MissionFileError,
     RallyPoint,
-    has_degrees,
     make,
     numbers,
 )
@@ -53,7 +52,10 @@ def parse(text: str, name: str = "mission") -> MissionFile:
     top = Node(document, name)
     if not isinstance(document, dict) or document.get("fileType") != "Plan":
         found = document.get("fileType") if isinstance(document, dict) else None
-        raise top.fail(f"fileType is {found!r}: not a plan of QGroundControl ('Plan')")
+        raise top.fail(
+            f"fileType is {found!r}: not a plan of QGroundControl ('Plan'). A mission is a .plan (Save in "
+            "QGroundControl's Plan view) or 'QGC WPL 110' text (Write WP File in Mission Planner, wp save in MAVProxy)"
+        )
     Node(top["version"].value, f"{name}: version").whole(1)
     found = Node(top["mission"].value, f"{name}: mission")
     found["version"].whole(2)
@@ -191,7 +193,7 @@ def write(file: MissionFile) -> str:
             "vehicleType": QUADROTOR if file.vehicle_type is None else file.vehicle_type,
             "version": 2,
         },
-        "rallyPoints": {"points": [[*point.place, point.height] for point in file.rally], "version": 2},
+        "rallyPoints": {"points": [_rally(point, file.name) for point in file.rally], "version": 2},
         "version": 1,
     }
     return json.dumps(plan, indent=4) + "\n"
@@ -227,10 +229,16 @@ def plan_writer_simple(seq: int, item: MissionItem) -> dict[str, Any]:
         "params": [None if math.isnan(v) else v for v in numbers(item)],
         "type": "SimpleItem",
     }
-    if has_degrees(item.command) and item.command != DO_JUMP:
+    if item.command not in COMMANDS or COMMANDS[item.command].has_place:
         mode = _MODES.get(item.frame, ABSOLUTE_MODE)
         entry = {"AMSLAltAboveTerrain": None, "Altitude": item.z, "AltitudeMode": mode, **entry}
     return entry
+
+
+def _rally(point: RallyPoint, name: str) -> list[float]:
+    if point.frame not in RELATIVE_FRAMES:
+        raise MissionFileError(f"{name}: a rally point of frame {point.frame}: heights in a plan are above home")
+    return [*point.place, point.height]
 
 
 def _fence(file: MissionFile) -> dict[str, Any]:

@@ -8,7 +8,6 @@ place before to the place after; where it meets a straight leg it goes along tha
 from __future__ import annotations
 
 import math
-from collections.abc import Container
 from dataclasses import replace
 
 from sitl.autopilot.mission.item import (
@@ -21,7 +20,8 @@ from sitl.autopilot.mission.item import (
 )
 from sitl.autopilot.mission.mission import Mission, MissionError
 
-from .document import MissionFile, MissionFileError, Plane
+from .document import MissionFile, MissionFileError
+from .plane import Plane
 
 PIECE = 5.0
 """A curve is cut into pieces of about this length [m], at least two; shorter ones make the vehicle slow."""
@@ -29,11 +29,6 @@ PIECES_MAX = 24
 _PLACES = (NAV_WAYPOINT, NAV_SPLINE_WAYPOINT, NAV_LOITER_TIME, NAV_LOITER_UNLIM)
 
 Point = tuple[float, float, float]
-
-
-def for_vehicle(file: MissionFile, taken: Container[int]) -> MissionFile:
-    """The mission as it is, or with waypoints along its curves when curves are not among the commands ``taken``."""
-    return file if NAV_SPLINE_WAYPOINT in taken else straightened(file)
 
 
 def straightened(file: MissionFile) -> MissionFile:

@@ -1,110 +1,110 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mission files by their suffix, and text files (QGC WPL 110).
-
-"QGC WPL 110" text, which every ground station reads and writes.
-
-https://mavlink.io/en/file_formats/#mission_plain_text_file
-"""
+"""Mission files: what kind a file is, by its content first and then by its name; read and written."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 from pathlib import Path
 
-from sitl.autopilot.mission.item import DO_JUMP, MissionItem
-from sitl.autopilot.mission.mission import Mission, MissionError
+from . import kml, lists, plan, wpl
+from .document import MissionFile, MissionFileError
 
-from . import plan
-from .document import MissionFile, MissionFileError, has_degrees, make
-
-HEADER = "QGC WPL 110"
-COLUMNS = ("index", "current", "frame", "command", "p1", "p2", "p3", "p4", "x", "y", "z", "autocontinue")
-
-
-def parse(text: str, name: str = "mission") -> MissionFile:
-    """The file's mission.
-
-    Raises:
-        MissionFileError: names the line and the column.
-    """
-    lines = text.splitlines()
-    if not lines or lines[0].strip() != HEADER:
-        found = lines[0].strip()[:60] if lines else ""
-        raise MissionFileError(f"{name}:1: expected {HEADER!r}, found {found!r}")
-    items: list[MissionItem] = []
-    places: list[str] = []
-    for number, line in enumerate(lines[1:], start=2):
-        words = line.split()
-        if not words or words[0].startswith("#"):
-            continue
-        where = f"{name}:{number}"
-        if len(words) != len(COLUMNS):
-            raise MissionFileError(f"{where}: {len(words)} columns, expected {len(COLUMNS)} ({' '.join(COLUMNS)})")
-        cells = dict(zip(COLUMNS, words, strict=True))
-        seq, current, frame, command, autocontinue = (
-            _whole(cells[k], f"{where}: {k}") for k in ("index", "current", "frame", "command", "autocontinue")
-        )
-        if seq != len(items):
-            raise MissionFileError(f"{where}: index {seq}, expected {len(items)}: items are numbered from 0 (home) on")
-        values = tuple(_number(cells[k], f"{where}: {k}") for k in COLUMNS[4:11])
-        items.append(make(command, frame, values, autocontinue, where, current))
-        places.append(where)
-    for item, where in zip(items, places, strict=True):
-        if item.command == DO_JUMP and item.p1 not in range(1, len(items)):
-            raise MissionFileError(f"{where}: p1: DO_JUMP to {item.p1:g}; there are items 1 to {len(items) - 1}")
-    try:
-        return MissionFile(Mission.of(items), name)
-    except MissionError as error:
-        raise MissionFileError(f"{name}: {error}") from None
-
-
-def _number(text: str, where: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise MissionFileError(f"{where}: {text!r} is not a number") from None
-
-
-def _whole(text: str, where: str) -> int:
-    value = _number(text, where)
-    if not (math.isfinite(value) and value == int(value)):
-        raise MissionFileError(f"{where}: {text!r} is not a whole number")
-    return int(value)
-
-
-def write(file: MissionFile) -> str:
-    """The text of a mission; fence and rally points have no place in it."""
-    rows = [HEADER]
-    for seq, i in enumerate(file.mission.items):
-        cells = [str(seq), "1" if seq == 0 else "0", str(i.frame), str(i.command)]
-        cells += [f"{v:.8f}" for v in (i.p1, i.p2, i.p3, i.p4)]
-        cells += [f"{v * 1e-7:.8f}" if has_degrees(i.command) else f"{v}" for v in (i.x, i.y)]
-        rows.append("\t".join([*cells, f"{i.z:.6f}", str(i.autocontinue)]))
-    return "\n".join(rows) + "\n"
-
-
+LARGEST = 16 * 1024 * 1024
+"""Of a file [bytes]."""
 SUFFIXES = (".plan", ".waypoints", ".txt")
+"""That are written."""
+READ_TEXT = "QGC WPL text (.waypoints, .txt), .plan, .kml, .kmz, .fen, .poly, RALLY lines"
+ARCHIVE = b"PK\x03\x04"
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
-def load(path: str | Path) -> MissionFile:
-    """Read a file; .plan is QGroundControl's JSON, everything else QGC WPL 110.
+def load(path: str | Path, altitude: float | None = None) -> MissionFile:
+    """Read a file of any kind: QGC WPL text, a .plan, KML or KMZ, a fence (.fen), a polygon (.poly), rally points.
+
+    Args:
+        path: of the file.
+        altitude: height above home of a KML's path [m]; other files say their own.
 
     Raises:
         MissionFileError: the file cannot be read, or something in it cannot be taken.
     """
     path = Path(path)
+    name = str(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
     except OSError as error:
         raise MissionFileError(f"{path}: {error.strerror or error}") from None
+    if len(data) > LARGEST:
+        raise MissionFileError(f"{path}: larger than {LARGEST} bytes")
+    if data.startswith(ARCHIVE):
+        return kml.parse(kml.unpack(data, name), name, altitude)
+    content = _decoded(data, name)
+    start = content.lstrip()[:1]
+    if not start:
+        raise MissionFileError(f"{name}: there is nothing in it; {READ_TEXT} are read")
+    if start == "<":
+        return kml.parse(data if data.startswith(UTF_16) else data.lstrip(), name, altitude)
+    if altitude is not None:
+        raise MissionFileError(f"{name}: altitude {altitude:g} is for the path of a KML; this file says its heights")
+    if start in ("{", "[") or (path.suffix.lower() == ".plan" and not _first(content).startswith("QGC WPL")):
+        return plan.parse(content, name)
+    return _of_lines(content, name, path.suffix.lower())
+
+
+def _decoded(data: bytes, name: str) -> str:
+    """The text of a file."""
+    encoding = "utf-16" if data.startswith(UTF_16) else "utf-8-sig"
+    try:
+        return data.decode(encoding)
     except UnicodeDecodeError as error:
-        raise MissionFileError(f"{path}: byte {error.start} is no text (UTF-8)") from None
-    is_plan = path.suffix.lower() == ".plan"
-    return plan.parse(text, str(path)) if is_plan else parse(text, str(path))
+        if data.lstrip().startswith(b"<"):
+            return "<"  # XML says its encoding
+        raise MissionFileError(f"{name}: byte {error.start} is no text ({encoding[:6].rstrip('-').upper()})") from None
+
+
+def _of_lines(content: str, name: str, suffix: str) -> MissionFile:
+    first = _first(content)
+    words = first.split()
+    if words and words[0].upper() == lists.RALLY_WORD:
+        return lists.parse_rally(content, name)
+    if len(words) == 2 and all(map(_is_number, words)):
+        return lists.parse_polygon(content, name) if suffix == ".poly" else lists.parse_fence(content, name)
+    if suffix in (".fen", ".poly") and not first.startswith("QGC WPL"):
+        raise MissionFileError(f"{name}: {first[:60]!r} is not a latitude and a longitude")
+    return wpl.parse(content, name)
+
+
+def _first(content: str) -> str:
+    """The first line that is no comment."""
+    lines = (line.strip() for line in content.splitlines())
+    return next((line for line in lines if line and not line.startswith("#")), "")
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def joined(file: MissionFile, *others: MissionFile) -> MissionFile:
+    """A mission with the fences and rally points of other files."""
+    for other in others:
+        file = replace(
+            file,
+            circles=file.circles + other.circles,
+            polygons=file.polygons + other.polygons,
+            breach_return=file.breach_return or other.breach_return,
+            rally=file.rally + other.rally,
+            notes=file.notes + other.notes,
+        )
+    return file
 
 
 def save(file: MissionFile, path: str | Path) -> None:
-    """Write a file; what the text format cannot hold (fence, rally points) is left out there.
+    """Write a file; what the text format cannot hold (fence, rally points beside a mission) is left out there.
 
     Raises:
         MissionFileError: the suffix is of neither format, or the file cannot be written.
@@ -113,8 +113,8 @@ def save(file: MissionFile, path: str | Path) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise MissionFileError(f"{path}: suffix {suffix!r} is not one of {', '.join(SUFFIXES)}")
-    text = plan.write(file) if suffix == ".plan" else write(file)
+    content = plan.write(file) if suffix == ".plan" else wpl.write(file)
     try:
-        path.write_text(text, encoding="utf-8")
+        path.write_text(content, encoding="utf-8")
     except OSError as error:
         raise MissionFileError(f"{path}: {error.strerror or error}") from None

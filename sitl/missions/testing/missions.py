@@ -43,15 +43,15 @@ class MissionFlier(Client):
     """Where files are looked for."""
 
     def upload(self, given: Given) -> Mission:
-        """Upload a .plan or .waypoints file, a mission of the library by its name, or items (home first).
+        """Upload a file (``sitl.missions.files.load``), a mission of the library by its name, or items (home first).
 
         A file is looked for beside the test, then where pytest runs. A rover gets waypoints on the curve of spline
         waypoints.
         """
         if isinstance(given, str | Path):
-            assert self.connection.kind is not None
-            taken = self.connection.kind.firmware.commands.taken
-            mission = for_vehicle(load(find(given, self.folders)), taken).mission
+            kind = self.connection.kind
+            assert kind is not None
+            mission = for_vehicle(load(find(given, self.folders)), kind.firmware.commands.taken).mission
         else:
             mission = given if isinstance(given, Mission) else Mission(tuple(given))
         simulation = self.connection.simulation

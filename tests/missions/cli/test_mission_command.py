@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
@@ -105,6 +106,41 @@ def test_convert(capsys: pytest.CaptureFixture[str]) -> None:
     assert "is there already; --force replaces it" in capsys.readouterr().err
     assert cli.main(["mission", "convert", "copter/survey.plan", "survey.plan", "--expand", "--force"]) == 0
     assert not load("survey.plan").complexes
+
+
+AREA = "-35.3631 149.1651\n-35.3631 149.1654\n-35.3634 149.1654\n"
+KML = """<kml><Placemark><LineString><coordinates>149.16523,-35.363261 149.16523,-35.36322</coordinates>
+</LineString></Placemark></kml>"""
+
+
+def test_a_path_is_flown_at_an_altitude(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """With a take-off and a return, inside a fence of another file; without a height it is asked for."""
+    (tmp_path / "path.kml").write_text(KML)
+    (tmp_path / "area.poly").write_text(AREA)
+    assert cli.main(["mission", "fly", "path.kml"]) == 2
+    assert "its height is missing (--altitude METRES" in capsys.readouterr().err
+    words = ["mission", "fly", "path.kml", "--altitude", "4", "--fence", "area.poly"]
+    assert cli.main(words) == 0
+    out = capsys.readouterr().out
+    assert "path.kml: 4 items" in out
+    assert "geofence of 1 areas" in out
+    assert cli.main(["mission", "convert", "path.kml", "path.plan", "--altitude", "4", "--vehicle", "rover"]) == 0
+    assert [item.command for item in load("path.plan").mission.items[1:]] == [16, 16]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["fly", "area.poly"], r"area.poly: no mission, but a geofence.* \(sitl mission fly MISSION --fence area.poly"),
+        (["fly", "copter/square", "--rally", "area.poly"], "--rally area.poly: there is none in it"),
+        (["fly", "copter/square", "--altitude", "3"], "altitude 3 is for the path of a KML"),
+        (["convert", "area.poly", "b.kml"], "suffix '.kml' is not one of .plan, .waypoints, .txt"),
+    ],
+)
+def test_what_is_read_beside_a_mission(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("area.poly").write_text(AREA)
+    assert cli.main(["mission", *words]) == 2
+    assert re.search(message, capsys.readouterr().err)
 
 
 def test_the_library_is_listed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,7 +13,7 @@ from sitl.autopilot.mission import item as c
 from sitl.missions.files import MissionFileError, plan, straightened
 from sitl.missions.files import plan as writer
 from sitl.missions.files.complex_items import FROM_END, FROM_RIGHT, across_polygon, count_of, there_and_back
-from sitl.missions.files.document import Plane, area, shifted
+from sitl.missions.files.plane import Plane, area, shifted
 from sitl.missions.library.draft import LAT, LON, Draft, degrees, survey, transects
 
 PLANE = Plane((LAT, LON))

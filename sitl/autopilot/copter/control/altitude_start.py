@@ -84,6 +84,17 @@ def init_d_stopping_point(control: Control, est: Estimate, p: Parameters) -> Non
 
 
 @law
+def init_d_no_descent(control: Control, est: Estimate, p: Parameters) -> None:
+    """Start from the present altitude, climb and throttle, but not from a descent."""
+    init_d(control, est, p)
+    c = control.pos_d
+    c.vel_desired = min(c.vel_desired, 0.0)
+    c.vel_target = min(c.vel_target, 0.0)
+    c.accel_desired = min(c.accel_desired, 0.0)
+    c.accel_target = min(c.accel_target, 0.0)
+
+
+@law
 def relax_d(control: Control, est: Estimate, p: Parameters, throttle: float) -> None:
     """Let the throttle decay to ``throttle`` (0 .. 1) at the present altitude (on the ground, spooling)."""
     init_d(control, est, p)

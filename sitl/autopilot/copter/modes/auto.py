@@ -14,7 +14,7 @@ from ...events import CIRCLE_BEGINS, MODE_CHANGED, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, REASON_AUTO_RTL_EXIT
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
-from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, RTL, TAKEOFF
+from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, PAYLOAD_PLACE, RTL, TAKEOFF
 from ...state import Arming, Estimate
 from ..control.state import AttitudeState, Control
 from ..navigation import circle, command, waypoint
@@ -22,7 +22,7 @@ from ..navigation.state import CopterNav
 from ..parameters import Parameters
 from ..parameters.flight import Waypoints
 from ..state import Vehicle
-from . import auto_yaw, descent, ground, guided, land, loiter_to_alt, precision_land, rtl, takeoff
+from . import auto_yaw, descent, ground, guided, land, loiter_to_alt, payload_place, precision_land, rtl, takeoff
 from .mode import CopterMode
 from .state import AutoState, AutoYaw, Modes
 
@@ -118,6 +118,8 @@ def begin(v: Vehicle) -> None:
     elif auto.submode == kinds.GUIDED:
         guided.start(v)
         guided.begin_limits(modes.guided, v.time_us, horizontal(est.pos))
+    elif auto.submode == PAYLOAD_PLACE:
+        payload_place.begin(v)
     elif auto.submode == LAND and not nav.has_place:
         begin_descent(modes, v.time_us, control, est, p)
 
@@ -177,6 +179,8 @@ def run_command(v: Vehicle, kind: int) -> bool:
         return run_land(v)
     if kind == LOITER_TO_ALT:
         return loiter_to_alt.run(v)
+    if kind == PAYLOAD_PLACE:
+        return payload_place.run(v)
     if kind == RTL:
         rtl.run(v)
         return ap.arming.landed and rtl.is_landing(ap.modes)

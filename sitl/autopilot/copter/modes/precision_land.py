@@ -144,13 +144,7 @@ def follow(v: Vehicle, sticks: Vec2, height: float, stay: bool) -> None:
     """
     ap = v.autopilot
     modes, control, est, t = ap.modes, ap.control, ap.estimate, ap.landing_target
-    on_target = t.acquired and not modes.land.repositioned
-    if ap.arming.landed_maybe:
-        position_start.soften_for_landing_ne(control.pos_ne, est.pos)
-    if on_target:
-        position.input_pos_vel_accel_ne(control.pos_ne, target_motion(t, est, ap.params.PLND))
-    else:
-        position.input_vel_accel_ne(control.pos_ne, sticks, ZERO2)
+    on_target = hold_place(v, sticks)
     if on_target and not stay and not modes.land.pause:
         near_ground = height < descent.height_low(ap.params.LAND) or ap.arming.landed_maybe
         rate = descent.sink_rate(height, control.pos_d, ap.params.LAND, ap.params.PSC.POSZ_P)
@@ -160,6 +154,24 @@ def follow(v: Vehicle, sticks: Vec2, height: float, stay: bool) -> None:
     else:
         descent.sink(control.pos_d, modes.land, height, ap.arming.landed_maybe, ap.params)
     ground.fly(modes.auto_yaw, control, est, ap.params)
+
+
+@law
+def hold_place(v: Vehicle, sticks: Vec2) -> bool:
+    """One tick over the target while it is seen, else where it is; whether it is over the target.
+
+    ``sticks``: velocity that they ask for [m/s].
+    """
+    ap = v.autopilot
+    control, est, t = ap.control, ap.estimate, ap.landing_target
+    on_target = t.acquired and not ap.modes.land.repositioned
+    if ap.arming.landed_maybe:
+        position_start.soften_for_landing_ne(control.pos_ne, est.pos)
+    if on_target:
+        position.input_pos_vel_accel_ne(control.pos_ne, target_motion(t, est, ap.params.PLND))
+    else:
+        position.input_vel_accel_ne(control.pos_ne, sticks, ZERO2)
+    return on_target
 
 
 @law

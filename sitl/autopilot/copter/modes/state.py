@@ -255,6 +255,19 @@ class AutoState(Record):
     land_state: int  # 0 flying to the place, 1 descending
 
 
+class PayloadPlaceState(Record):
+    """AUTO's PAYLOAD_PLACE."""
+
+    stage: int  # payload_place.py
+    limit: float  # greatest descent [m]; 0 none
+    speed: float  # of the descent [m/s]
+    start_d: float  # where it began, NED [m]
+    established_us: int  # when it was not steady yet
+    placed_us: int  # when the load did not stand yet
+    thrust: float  # least one of the steady descent, 0 .. 1
+    gripper: int  # NO_GRIPPER, HOLDS, OPEN: written by the gripper
+
+
 class PilotState(Record):
     """The pilot's sticks and switch."""
 
@@ -320,6 +333,7 @@ class Modes(shared.Modes):
     landing: LandingState
     arming_delay: bool  # armed less than 2 s ago: motors wait
     nav: CopterNav
+    payload_place: PayloadPlaceState
 
 
 if not TYPE_CHECKING:

@@ -31,6 +31,7 @@ from .flight import (
     Land,
     Legs,
     Loiter,
+    PayloadPlace,
     Pilot,
     PosHold,
     Rtl,
@@ -113,6 +114,7 @@ class Parameters(shared.Parameters):
     OA: CopterPathPlanning
     PHLD: PosHold
     PILOT: Pilot
+    PLDP: PayloadPlace
     PLND: PrecisionLanding
     PRX: Proximity
     PRX1: ProximitySensor

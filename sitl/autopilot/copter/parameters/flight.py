@@ -55,6 +55,15 @@ class Land(ParameterGroup):
     REPOSITION: float = param(1, 0, 1, "", "The pilot may move the landing place", INT8)
 
 
+class PayloadPlace(ParameterGroup):
+    """PLDP_: AUTO's PAYLOAD_PLACE."""
+
+    THRESH: float = param(0.9, 0.0, 1.0, "", "The load stands when less than this part of the descent's thrust is left")
+    RNG_MAX: float = param(0.0, 0.0, 100.0, "m", "And the rangefinder reads less than this; 0: it is not asked")
+    DELAY: float = param(0.0, 0.0, 120.0, "s", "Wait between release and climb")
+    SPEED_DN: float = param(0.0, 0.0, 5.0, "m/s", "Descent; 0 as LAND_SPEED")
+
+
 class Loiter(ParameterGroup):
     """LOIT_: LOITER."""
 

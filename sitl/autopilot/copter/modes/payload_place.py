@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""AUTO's PAYLOAD_PLACE: to the place at the present height, down until the load stands, release, up again.
+
+The load stands when the descent needs less thrust than before: below PLDP_THRESH times the least of its first two
+seconds, for half a second. Then the gripper opens, and after PLDP_DELAY the vehicle climbs to where the descent began.
+https://ardupilot.org/copter/docs/common-mission-command-list.html#nav-payload-place
+"""
+
+from __future__ import annotations
+
+from ....core.kernels import law
+from ...control.shaping import Motion
+from ...events import COMMAND_ARRIVED, PAYLOAD_PLACE_DID, Events, emit, emit_and_return
+from ...navigation.state import NAV_COMMAND, Nav
+from ...terrain.ground import by_range
+from ..control import altitude, altitude_start
+from ..navigation import waypoint
+from ..parameters import Parameters
+from ..state import Vehicle
+from . import auto_yaw, descent, ground, precision_land
+from .state import PayloadPlaceState
+
+# Stages (``PayloadPlaceState.stage``)
+FLYING, STARTING, DESCENDING, RELEASING, OPENING, WAITING, CLIMB_STARTS, CLIMBING, DONE = range(9)
+
+# The gripper (``PayloadPlaceState.gripper``)
+NO_GRIPPER, HOLDS, OPEN = range(3)
+
+# What it did (PAYLOAD_PLACE_DID)
+LANDED, ABORTED, BY_HAND, AT_LIMIT, NO_RANGE, PLACED, RELEASED = range(7)
+_INFO, _WARNING = 6, 4
+TEXTS = {
+    LANDED: (_INFO, "landed"),
+    ABORTED: (_INFO, "Abort: Gripper Open"),
+    BY_HAND: (_INFO, "Manual release"),
+    AT_LIMIT: (_WARNING, "Reached maximum descent"),
+    NO_RANGE: (_WARNING, "PLDP_RNG_MAX set and rangefinder not enabled"),
+    PLACED: (_INFO, "payload release thrust threshold: {:f}"),
+    RELEASED: (_INFO, "Releasing the gripper"),
+}
+"""MAV_SEVERITY and text."""
+
+STEADY = 0.95
+"""Of the descent's speed: from then on its thrust counts."""
+LEARNS_US, PLACED_US = 2_000_000, 500_000
+"""So long the descent's thrust is learnt; so long the load has to stand."""
+ARRIVING = 0.1
+"""Part of the climb's speed from which the way to a stop may be left out."""
+
+
+def text(did: int, number: float) -> tuple[int, str]:
+    """MAV_SEVERITY and status text of PAYLOAD_PLACE_DID (shell side)."""
+    severity, said = TEXTS[did]
+    return severity, f"PayloadPlace: {said.format(number)}"
+
+
+@law
+def begin(v: Vehicle) -> None:
+    """Begin the command that the shell has written."""
+    ap = v.autopilot
+    ap.modes.payload_place.speed = 0.0
+    if ap.modes.nav.has_place:
+        ap.modes.payload_place.stage = FLYING
+    else:
+        start_descent(v)
+
+
+@law
+def start_descent(v: Vehicle) -> None:
+    """Prepare the descent where it is."""
+    ap = v.autopilot
+    ground.set_waypoint_limits(ap.control, ap.params)
+    ground.continue_position_control(ap.control, ap.estimate, ap.params)
+    auto_yaw.set_mode(ap.modes.auto_yaw, auto_yaw.HOLD, ap.control.attitude, ap.estimate)
+    ap.modes.payload_place.stage = STARTING
+
+
+@law
+def run(v: Vehicle) -> bool:
+    """One tick; whether the load is placed and the vehicle up again."""
+    ap = v.autopilot
+    modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
+    place = modes.payload_place
+    if ground.is_grounded(ap.arming):
+        ground.rest(ap.arming.armed, control, est, p)
+        return False
+    control.motors.desired_spool = ground.UNLIMITED
+    if ap.arming.landed_maybe and place.stage == DESCENDING:
+        say(ap.events, v.time_us, LANDED, 0.0)
+        place.stage = RELEASING
+    if place.gripper == OPEN:
+        note_open(place, ap.events, v.time_us, control.pos_d.pos_desired)
+    if place.stage == FLYING and modes.nav.reached:
+        start_descent(v)
+    if place.stage == FLYING:
+        waypoint.advance(modes.nav, control, est, p, v.time_us)
+        ground.fly(modes.auto_yaw, control, est, p)
+        return False
+    if place.stage == STARTING:
+        begin_descent(place, v.time_us, control.pos_d.pos_desired, p)
+    if place.stage == DESCENDING:
+        watch_descent(v)
+    elif place.stage >= RELEASING:
+        release(v)
+    fly(v)
+    return place.stage == DONE
+
+
+@law
+def say(events: Events, time_us: int, did: int, number: float) -> None:
+    """Tell the shell."""
+    emit(events, time_us, PAYLOAD_PLACE_DID, float(did), number)
+
+
+@law
+def note_open(place: PayloadPlaceState, events: Events, time_us: int, d: float) -> None:
+    """The gripper is open already: the load is gone; ``d``: height wanted, NED [m]."""
+    if place.stage == FLYING or place.stage == STARTING:
+        say(events, time_us, ABORTED, 0.0)
+        place.start_d = d
+        place.stage = DONE
+    elif place.stage == DESCENDING:
+        say(events, time_us, BY_HAND, 0.0)
+        place.stage = RELEASING
+
+
+@law
+def begin_descent(place: PayloadPlaceState, time_us: int, d: float, p: Parameters) -> None:
+    """Down from a height wanted, NED [m]."""
+    place.established_us = time_us
+    place.start_d = d
+    wanted = p.PLDP.SPEED_DN if p.PLDP.SPEED_DN > 0.0 else abs(p.LAND.SPEED) * 0.01
+    place.speed = min(wanted, abs(p.WPNAV.SPEED_DN) * 0.01)
+    place.thrust = 1.0
+    place.stage = DESCENDING
+
+
+@law
+def watch_descent(v: Vehicle) -> None:
+    """Learn the thrust of a steady descent, then look for less: the load stands."""
+    ap, time_us = v.autopilot, v.time_us
+    place, path, p = ap.modes.payload_place, ap.control.pos_d, ap.params.PLDP
+    thrust = ap.control.attitude.throttle_in
+    if place.limit > 0.0 and path.pos_desired - place.start_d > place.limit:
+        say(ap.events, time_us, AT_LIMIT, 0.0)
+        place.stage = CLIMB_STARTS
+    elif path.vel_desired < STEADY * place.speed:
+        place.established_us = time_us
+    elif time_us - place.established_us < LEARNS_US:
+        place.thrust = min(place.thrust, thrust)
+        place.placed_us = time_us
+    elif thrust > p.THRESH * place.thrust:
+        place.placed_us = time_us
+    elif p.RNG_MAX > 0.0 and v.sensors.rangefinder_count == 0:
+        say(ap.events, time_us, NO_RANGE, 0.0)
+        place.stage = CLIMB_STARTS
+    elif p.RNG_MAX > 0.0 and is_high(v, p.RNG_MAX):
+        place.placed_us = time_us
+    elif time_us - place.placed_us > PLACED_US:
+        say(ap.events, time_us, PLACED, p.THRESH * place.thrust)
+        place.stage = RELEASING
+
+
+@law
+def is_high(v: Vehicle, limit: float) -> bool:
+    """Whether the rangefinder sees the ground further down than a limit [m]."""
+    ap = v.autopilot
+    found = by_range(float(v.sensors.rangefinder_range[0]), ap.control.attitude.cos_lean, ap.estimate.pos.z)
+    return found.is_known and found.d - ap.estimate.pos.z > limit
+
+
+@law
+def release(v: Vehicle) -> None:
+    """One tick from the load's touch-down on: open the gripper, wait, climb."""
+    ap, time_us = v.autopilot, v.time_us
+    place, path = ap.modes.payload_place, ap.control.pos_d
+    if place.stage == RELEASING:
+        altitude_start.init_d_no_descent(ap.control, ap.estimate, ap.params)
+        if place.gripper == NO_GRIPPER:
+            place.stage = WAITING
+        else:
+            say(ap.events, time_us, RELEASED, 0.0)
+            ask_to_open(ap.modes.nav, ap.events, time_us)
+            place.stage = OPENING
+        return
+    if place.stage == OPENING and place.gripper != HOLDS:
+        place.stage = WAITING
+    if place.stage == WAITING and time_us - place.placed_us >= PLACED_US + int(ap.params.PLDP.DELAY * 1e6):
+        place.stage = CLIMB_STARTS
+    if place.stage == CLIMB_STARTS:
+        place.stage = CLIMBING
+    if place.stage == CLIMBING:
+        speed = ARRIVING * path.speed_up
+        if path.pos_desired <= place.start_d + 0.5 * speed * speed / path.accel_max:
+            place.stage = DONE
+
+
+@law
+def ask_to_open(nav: Nav, events: Events, time_us: int) -> None:
+    """The shell opens the gripper (``mission.CopterCommands.arrived``)."""
+    emit_and_return(events, time_us, COMMAND_ARRIVED, NAV_COMMAND, float(nav.command_count))
+
+
+@law
+def fly(v: Vehicle) -> None:
+    """Position controllers of this tick: over the place, down, at rest, or up."""
+    ap = v.autopilot
+    place, path = ap.modes.payload_place, ap.control.pos_d
+    precision_land.hold_place(v, descent.stick_velocity(ap.modes.pilot, ap.estimate.yaw, ap.params))
+    if place.stage <= DESCENDING:
+        altitude.land_at_rate_d(path, place.speed, True)
+    elif place.stage < CLIMBING:
+        altitude.land_at_rate_d(path, 0.0, False)
+    else:
+        altitude.input_pos_vel_accel_d(path, Motion(place.start_d, 0.0, 0.0))
+    ground.fly(ap.modes.auto_yaw, ap.control, ap.estimate, ap.params)
