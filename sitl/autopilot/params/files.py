@@ -53,6 +53,8 @@ class FileValues(dict[str, float]):
             both._add(other)
         return both
 
+    __ior__ = __or__  # type: ignore[assignment]
+
     def __ror__(self, other: Mapping[str, float]) -> FileValues:  # type: ignore[override]
         """These over others."""
         both = FileValues(self)
@@ -72,7 +74,7 @@ class FileValues(dict[str, float]):
     def _add(self, other: FileValues) -> None:
         self.sources.update(other.sources)
         self.remarks += other.remarks
-        self.read_only |= other.read_only
+        self.read_only = (self.read_only - other.keys()) | other.read_only
         self._told = other._told
 
 

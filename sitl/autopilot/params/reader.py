@@ -116,8 +116,8 @@ class Reader:
         self.text(_decoded(data, source), source, path, root, (*within, path.resolve()))
 
     def _directive(self, line: str, where: str, file: Path | None, root: Path | None, within: tuple[Path, ...]) -> None:
-        word, _, rest = line.partition(" ")
-        name = rest.split("#", 1)[0].strip().strip("\"'")
+        word, *rest = line.split("#", 1)[0].split(None, 1)
+        name = "".join(rest).strip().strip("\"'")
         if word.lower() != "@include":
             self.remarks.append(f"{where}: {_shortened(word)} is not known here, and passed over")
         elif file is None or root is None or not name:

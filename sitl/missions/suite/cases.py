@@ -104,7 +104,8 @@ def find(folder: str | Path) -> list[Case]:
     defaults = _checked(folder, "[defaults]", table.get("defaults", {}), _SETTINGS)
     missions = [_checked(folder, "[[missions]]", row, _MISSION) for row in table.get("missions", [])]
     variants = [_checked(folder, "[[variants]]", row, _VARIANT) for row in table.get("variants", [])] or [{}]
-    named = [name for row in (defaults, *missions, *variants) for name in code_in_files.code_of_options(row)]
+    rows = [{**row, "params": None} for row in (defaults, *missions, *variants)]  # files only in the suite's own folder
+    named = [name for row in rows for name in code_in_files.code_of_options(row)]
     refused = code_in_files.refusal(folder / TOML, named)
     if refused is not None:
         raise SuiteError(refused)
