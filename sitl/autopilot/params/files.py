@@ -200,10 +200,10 @@ def notes(table: Table, values: FileValues) -> list[str]:
 
 
 def _renamed(table: Table, unknown: Mapping[str, float]) -> Iterator[str]:
-    """What parameters of other versions are called here, if they have an effect."""
-    for name, value in unknown.items():
+    """What parameters of other versions are called here, if they would change something; rates of telemetry last."""
+    for name, value in sorted(unknown.items(), key=lambda item: item[0].startswith("SR")):
         ours, factor = here(name) or ("", 1.0)
-        if ours in table and table[ours].has_effect:
+        if ours in table and table[ours].has_effect and stored(table[ours], factor * value) != table[ours].default:
             yield f"{name} {value:g} is {ours} {factor * value:g}"
 
 

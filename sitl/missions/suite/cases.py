@@ -185,15 +185,17 @@ def _params(folder: Path, table: dict[str, Any]) -> dict[str, float]:
     """Parameters of an entry: a table, or a file in the suite's folder.
 
     Raises:
-        ParameterError: the file cannot be read.
-        SuiteError: it is elsewhere.
+        SuiteError: the file cannot be read, or is elsewhere.
     """
     value = table.get("params", {})
     if not isinstance(value, str):
         return dict(value)
     if not (folder / value).resolve().is_relative_to(folder.resolve()):
         raise SuiteError(f"{folder / TOML}: params = {value!r} is not in the folder of the suite")
-    return files.load(folder / value)
+    try:
+        return files.load(folder / value)
+    except files.ParameterError as error:
+        raise SuiteError(f"{folder / TOML}: {error}") from None
 
 
 def _files(folder: Path) -> list[dict[str, Any]]:

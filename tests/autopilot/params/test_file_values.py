@@ -93,14 +93,14 @@ def test_integers_are_stored_as_ardupilot_stores_them(value: float, kept: float)
 
 
 def test_names_of_other_versions_are_told_with_the_value_that_means_the_same() -> None:
-    text = "SYSID_THISMAV 3\nWP_SPD 5\nPSC_NE_VEL_IMAX 10\nSR0_POSITION 4\nGPS_TYPE2 1\nPSC_D_ACC_P 0.05\nQ_ENABLE 1\n"
-    _, said = files.notes(COPTER, files.parse(text))
+    """If it would change something; rates of telemetry come last."""
+    text = "SR0_POSITION 4\nSYSID_THISMAV 3\nWP_SPD 5\nGPS_TYPE 1\nPSC_NE_VEL_IMAX 5\nPSC_D_ACC_P 0.03\nQ_ENABLE 1\n"
+    (said,) = files.notes(COPTER, files.parse(text + "RTL_ALT 2000\n"))
     assert said == (
-        "7 parameters of the files are not in this firmware: SYSID_THISMAV, WP_SPD, PSC_NE_VEL_IMAX, SR0_POSITION, "
-        "GPS_TYPE2, PSC_D_ACC_P, ...; SYSID_THISMAV 3 is MAV_SYSID 3, WP_SPD 5 is WPNAV_SPEED 500, "
-        "PSC_NE_VEL_IMAX 10 is PSC_VELXY_IMAX 1000, SR0_POSITION 4 is MAV1_POSITION 4, "
-        "GPS_TYPE2 1 is GPS2_TYPE 1, PSC_D_ACC_P 0.05 is "
-        "PSC_ACCZ_P 0.5 here"
+        "7 parameters of the files are not in this firmware: SR0_POSITION, SYSID_THISMAV, WP_SPD, GPS_TYPE, "
+        "PSC_NE_VEL_IMAX, PSC_D_ACC_P, ...; SYSID_THISMAV 3 is MAV_SYSID 3, WP_SPD 5 is WPNAV_SPEED 500, "
+        "PSC_NE_VEL_IMAX 5 is PSC_VELXY_IMAX 500, PSC_D_ACC_P 0.03 is PSC_ACCZ_P 0.3, SR0_POSITION 4 is "
+        "MAV1_POSITION 4 here"
     )
 
 
