@@ -134,7 +134,7 @@ def setup(
         kind: "copter" or "rover"; None: what the frame or the mission says, or a copter.
         frame: airframe name, a .py file, or an airframe; None: the kind's first.
         home: latitude, longitude [deg], altitude [m], heading [deg].
-        params: values, or a file of parameters.
+        params: values, or a file of parameters (docs/reference/parameter-files.md).
         world, start: as ``Simulation`` takes them.
         autopilot: "native", or another one ("ardupilot:PROGRAM"; ``sitl.foreign.choice``).
         wind: speed [m/s], or (speed, where it comes from [deg], turbulence [m/s]).
