@@ -28,6 +28,9 @@ from ...core.records import Record, array, noted, repeat
 
 FLOAT, INT8, INT16, INT32 = "float", "int8", "int16", "int32"
 
+BITS16, BITS32 = (-(2**15), 2**15 - 1), (-(2**31), 2**31 - 1)
+"""Ranges of parameters whose bits are looked at one by one: a bit that means nothing here is kept and passed over."""
+
 _INTEGER_LIMITS = {INT8: 127, INT16: 32767, INT32: 2**31 - 1}
 _FLOAT_LIMIT = float(np.finfo(np.float32).max)
 

@@ -26,7 +26,6 @@ REAL = {
     "MOT_THST_HOVER": (0.12, 0.125),
     "ATC_THR_MIX_MAX": (2, 0.9),
     "RPM1_TYPE": (10, 5),
-    "ARMING_CHECK": (-10, 0),
 }
 """Values of real vehicles' files, and what this firmware uses instead."""
 
@@ -48,7 +47,15 @@ def test_values_out_of_range_are_kept_and_the_nearest_are_used() -> None:
     assert values["RTL_ALT"] == 2000.0
     (said,) = [str(w.message) for w in told]
     texts = ", ".join(f"{name} {value} ({used})" for name, (value, used) in REAL.items())
-    assert said == f"7 parameters of the files are out of range (used instead): {texts}"
+    assert said == f"6 parameters of the files are out of range (used instead): {texts}"
+
+
+def test_bits_that_mean_nothing_here_change_none_of_the_others() -> None:
+    """The nearest in range would be other bits: none at all for ARMING_CHECK -10, which has all but two."""
+    values = new()
+    files.apply(values, files.parse("ARMING_CHECK -10\nFS_OPTIONS 256\nLOG_BITMASK -1\nFLIGHT_OPTIONS 16\n"))
+    record = values._record
+    assert (record.ARMING.CHECK, record.FS.OPTIONS, record.LOG.BITMASK, record.FLIGHT_OPTIONS) == (-10, 256, -1, 16)
 
 
 def test_the_same_values_are_refused_when_a_program_gives_them() -> None:
