@@ -32,7 +32,7 @@ BITS16, BITS32 = (-(2**15), 2**15 - 1), (-(2**31), 2**31 - 1)
 """Ranges of parameters whose bits are looked at one by one: a bit that means nothing here is kept and passed over."""
 
 _INTEGER_LIMITS = {INT8: 127, INT16: 32767, INT32: 2**31 - 1}
-_FLOAT_LIMIT = float(np.finfo(np.float32).max)
+FLOAT_LIMIT = float(np.finfo(np.float32).max)
 
 
 class Parameter(NamedTuple):
@@ -67,7 +67,7 @@ class Parameter(NamedTuple):
         """Why ``value`` is not a number that can be stored, or None when it is one."""
         if not isinstance(value, Real):
             return f"{self.name}: {value!r} is not a number"
-        if not (math.isfinite(value) and abs(value) <= _FLOAT_LIMIT):
+        if not (math.isfinite(value) and abs(value) <= FLOAT_LIMIT):
             return f"{self.name}: {value} is not a finite number"
         return None
 

@@ -15,6 +15,7 @@ import stat
 from pathlib import Path
 
 from ...errors import SitlError
+from .parameter import FLOAT_LIMIT
 
 ENDINGS = (".parm", ".param", ".params")
 MAX_BYTES = 1_000_000
@@ -179,11 +180,11 @@ def _entry(line: str, where: str) -> tuple[int | None, str, float, str] | None:
 
 
 def _number(text: str) -> float | None:
-    """Decimal or hexadecimal; None when it is neither, or not finite."""
+    """Decimal or hexadecimal; None when it is neither, or larger than any parameter can be."""
     if _HEXADECIMAL.fullmatch(text):
         return float(int(text, 16))
     value = float(text) if _NUMBER.fullmatch(text) else math.inf
-    return value if math.isfinite(value) else None
+    return value if abs(value) <= FLOAT_LIMIT else None
 
 
 def _shortened(text: str) -> str:

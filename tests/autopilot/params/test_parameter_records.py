@@ -130,6 +130,7 @@ def test_reads_every_separator_and_comments() -> None:
         ("WPNAV_SPEED 500\nRTL_ALT", r"x\.parm, line 2: expected 'NAME VALUE'"),
         ("RTL_ALT ten", r"x\.parm, line 1: 'ten' is not a number \(RTL_ALT\)"),
         ("RTL_ALT 1e99999", r"x\.parm, line 1: '1e99999' is not a number \(RTL_ALT\)"),
+        ("RTL_ALT -1e39", r"x\.parm, line 1: '-1e39' is not a number \(RTL_ALT\)"),
         ("RTL_ALT nan", r"x\.parm, line 1: 'nan' is not a number \(RTL_ALT\)"),
         ("RTL_ALT 1_000", r"x\.parm, line 1: '1_000' is not a number \(RTL_ALT\)"),
         ("ATC_RAT_RLL_P 0,135", r"x\.parm, line 1: '0,135' has a comma \(ATC_RAT_RLL_P\); write 0\.135"),
