@@ -445,7 +445,7 @@ def connect(
 ) -> Lockstep | RealTime:
     """Find the vehicle, whether it seems to be a simulator, and whether its time can be held.
 
-It is only asked questions. ``prove`` is the proof, when something depends on it. One whose time cannot be held is
+    It is only asked questions. ``prove`` is the proof, when something depends on it. One whose time cannot be held is
     used by its own clock.
 
     Args:
