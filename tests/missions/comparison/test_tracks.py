@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sitl.logs.dataflash.reader import Row
 from sitl.logs.tlog import LogError
 from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
 from sitl.logs.track_bin import _Reader as Reader
@@ -240,13 +240,13 @@ def test_only_what_was_armed_is_disarmed() -> None:
 def test_a_log_that_arming_has_opened_is_armed_from_its_beginning() -> None:
     """As of the real ArduPilot with LOG_DISARMED 0: its first record of arming is that it is over."""
     reader = Reader()
-    reader.take(SimpleNamespace(TimeUS=43_500_000, get_type=lambda: "PARM"))
-    reader.take(SimpleNamespace(TimeUS=44_000_000, ArmState=1, get_type=lambda: "ARM"))
+    reader.take(Row("PARM", 43.5, {"Name": "LOG_DISARMED"}, {}))
+    reader.take(Row("ARM", 44.0, {"ArmState": 1}, {}))
     assert reader.track.armed == [(44.0, True)]
     reader = Reader()
-    reader.take(SimpleNamespace(TimeUS=43_500_000, get_type=lambda: "PARM"))
-    reader.take(SimpleNamespace(TimeUS=90_000_000, Id=11, get_type=lambda: "EV"))
-    reader.take(SimpleNamespace(TimeUS=90_000_001, ArmState=0, get_type=lambda: "ARM"))
+    reader.take(Row("PARM", 43.5, {"Name": "LOG_DISARMED"}, {}))
+    reader.take(Row("EV", 90.0, {"Id": 11}, {}))
+    reader.take(Row("ARM", 90.000001, {"ArmState": 0}, {}))
     assert reader.track.armed == [(43.5, True), (90.0, False)]
 
 
