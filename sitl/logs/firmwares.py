@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which vehicle a log is of, by what its firmware calls itself; also those that we do not have, so that errors name them."""
+"""Which vehicle a log is of, by what its firmware calls itself; also those that we do not have: errors name them."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from ...core.whole_file import write_whole
 from ...errors import SitlError
 from .parameter import FLOAT, Parameter, stored
 from .table import Values
@@ -85,5 +86,9 @@ def dump(values: Values) -> str:
 
 
 def save(values: Values, path: str | Path) -> None:
-    """Write a vehicle's parameters to a .parm file."""
-    Path(path).write_text(dump(values), encoding="utf-8")
+    """Write a vehicle's parameters to a .parm file.
+
+    Raises:
+        SitlError: it cannot be written; the file of before stays.
+    """
+    write_whole(path, dump(values), title=f"parameter file {path}")

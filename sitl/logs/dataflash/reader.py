@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Messages of a DataFlash log, binary (.bin) or text (.log), by the names of the fields that it says it has.
 
-A log describes itself (FMT), and each version of ArduPilot has other messages and fields; nothing here knows them. Cards
-lose pieces of logs: what is no message is passed over up to the next one, and so is a message whose time cannot be.
+A log describes itself (FMT), and each version of ArduPilot has other messages and fields; nothing here knows them.
+Cards lose pieces of logs: what is no message is passed over up to the next one, and so is a message whose time cannot
+be.
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from sitl.autopilot.mission.item import DO_JUMP, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
+from sitl.core.whole_file import write_whole
 
 from . import plan
 from .document import MissionFile, MissionFileError, has_degrees, make
@@ -113,8 +114,4 @@ def save(file: MissionFile, path: str | Path) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise MissionFileError(f"{path}: suffix {suffix!r} is not one of {', '.join(SUFFIXES)}")
-    text = plan.write(file) if suffix == ".plan" else write(file)
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise MissionFileError(f"{path}: {error.strerror or error}") from None
+    write_whole(path, plan.write(file) if suffix == ".plan" else write(file), MissionFileError, f"mission {path}")

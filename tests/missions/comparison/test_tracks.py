@@ -26,6 +26,7 @@ from tests.missions.comparison.conftest import straight
 @given(st.lists(st.lists(st.floats(-1e5, 1e5), min_size=11, max_size=11), max_size=30))
 def test_bytes_give_back_a_track_to_its_quanta(rows: list[list[float]]) -> None:
     data = np.array(rows).reshape(-1, len(COLUMNS))
+    data[:, 0] = 0.1 * np.arange(len(data))
     track = Track("rover", data, (1.0, 2.0, 3.0), [(0.5, "HOLD")], [(1.0, 3)], [(2.0, 6, "hé")], [(0.0, True)])
     back = Track.from_bytes(track.to_bytes())
     assert np.allclose(back.data, track.quantised().data, atol=1e-9)
