@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m benchmarks.frame_costs``: what each kind of frame of a client costs the vehicle, in CPU time and in bytes.
+"""``python -m benchmarks.frame_costs``: what each kind of frame of a client costs the vehicle, in CPU time and bytes.
 
 One frame that costs much lets a client of few bytes a second take a core from a vehicle in real time. The time is that
-of hearing a frame of a burst, of all that it starts within a simulated second, and of sending it, less a second without.
+of hearing a frame of a burst, of all that it starts within a simulated second, and of sending that, less a second
+without it.
 """
 
 from __future__ import annotations
 
 import argparse
 import statistics
-import struct
 import time
 from collections.abc import Iterator
 from typing import Any
