@@ -87,6 +87,8 @@ class Recorder:
         """Whether bytes were read that have not been processed."""
         self._later: list[Entry] = []
         self._served = False
+        self._is_inside = False
+        """Whether time is passing, or an error has stopped it: then a part of what was due has been sent."""
         self.is_closed = False
         if self.path is not None:
             self._writer = BlockWriter(self.path)
@@ -184,7 +186,10 @@ class Recorder:
         self._note(EntryKind.STREAMS, self._links[link], json.dumps(dict(rates_hz)).encode())
 
     def attended(self) -> None:
-        self._served = True
+        self._served = self._is_inside = True
+
+    def arrived(self) -> None:
+        self._is_inside = False
 
     def beat(self) -> None:
         self._note(EntryKind.HEARTBEAT)
@@ -234,6 +239,12 @@ class Recorder:
             "channels": {str(number): sent.digest().hex() for number, sent in sorted(self.channels.items())},
         }
 
+    def _end(self) -> dict[str, Any]:
+        """What the file ends with. A run that an error has broken off within a step (a full disk, for a log) has no
+        digests: no replay breaks off there."""
+        broken = self._is_inside or self._unprocessed
+        return self.result() | ({"stopped": "broken off", "state": "", "channels": {}} if broken else {})
+
     def close(self) -> None:
         """Write the end of the recording; the simulation's ``close`` does it, too."""
         if self.is_closed:
@@ -249,7 +260,7 @@ class Recorder:
         try:
             for name, give in self.sections.items():
                 self._writer.write(SECTION, name.encode() + b"\0" + give())
-            self._writer.write(END, json.dumps(self.result(), sort_keys=True).encode())
+            self._writer.write(END, json.dumps(self._end(), sort_keys=True).encode())
         finally:
             writer, self._writer = self._writer, None
             writer.close()

@@ -40,6 +40,12 @@ class Recording:
     """Why it has no end, and where it stops."""
 
     @property
+    def has_digests(self) -> bool:
+        """Whether it has an end, and what the vehicle's state and its telemetry were then: a run that an error broke
+        off has none."""
+        return self.end is not None and bool(self.end["state"])
+
+    @property
     def end_us(self) -> int:
         """Simulated time at which it ends [us]."""
         if self.end is not None:

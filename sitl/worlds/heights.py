@@ -111,7 +111,7 @@ def _array(rows: np.ndarray[Any, Any], spacing: float, lat: float, lon: float) -
     step_lat = spacing / (METRES_PER_DEGE7 * 1e7)
     step_lon = step_lat / longitude_scale(lat * 1e7)
     known = rows[np.isfinite(rows)]
-    if len(known) and not (LOWEST <= known.min() and known.max() <= HIGHEST):
+    if len(known) and (known.min() < LOWEST or known.max() > HIGHEST):
         raise ValueError(f"heights from {known.min():g} to {known.max():g} m; {LOWEST:g} to {HIGHEST:g} are read")
     middle_n, middle_e = 0.5 * (rows.shape[0] - 1), 0.5 * (rows.shape[1] - 1)
     return Heights(rows.astype(float), lat - middle_n * step_lat, lon - middle_e * step_lon, step_lat, step_lon)

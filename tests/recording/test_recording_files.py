@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.errors import SitlError
+from sitl.logs.tlog import LogError
 from sitl.missions.comparison.flight import of_recording
 from sitl.recording import blocks, recorder, recording
 from sitl.recording.blocks import (
@@ -32,9 +33,10 @@ from sitl.recording.entries import Entry, EntryKind, RecordingError, decode, enc
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
+from sitl.run.runner import open_log
 from sitl.simulation import Core, Simulation
 from tests import mutations
-from tests.full_disk import full_disk
+from tests.full_disk import WORDS, full_disk
 from tests.recording.conftest import Recorded
 
 ENTRIES_OF_ANY_KIND = st.lists(
@@ -338,3 +340,19 @@ def test_a_disk_without_room_for_packing_keeps_the_recording(hopped: Recorded, t
         recorder.repack(path)
     assert path.read_bytes() == hopped.path.read_bytes()
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_run_that_an_error_breaks_off_has_no_digests_that_a_replay_could_differ_from(
+    core: Core, tmp_path: Path
+) -> None:
+    simulation = Simulation(core=core, seed=7)
+    Recorder(simulation, tmp_path / "x.rec")
+    open_log(simulation, tmp_path, "x")
+    with full_disk(20_000), pytest.raises(LogError, match=rf"x\.tlog' cannot be written: {WORDS}"):
+        simulation.advance(60.0)
+    simulation.close()
+    found = read(tmp_path / "x.rec")
+    assert found.end is not None and found.end["stopped"] == "broken off" and not found.has_digests
+    replay = Replay(found, core=core)
+    assert replay.run() == []
+    replay.close()

@@ -63,9 +63,10 @@ def read(path: str | Path, system: int | None = None, progress: Progress | None 
 
 def of_recording(recording: Recording, progress: Progress | None = None) -> Flight:
     """The flight of a recording."""
+    digests = recording.end if recording.has_digests else None
     if SECTION in recording.sections:
         track = Track.from_bytes(recording.sections[SECTION])
-        return Flight(str(recording.path), track, recording.header, recording.end)
+        return Flight(str(recording.path), track, recording.header, digests)
     replay = Replay(recording, progress=progress)
     observer = TrackObserver(replay.simulation)
     try:
@@ -76,7 +77,7 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     notes = ["it keeps no track: flown again for it"]
     notes += [f"changed since the recording: {text}" for text in replay.differences]
     notes += [f"the replay differs: {text}" for text in astray]
-    return Flight(str(recording.path), track, recording.header, recording.end, notes=tuple(notes))
+    return Flight(str(recording.path), track, recording.header, digests, notes=tuple(notes))
 
 
 Array = np.ndarray[Any, Any]
