@@ -231,6 +231,8 @@ class Simulation:
             now = self._clock()
             stop = time_us - self.before_boot_us
             if now >= stop:
+                if bridge.board.journal is not None:
+                    bridge.board.journal.arrived()
                 return
             by_itself = plant.runs_in_core and bridge.goes_by_itself()
             shell_us = bridge.shell_due_us() if by_itself else bridge.next_due_us()

@@ -8,9 +8,10 @@ current NumPy releases when it crops frames to what changed.
 
 from __future__ import annotations
 
+import contextlib
 import struct
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -71,8 +72,18 @@ class Gif:
             self._file.writelines(_gif_picture(drawn.crop((left, top, right, bottom)), (left, top), self._ms * times))
             self.size = self._file.tell()
         except OSError as error:
-            raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
+            self._give_up(error)
         self._shown = pixels
+
+    def _give_up(self, error: OSError) -> NoReturn:
+        """Half a film is none: it is removed, unless it is no file."""
+        if self._file is not None:
+            file, self._file = self._file, None
+            with contextlib.suppress(OSError):
+                file.close()
+            if self._path.is_file():
+                self._path.unlink(missing_ok=True)
+        raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
 
     def _extend_palette(self, image: Any) -> None:
         """Add frequent colours of a frame to the palette where it has none near."""
@@ -102,7 +113,7 @@ class Gif:
                 file.seek(_GIF_TABLE)
                 file.write(self._table())
         except OSError as error:
-            raise AgentError(f"{self._path} cannot be written: {error.strerror}") from None
+            self._give_up(error)
         self._file = None
 
 

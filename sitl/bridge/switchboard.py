@@ -74,6 +74,9 @@ class Journal(Protocol):
     def streams(self, link: Link, rates_hz: Mapping[str, int]) -> None:
         """Stream groups were asked for by this program for every client of a link."""
 
+    def arrived(self) -> None:
+        """Time stands, and all that was due has been sent."""
+
     def attended(self) -> None:
         """What clients asked for is being followed up: the vehicle is about to go on, even if only by no time."""
 

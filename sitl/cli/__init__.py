@@ -8,6 +8,7 @@ module with ``add_parser(commands)`` like those here. What they add to the simul
 from __future__ import annotations
 
 import argparse
+import errno
 import os
 import sys
 from collections.abc import Iterator, Sequence
@@ -21,6 +22,8 @@ from .commands import COMMANDS, WELCOME
 from .parser import Parser
 
 GROUP = "sitl.commands"
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+"""Why a file that is open cannot be written."""
 
 
 class _Commands(argparse._SubParsersAction):  # type: ignore[type-arg]  # at run time it takes none
@@ -82,7 +85,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if command != "doctor":  # which tells what of them is broken
             plugins.load()
         options = parser(words).parse_args(words)
-        return int(options.function(options))
+        code = int(options.function(options))
+        sys.stdout.flush()  # a full disk is told now
+        return code
     except SitlError as error:
         print(f"sitl {command}: {error}", file=sys.stderr)
         return 2
@@ -91,6 +96,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         return 141
     except OSError as error:
+        if error.filename is None and error.errno in FULL:  # every other writer names its file
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            print(f"sitl {command}: its output cannot be written: {error.strerror}", file=sys.stderr)
+            return 2
         if error.filename is None:
             raise
         print(f"sitl {command}: {str(error.filename)!r}: {error.strerror}", file=sys.stderr)

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import argparse
 import filecmp
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+from ..core.whole_file import write_whole
 from ..errors import OptionError, did_you_mean
 from ..examples import EXAMPLES, source, title
 from .output import add_json_option, print_json
@@ -83,7 +83,7 @@ def copy(name: str, folder: Path) -> Path:
     try:
         for file, target in wanted:
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(file, target)
+            write_whole(target, file.read_bytes(), OptionError)
     except OSError as error:
         raise OptionError(f"{folder} cannot be written: {error.strerror}") from None
     return folder / path.name

@@ -89,7 +89,9 @@ class Session:
         self.pacing = Pacing(None)
         self._follow_speedup()
         if not clears_mission(self._values):
-            simulation.bridge.autopilot.replace_mission(self.storage.mission)
+            result = simulation.bridge.autopilot.replace_mission(self.storage.mission)
+            if result:
+                say(f"not taken: the mission of {str(path)!r} (MAV_MISSION_RESULT {result})")
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
         self._places = (self.storage.fence, self.storage.rally)

@@ -4,15 +4,29 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
+from typing import Any
 
 from ..autopilot.fence import items as fence
 from ..autopilot.fence.state import FenceState
-from ..autopilot.mission.item import MissionItem
-from ..bridge.signing import KEY_BYTES, OFF, SigningState
+from ..autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem
+from ..bridge.signing import KEY_BYTES, LAST, OFF, SigningState
 from ..core import documents
+from ..core.whole_file import write_whole
 from ..errors import SitlError
+
+MOST_BYTES = 1 << 24
+"""Of the file."""
+MOST_ITEMS = 65535
+"""Of a list: its numbers have 16 bits."""
+_PLACE = range(-(1 << 31), 1 << 31)
+_RANGES = {
+    "command": range(1 << 16), "frame": range(1 << 8), "x": _PLACE, "y": _PLACE, "autocontinue": range(1 << 8),
+    "current": range(1 << 8),
+}  # fmt: skip
+"""Fields of an item that are whole."""
+_LARGEST, _HIGHEST = 3.4e38, 32767.0
+"""Of float32; of a rally point [m]."""
 
 
 class StorageError(SitlError):
@@ -35,22 +49,39 @@ class Storage:
         self.signing = OFF
         self._is_changed = False
         try:
-            kept = documents.of_json(path.read_text(encoding="utf-8"))
-            self.parameters = {str(name): float(value) for name, value in kept["parameters"].items()}
-            self.mission = tuple(MissionItem(*item) for item in kept["mission"])
-            self.fence = tuple(MissionItem(*item) for item in kept.get("fence", ()))
-            self.rally = tuple(MissionItem(*item) for item in kept.get("rally", ()))
-            fence.load(FenceState(), list(fence.shapes(self.fence)))
-            key, timestamp = kept.get("signing", ("", 0))
-            self.signing = SigningState(bytes.fromhex(key), int(timestamp))
-            if len(self.signing.key) not in (0, KEY_BYTES):
-                raise ValueError(f"a signing key of {len(self.signing.key)} bytes")
+            with path.open("rb") as file:
+                content = file.read(MOST_BYTES + 1)
         except FileNotFoundError:
             return
         except OSError as error:
             raise StorageError(f"storage {str(path)!r} cannot be read: {error.strerror or error}") from None
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        try:
+            if len(content) > MOST_BYTES:
+                raise ValueError(f"more than {MOST_BYTES} bytes")
+            self._take(documents.of_json(content))
+        except (ValueError, KeyError, TypeError, AttributeError, OverflowError, SitlError) as error:
             raise StorageError(f"storage {str(path)!r} is damaged ({error!r}); -w begins anew") from None
+
+    def _take(self, kept: Any) -> None:
+        """What is in the file, checked: a vehicle starts with it.
+
+        Raises:
+            ValueError, KeyError, TypeError, AttributeError, OverflowError, SitlError: it makes no sense.
+        """
+        self.parameters = {name: _number(value) for name, value in kept["parameters"].items()}
+        self.mission = _items(kept["mission"])
+        self.fence, self.rally = _items(kept.get("fence", [])), _items(kept.get("rally", []))
+        for items, commands in ((self.fence, FENCE_COMMANDS), (self.rally, (RALLY_POINT,))):
+            for item in items:
+                if item.command not in commands or not abs(item.z) <= _HIGHEST:
+                    raise ValueError(f"{item} is no such place")
+        fence.load(FenceState(), list(fence.shapes(self.fence)))
+        key, timestamp = kept.get("signing", ("", 0))
+        if type(timestamp) is not int or not 0 <= timestamp <= LAST:
+            raise ValueError(f"a time stamp {timestamp!r}")
+        self.signing = SigningState(bytes.fromhex(key), timestamp)
+        if len(self.signing.key) not in (0, KEY_BYTES):
+            raise ValueError(f"a signing key of {len(self.signing.key)} bytes")
 
     @classmethod
     def wiped(cls, path: Path) -> Storage:
@@ -98,10 +129,31 @@ class Storage:
         kept |= {"fence": self.fence, "rally": self.rally}
         if self.signing.key:
             kept["signing"] = (self.signing.key.hex(), self.signing.timestamp)
-        text = json.dumps(kept, indent=0)
-        beside = self.path.with_name(self.path.name + ".new")
         try:
-            beside.write_text(text, encoding="utf-8")
-            os.replace(beside, self.path)
-        except OSError as error:
-            raise StorageError(f"storage {str(self.path)!r} cannot be written: {error.strerror or error}") from None
+            write_whole(self.path, json.dumps(kept, indent=0), StorageError, f"storage {str(self.path)!r}")
+        except StorageError:
+            self._is_changed = True
+            raise
+
+
+def _number(value: Any) -> float:
+    if type(value) not in (int, float):
+        raise ValueError(f"{value!r} is no number")
+    return float(value)
+
+
+def _items(rows: Any) -> tuple[MissionItem, ...]:
+    if not isinstance(rows, list) or len(rows) > MOST_ITEMS:
+        raise ValueError(f"no list of at most {MOST_ITEMS} items")
+    return tuple(_item(row) for row in rows)
+
+
+def _item(row: Any) -> MissionItem:
+    item = MissionItem(*row)
+    for name, value in item._asdict().items():
+        if name in _RANGES:
+            if type(value) is not int or value not in _RANGES[name]:
+                raise ValueError(f"{name} {value!r} of an item")
+        elif abs(_number(value)) > _LARGEST:
+            raise ValueError(f"{name} {value!r} of an item")
+    return item

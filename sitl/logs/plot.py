@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ..core.whole_file import whole_file
 from ..errors import MissingExtra
 from ..vehicle.kinds import DEFAULT
 from .flight import Flight
 from .kind import logs_of
+from .tlog import LogError
 
 
 def new_figure(width: float, height: float, title: str = "") -> Any:
@@ -39,7 +41,7 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT)
 
     Raises:
         MissingExtra: matplotlib is not installed.
-        LogError: the flight holds no position, attitude or outputs.
+        LogError: the flight holds no position, attitude or outputs; the picture cannot be written.
     """
     position = flight["LOCAL_POSITION_NED"]
     figure = new_figure(12.0, 8.0, title)
@@ -62,7 +64,8 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT)
     for t, seq in flight.reached:
         axes[0, 1].annotate(str(seq), (t, axes[0, 1].get_ylim()[1]), color="r", fontsize=8)
     axes[2, 1].set(xlabel="simulated time [s]")
-    figure.savefig(path, dpi=110)
+    with whole_file(path, LogError, f"picture {path}") as beside:
+        figure.savefig(beside, dpi=110)
 
 
 def _plan(axis: Any, flight: Flight) -> None:

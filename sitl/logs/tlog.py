@@ -10,6 +10,8 @@ plus simulated time, so the same run gives the same file.
 from __future__ import annotations
 
 import contextlib
+import mmap
+import os
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,6 +23,11 @@ from ..errors import SitlError
 _TIME = struct.Struct(">Q")
 _FLUSH_BYTES = 1 << 13
 """A run that is killed loses no more: a second or two."""
+
+
+MOST_BYTES = 1 << 30
+"""Of a log."""
+GAP_US, BACK_US = 3_600_000_000, 1_000_000
 
 
 class LogError(SitlError, ValueError):
@@ -92,20 +99,63 @@ class TlogWriter:
 
 
 def read_tlog(path: str | Path) -> Iterator[tuple[int, bytes]]:
-    """(Unix time [us], frame) of each frame of a log; what is cut off at the end is left out."""
-    data = Path(path).read_bytes()
-    at = 0
-    while at + _TIME.size + 3 <= len(data):
-        (time_us,) = _TIME.unpack_from(data, at)
-        at += _TIME.size
-        mark, size, flags = data[at : at + 3]
-        if mark == 0xFD:  # MAVLink 2; flag 1: a signature follows
-            size += 12 + (13 if flags & 1 else 0)
-        elif mark == 0xFE:
-            size += 8
-        else:
+    """(Unix time [us], frame) of each frame of a log; what is cut off at the end is left out, and what is no frame is
+    passed over up to where two follow each other.
+
+    Raises:
+        LogError: it has more than ``MOST_BYTES``.
+        OSError: it cannot be read.
+    """
+    with Path(path).open("rb") as file:
+        size = os.fstat(file.fileno()).st_size
+        if size > MOST_BYTES:
+            raise LogError(f"log {str(path)!r} has {size} bytes; at most {MOST_BYTES} are read")
+        if not size:
             return
-        if at + size > len(data):
-            return
-        yield time_us, data[at : at + size]
-        at += size
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            at = 0
+            while at + _TIME.size + 3 <= size:
+                end = _end(data, at)
+                if end == at:
+                    at = _next(data, at + 1)
+                    continue
+                if end > size:
+                    return
+                yield _TIME.unpack_from(data, at)[0], data[at + _TIME.size : end]
+                at = end
+
+
+def read_steady(path: str | Path) -> Iterator[tuple[int, int, bytes]]:
+    """(Number of jumps of the clock so far, time since the first frame [us], frame) of each frame of a log.
+
+    A longer gap than ``GAP_US``, or a larger step back than ``BACK_US``, means that the recording computer's clock was
+    set: these jumps are left out.
+    """
+    begin: int | None = None
+    time = jumps = 0
+    for stamp, frame in read_tlog(path):
+        begin = stamp if begin is None else begin
+        late = stamp - begin - time
+        if late > GAP_US or late < -BACK_US:
+            begin, jumps = stamp - time, jumps + 1
+        time = max(stamp - begin, time)  # another link's clock may be a little behind
+        yield jumps, time, frame
+
+
+def _end(data: mmap.mmap, at: int) -> int:
+    """Where a frame with its time ends; ``at`` if none begins there."""
+    mark, size, flags = data[at + _TIME.size : at + _TIME.size + 3]
+    if mark == 0xFD:  # MAVLink 2; flag 1: a signature follows
+        return at + _TIME.size + size + 12 + (13 if flags & 1 else 0)
+    return at + _TIME.size + size + 8 if mark == 0xFE else at
+
+
+def _next(data: mmap.mmap, at: int) -> int:
+    """Where a frame begins that another one, or the end, follows."""
+    size = len(data)
+    while at + _TIME.size + 3 <= size:
+        end = _end(data, at)
+        if end > at and (end == size or (end + _TIME.size + 3 <= size and _end(data, end) > end)):
+            return at
+        at += 1
+    return size

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
@@ -16,6 +17,8 @@ Array = np.ndarray[Any, Any]
 
 STEP_US = 100_000
 """Time between two samples [us]."""
+LONGEST_S = 48.0 * 3600.0
+"""Of a track [s]: 1.7 million samples, 150 MB."""
 
 
 class Column(NamedTuple):
@@ -69,6 +72,8 @@ class Track:
     """(time, severity, text)"""
     armed: list[tuple[float, bool]] = field(default_factory=list)
     """(time, armed) whenever it changed."""
+    notes: list[str] = field(default_factory=list)
+    """What the log that it was read from lacks, and what stands for that; not kept in bytes."""
 
     def __len__(self) -> int:
         return len(self.data)
@@ -132,6 +137,21 @@ class Track:
         from . import track_bytes
 
         return track_bytes.unpack(data)
+
+
+def sample_times(first: float, last: float, title: str) -> Array:
+    """Whole tenths of a second from one time to another [s].
+
+    Raises:
+        TrackError: they are farther apart than a track is long; it begins with the title.
+    """
+    if not last - first <= LONGEST_S:
+        raise TrackError(
+            f"{title} tells of places from {first:.1f} s to {last:.1f} s: at most "
+            f"{LONGEST_S / 3600.0:.0f} hours are read"
+        )
+    step = STEP_US * 1e-6
+    return np.asarray(np.arange(math.ceil(first / step - 1e-6), math.floor(last / step + 1e-6) + 1) * step)
 
 
 def sampled(times: Array, series: dict[str, tuple[Array, Array]], unwrap: Callable[[str], bool]) -> Array:

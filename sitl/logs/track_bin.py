@@ -1,33 +1,40 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The track of a flight in a DataFlash log (.bin), ours or a real vehicle's.
+"""The track of a flight in a DataFlash log (.bin, or .log as text), ours or a real vehicle's, of ArduPilot 3.0 on.
 
+Versions differ in messages and fields: what is there is taken, and what is missing is noted.
 Messages: https://ardupilot.org/copter/docs/logmessages.html
 """
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pymavlink import DFReader
 
-from ..core.geodesy import offset_ne
-from .kind import kinds_with_logs, mode_name
-from .tlog import LogError
-from .track import STEP_US, Array, Track, TrackError, is_angle, sampled
+from . import firmwares
+from .dataflash.reader import DataFlash, Row
+from .kind import mode_name
+from .track import Track, TrackError
+from .track_rows import complete, integrated, place_row
 
-_STEP = STEP_US * 1e-6
-_TYPES = ["POS", "XKF1", "ATT", "BAT", "MODE", "ARM", "EV", "MSG", "ORGN"]
+_PLACES = ("POS", "AHR2", "GPS")
+"""Messages with places, the best first: the estimate that is flown by, the backup's, the first receiver's."""
+_FILTERS = {"XKF1": 3, "NKF1": 2, "EKF1": 2}
+"""Messages with velocities -> the filter of ATT.AEKF."""
+_PRIMARY = {"XKF4": "XKF1", "NKF4": "NKF1"}
+_NAMES = (
+    *_PLACES, *_FILTERS, *_PRIMARY, "ATT", "BAT", "CURR", "MODE", "ARM", "EV", "MSG", "ORGN", "CMD", "VER", "PARM",
+)  # fmt: skip
 _ARMED, _DISARMED, _HOME = 10, 11, 1
-_INFO = 6
+_INFO, _FIX_3D = 6, 3
 _REACHED = re.compile(r"Reached (?:command|waypoint) #(\d+)")
 _STARTED = re.compile(r"Mission: (\d+) (\S+)")
+_WHOLE = "bBhHiI"
+"""Letters of whole numbers: voltage and current were in hundredths then (ArduPilot 3.3 and before)."""
 
 
 class _Reader:
@@ -36,105 +43,175 @@ class _Reader:
     def __init__(self) -> None:
         self.track = Track("", np.zeros((0, 11)))
         self.rows: dict[str, list[tuple[float, ...]]] = defaultdict(list)
-        self.modes: list[tuple[float, int]] = []
-        self.homes: list[tuple[float, float, float, float]] = []
+        self.modes: list[tuple[float, float | str]] = []
+        self.filters: Counter[int] = Counter()
+        """ATT.AEKF"""
+        self.primary: dict[str, int] = defaultdict(int)
+        self.kinds: list[tuple[str, str]] = []
+        """Kind of vehicle, or what it is else, by all that tells it, the first that is sure before others."""
+        self.homes: list[tuple[float, ...]] = []
         self._takes_off = 0
+        self._has_name = False
+        self._time = 0.0
         self.began: float | None = None
         """Time of the first message [s]."""
 
-    def take(self, m: Any) -> None:
-        """One message."""
-        t, name = m.TimeUS * 1e-6, m.get_type()
-        if self.began is None:
-            self.began = t
-        if name == "POS":
-            self.rows["place"].append((t, m.Lat * 1e7, m.Lng * 1e7, m.Alt))
-        elif name == "XKF1" and m.C == 0:
-            self.rows["speed"].append((t, m.VN, m.VE, m.VD))
-        elif name == "ATT":
-            self.rows["attitude"].append((t, *(math.radians(angle) for angle in (m.Roll, m.Pitch, m.Yaw))))
-        elif name == "BAT" and getattr(m, "Inst", getattr(m, "Instance", 0)) == 0:
-            self.rows["energy"].append((t, m.EnrgTot))
-        elif name == "MODE":
-            if not self.modes or self.modes[-1][1] != m.ModeNum:
-                self.modes.append((t, m.ModeNum))
-        elif name == "ARM":
-            self._arm(t, bool(m.ArmState))
-        elif name == "EV" and m.Id in (_ARMED, _DISARMED):
-            self._arm(t, m.Id == _ARMED)
-        elif name == "ORGN" and m.Type == _HOME:
-            self.homes.append((t, m.Lat, m.Lng, m.Alt))
-        elif name == "MSG":
-            self._text(t, m.Message)
+    def take(self, row: Row) -> None:
+        """One message; one without a time is of the time of the message before, if there was one."""
+        if row.time is not None:
+            self._time = row.time
+            if self.began is None:
+                self.began = row.time
+        if self.began is None and row.name not in ("MSG", "PARM", "MODE"):
+            return
+        take = getattr(self, "_" + row.name.lower(), None)
+        if row.name in _PLACES:
+            self._place(row)
+        elif row.name in _FILTERS:
+            self._speed(row)
+        elif row.name in _PRIMARY:
+            self.primary[_PRIMARY[row.name]] = int(row.fields.get("PI", 0))
+        elif take is not None:
+            take(row.fields, row.letters)
 
-    def _arm(self, t: float, state: bool) -> None:
-        if not self.track.armed and not state:  # LOG_DISARMED 0: the log was opened by the arming, which it misses
-            self.track.armed.append((t if self.began is None else self.began, True))
-        if not self.track.armed or self.track.armed[-1][1] != state:
-            self.track.armed.append((t, state))
+    def _add(self, what: str, *values: float) -> None:
+        if all(math.isfinite(value) for value in values):
+            self.rows[what].append((self._time, *values))
 
-    def _text(self, t: float, text: str) -> None:
-        if not self.track.kind:
-            self.track.kind = next((kind for kind, logs in kinds_with_logs().items() if logs.word in text), "")
-        self.track.texts.append((t, _INFO, text))
+    def _place(self, row: Row) -> None:
+        f = row.fields
+        if row.name == "GPS" and (f.get("I", 0) or f.get("Status", _FIX_3D) < _FIX_3D):
+            return
+        place = place_row(self._time, *(f.get(name, math.nan) for name in ("Lat", "Lng", "Alt")))
+        if place is not None:
+            self.rows[row.name].append(place)
+
+    def _speed(self, row: Row) -> None:
+        if row.fields.get("C", 0) == self.primary[row.name]:
+            self._add(row.name, *(row.fields.get(name, math.nan) for name in ("VN", "VE", "VD")))
+
+    def _att(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        self._add("attitude", *(math.radians(f.get(name, math.nan)) for name in ("Roll", "Pitch", "Yaw")))
+        if "AEKF" in f:
+            self.filters[int(f["AEKF"])] += 1
+
+    def _bat(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        if f.get("Inst", f.get("Instance", 0)) != 0:
+            return
+        self._add("energy", f.get("EnrgTot", math.nan))
+        scale = 0.01 if letters.get("Curr", "f") in _WHOLE else 1.0
+        self._add("power", f.get("Volt", math.nan) * f.get("Curr", math.nan) * scale * scale)
+
+    _curr = _bat
+
+    def _mode(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        mode = f.get("ModeNum", f.get("Mode"))
+        if mode is not None and (not self.modes or self.modes[-1][1] != mode):
+            self.modes.append((self._time, mode))
+
+    def _arm(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        if "ArmState" in f:
+            self._armed(bool(f["ArmState"]))
+
+    def _ev(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        if f.get("Id") in (_ARMED, _DISARMED):
+            self._armed(f["Id"] == _ARMED)
+
+    def _armed(self, state: bool) -> None:
+        track = self.track
+        if not track.armed and not state:  # LOG_DISARMED 0: the log was opened by the arming, which it misses
+            track.armed.append((self._time if self.began is None else self.began, True))
+        if not track.armed or track.armed[-1][1] != state:
+            track.armed.append((self._time, state))
+
+    def _orgn(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        if f.get("Type") == _HOME:
+            place = place_row(self._time, *(f.get(name, math.nan) for name in ("Lat", "Lng", "Alt")))
+            self.homes += [place] if place is not None else []
+
+    def _ver(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        self.kinds.append(firmwares.of_build(int(f.get("BU", 0))))
+
+    def _parm(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        found = firmwares.of_parameter(str(f.get("Name", "")))
+        if found != ("", ""):
+            self.kinds.append(found)
+
+    def _msg(self, f: dict[str, Any], letters: dict[str, str]) -> None:
+        text = str(f.get("Message", ""))
+        if not self._has_name:
+            found = firmwares.of_text(text)
+            self._has_name = found != ("", "")
+            if self._has_name:
+                self.kinds.insert(0, found)
+        self.track.texts.append((self._time, _INFO, text))
         reached, started = _REACHED.match(text), _STARTED.match(text)
         if started is not None:
             if self._takes_off:
-                self.track.items.append((t, self._takes_off))
+                self.track.items.append((self._time, self._takes_off))
             self._takes_off = int(started[1]) if started[2] == "Takeoff" else 0
         elif reached is not None:
-            self.track.items.append((t, int(reached[1])))
+            self.track.items.append((self._time, int(reached[1])))
+
+    def finish(self, log: DataFlash) -> Track:
+        """The track.
+
+        Raises:
+            TrackError: the log is of another kind of vehicle, or tells of no way.
+        """
+        track, title = self.track, f"log {str(log.path)!r}"
+        track.kind, other = next((kind for kind in self.kinds if kind != ("", "")), ("", ""))
+        if other:
+            raise TrackError(f"{title} is of {other}: copters and rovers can be shown and compared")
+        if not track.kind:
+            raise TrackError(f"{title} does not say what vehicle it is of: no firmware is named (MSG, VER, PARM)")
+        places = next((name for name in _PLACES if len(self.rows[name]) > 1), "")
+        if not places:
+            there = ", ".join(name for name in _PLACES if name in log.names) or "none of them has a format"
+            raise TrackError(
+                f"{title} tells no way: it has no two places in POS, AHR2 or GPS (formats: {there}); a vehicle without "
+                "GPS logs none"
+            )
+        if places != "POS":
+            track.notes.append(f"places are those of {places}: it has no POS")
+        if log.skipped:
+            track.notes.append(f"{log.skipped} bytes of it are no messages, and left out")
+        if log.left_out:
+            track.notes.append(f"{log.left_out} messages of it have times that cannot be, and are left out")
+        track.modes = [
+            (t, mode if isinstance(mode, str) else mode_name(track.kind, int(mode))) for t, mode in self.modes
+        ]
+        if not track.modes:
+            track.notes.append("it has no MODE")
+        if not track.armed:
+            track.notes.append("it tells of no arming (ARM, EV)")
+        energies = self.rows["energy"]
+        if not energies and self.rows["power"]:
+            energies = integrated(self.rows["power"])
+            track.notes.append("energy is summed up from voltage and current: it has no EnrgTot")
+        speeds = self.rows[self._filter()]
+        return complete(track, title, self.rows[places], self.homes, speeds, self.rows["attitude"], energies)
+
+    def _filter(self) -> str:
+        """The message with the velocities of the filter that was flown by."""
+        there = [name for name in _FILTERS if self.rows[name]]
+        if not there:
+            return ""
+        flown, _ = self.filters.most_common(1)[0] if self.filters else (0, 0)
+        return next(
+            (name for name in there if _FILTERS[name] == flown), max(there, key=lambda name: len(self.rows[name]))
+        )
 
 
 def read(path: str | Path) -> Track:
-    """The flight in a .bin.
+    """The flight in a log. Its ``notes`` say what it lacks.
 
     Mission items are known by what is said of them (DataFlash has no message for it), texts are of severity INFO.
 
     Raises:
         LogError: the file cannot be read, or it tells of no copter and no rover that moves.
     """
-    reader = _Reader()
-    title = f"log {str(path)!r}"
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):  # what it thinks of the log is not for us
-            log = DFReader.DFReader_binary(str(path), zero_time_base=False)
-            while (message := log.recv_match(type=_TYPES)) is not None:
-                reader.take(message)
-            log.close()
-    except OSError as error:
-        raise LogError(f"{title} cannot be read: {error.strerror or error}") from None
-    except Exception as error:  # the reader raises whatever damaged bytes lead it to
-        raise TrackError(f"{title} is no DataFlash log, or damaged: {error}") from None
-    track = reader.track
-    if not track.kind:
-        raise TrackError(f"{title} does not say that it is of a copter or a rover (MSG)")
-    if len(reader.rows["place"]) < 2:
-        raise TrackError(f"{title} tells no way: it has no POS")
-    track.modes = [(t, mode_name(track.kind, number)) for t, number in reader.modes]
-    return _place(track, reader)
-
-
-def _place(track: Track, reader: _Reader) -> Track:
-    place = np.array(reader.rows["place"])
-    t = place[:, 0]
-    armed = next((at for at, state in track.armed if state), float(t[0]))
-    homes = [home for home in reader.homes if home[0] <= armed + 1.0] or reader.homes[:1]
-    first = place[min(int(np.searchsorted(t, armed)), len(t) - 1)]
-    track.home = homes[-1][1:] if homes else (first[1] * 1e-7, first[2] * 1e-7, float(first[3]))
-    lat, lon, alt = track.home
-    ne = np.array([offset_ne(lat * 1e7, lon * 1e7, row[1], row[2]) for row in place])
-    series: dict[str, tuple[Array, Array]] = {
-        "north": (t, ne[:, 0]),
-        "east": (t, ne[:, 1]),
-        "down": (t, alt - place[:, 3]),
-    }
-    for rows, names in (("speed", ("vn", "ve", "vd")), ("attitude", ("roll", "pitch", "yaw")), ("energy", ("energy",))):
-        if reader.rows[rows]:
-            found = np.array(reader.rows[rows])
-            series |= {name: (found[:, 0], found[:, k]) for k, name in enumerate(names, 1)}
-    if not reader.rows["speed"]:
-        series |= {v: (t, np.gradient(series[x][1], t)) for v, x in (("vn", "north"), ("ve", "east"), ("vd", "down"))}
-    times = np.arange(math.ceil(t[0] / _STEP - 1e-6), math.floor(t[-1] / _STEP + 1e-6) + 1) * _STEP
-    track.data = sampled(times, series, is_angle)
-    return track
+    log, reader = DataFlash(path), _Reader()
+    for row in log.rows(_NAMES):
+        reader.take(row)
+    return reader.finish(log)

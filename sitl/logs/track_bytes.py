@@ -14,12 +14,21 @@ from typing import Any
 import numpy as np
 
 from ..core import documents
-from .track import COLUMNS, QUANTA, Array, Track, TrackError
+from ..vehicle.kinds import KINDS
+from .track import COLUMNS, LONGEST_S, QUANTA, STEP_US, Array, Track, TrackError
 
 MAGIC = b"SITLTRK\x01"
 _PACKING = {"format": lzma.FORMAT_XZ, "check": lzma.CHECK_CRC32, "preset": 9 | lzma.PRESET_EXTREME}
 _LONGEST = 1 << 26
 """Bytes of a track, unpacked: more are no flight of a vehicle."""
+_MEMORY = 1 << 27
+"""Bytes that unpacking needs besides: ours asks for 65 MiB."""
+_LONGEST_NUMBER = 9
+MOST_SAMPLES = int(LONGEST_S * 1e6) // STEP_US + 1
+MOST_EVENTS = 1_000_000
+"""Of each kind."""
+_FAR = 1e12
+"""No time, place or height is as far."""
 _HEADER = ("kind", "home", "modes", "items", "texts", "armed", "samples")
 
 
@@ -48,30 +57,56 @@ def unpack(data: bytes) -> Track:
     """A track from bytes.
 
     Raises:
-        TrackError: they are none, or damaged.
+        TrackError: they are none, or damaged, or of more than a track holds (``LONGEST_S``, ``MOST_EVENTS``).
     """
     if not data.startswith(MAGIC):
         raise TrackError("these bytes are no track: they do not begin as one")
     try:
-        unpacker = lzma.LZMADecompressor(lzma.FORMAT_XZ)
+        unpacker = lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=_MEMORY)
         raw = unpacker.decompress(data[len(MAGIC) :], _LONGEST)
         if not unpacker.eof:
             raise ValueError("it is too long, or incomplete")
         size = int.from_bytes(raw[:4], "little")
         header = documents.of_json(raw[4 : 4 + size])
-        kind, home, modes, items, texts, armed, count = (header[name] for name in _HEADER)
-        whole = _columns(raw[4 + size :], int(count))
-    except (lzma.LZMAError, ValueError, KeyError, TypeError, EOFError) as error:
+        track, count = _of_header(header)
+        track.data = _columns(memoryview(raw)[4 + size :], count) * QUANTA
+        _check_times(track.t)
+    except (lzma.LZMAError, ValueError, KeyError, TypeError, EOFError, OverflowError) as error:
         raise TrackError(f"the track is damaged: {error}") from None
-    return Track(
-        kind,
-        whole * QUANTA,
-        tuple(home),
-        [(t, mode) for t, mode in modes],
-        [(t, seq) for t, seq in items],
-        [(t, severity, text) for t, severity, text in texts],
-        [(t, bool(state)) for t, state in armed],
-    )
+    return track
+
+
+def _of_header(header: Any) -> tuple[Track, int]:
+    """A track without samples, and how many it has."""
+    kind, home, *events, count = (header[name] for name in _HEADER)
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"its vehicle is {kind!r}")
+    if type(count) is not int or not 0 <= count <= MOST_SAMPLES:
+        raise ValueError(f"it has {count!r} samples; 0 to {MOST_SAMPLES} are read")
+    if not isinstance(home, list) or len(home) != 3 or not all(_is_number(value) for value in home):
+        raise ValueError(f"its home is {home!r}")
+    if not (abs(home[0]) <= 90.0 and abs(home[1]) <= 180.0):
+        raise ValueError(f"its home is {home!r}")
+    found = []
+    for name, types, rows in zip(_HEADER[2:], ((str,), (int,), (int, str), (bool,)), events, strict=False):
+        if not isinstance(rows, list) or len(rows) > MOST_EVENTS:
+            raise ValueError(f"its {name} are no list of at most {MOST_EVENTS}")
+        for row in rows:
+            if not isinstance(row, list) or len(row) != 1 + len(types) or not _is_number(row[0]):
+                raise ValueError(f"one of its {name} is {row!r}")
+            if any(type(value) is not type_ for value, type_ in zip(row[1:], types, strict=True)):
+                raise ValueError(f"one of its {name} is {row!r}")
+        found.append([tuple(row) for row in rows])
+    return Track(kind, np.zeros((0, len(COLUMNS))), (home[0], home[1], home[2]), *found), count
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) in (int, float) and abs(value) < _FAR
+
+
+def _check_times(t: Array) -> None:
+    if len(t) and not ((np.diff(t) > 0.0).all() and t[-1] - t[0] <= LONGEST_S and abs(t[0]) < _FAR):
+        raise ValueError("the times of its samples do not rise, or go too far")
 
 
 def _numbers(column: Array) -> bytes:
@@ -87,18 +122,27 @@ def _numbers(column: Array) -> bytes:
     return bytes(out)
 
 
-def _columns(raw: bytes, count: int) -> Array:
+def _columns(raw: memoryview, count: int) -> Array:
     """(count, columns) whole numbers."""
-    data = np.frombuffer(raw, np.uint8).astype(np.int64)
-    last = data < 0x80
-    if int(last.sum()) != count * len(COLUMNS):
-        raise ValueError(f"{int(last.sum())} numbers instead of {count * len(COLUMNS)}")
-    number = np.concatenate(([0], np.cumsum(last)[:-1])) if len(data) else np.zeros(0, np.int64)
-    begin = np.concatenate(([0], np.flatnonzero(last)[:-1] + 1)) if len(data) else np.zeros(0, np.int64)
-    place = np.arange(len(data)) - begin[number] if len(data) else number
-    if len(place) and int(place.max()) > 8:
-        raise ValueError("a number of more than nine bytes")
-    values = np.zeros(count * len(COLUMNS), np.int64)
-    np.add.at(values, number, (data & 0x7F) << (7 * place))
-    steps = np.where(values & 1, -(values >> 1) - 1, values >> 1).reshape(len(COLUMNS), count)
-    return np.cumsum(np.cumsum(steps, axis=1), axis=1).T
+    data = np.frombuffer(raw, np.uint8)
+    ends = np.flatnonzero(data < 0x80) + 1
+    if len(ends) != count * len(COLUMNS) or (len(ends) and ends[-1] != len(data)):
+        raise ValueError(f"{len(ends)} numbers instead of {count * len(COLUMNS)}")
+    whole = np.zeros((count, len(COLUMNS)), np.int64)
+    begin = 0
+    for k in range(len(COLUMNS) if count else 0):
+        stops = ends[k * count : (k + 1) * count]
+        values = _varints(data[begin : stops[-1]], stops - begin)
+        begin = int(stops[-1])
+        steps = np.where(values & 1, -(values >> 1) - 1, values >> 1)
+        whole[:, k] = np.cumsum(np.cumsum(steps))
+    return whole
+
+
+def _varints(data: Array, ends: Array) -> Array:
+    """Numbers of seven bits a byte that end before these places."""
+    lengths = np.diff(ends, prepend=0)
+    if int(lengths.max()) > _LONGEST_NUMBER:
+        raise ValueError(f"a number of more than {_LONGEST_NUMBER} bytes")
+    place = np.arange(len(data)) - np.repeat(ends - lengths, lengths)
+    return np.asarray(np.add.reduceat((data & np.uint8(0x7F)).astype(np.int64) << (7 * place), ends - lengths))

@@ -11,7 +11,7 @@ import numpy as np
 from ..autopilot import events as core
 from ..autopilot.modes import shown
 from ..core.geodesy import offset_ne
-from .track import COLUMNS, STEP_US, Track
+from .track import COLUMNS, LONGEST_S, STEP_US, Track
 
 NOWHERE = 1e6
 """Stands for what is no number: nothing else is as far away."""
@@ -46,8 +46,8 @@ def _reader(simulation: Observed, path: str) -> Callable[[], list[Any]]:
 class TrackObserver:
     """An observer of a simulation and a listener of its bridge; it puts itself there.
 
-    Samples are the autopilot's estimate at whole tenths of a second, from when the estimator has an origin. Nothing in
-    the vehicle changes by it.
+    Samples are the autopilot's estimate at whole tenths of a second, from when the estimator has an origin, for as long
+    as a track may be (``LONGEST_S``). Nothing in the vehicle changes by it.
     """
 
     def __init__(self, simulation: Observed) -> None:
@@ -86,6 +86,8 @@ class TrackObserver:
             self._rebooted()
         self._follow_events()
         if self._ready() == [0]:
+            return
+        if self._rows and now * 1e-6 - self._rows[0][0] > LONGEST_S:
             return
         if self._is_new:
             self._find_origin()

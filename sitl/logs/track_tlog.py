@@ -11,16 +11,18 @@ from typing import Any
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from ..core.geodesy import offset_ne
 from .kind import kind_of_mav_type, mode_name
-from .tlog import LogError, read_tlog
-from .track import STEP_US, Array, Track, TrackError, is_angle, sampled
+from .tlog import LogError, read_steady
+from .track import STEP_US, Track, TrackError
+from .track_rows import complete, integrated, place_row
 
 _ARMED = 128
 """MAV_MODE_FLAG_SAFETY_ARMED"""
 _NO_AUTOPILOT = 8
 """MAV_AUTOPILOT_INVALID"""
 _STEP = STEP_US * 1e-6
+_PIECE = 50
+"""Bytes of a STATUSTEXT."""
 
 
 class _Reader:
@@ -29,68 +31,82 @@ class _Reader:
     def __init__(self, path: Path, system: int | None) -> None:
         self.path, self.system = path, system
         self.kind = ""
+        self.others: dict[int, int] = {}
+        """System -> MAV_TYPE of vehicles that we do not have."""
         self.rows: dict[str, list[tuple[float, ...]]] = defaultdict(list)
         self.track = Track("", np.zeros((0, 11)))
-        self.homes: list[tuple[float, float, float, float]] = []
+        self.frames = self.bad = 0
         self._boot: tuple[int, int] | None = None
-        """(stamp [us], time since boot [ms]) of the last message that had both."""
-        self._first_us = 0
+        """(time in the log [us], time since boot [ms]) of the last message that had both."""
         self._before_us = 0
         """Simulated time of earlier boots."""
         self._pieces: dict[int, str] = {}
 
-    def time(self, stamp_us: int) -> float:
+    def time(self, logged_us: int) -> float:
         """Time of a message that has none of its own [s]."""
         if self._boot is None:
-            return (stamp_us - self._first_us) * 1e-6
+            return logged_us * 1e-6
         at_us, boot_ms = self._boot
-        return (self._before_us + boot_ms * 1000 + stamp_us - at_us) * 1e-6
+        return (self._before_us + boot_ms * 1000 + logged_us - at_us) * 1e-6
 
     def read(self) -> None:
         """Read all frames."""
         parser = dialect.MAVLink(None)
-        parser.robust_parsing = True
-        for stamp_us, raw in read_tlog(self.path):
-            self._first_us = self._first_us or stamp_us
-            for message in parser.parse_buffer(raw) or ():
-                if message.get_srcComponent() == 1:
-                    self.take(stamp_us, message)
+        for _, logged_us, raw in read_steady(self.path):
+            self.frames += 1
+            try:
+                message = parser.decode(bytearray(raw))
+            except dialect.MAVError:
+                self.bad += 1
+                continue
+            if message.get_srcComponent() == 1:
+                self.take(logged_us, message)
 
-    def take(self, stamp_us: int, message: Any) -> None:
+    def take(self, logged_us: int, message: Any) -> None:
         """One message of an autopilot."""
         name = message.get_type()
         if name == "HEARTBEAT" and message.autopilot != _NO_AUTOPILOT and not self.kind:
             kind = kind_of_mav_type(message.type)
-            if kind is not None and self.system in (None, message.get_srcSystem()):
-                self.system, self.kind = message.get_srcSystem(), kind
+            if self.system in (None, message.get_srcSystem()):
+                if kind is not None:
+                    self.system, self.kind = message.get_srcSystem(), kind
+                else:
+                    self.others[message.get_srcSystem()] = message.type
         if message.get_srcSystem() != self.system:
             return
         boot_ms = getattr(message, "time_boot_ms", None)
         if boot_ms:
             if self._boot is not None and boot_ms + 1000 < self._boot[1]:  # a reboot: time goes on
-                self._before_us += self._boot[1] * 1000 + max(stamp_us - self._boot[0] - boot_ms * 1000, 0)
-            self._boot = (stamp_us, boot_ms)
+                self._before_us += self._boot[1] * 1000 + max(logged_us - self._boot[0] - boot_ms * 1000, 0)
+            self._boot = (logged_us, boot_ms)
         take = getattr(self, "_" + name.lower(), None)
         if take is not None:
-            take(self.time(stamp_us), message)
+            take(self.time(logged_us), message)
+
+    def _add(self, what: str, *values: float) -> None:
+        if all(math.isfinite(value) for value in values):
+            self.rows[what].append(values)
 
     def _global_position_int(self, t: float, m: Any) -> None:
-        if m.lat or m.lon:  # before it knows where it is, it is at 0, 0
-            self.rows["place"].append((t, m.lat, m.lon, m.alt * 1e-3, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01))
+        place = place_row(t, m.lat * 1e-7, m.lon * 1e-7, m.alt * 1e-3)
+        if place is not None:
+            self.rows["place"].append(place)
+            self.rows["speed"].append((t, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01))
 
     def _attitude(self, t: float, m: Any) -> None:
-        self.rows["attitude"].append((t, m.roll, m.pitch, m.yaw))
+        self._add("attitude", t, m.roll, m.pitch, m.yaw)
 
     def _battery_status(self, t: float, m: Any) -> None:
         if m.id == 0 and m.energy_consumed >= 0:
-            self.rows["energy"].append((t, m.energy_consumed / 36.0))  # hJ
+            self._add("energy", t, m.energy_consumed / 36.0)  # hJ
 
     def _sys_status(self, t: float, m: Any) -> None:
         if m.current_battery >= 0:
-            self.rows["power"].append((t, m.voltage_battery * 1e-3 * m.current_battery * 1e-2))
+            self._add("power", t, m.voltage_battery * 1e-3 * m.current_battery * 1e-2)
 
     def _home_position(self, t: float, m: Any) -> None:
-        self.homes.append((t, m.latitude * 1e-7, m.longitude * 1e-7, m.altitude * 1e-3))
+        place = place_row(t, m.latitude * 1e-7, m.longitude * 1e-7, m.altitude * 1e-3)
+        self.rows["home"] += [place] if place is not None else []
 
     def _heartbeat(self, t: float, m: Any) -> None:
         armed, mode = bool(m.base_mode & _ARMED), mode_name(self.kind, m.custom_mode)
@@ -105,7 +121,7 @@ class _Reader:
         if number:
             text = self._pieces.get(number, "") if piece else ""
             self._pieces[number] = text + m.text
-            if len(m.text) == 50:
+            if len(m.text) == _PIECE:
                 return
             self.track.texts.append((t, m.severity, self._pieces.pop(number)))
         else:
@@ -117,7 +133,7 @@ class _Reader:
 
 
 def read(path: str | Path, system: int | None = None) -> Track:
-    """The flight of the first copter or rover in a .tlog, or of ``system``.
+    """The flight of the first copter or rover in a .tlog, or of ``system``; its ``notes`` say what the log lacks.
 
     Times are the vehicle's own since boot; energy is that of BATTERY_STATUS, or summed up from SYS_STATUS.
 
@@ -125,54 +141,31 @@ def read(path: str | Path, system: int | None = None) -> Track:
         LogError: the file cannot be read, or it tells of no such vehicle.
     """
     reader = _Reader(Path(path), system)
+    title = f"log {str(path)!r}"
     try:
         reader.read()
     except OSError as error:
-        raise LogError(f"log {str(path)!r} cannot be read: {error.strerror or error}") from None
+        raise LogError(f"{title} cannot be read: {error.strerror or error}") from None
+    if not reader.frames - reader.bad:
+        raise LogError(f"{title} holds no MAVLink frame: it is no .tlog")
     if not reader.kind:
         which = "no copter and no rover" if system is None else f"no copter or rover with system id {system}"
-        raise TrackError(f"log {str(path)!r} tells of {which}")
-    place = np.array(sorted(reader.rows["place"]))
-    if len(place) < 2:
-        raise TrackError(f"log {str(path)!r} tells no way: it has no GLOBAL_POSITION_INT")
-    track = reader.track
-    track.kind, track.home = reader.kind, _home(track, reader.homes, place)
-    lat, lon, alt = track.home
-    ne = np.array([offset_ne(lat * 1e7, lon * 1e7, row[1], row[2]) for row in place])
-    t = place[:, 0]
-    series: dict[str, tuple[Array, Array]] = {
-        "north": (t, ne[:, 0]),
-        "east": (t, ne[:, 1]),
-        "down": (t, alt - place[:, 3]),
-    }
-    for k, name in enumerate(("vn", "ve", "vd")):
-        series[name] = (t, place[:, 4 + k])
-    attitude = np.array(sorted(reader.rows["attitude"])) if reader.rows["attitude"] else np.zeros((0, 4))
-    for k, name in enumerate(("roll", "pitch", "yaw")):
-        series[name] = (attitude[:, 0], attitude[:, 1 + k])
-    series["energy"] = _energy(reader.rows)
-    times = np.arange(math.ceil(t[0] / _STEP - 1e-6), math.floor(t[-1] / _STEP + 1e-6) + 1) * _STEP
-    track.data = sampled(times, series, is_angle)
-    return track
+        there = ", ".join(f"system {number} is {_words(type_)}" for number, type_ in sorted(reader.others.items()))
+        raise TrackError(f"{title} tells of {which}" + (f": {there}" if there else ": it has no HEARTBEAT of one"))
+    if len(reader.rows["place"]) < 2:
+        raise TrackError(f"{title} tells no way: it has no GLOBAL_POSITION_INT")
+    track, rows = reader.track, reader.rows
+    track.kind = reader.kind
+    if reader.bad:
+        track.notes.append(f"{reader.bad} of its frames are damaged, and left out")
+    energies = rows["energy"]
+    if not energies and rows["power"]:
+        energies = integrated(rows["power"])
+        track.notes.append("energy is summed up from SYS_STATUS: it has no BATTERY_STATUS")
+    return complete(track, title, rows["place"], rows["home"], rows["speed"], rows["attitude"], energies)
 
 
-def _home(track: Track, homes: list[tuple[float, float, float, float]], place: Array) -> tuple[float, float, float]:
-    """Home as of the first arming, or what comes nearest to it."""
-    armed = next((t for t, state in track.armed if state), float(place[0, 0]))
-    known = [home for home in homes if home[0] <= armed + 1.0] or homes
-    if known:
-        chosen = next((home for home in known if home[0] >= armed), known[-1])
-        return chosen[1:]
-    row = place[min(int(np.searchsorted(place[:, 0], armed)), len(place) - 1)]
-    return (row[1] * 1e-7, row[2] * 1e-7, float(row[3]))
-
-
-def _energy(rows: dict[str, list[tuple[float, ...]]]) -> tuple[Array, Array]:
-    if rows["energy"]:
-        found = np.array(sorted(rows["energy"]))
-        return found[:, 0], found[:, 1]
-    if not rows["power"]:
-        return np.zeros(0), np.zeros(0)
-    power = np.array(sorted(rows["power"]))
-    steps = np.diff(power[:, 0], prepend=power[0, 0]) * power[:, 1] / 3600.0
-    return power[:, 0], np.cumsum(steps)
+def _words(mav_type: int) -> str:
+    """A type of vehicle: "of MAV_TYPE 1 (FIXED_WING)"."""
+    entry = dialect.enums["MAV_TYPE"].get(mav_type)
+    return f"of MAV_TYPE {mav_type}" + (f" ({entry.name.removeprefix('MAV_TYPE_')})" if entry is not None else "")

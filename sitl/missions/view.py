@@ -31,7 +31,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         nargs="+",
         type=Path,
         metavar="FLIGHT",
-        help=".tlog, .bin or .rec; several flights are aligned in time",
+        help=".tlog, .bin, .log (DataFlash as text) or .rec; several flights are aligned in time",
     )
     parser.add_argument(
         "--align",
@@ -60,6 +60,9 @@ def run(options: argparse.Namespace) -> int:
     try:
         with CompileProgress() as progress:
             found = [flight.read(path, options.system, progress) for path in options.flights]
+        for each in found:
+            for note in each.notes:
+                print(f"{each.name}: {note}")
     except RecordingError as error:
         raise OptionError(str(error)) from None
     flights, curves = together(found, options.align, options.frame)

@@ -30,8 +30,14 @@ HEADER, ENTRIES, SECTION, END = b"HESZ"
 PLAIN, ZLIB, LZMA = range(3)
 _HEAD = struct.Struct("<BBII")
 _BARE = struct.Struct("<BBI")
-_LONGEST = 1 << 28
+MOST_BYTES = 1 << 30
+"""Of a file."""
+LONGEST = 1 << 26
 """Bytes of a block, unpacked: what is longer is no recording of ours."""
+SPARE, RATIO = 1 << 24, 100
+"""All blocks together have at most so many bytes, unpacked, and so many times the file's."""
+_MEMORY = 1 << 26
+"""Bytes that unpacking LZMA may take: ours has dictionaries of 4 MiB."""
 
 
 class Block(NamedTuple):
@@ -84,10 +90,20 @@ class BlockWriter:
             raise RecordingError(f"recording {str(self.path)!r} cannot be written: {error.strerror or error}") from None
 
     def write(self, kind: int, data: bytes, packing: int = ZLIB) -> None:
-        """Append one block."""
-        raw, self._checksum = pack(kind, data, self._checksum, packing)
+        """Append one block, whole or not at all."""
+        raw, checksum = pack(kind, data, self._checksum, packing)
         with self._named():
-            self._file.write(raw)
+            begin = self._file.tell()
+            try:
+                left = memoryview(raw)
+                while left:  # a disk that is nearly full takes a part
+                    left = left[self._file.write(left) :]
+            except OSError:
+                with contextlib.suppress(OSError):
+                    self._file.truncate(begin)
+                    self._file.seek(begin)
+                raise
+        self._checksum = checksum
 
     def close(self) -> None:
         """Close the file."""
@@ -117,10 +133,13 @@ class BlockReader:
         self.is_cut = False
         """The fault is that the file ends too early."""
         try:
-            self._data = path.read_bytes()
+            with path.open("rb") as file:
+                self._data = file.read(MOST_BYTES + 1)
         except OSError as error:
             raise RecordingError(f"recording {str(path)!r} cannot be read: {error.strerror or error}") from None
         start = self._data[: len(MARK) + 1]
+        if len(self._data) > MOST_BYTES:
+            raise RecordingError(f"recording {str(path)!r} has more than {MOST_BYTES} bytes")
         if not self._data:
             raise RecordingError(f"recording {str(path)!r} is empty")
         if start[: len(MARK)] != MARK:
@@ -132,9 +151,14 @@ class BlockReader:
                 f"recording {str(path)!r} is of format {start[-1]}; this program reads format {VERSION}"
             )
 
+    @property
+    def size(self) -> int:
+        """Bytes of the file."""
+        return len(self._data)
+
     def __iter__(self) -> Iterator[Block]:
         data, at, before = self._data, len(MARK) + 1, 0
-        number = 0
+        number, left_over = 0, SPARE + RATIO * len(data)
         while True:
             if at + _HEAD.size > len(data):
                 left = len(data) - at
@@ -143,7 +167,7 @@ class BlockReader:
             kind, packing, length, checksum = _HEAD.unpack_from(data, at)
             packed = data[at + _HEAD.size : at + _HEAD.size + length]
             place = f"block {number} at byte {at} of {len(data)}"
-            if kind not in b"HESZ" or packing > LZMA or length > _LONGEST:
+            if kind not in b"HESZ" or packing > LZMA or length > LONGEST:
                 self.fault = f"is corrupted: {place} does not begin as a block does"
                 return
             if len(packed) < length:
@@ -153,10 +177,11 @@ class BlockReader:
                 self.fault = f"is corrupted: {place} does not match its checksum"
                 return
             try:
-                unpacked = _unpack(packing, packed)
-            except (zlib.error, lzma.LZMAError) as error:
-                self.fault = f"is corrupted: {place} cannot be unpacked ({error})"
+                unpacked = _unpack(packing, packed, min(LONGEST, left_over))
+            except (zlib.error, lzma.LZMAError, EOFError) as error:
+                self.fault = f"is corrupted: {place} cannot be unpacked: {error}"
                 return
+            left_over -= len(unpacked)
             yield Block(kind, unpacked, at)
             at, before, number = at + _HEAD.size + length, checksum, number + 1
             if kind == END:
@@ -168,11 +193,16 @@ class BlockReader:
         self.fault, self.is_cut = fault, True
 
 
-def _unpack(packing: int, packed: bytes) -> bytes:
+def _unpack(packing: int, packed: bytes, most: int) -> bytes:
     if packing == PLAIN:
         return packed
-    unpacker = zlib.decompressobj() if packing == ZLIB else lzma.LZMADecompressor(lzma.FORMAT_ALONE)
-    data: bytes = unpacker.decompress(packed, _LONGEST)  # type: ignore[union-attr]
-    if not unpacker.eof and packing == ZLIB:
-        raise zlib.error("too long or incomplete")
+    if packing == ZLIB:
+        plain = zlib.decompressobj()
+        data = plain.decompress(packed, most + 1)
+        if not plain.eof and len(data) <= most:
+            raise zlib.error("it is incomplete")
+    else:
+        data = lzma.LZMADecompressor(lzma.FORMAT_ALONE, memlimit=_MEMORY).decompress(packed, most + 1)
+    if len(data) > most:
+        raise zlib.error(f"it has more than {most} bytes, and no recording of this size does")
     return data

@@ -8,6 +8,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from enum import IntEnum
+from functools import partial
 from typing import Any, NamedTuple
 
 from ..errors import SitlError
@@ -65,7 +66,11 @@ class Entry(NamedTuple):
     data: bytes = b""
 
 
+_entry = partial(tuple.__new__, Entry)
+"""An Entry from a tuple of its fields, quickly."""
+_KINDS = {int(kind): kind for kind in EntryKind}
 _LAST_SHIFT = 63
+_LATEST_US = (1 << 63) - 1
 
 
 def varint(value: int) -> bytes:
@@ -112,19 +117,24 @@ def decode(data: bytes, before_us: int) -> Iterator[Entry]:
     Raises:
         ValueError: the bytes are no entries.
     """
-    at = 0
-    while at < len(data):
+    at, end = 0, len(data)
+    while at < end:
         try:
-            step, at = read_varint(data, at)
-            kind = EntryKind(data[at])
-            number, at = read_varint(data, at + 1)
-            size, at = read_varint(data, at)
+            step, at = (data[at], at + 1) if data[at] < 0x80 else read_varint(data, at)
+            kind = _KINDS[data[at]]
+            at += 1
+            number, at = (data[at], at + 1) if data[at] < 0x80 else read_varint(data, at)
+            size, at = (data[at], at + 1) if data[at] < 0x80 else read_varint(data, at)
         except IndexError:
             raise ValueError("an entry is incomplete") from None
-        if at + size > len(data):
+        except KeyError as error:
+            raise ValueError(f"an entry of kind {error}, which no recording has") from None
+        if at + size > end:
             raise ValueError("an entry is incomplete")
         before_us += step
-        yield Entry(before_us, kind, number, data[at : at + size])
+        if before_us > _LATEST_US:
+            raise ValueError(f"an entry at {before_us} us: no run is as long")
+        yield _entry((before_us, kind, number, data[at : at + size]))
         at += size
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from ..bridge.links.tcp import TcpServerLink
 from ..bridge.links.udp import UdpInLink, UdpOutLink
 from ..logs.track_observer import TrackObserver
 from ..simulation import Simulation
-from .blocks import END, ENTRIES, HEADER, LZMA, SECTION, BlockReader, BlockWriter
+from .blocks import END, ENTRIES, HEADER, LZMA, SECTION, Block, BlockReader, BlockWriter
 from .entries import Entry, EntryKind, RecordingError, Sent, check, encode, of_state, varint
 from .identity import describe
 
@@ -87,6 +87,8 @@ class Recorder:
         """Whether bytes were read that have not been processed."""
         self._later: list[Entry] = []
         self._served = False
+        self._is_inside = False
+        """Whether time is passing, or an error has stopped it: then a part of what was due has been sent."""
         self.is_closed = False
         if self.path is not None:
             self._writer = BlockWriter(self.path)
@@ -184,7 +186,10 @@ class Recorder:
         self._note(EntryKind.STREAMS, self._links[link], json.dumps(dict(rates_hz)).encode())
 
     def attended(self) -> None:
-        self._served = True
+        self._served = self._is_inside = True
+
+    def arrived(self) -> None:
+        self._is_inside = False
 
     def beat(self) -> None:
         self._note(EntryKind.HEARTBEAT)
@@ -234,6 +239,12 @@ class Recorder:
             "channels": {str(number): sent.digest().hex() for number, sent in sorted(self.channels.items())},
         }
 
+    def _end(self) -> dict[str, Any]:
+        """What the file ends with. A run that an error has broken off within a step (a full disk, for a log) has no
+        digests: no replay breaks off there."""
+        broken = self._is_inside or self._unprocessed
+        return self.result() | ({"stopped": "broken off", "state": "", "channels": {}} if broken else {})
+
     def close(self) -> None:
         """Write the end of the recording; the simulation's ``close`` does it, too."""
         if self.is_closed:
@@ -246,35 +257,43 @@ class Recorder:
         if self._served and self.simulation.time_us == self._last_us:
             self._append(Entry(self._last_us, EntryKind.SERVED))
         self.flush()
-        for name, give in self.sections.items():
-            self._writer.write(SECTION, name.encode() + b"\0" + give())
-        self._writer.write(END, json.dumps(self.result(), sort_keys=True).encode())
-        self._writer.close()
-        self._writer = None
+        try:
+            for name, give in self.sections.items():
+                self._writer.write(SECTION, name.encode() + b"\0" + give())
+            self._writer.write(END, json.dumps(self._end(), sort_keys=True).encode())
+        finally:
+            writer, self._writer = self._writer, None
+            writer.close()
         if self._total <= REPACKED_BYTES:
             repack(self.path)
 
 
 def repack(path: Path) -> None:
-    """Compress a whole recording with LZMA, in place and atomically."""
+    """Compress a whole recording with LZMA, in place and atomically; where the disk has no room for both, it stays as
+    it is."""
     blocks = list(BlockReader(path))
     beside = path.with_name(path.name + ".packing")
-    writer = BlockWriter(beside)
-    writer.write(HEADER, blocks[0].data, LZMA)
-    together = bytearray()
-    for block in blocks:
-        if block.kind == ENTRIES:
-            together += block.data
-        if together and (len(together) >= PACKED_BYTES or block.kind != ENTRIES):
-            writer.write(ENTRIES, bytes(together), LZMA)  # of whole entries: each block is read for itself
-            together.clear()
-    for block in blocks:
-        if block.kind in (SECTION, END):
-            writer.write(block.kind, block.data)
-    writer.close()
     try:
+        _write_packed(blocks, beside)
         os.replace(beside, path)
-    except OSError as error:
+    except (RecordingError, OSError):
         with contextlib.suppress(OSError):
             beside.unlink()
-        raise RecordingError(f"recording {str(path)!r} cannot be written: {error.strerror or error}") from None
+
+
+def _write_packed(blocks: Sequence[Block], path: Path) -> None:
+    writer = BlockWriter(path)
+    try:
+        writer.write(HEADER, blocks[0].data, LZMA)
+        together = bytearray()
+        for block in blocks:
+            if block.kind == ENTRIES:
+                together += block.data
+            if together and (len(together) >= PACKED_BYTES or block.kind != ENTRIES):
+                writer.write(ENTRIES, bytes(together), LZMA)  # of whole entries: each block is read for itself
+                together.clear()
+        for block in blocks:
+            if block.kind in (SECTION, END):
+                writer.write(block.kind, block.data)
+    finally:
+        writer.close()

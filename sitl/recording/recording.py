@@ -18,6 +18,11 @@ HEADER_KEYS = frozenset((
 END_KEYS = frozenset(("time_us", "stopped", "state", "channels"))
 
 
+SPARE_ENTRIES, ENTRIES_PER_BYTE = 1_000_000, 8
+"""Entries of a recording, at most: so many, and so many for each byte of the file. A client that sends the same bytes
+200 times a second gives less."""
+
+
 @dataclass(frozen=True)
 class Recording:
     """One run, as it was written down."""
@@ -33,6 +38,12 @@ class Recording:
     """Name -> bytes, for example "track"."""
     fault: str = ""
     """Why it has no end, and where it stops."""
+
+    @property
+    def has_digests(self) -> bool:
+        """Whether it has an end, and what the vehicle's state and its telemetry were then: a run that an error broke
+        off has none."""
+        return self.end is not None and bool(self.end["state"])
 
     @property
     def end_us(self) -> int:
@@ -51,6 +62,7 @@ def read(path: str | Path, unfinished: bool = False) -> Recording:
     """
     file = Path(path)
     reader = BlockReader(file)
+    most = SPARE_ENTRIES + ENTRIES_PER_BYTE * reader.size
     header: dict[str, Any] | None = None
     end: dict[str, Any] | None = None
     entries: list[Entry] = []
@@ -62,7 +74,10 @@ def read(path: str | Path, unfinished: bool = False) -> Recording:
                     raise ValueError("a recording begins with what the run was made of")
                 header = _header(block)
             elif block.kind == ENTRIES:
-                entries += decode(block.data, entries[-1].time_us if entries else 0)
+                for entry in decode(block.data, entries[-1].time_us if entries else 0):
+                    entries.append(entry)
+                    if len(entries) > most:
+                        raise ValueError(f"more than {most} entries, and no recording of {reader.size} bytes has them")
             elif block.kind == SECTION:
                 name, _, data = block.data.partition(b"\0")
                 sections[name.decode()] = data

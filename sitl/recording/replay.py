@@ -225,7 +225,7 @@ class Replay:
     def verify(self) -> list[str]:
         """Compare the digests of the vehicle's state and of all channels, at the end."""
         end = self.recording.end
-        if end is None or not self.is_over:
+        if end is None or not self.recording.has_digests or not self.is_over:
             return self.astray
         if end["state"] != of_state(self.simulation) and "the vehicle's state" not in self._astray:
             self.astray.append(f"the vehicle's state differs at the end ({end['time_us'] * 1e-6:.3f} s)")

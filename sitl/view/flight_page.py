@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import SitlError
+from ..core.whole_file import write_whole
 from ..run.playback import Player
 from . import horizon, library
 from .cameras import FREE, VIEWS, Cameras
@@ -203,10 +203,7 @@ class FlightPage:
             serializer.insert_sleep(step)
             self.scene.show(float(time))
         text = serializer.as_html()
-        try:
-            path.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise SitlError(f"page {str(path)!r} cannot be written: {error.strerror or error}") from None
+        write_whole(path, text, title=f"page {str(path)!r}")
 
     def close(self) -> None:
         """Close the page."""

@@ -7,6 +7,7 @@ import importlib.util
 import math
 from pathlib import Path
 
+from ..core.whole_file import whole_file
 from ..errors import MissingExtra
 from .shapes import Cylinder
 from .world import World
@@ -59,7 +60,7 @@ def draw(world: World, path: str | Path, height: float | None = None) -> None:
 
     Raises:
         MissingExtra: matplotlib is not installed.
-        OSError: the picture cannot be written.
+        SitlError: the picture cannot be written.
     """
     check_installed()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -68,7 +69,8 @@ def draw(world: World, path: str | Path, height: float | None = None) -> None:
     figure = Figure(figsize=(9, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
     plan(figure.add_subplot(), world, world.plan_height if height is None else height)
-    figure.savefig(path, dpi=110)
+    with whole_file(path, title=f"picture {path}") as beside:
+        figure.savefig(beside, dpi=110)
 
 
 def plan(axes: object, world: World, height: float, names: bool = True) -> None:

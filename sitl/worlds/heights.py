@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.array_files import read_file, read_npy
 from ..core.geodesy import METRES_PER_DEGE7, longitude_scale
 from ..errors import OptionError
 
@@ -17,6 +18,12 @@ FORMS = "flat, FILE.hgt, FILE.npy or FILE.npy:SPACING"
 FLAT = "flat"
 SPACING = 30.0
 """Of the points of an array unless told otherwise [m]."""
+MOST_BYTES = 1 << 28
+"""Of a file."""
+MOST_POINTS = 1 << 25
+"""Of an array; a tile of one second has 13 million."""
+LOWEST, HIGHEST = -12_000.0, 10_000.0
+"""Heights above mean sea level on Earth [m]."""
 VOID = -32768
 """In a tile: not known."""
 _NAME = re.compile(r"([NS])(\d{2})([EW])(\d{3})")
@@ -65,10 +72,12 @@ def load(text: str, home: tuple[float, float, float]) -> Heights:
         return Heights(np.full((3, 3), alt), lat - 1.0, lon - 1.0, 1.0, 1.0)
     try:
         if path.endswith(".npy"):
-            return _array(np.load(path, allow_pickle=False), float(spacing or SPACING), lat, lon)
+            return _array(read_npy(read_file(Path(path), MOST_BYTES), MOST_BYTES), float(spacing or SPACING), lat, lon)
         if path.endswith(".hgt") and not spacing:
             return _tile(Path(path))
-    except (OSError, ValueError, EOFError) as error:
+    except OSError as error:
+        raise OptionError(f"terrain {text!r} cannot be read: {error.strerror or error}") from None
+    except ValueError as error:
         raise OptionError(f"terrain {text!r}: {error}") from None
     raise OptionError(f"terrain {text!r} is none of {FORMS}")
 
@@ -78,7 +87,10 @@ def _tile(path: Path) -> Heights:
     if name is None:
         raise ValueError("a tile's name is that of its south-west corner, as S36E149.hgt")
     south, west = (float(name[k + 1]) * (-1.0 if name[k] in "SW" else 1.0) for k in (1, 3))
-    points = np.frombuffer(path.read_bytes(), ">i2")
+    content = read_file(path, MOST_BYTES)
+    if len(content) % 2:
+        raise ValueError(f"{len(content)} bytes are no heights of two bytes each")
+    points = np.frombuffer(content, ">i2")
     side = math.isqrt(points.size)
     if side < 2 or side * side != points.size:
         raise ValueError(f"{points.size} heights are no square")
@@ -88,7 +100,9 @@ def _tile(path: Path) -> Heights:
 
 
 def _array(rows: np.ndarray[Any, Any], spacing: float, lat: float, lon: float) -> Heights:
-    if rows.ndim != 2 or min(rows.shape) < 2 or not np.issubdtype(rows.dtype, np.number):
+    if rows.size > MOST_POINTS:
+        raise ValueError(f"{rows.size} heights; at most {MOST_POINTS} are read")
+    if rows.ndim != 2 or min(rows.shape) < 2 or rows.dtype.kind == "b":
         raise ValueError(
             f"an array of numbers with rows and columns is needed, found {rows.dtype} of shape {rows.shape}"
         )
@@ -96,5 +110,8 @@ def _array(rows: np.ndarray[Any, Any], spacing: float, lat: float, lon: float) -
         raise ValueError(f"spacing {spacing} is not a positive number of metres")
     step_lat = spacing / (METRES_PER_DEGE7 * 1e7)
     step_lon = step_lat / longitude_scale(lat * 1e7)
+    known = rows[np.isfinite(rows)]
+    if len(known) and (known.min() < LOWEST or known.max() > HIGHEST):
+        raise ValueError(f"heights from {known.min():g} to {known.max():g} m; {LOWEST:g} to {HIGHEST:g} are read")
     middle_n, middle_e = 0.5 * (rows.shape[0] - 1), 0.5 * (rows.shape[1] - 1)
     return Heights(rows.astype(float), lat - middle_n * step_lat, lon - middle_e * step_lon, step_lat, step_lon)

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services.mission import FENCE, MissionService
+from sitl.bridge.services.parameters import ParameterService
 from tests.bridge.fakes import Bench
-from tests.bridge.test_parameters import ACK, NAK, fetch, request, unpack
+from tests.bridge.test_parameters import ACK, BURST, NAK, OPEN, READ, fetch, request, unpack
 
 TERMINATE, LIST, CREATE, WRITE, CRC = 1, 3, 6, 7, 14
 INVALID_SIZE, END_OF_FILE, NOT_FOUND = 3, 6, 10
@@ -41,6 +42,18 @@ class Logs:
 
     def close(self) -> None:
         pass
+
+
+class Counted(Logs):
+    """Notes how much of a log is asked for."""
+
+    def __init__(self, contents: Sequence[bytes]) -> None:
+        super().__init__(contents)
+        self.asked: list[int] = []
+
+    def read(self, number: int, offset: int, count: int) -> bytes:
+        self.asked.append(count)
+        return super().read(number, offset, count)
 
 
 def listed(bench: Bench, path: bytes) -> list[str]:
@@ -149,3 +162,41 @@ def test_the_answer_to_a_repeated_request_is_sent_again(bench: Bench) -> None:
     bench.run(2.0)
     bench.client.receive()
     assert bench.ask(request(CREATE, path, sequence=100))  # a client that counts from another number
+
+
+def test_parameters_are_packed_when_one_changes_and_not_for_every_request(bench: Bench) -> None:
+    service = bench.bridge.get(ParameterService)
+    first = service.packed(False)
+    assert service.packed(False) is first
+    assert service.packed(True) is service.packed(True) is not first
+    bench.vehicle.v.autopilot.params.WPNAV.SPEED = 437.0  # by the core, which tells nobody
+    second = service.packed(False)
+    assert second is not first and struct.pack("<f", 437.0) in second
+    bench.vehicle.parameters["WPNAV_SPEED"] = 1e9  # out of range: kept beside the record
+    third = service.packed(False)
+    assert third is not second and struct.pack("<f", 1e9) in third
+    (answer,) = bench.ask(request(CRC, b"@PARAM/param.pck"))
+    (again,) = bench.ask(request(CRC, b"@PARAM/param.pck", sequence=20))
+    own = struct.pack("<I", zlib.crc32(third, 0xFFFFFFFF) ^ 0xFFFFFFFF)
+    assert unpack(answer)[1] == unpack(again)[1] == own
+
+
+def test_a_log_is_read_in_pieces_and_not_whole_when_it_is_opened(bench: Bench) -> None:
+    logs = bench.bridge.logs = Counted([bytes(1000) + bytes(range(256)) * 10])
+    (answer,) = bench.ask(request(OPEN, b"logs/00000001.BIN"))
+    assert unpack(answer)[1] == struct.pack("<I", 3560) and logs.asked == []
+    (answer,) = bench.ask(request(READ, b"", offset=1000))
+    assert unpack(answer)[1][:4] == bytes(range(4)) and max(logs.asked) <= 239
+    for sequence in (20, 30):
+        bench.ask(request(CRC, b"logs/00000001.BIN", sequence=sequence))
+    assert logs.asked.count(3560) == 1, "summed up once"
+
+
+def test_a_burst_of_a_log_that_is_erased_ends(bench: Bench) -> None:
+    logs = bench.bridge.logs = Counted([bytes(100_000)])
+    bench.ask(request(OPEN, b"logs/00000001.BIN"))
+    logs.contents = [b""]
+    bench.client.send(request(BURST, size=239))
+    bench.run(0.2)
+    answers = bench.client.receive("FILE_TRANSFER_PROTOCOL")
+    assert [unpack(answer)[0][5] for answer in answers] == [1], "one packet, the last"

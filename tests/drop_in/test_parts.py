@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
 import struct
 import sysconfig
@@ -12,6 +14,7 @@ import pytest
 
 from sitl.autopilot.mission.item import FENCE_INCLUSION, NAV_WAYPOINT, RALLY_POINT, MissionItem, home_item
 from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.signing import SigningState
 from sitl.drop_in.command_line import parse
 from sitl.drop_in.server import Session
 from sitl.drop_in.statistics import SINCE_S, Statistics
@@ -22,6 +25,8 @@ from sitl.foreign.choice import choose
 from sitl.logs.dataflash.log import attach
 from sitl.logs.dataflash.numbered import NumberedLogs
 from sitl.simulation import Core, Simulation
+from tests import mutations
+from tests.full_disk import WORDS, full_disk
 
 
 @pytest.fixture
@@ -82,6 +87,12 @@ def test_storage_keeps_and_forgets(tmp_path: Path) -> None:
         '{"parameters": {"A": "b"}, "mission": []}',
         '{"parameters": 5}',
         '{"parameters": {}, "mission": [], "fence": [[5001, 0, 2]]}',
+        '{"parameters": {"A": 1e999}, "mission": [[16, 0, 0, 0, 0, 0, 1.5]]}',
+        f'{{"parameters": {{"A": {10**400}}}, "mission": []}}',
+        '{"parameters": {}, "mission": [], "rally": [[5100, 0, 0, 0, 0, 0, 1, 2, 1e30]]}',
+        '{"parameters": {}, "mission": [], "fence": [[5001, 0, 1e39, 0, 0, 0, 1, 2, 0]]}',
+        '{"parameters": {}, "mission": [[16, 0, 0, 0, 0, 0, 99999999999, 0, 0]]}',
+        '{"parameters": {}, "mission": [], "signing": ["", 1e400]}',
     ],
 )
 def test_damaged_storage_is_named(tmp_path: Path, text: str) -> None:
@@ -89,6 +100,37 @@ def test_damaged_storage_is_named(tmp_path: Path, text: str) -> None:
     path.write_text(text)
     with pytest.raises(StorageError, match=r"kept.json' is damaged .*-w begins anew"):
         Storage(path)
+
+
+def test_storage_with_any_damage_is_read_or_named(tmp_path: Path) -> None:
+    path = tmp_path / "kept.json"
+    storage = Storage(path)
+    storage.keep("WPNAV_SPEED", 450.0)
+    storage.keep_mission((home_item(1, 2, 3.0), MissionItem(NAV_WAYPOINT, x=5, y=6, z=7.5)))
+    fence = tuple(MissionItem(FENCE_INCLUSION, 0, 3.0, x=k, y=k * k) for k in range(3))
+    storage.keep_places(fence, (MissionItem(RALLY_POINT, x=5, y=6, z=7.0),))
+    storage.keep_signing(SigningState(bytes(32), 7))
+    storage.write()
+    content = path.read_bytes()
+    changed = (json.dumps(value).encode() for value in mutations.of_json(json.loads(content), 300))
+    for damaged in (*changed, *mutations.of_bytes(content, 100)):
+        path.write_bytes(damaged)
+        with contextlib.suppress(StorageError):
+            Storage(path)
+
+
+def test_storage_that_cannot_be_written_stays_as_it_was(tmp_path: Path) -> None:
+    path = tmp_path / "kept.json"
+    storage = Storage(path)
+    storage.keep("WPNAV_SPEED", 450.0)
+    storage.write()
+    storage.keep("WPNAV_SPEED", 500.0)
+    with full_disk(), pytest.raises(StorageError, match=rf"kept\.json' cannot be written: {WORDS}"):
+        storage.write()
+    assert Storage(path).parameters == {"WPNAV_SPEED": 450.0}
+    assert [file.name for file in tmp_path.iterdir()] == ["kept.json"]
+    storage.write()  # there is room again
+    assert Storage(path).parameters == {"WPNAV_SPEED": 500.0}
 
 
 def test_statistics_count_boots_and_time(simulation: Simulation) -> None:

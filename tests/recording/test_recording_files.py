@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import json
 from pathlib import Path
 from typing import Any
@@ -12,13 +14,29 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.errors import SitlError
-from sitl.recording import recorder
-from sitl.recording.blocks import END, ENTRIES, HEADER, MARK, BlockReader, BlockWriter, is_recording
+from sitl.logs.tlog import LogError
+from sitl.missions.comparison.flight import of_recording
+from sitl.recording import blocks, recorder, recording
+from sitl.recording.blocks import (
+    END,
+    ENTRIES,
+    HEADER,
+    LZMA,
+    MARK,
+    PLAIN,
+    SECTION,
+    BlockReader,
+    BlockWriter,
+    is_recording,
+)  # fmt: skip
 from sitl.recording.entries import Entry, EntryKind, RecordingError, decode, encode, read_varint, varint
 from sitl.recording.recorder import Recorder
 from sitl.recording.recording import read
 from sitl.recording.replay import Replay
+from sitl.run.runner import open_log
 from sitl.simulation import Core, Simulation
+from tests import mutations
+from tests.full_disk import WORDS, full_disk
 from tests.recording.conftest import Recorded
 
 ENTRIES_OF_ANY_KIND = st.lists(
@@ -248,3 +266,93 @@ def test_another_version_is_flown_and_named(hopped: Recorded, core: Core) -> Non
     assert replay.differences[0] == "sources of bridge"
     assert replay.differences[1].startswith("gym-sitl 0.0 then")
     assert replay.differences[2].startswith("airframe erle_copter: figure mass 1.15")
+
+
+def test_what_says_that_it_unpacks_to_much_is_refused(
+    hopped: Recorded, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Small files of one repeated entry, or of nothing but zeros."""
+    monkeypatch.setattr(recording, "SPARE_ENTRIES", 1000)
+    monkeypatch.setattr(blocks, "SPARE", 1 << 20)
+    header = next(iter(BlockReader(hopped.path)))
+    path = tmp_path / "x.rec"
+    for kind, data, words in (
+        (
+            ENTRIES,
+            encode(Entry(0, EntryKind.PROCESSED), 0) * 60_000,
+            "more than [0-9]{4,5} entries, and no recording of",
+        ),
+        (
+            SECTION,
+            bytes(1 << 23),
+            "cannot be unpacked: it has more than [0-9]+ bytes, and no recording of this size does",
+        ),
+    ):
+        writer = BlockWriter(path)
+        writer.write(HEADER, header.data)
+        for _ in range(2):
+            writer.write(kind, data, LZMA)
+        writer.close()
+        assert path.stat().st_size < 50_000
+        with pytest.raises(RecordingError, match=words):
+            read(path)
+
+
+def test_any_damage_that_checksums_do_not_show(hopped: Recorded, tmp_path: Path) -> None:
+    whole = list(BlockReader(hopped.path))
+    path = tmp_path / "x.rec"
+    for k, block in enumerate(whole):
+        changed = mutations.of_bytes(block.data[:2000], 60, seed=k)
+        if block.kind in (HEADER, END):
+            values = mutations.of_json(json.loads(block.data), 60, seed=k)
+            changed = itertools.chain(changed, (json.dumps(value).encode() for value in values))
+        for data in changed:
+            writer = BlockWriter(path)
+            for other in whole:
+                writer.write(other.kind, data if other is block else other.data[:2000], PLAIN)
+            writer.close()
+            with contextlib.suppress(SitlError):
+                found = read(path, unfinished=True)
+                if "track" in found.sections:
+                    of_recording(found)
+
+
+@pytest.mark.parametrize("room", [0, 200, 5_000, 20_000])
+def test_a_disk_that_is_full_leaves_a_recording_that_says_where_it_ends(core: Core, tmp_path: Path, room: int) -> None:
+    path = tmp_path / "x.rec"
+    simulation = Simulation(core=core, seed=7)
+    with full_disk(room), contextlib.suppress(RecordingError):
+        try:
+            Recorder(simulation, path)
+            simulation.advance(31.0)
+        finally:
+            simulation.close()
+    assert [file.name for file in tmp_path.iterdir()] == ["x.rec"]
+    with contextlib.suppress(RecordingError):
+        found = read(path, unfinished=True)
+        assert found.end is not None or "without its end mark" in found.fault
+
+
+def test_a_disk_without_room_for_packing_keeps_the_recording(hopped: Recorded, tmp_path: Path) -> None:
+    path = tmp_path / "x.rec"
+    path.write_bytes(hopped.path.read_bytes())
+    with full_disk(1000):
+        recorder.repack(path)
+    assert path.read_bytes() == hopped.path.read_bytes()
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_run_that_an_error_breaks_off_has_no_digests_that_a_replay_could_differ_from(
+    core: Core, tmp_path: Path
+) -> None:
+    simulation = Simulation(core=core, seed=7)
+    Recorder(simulation, tmp_path / "x.rec")
+    open_log(simulation, tmp_path, "x")
+    with full_disk(20_000), pytest.raises(LogError, match=rf"x\.tlog' cannot be written: {WORDS}"):
+        simulation.advance(60.0)
+    simulation.close()
+    found = read(tmp_path / "x.rec")
+    assert found.end is not None and found.end["stopped"] == "broken off" and not found.has_digests
+    replay = Replay(found, core=core)
+    assert replay.run() == []
+    replay.close()

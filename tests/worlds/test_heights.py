@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Heights of the ground from files."""
 
+import contextlib
+
 import numpy as np
 import pytest
 
 from sitl.errors import OptionError
 from sitl.worlds.heights import load
+from tests import mutations
 
 HOME = (-35.363262, 149.165237, 584.0)
 
@@ -44,12 +47,22 @@ def test_an_array_has_its_middle_at_home(tmp_path):
 
 def test_what_cannot_be_read_is_named(tmp_path):
     np.save(tmp_path / "line.npy", np.zeros(4))
+    np.save(tmp_path / "complex.npy", np.zeros((3, 3), complex))
+    np.save(tmp_path / "high.npy", np.full((3, 3), 1e9))
+    huge = b"{'descr': '<f8', 'fortran_order': False, 'shape': (300000, 300000), }".ljust(117) + b"\n"
+    (tmp_path / "huge.npy").write_bytes(b"\x93NUMPY\x01\x00" + len(huge).to_bytes(2, "little") + huge + bytes(64))
+    (tmp_path / "N00E000.hgt").write_bytes(bytes(9))
     np.save(tmp_path / "objects.npy", np.array([[{}, {}], [{}, {}]]), allow_pickle=True)
     (tmp_path / "S36E149.hgt").write_bytes(bytes(10))
     (tmp_path / "hills.hgt").write_bytes(bytes(8))
     refusals = {
         "line.npy": "rows and columns",
-        "objects.npy": "pickle",
+        "complex.npy": "<c16",
+        "high.npy": "heights from 1e[+]09 to 1e[+]09 m",
+        "huge.npy": r"300000, 300000\)",
+        "N00E000.hgt": "9 bytes are no heights",
+        "missing.npy": "cannot be read: No such file",
+        "objects.npy": "object",
         "line.npy:x": "could not convert",
         "S36E149.hgt": "5 heights are no square",
         "hills.hgt": "S36E149.hgt",
@@ -59,3 +72,13 @@ def test_what_cannot_be_read_is_named(tmp_path):
     for name, said in refusals.items():
         with pytest.raises(OptionError, match=said):
             load(str(tmp_path / name), HOME)
+
+
+def test_damaged_arrays_and_tiles_are_read_or_named(tmp_path):
+    np.save(tmp_path / "a.npy", np.arange(30.0).reshape(5, 6))
+    content = (tmp_path / "a.npy").read_bytes()
+    for name, whole in (("b.npy", content), ("S36E149.hgt", bytes(2 * 13 * 13))):
+        for damaged in mutations.of_bytes(whole, 200):
+            (tmp_path / name).write_bytes(damaged)
+            with contextlib.suppress(OptionError):
+                load(str(tmp_path / name), HOME)(*HOME[:2])

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from ...core.whole_file import whole_file
 from .. import baselines, environments
 from ..errors import AgentError
 from ..evaluate import Played
@@ -107,7 +108,7 @@ def _policy(text: str) -> Named:
 def _write(path: Path, episodes: Sequence[Played], seed: int) -> None:
     """Results as CSV; truth values as 0 and 1."""
     names = [field.name for field in fields(Played)]
-    with open(path, "w", encoding="utf-8", newline="") as file:
+    with whole_file(path, AgentError) as beside, open(beside, "w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["episode", "seed", *names])
         for k, played in enumerate(episodes):

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core.whole_file import whole_file
 from sitl.errors import MissingExtra
 
 from ..errors import AgentError
@@ -56,12 +57,8 @@ def save(made: Any, path: Path) -> Path:
     Raises:
         AgentError: it cannot be written.
     """
-    temporary = path.with_name(f".{path.name}")
-    try:
-        made.savefig(temporary, format="png", dpi=110, metadata={"Software": None})
-        temporary.replace(path)
-    except OSError as error:
-        raise AgentError(f"{path} cannot be written: {error.strerror}") from None
+    with whole_file(path, AgentError) as beside:
+        made.savefig(beside, format="png", dpi=110, metadata={"Software": None})
     return path
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...core.whole_file import write_whole
 from ..errors import AgentError
 
 
@@ -34,13 +34,7 @@ def write_bytes(path: Path, content: bytes) -> None:
     Raises:
         AgentError: it cannot be written.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_bytes(content)
-        os.replace(temporary, path)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise AgentError(f"{path} cannot be written: {error.strerror}") from None
+    write_whole(path, content, AgentError)
 
 
 def write_json(path: Path, value: Any) -> None:

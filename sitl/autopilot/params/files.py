@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from ...core.whole_file import write_whole
 from ...errors import did_you_mean
 from .parameter import FLOAT, Parameter, stored
 from .reader import ParameterError, Reader
@@ -240,5 +241,9 @@ def dump(values: Values) -> str:
 
 
 def save(values: Values, path: str | Path) -> None:
-    """Write a vehicle's parameters to a .parm file."""
-    Path(path).write_text(dump(values), encoding="utf-8")
+    """Write a vehicle's parameters to a .parm file.
+
+    Raises:
+        SitlError: it cannot be written; the file of before stays.
+    """
+    write_whole(path, dump(values), title=f"parameter file {path}")

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from ...core.records import as_bytes
 from .parameter import INT32, Parameter, rows, stored
 from .parameters import Parameters
 
@@ -112,6 +113,8 @@ class Values:
 
     def __init__(self, table: Table, record: Any) -> None:
         self.table, self._record = table, record
+        self._listed: tuple[Any, tuple[Parameter, ...]] | None = None
+        """The values, and what is listed with them."""
         self.kept: dict[str, float] = {}
         """What is not in the record: those without effect, as far as they were set, and values that are out of range,
         for which the record has the nearest one that is not."""
@@ -140,13 +143,20 @@ class Values:
             else:
                 self.kept[name] = value
 
+    def state(self) -> tuple[bytes, tuple[tuple[str, float], ...]]:
+        """Equal as long as no value has changed, by whomever: the core writes parameters, too."""
+        return bytes(as_bytes(self._record, self._record.dtype)), tuple(self.kept.items())
+
     def idle(self) -> list[str]:
         """Those that were set and do nothing here."""
         return [name for name in self.kept if not (self.table[name].has_effect or self.table[name].doc)]
 
     def listed(self) -> tuple[Parameter, ...]:
         """Those in the list that clients get, in its order."""
-        return self.table.listed(self)
+        state = self.state()
+        if self._listed is None or self._listed[0] != state:
+            self._listed = (state, self.table.listed(self))
+        return self._listed[1]
 
 
 def _read(names: Path, read_by_shell: Mapping[str, str]) -> Iterator[Parameter]:

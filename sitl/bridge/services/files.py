@@ -8,13 +8,14 @@ MISSION_ITEM_INT behind a header of five numbers, ``logs/`` the on-board logs.
 from __future__ import annotations
 
 import struct
+import zlib
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .. import metadata
 from .mission import FENCE, MISSION, RALLY, MissionService
 from .mission_upload import ITEM_INT, to_int
-from .parameters import pack_parameters
+from .parameters import ParameterService
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
@@ -26,10 +27,39 @@ MISSION_MAGIC = 0x763D
 MISSION_HEADER = struct.Struct("<HHHHH")
 """magic, MAV_MISSION_TYPE, options (0), first item (0), number of items"""
 _ITEM_BYTES = 38
+_PIECE_BYTES = 1 << 20
 Reader = Callable[[], bytes]
 
 
-def read(bridge: Bridge, path: str, queries: list[str]) -> bytes | None:
+class Log:
+    """An on-board log of the length that it had when it was opened, read piece by piece: it may be long.
+
+    Args:
+        logs: the vehicle's.
+        entry: of the log, in the list.
+    """
+
+    def __init__(self, logs: Any, entry: Any) -> None:
+        self._logs, self._number, self._size = logs, entry.number, entry.size
+        self.key = (entry.number, entry.time_utc, entry.size)
+        """Equal for equal contents."""
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, piece: slice) -> bytes:
+        begin, end, _ = piece.indices(self._size)
+        return bytes(self._logs.read(self._number, begin, max(end - begin, 0)))
+
+    def crc(self) -> int:
+        """Its CRC-32."""
+        found = 0xFFFFFFFF
+        for begin in range(0, self._size, _PIECE_BYTES):
+            found = zlib.crc32(self[begin : begin + _PIECE_BYTES], found)
+        return found ^ 0xFFFFFFFF
+
+
+def read(bridge: Bridge, path: str, queries: list[str]) -> bytes | Log | None:
     """What is in a file now; None: there is none.
 
     Args:
@@ -38,22 +68,20 @@ def read(bridge: Bridge, path: str, queries: list[str]) -> bytes | None:
     """
     values = bridge.vehicle.parameters
     if path == PARAMETERS:
-        listed = [(p, values[p.name]) for p in values.listed()]
-        return pack_parameters(listed, with_defaults="withdefaults=1" in queries)
+        return bridge.get(ParameterService).packed("withdefaults=1" in queries)
     if path in MISSIONS:
         return pack_mission(bridge, MISSIONS[path])
     if path in _system(bridge):
         return _system(bridge)[path]()
-    if path in _logs(bridge) and bridge.logs is not None:
-        number, size = _logs(bridge)[path]
-        return bridge.logs.read(number, 0, size)
+    if path in (logs := _logs(bridge)) and bridge.logs is not None:
+        return Log(bridge.logs, logs[path])
     return metadata.files(values.table).get(path)
 
 
 def listing(bridge: Bridge, path: str) -> list[str] | None:
     """Entries of a folder, as FTP tells them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
     sizes = {name: len(file()) for name, file in _system(bridge).items()}
-    sizes |= {name: size for name, (_, size) in _logs(bridge).items()}
+    sizes |= {name: entry.size for name, entry in _logs(bridge).items()}
     folder = path.strip("/")
     folder = "" if folder == "." else folder
     if folder:
@@ -95,7 +123,7 @@ def _links(bridge: Bridge) -> bytes:
     return "\n".join(["UARTV1", *lines, ""]).encode("ascii", "replace")
 
 
-def _logs(bridge: Bridge) -> dict[str, tuple[int, int]]:
-    """Name of each log -> its number and size."""
+def _logs(bridge: Bridge) -> dict[str, Any]:
+    """Name of each log -> its entry in the list."""
     entries = bridge.logs.entries() if bridge.logs is not None else ()
-    return {f"{LOGS}/{entry.number:08d}.BIN": (entry.number, entry.size) for entry in entries}
+    return {f"{LOGS}/{entry.number:08d}.BIN": entry for entry in entries}

@@ -67,7 +67,7 @@ class _Answered(NamedTuple):
 class _Session:
     """The one file that a client has open."""
 
-    def __init__(self, data: bytes, sender: Sender, number: int, written: str = "") -> None:
+    def __init__(self, data: bytes | files.Log, sender: Sender, number: int, written: str = "") -> None:
         self.data, self.sender, self.number = data, sender, number
         self.written = written
         """Path of a file that is being written; "": it is read."""
@@ -82,6 +82,8 @@ class FtpService(Service):
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
         self._answered: dict[Channel, _Answered] = {}
+        self._summed: tuple[Any, int] = (None, 0)
+        """The file whose checksum was worked out last, and that."""
         self._operations: dict[int, Callable[[_Request], None]] = {
             LIST: self._list,
             CRC: self._crc,
@@ -151,7 +153,7 @@ class FtpService(Service):
         if found is not None and (request.opcode == RESET or found.number == request.session):
             del self._sessions[request.channel]
             if found.written and request.opcode == TERMINATE:
-                if not files.write(self.bridge, found.written, found.data):
+                if not files.write(self.bridge, found.written, found.data[:]):
                     self._refuse(request, FAIL)
                     return
         self._reply(request, b"", request.offset)
@@ -178,18 +180,22 @@ class FtpService(Service):
         if not found.written or end > MOST_WRITTEN:
             self._refuse(request, FAIL)
             return
-        found.data = found.data[: request.offset].ljust(request.offset, b"\0") + request.data + found.data[end:]
+        found.data = bytes(found.data[: request.offset]).ljust(request.offset, b"\0") + request.data + found.data[end:]
         self._reply(request, struct.pack("<I", len(request.data)), request.offset)
 
     def _crc(self, request: _Request) -> None:
         data = self._file(request)
-        if data is not None:
-            self._reply(request, struct.pack("<I", file_crc(data)))
+        if data is None:
+            return
+        key = data.key if isinstance(data, files.Log) else data
+        if self._summed[0] is not key and self._summed[0] != key:
+            self._summed = (key, data.crc() if isinstance(data, files.Log) else file_crc(data))
+        self._reply(request, struct.pack("<I", self._summed[1]))
 
     def _path(self, request: _Request) -> str:
         return request.data.split(b"\0", 1)[0].decode("ascii", "replace")
 
-    def _file(self, request: _Request) -> bytes | None:
+    def _file(self, request: _Request) -> bytes | files.Log | None:
         """What is in the file that is asked for; None when there is none, which the client is told."""
         path, _, query = self._path(request).partition("?")
         data = files.read(self.bridge, path.lstrip("/"), query.split("&"))
@@ -280,6 +286,6 @@ class FtpService(Service):
         """Send a packet of a burst; gives the next one, None after the last."""
         piece = session.data[burst.offset : burst.offset + burst.size]
         end = burst.offset + len(piece)
-        is_last = end >= len(session.data)
+        is_last = end >= len(session.data) or not piece  # a log that was erased meanwhile
         self._reply(burst, piece, burst.offset, complete=is_last)
         return None if is_last else burst._replace(offset=end, sequence=(burst.sequence + 1) & 0xFFFF)

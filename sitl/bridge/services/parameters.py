@@ -42,6 +42,8 @@ class ParameterService(Service):
         self._table, self._values = bridge.vehicle.firmware.table, bridge.vehicle.parameters
         self._lists: dict[Channel, int] = {}
         self._told = 0
+        self._packed: dict[bool, tuple[Any, bytes]] = {}
+        """With defaults or without -> what the values were then, the file."""
 
     def handlers(self) -> dict[str, Handler]:
         return {
@@ -56,6 +58,16 @@ class ParameterService(Service):
     def value(self, name: str) -> float:
         """Present value, in the parameter's own unit."""
         return self._values[name]
+
+    def packed(self, with_defaults: bool) -> bytes:
+        """The file of all parameters; the same object until one changes: packing takes milliseconds, and every client
+        may ask at any rate."""
+        state = self._values.state()
+        before = self._packed.get(with_defaults)
+        if before is None or before[0] != state:
+            listed = [(p, self._values[p.name]) for p in self._values.listed()]
+            before = self._packed[with_defaults] = (state, pack_parameters(listed, with_defaults))
+        return before[1]
 
     def _payload(self, name: str, index: int, count: int) -> bytes:
         kind = WIRE_TYPES[self._table[name].kind]

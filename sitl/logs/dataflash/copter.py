@@ -211,5 +211,6 @@ LOGS = KindLogs(
     mav_types=(2, 3, 4, 13, 14, 15, 29),
     mode_names=tuple(_MODES.split()),
     event_rows=lambda v, code, a: system_id.rows(v, code, a) + autotune.rows(v, code, a),
+    parameters=("RTL_ALT", "RTL_ALT_M", "PHLD_BRAKE_RATE"),
     panels=(plot.altitude, plot.attitude, plot.motors),
 )

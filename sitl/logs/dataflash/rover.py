@@ -212,5 +212,6 @@ LOGS = KindLogs(
     word="Rover",
     mav_types=(10, 11),
     mode_names=tuple(_MODES.split()),
+    parameters=("CRUISE_SPEED", "ATC_STR_RAT_P", "SPEED_TURN_GAIN"),
     panels=(plot.speed, plot.heading, plot.outputs),
 )

@@ -14,7 +14,7 @@ from sitl.recording.entries import RecordingError
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
-    parser = actions.add_parser("compare", help="compare two flights (.rec, .tlog or .bin)")
+    parser = actions.add_parser("compare", help="compare two flights (.rec, .tlog, .bin or .log)")
     parser.add_argument("golden", type=Path, metavar="GOLDEN", help="the golden flight")
     parser.add_argument("new", type=Path, metavar="NEW", help="the flight to compare with it")
     parser.add_argument(

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 from dataclasses import asdict
 from pathlib import Path
 
+from sitl.cli.options import open_folder
 from sitl.cli.output import add_json_option, print_json
+from sitl.core.whole_file import write_whole
 from sitl.errors import OptionError
 
 from .. import library
@@ -37,7 +38,7 @@ def show(options: argparse.Namespace) -> int:
         target = options.copy / entry.file
         if target.exists():
             raise OptionError(f"{target} is there already")
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(entry.path, target)
+        open_folder(target.parent, "--copy")
+        write_whole(target, entry.path.read_bytes(), OptionError)
         print(target)
     return 0

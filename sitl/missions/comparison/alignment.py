@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,8 @@ HEARTBEAT = 2.0
 LAZY = 0.05
 """Weight of time where many samples are at one position (a hover), so that the sample at the same time is matched
 [m/s]."""
+MOST_CELLS = 1 << 28
+"""Of the alignment: samples of one flight times those of the band; two bytes each."""
 MOVING = 0.5
 """Speed along golden's direction below which a position gives no time [m/s]."""
 START_NAMES = {"AUTO": "AUTO began", "armed": "arming", "start": "power-on"}
@@ -155,7 +158,8 @@ def _from(track: Track, start: float, logged: float | None = None) -> Track:
     """
     stop = _end(track, start)
     t = track.t
-    times = start + np.arange(int((min(stop, t[-1]) - start) / STEP + 1e-6) + 1) * STEP
+    first = max(math.ceil((t[0] - 1e-6 - start) / STEP), 0)  # what an event says may be far before all samples
+    times = start + np.arange(first, int((min(stop, t[-1]) - start) / STEP + 1e-6) + 1) * STEP
     times = times[times >= t[0] - 1e-6]
     series = {name: (t, track[name]) for name in NAMES[1:]}
     cut = track.between(start if logged is None else logged, stop + 1.0)
@@ -205,8 +209,11 @@ def _warp(f: Array, o: Array, tf: Array, to: Array) -> Array:
     first = round((tf[0] - to[0]) / STEP)
     width = int((BAND + min(abs(tf[-1] - to[-1]), LONGER)) / STEP)
     offsets = np.arange(-width, width + 1)
+    if len(f) * len(offsets) > MOST_CELLS:
+        hours = MOST_CELLS / len(offsets) * STEP / 3600.0
+        raise AlignmentError(f"{len(f) * STEP / 3600.0:.1f} hours are too long to be compared: at most {hours:.1f}")
     total = np.zeros(len(offsets))
-    came = np.zeros((len(f), len(offsets)), np.int32)
+    came = np.zeros((len(f), len(offsets)), np.int16)
     for i in range(len(f)):
         j = i + first + offsets
         near = o[np.clip(j, 0, len(o) - 1)] - f[i]

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from sitl.core.compile import Progress
-from sitl.logs import track_bin, track_tlog
+from sitl.logs import forms, track_bin, track_tlog
 from sitl.logs.tlog import LogError
 from sitl.logs.track import Track
 from sitl.logs.track_observer import TrackObserver
-from sitl.recording.blocks import is_recording
 from sitl.recording.recording import Recording
 from sitl.recording.recording import read as read_recording
 from sitl.recording.replay import Replay
@@ -42,31 +41,32 @@ class Flight:
 
 
 def read(path: str | Path, system: int | None = None, progress: Progress | None = None) -> Flight:
-    """The flight in a recording (.rec), a .tlog or a .bin.
+    """The flight in a recording (.rec), a .tlog or a DataFlash log (.bin, .log), by what the file holds.
 
-    A recording without a track is flown again for it.
+    A recording without a track is flown again for it. The flight's notes say what a log lacks.
 
     Raises:
         LogError, RecordingError: the file cannot be read, or holds no flight.
     """
     file = Path(path)
-    if not file.exists():
-        raise LogError(f"{str(path)!r} does not exist")
-    suffix = file.suffix.lower()
-    if is_recording(file) or suffix in (".rec", ".snapshot"):
+    form = forms.of(file)
+    if form == forms.RECORDING:
         return of_recording(read_recording(file), progress)
-    if suffix == ".tlog":
-        return Flight(str(path), track_tlog.read(file, system), coarse=True)
-    if suffix == ".bin":
-        return Flight(str(path), track_bin.read(file))
-    raise LogError(f"{str(path)!r} is no recording, and neither .tlog nor .bin by its name")
+    if form == forms.TLOG:
+        track = track_tlog.read(file, system)
+    elif form == forms.DATAFLASH:
+        track = track_bin.read(file)
+    else:
+        raise LogError(f"{str(path)!r} is {form}: flights are read from recordings (.rec), .tlog, .bin and .log")
+    return Flight(str(path), track, coarse=form == forms.TLOG, notes=tuple(track.notes))
 
 
 def of_recording(recording: Recording, progress: Progress | None = None) -> Flight:
     """The flight of a recording."""
+    digests = recording.end if recording.has_digests else None
     if SECTION in recording.sections:
         track = Track.from_bytes(recording.sections[SECTION])
-        return Flight(str(recording.path), track, recording.header, recording.end)
+        return Flight(str(recording.path), track, recording.header, digests)
     replay = Replay(recording, progress=progress)
     observer = TrackObserver(replay.simulation)
     try:
@@ -77,7 +77,7 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     notes = ["it keeps no track: flown again for it"]
     notes += [f"changed since the recording: {text}" for text in replay.differences]
     notes += [f"the replay differs: {text}" for text in astray]
-    return Flight(str(recording.path), track, recording.header, recording.end, notes=tuple(notes))
+    return Flight(str(recording.path), track, recording.header, digests, notes=tuple(notes))
 
 
 Array = np.ndarray[Any, Any]

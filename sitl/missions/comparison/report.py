@@ -10,7 +10,8 @@ from html import escape
 from pathlib import Path
 from xml.etree import ElementTree as xml
 
-from sitl.errors import MissingExtra
+from sitl.core.whole_file import write_whole
+from sitl.errors import MissingExtra, OptionError
 
 from . import scene, words
 from .compare import Comparison, Figure
@@ -61,7 +62,8 @@ def junit_write(path: str | Path, cases: list[Case]) -> None:
         for case in mine:
             _add(suite, case)
     xml.indent(root)
-    Path(path).write_bytes(xml.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
+    content = xml.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+    write_whole(path, content, OptionError, f"report {path}")
 
 
 def _add(suite: xml.Element, case: Case) -> None:
@@ -132,7 +134,8 @@ def report_write(comparison: Comparison, folder: str | Path, title: str = "") ->
     junit_write(folder / JUNIT, cases_of(comparison))
     path = folder / HTML
     shown = None if comparison.ok else scene.write(comparison, folder)
-    path.write_text(html(comparison, title, shown.name if shown is not None else ""), encoding="utf-8")
+    text = html(comparison, title, shown.name if shown is not None else "")
+    write_whole(path, text, OptionError, f"report {path}")
     return path
 
 

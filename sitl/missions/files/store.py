@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from sitl.core.whole_file import write_whole
+
 from . import kml, lists, plan, wpl
 from .document import MissionFile, MissionFileError
 
@@ -113,8 +115,4 @@ def save(file: MissionFile, path: str | Path) -> None:
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise MissionFileError(f"{path}: suffix {suffix!r} is not one of {', '.join(SUFFIXES)}")
-    content = plan.write(file) if suffix == ".plan" else wpl.write(file)
-    try:
-        path.write_text(content, encoding="utf-8")
-    except OSError as error:
-        raise MissionFileError(f"{path}: {error.strerror or error}") from None
+    write_whole(path, plan.write(file) if suffix == ".plan" else wpl.write(file), MissionFileError, f"mission {path}")

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import tempfile
 import time
 from dataclasses import dataclass, field
@@ -12,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from sitl import vehicles
+from sitl.core.whole_file import write_whole
 from sitl.errors import SitlError
 from sitl.logs.tlog import LogError
 from sitl.physics.engines import NATIVE
@@ -133,7 +132,8 @@ def _judged(
         if reports is not None and status in (DIFFERS, NO_GOLDEN):
             folder = Path(reports) / case.name
             folder.mkdir(parents=True, exist_ok=True)
-            kept = shutil.copyfile(path, folder / path.name).as_posix()
+            kept = (folder / path.name).as_posix()
+            write_whole(kept, path.read_bytes(), SuiteError, f"recording {kept}")
             if comparison is not None:
                 written = str(report.report_write(comparison, folder, case.name))
         wall = time.perf_counter() - began
@@ -170,13 +170,8 @@ def _keep(path: Path, golden: Path) -> None:
     Raises:
         SuiteError: it cannot be written there.
     """
-    beside = golden.with_name(golden.name + ".new")
     try:
         golden.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            shutil.copyfile(path, beside)
-            os.replace(beside, golden)
-        finally:
-            beside.unlink(missing_ok=True)
     except OSError as error:
         raise SuiteError(f"golden flight {golden} cannot be written: {error.strerror or error}") from None
+    write_whole(golden, path.read_bytes(), SuiteError, f"golden flight {golden}")

@@ -14,13 +14,14 @@ from pathlib import Path
 
 from sitl.core.compile import Progress
 from sitl.core.ray_cluster import cluster
+from sitl.core.whole_file import write_whole
 from sitl.physics.engines import NATIVE
 from sitl.vehicle.core_entry import load_core
 from sitl.vehicle.kinds import KINDS
 
 from ..comparison.report import Case as JunitCase
 from ..comparison.report import junit_write as write_junit
-from .cases import Case
+from .cases import Case, SuiteError
 from .fly import FAILED, Result, fly_case
 
 BACKENDS = ("local", "ray")
@@ -135,7 +136,7 @@ def write(folder: Path, suite: str, results: Sequence[Result]) -> Path:
     ]
     write_junit(folder / "junit.xml", cases)
     path = folder / "index.html"
-    path.write_text(_page(folder, suite, results), encoding="utf-8")
+    write_whole(path, _page(folder, suite, results), SuiteError, f"report {path}")
     return path
 
 

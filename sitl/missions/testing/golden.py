@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sitl.errors import OptionError
+from sitl.core.whole_file import write_whole
+from sitl.errors import OptionError, SitlError
 from sitl.logs.tlog import LogError
 from sitl.recording.entries import RecordingError
 
@@ -115,16 +116,13 @@ class Golden(Forking):
         store.checked.append(path)
         if path.exists() and _track(path) == _track(new):
             return
-        beside = path.with_name(f".{path.name}.{os.getpid()}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            try:
-                beside.write_bytes(new.read_bytes())
-                os.replace(beside, path)
-            finally:
-                beside.unlink(missing_ok=True)
+            write_whole(path, new.read_bytes(), title=f"golden flight {path}")
         except OSError as error:
             raise AssertionError(f"golden flight {path} cannot be written: {error.strerror or error}") from None
+        except SitlError as error:
+            raise AssertionError(str(error)) from None
         store.written.append(path)
 
     def _compare(self, path: Path, new: Path, tolerance: Limits) -> list[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from sitl.bridge.frame import Splitter
-from sitl.logs.tlog import LogError, read_tlog
+from sitl.logs.tlog import LogError, read_steady
 
 from ..files.document import kind_of_type
 
@@ -16,8 +16,8 @@ INVALID = 8
 """MAV_AUTOPILOT_INVALID: what is no autopilot says so in its HEARTBEAT."""
 ARMED = 128
 """MAV_MODE_FLAG_SAFETY_ARMED"""
-GAP_S, BACK_S = 3600.0, 1.0
-"""A longer gap, or a larger step back of the time stamps, means that the recording computer's clock was set [s]."""
+MOST_MESSAGES = 5_000_000
+"""Of a log: 15 hours at 90 a second."""
 
 
 class LoggedMessage(NamedTuple):
@@ -102,20 +102,17 @@ class Log:
 def _read(path: Path) -> tuple[list[LoggedMessage], int]:
     found: list[LoggedMessage] = []
     splitter = Splitter()
-    begin_us: int | None = None
-    time, jumps = 0.0, 0
+    jumps_so_far = 0
     try:
-        for stamp_us, raw in read_tlog(path):
-            begin_us = stamp_us if begin_us is None else begin_us
-            late = (stamp_us - begin_us) * 1e-6 - time
-            if late > GAP_S or late < -BACK_S:
-                begin_us, jumps = stamp_us - round(time * 1e6), jumps + 1
+        for jumps, time_us, raw in read_steady(path):
+            jumps_so_far = jumps
             for frame in splitter.feed(raw):
-                time = max((stamp_us - begin_us) * 1e-6, time)  # another link's clock may be a little behind
+                if len(found) == MOST_MESSAGES:
+                    raise LogError(f"log {str(path)!r} holds more than {MOST_MESSAGES} messages: too many to fly again")
                 fields = frame.kind.decode(frame.payload)
-                found.append(LoggedMessage(time, frame.system, frame.component, frame.kind.name, fields))
+                found.append(LoggedMessage(time_us * 1e-6, frame.system, frame.component, frame.kind.name, fields))
     except OSError as error:
         raise LogError(f"log {str(path)!r} cannot be read: {error.strerror or error}") from None
     if not found:
         raise LogError(f"log {str(path)!r} holds no MAVLink frame: it is no .tlog")
-    return found, jumps
+    return found, jumps_so_far

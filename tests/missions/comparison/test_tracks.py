@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sitl.logs.dataflash.reader import Row
 from sitl.logs.tlog import LogError
 from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
 from sitl.logs.track_bin import _Reader as Reader
@@ -26,6 +26,7 @@ from tests.missions.comparison.conftest import straight
 @given(st.lists(st.lists(st.floats(-1e5, 1e5), min_size=11, max_size=11), max_size=30))
 def test_bytes_give_back_a_track_to_its_quanta(rows: list[list[float]]) -> None:
     data = np.array(rows).reshape(-1, len(COLUMNS))
+    data[:, 0] = 0.1 * np.arange(len(data))
     track = Track("rover", data, (1.0, 2.0, 3.0), [(0.5, "HOLD")], [(1.0, 3)], [(2.0, 6, "hé")], [(0.0, True)])
     back = Track.from_bytes(track.to_bytes())
     assert np.allclose(back.data, track.quantised().data, atol=1e-9)
@@ -240,13 +241,13 @@ def test_only_what_was_armed_is_disarmed() -> None:
 def test_a_log_that_arming_has_opened_is_armed_from_its_beginning() -> None:
     """As of the real ArduPilot with LOG_DISARMED 0: its first record of arming is that it is over."""
     reader = Reader()
-    reader.take(SimpleNamespace(TimeUS=43_500_000, get_type=lambda: "PARM"))
-    reader.take(SimpleNamespace(TimeUS=44_000_000, ArmState=1, get_type=lambda: "ARM"))
+    reader.take(Row("PARM", 43.5, {"Name": "LOG_DISARMED"}, {}))
+    reader.take(Row("ARM", 44.0, {"ArmState": 1}, {}))
     assert reader.track.armed == [(44.0, True)]
     reader = Reader()
-    reader.take(SimpleNamespace(TimeUS=43_500_000, get_type=lambda: "PARM"))
-    reader.take(SimpleNamespace(TimeUS=90_000_000, Id=11, get_type=lambda: "EV"))
-    reader.take(SimpleNamespace(TimeUS=90_000_001, ArmState=0, get_type=lambda: "ARM"))
+    reader.take(Row("PARM", 43.5, {"Name": "LOG_DISARMED"}, {}))
+    reader.take(Row("EV", 90.0, {"Id": 11}, {}))
+    reader.take(Row("ARM", 90.000001, {"ArmState": 0}, {}))
     assert reader.track.armed == [(43.5, True), (90.0, False)]
 
 
