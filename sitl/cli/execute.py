@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 from ..foreign.choice import ARDUPILOT, Choice, choose
 from ..foreign.session import ArduPilotSession
 from ..run import runner
-from ..run.pacing import Pacing, parse_speedup
+from ..run.pacing import Pacing, parse_speedup, whole_ticks
 from ..run.swarm import SwarmPacing, serve_swarm
 from ..simulation import OptionError, Simulation
 from ..swarm import Swarm
@@ -111,6 +111,7 @@ class ScriptPace:
     """Publishes the script's clock after each slice and waits until the next is due."""
 
     def __init__(self, pacer: Pacer) -> None:
+        pacer.slice_us = whole_ticks(pacer.slice_us)
         self._pacer = pacer
         self.slice_us = pacer.slice_us
 

@@ -11,7 +11,7 @@ from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.execute import terminable
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
-from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown, wants_view
+from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown
 from sitl.errors import OptionError
 from sitl.run import runner
 from sitl.run.pacing import StoppablePacing, parse_speedup
@@ -87,8 +87,6 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
                 say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
         pace = StoppablePacing(speedup)
         with shown(simulation, options, pace) as on_slice:
-            if speedup is None and not wants_view(options):
-                pace.slice_us = 100_000  # nobody else is to be served
             outcome = fly(
                 simulation,
                 file.mission,
