@@ -397,6 +397,7 @@ class Simulation:
             raise OptionError(f"the snapshot is of world {snapshot.world}, this is world {here}")
         if snapshot.physics != self.physics:
             raise OptionError(f"the snapshot is of physics {snapshot.physics}, this is {self.physics}")
+        self.bridge.get(FaultService).look()  # at the time that is left
         kept = self._record.tobytes()
         if self.bridge.board.journal is not None:
             self.bridge.board.journal.restored()

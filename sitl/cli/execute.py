@@ -26,6 +26,7 @@ from ..vehicle.kinds import DEFAULT, KINDS
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
 from . import foreign, recordings, run, swarm
+from .fault_options import say_faults
 from .status import StatusLine
 from .view_options import DEFAULT_TEXT, check_view, shown
 
@@ -84,6 +85,7 @@ def execute(options: argparse.Namespace) -> int:
         return code
     finally:
         status.close()
+        say_faults(simulation)
         simulation.close()
 
 

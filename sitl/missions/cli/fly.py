@@ -10,6 +10,7 @@ from pathlib import Path
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.execute import terminable
+from sitl.cli.fault_options import say_faults
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
 from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown
 from sitl.errors import OptionError
@@ -100,6 +101,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
     finally:
         simulation.close()
     print(summary(outcome))
+    say_faults(simulation)
     print(f"log: {log}" + (f"\nrecording: {options.rec}" if options.rec else ""))
     return 0 if outcome.completed else 1
 
