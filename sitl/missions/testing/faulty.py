@@ -10,7 +10,9 @@ from typing import Any
 
 from sitl.bridge.links import LinkFaults
 from sitl.bridge.services.faults import FaultService
+from sitl.client.connection import Connection
 from sitl.errors import OptionError
+from sitl.simulation import Simulation
 from sitl.vehicle.equipment import Equipment
 from sitl.vehicle.fault_history import Acted
 from sitl.vehicle.faults import Failure, Text, unit_name
@@ -53,12 +55,12 @@ class Fault:
 class Faulty(Forking):
     """A vehicle that can fail."""
 
-    def __init__(self, *arguments: Any, **options: Any) -> None:
+    def __init__(self, build: Callable[[], Simulation | Connection], name: str = "vehicle") -> None:
         self.failures: list[Fault] = []
         """What the test let fail, in order."""
         self._of_client: dict[str, Acted] = {}
         """Faults of the client, and those of another autopilot, that are in force; ``begin_us`` is since when."""
-        super().__init__(*arguments, **options)
+        super().__init__(build, name)
 
     def fail(self, what: str, type: str = "", *, instance: int = 0, amount: float | None = None, at: float = 0.0,
              until: float | None = None, motor: int | None = None, thrust: float | None = None,
