@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from . import vehicles, worlds
+from .autopilot.params import files
 from .errors import OptionError, did_you_mean
 from .physics.engines import NATIVE
 from .physics.native import atmosphere
@@ -36,7 +37,7 @@ class Options(TypedDict, total=False):
     home: Home | None
     seed: int | None
     estimator: str
-    params: Mapping[str, float] | None
+    params: files.Given | None
     world: str | Path | World | None
     start: StartPose | None
     physics: str
@@ -54,7 +55,8 @@ class Scenario:
             None: Canberra.
         seed: seed of all sensor noise and turbulence; None: 0.
         estimator: "ekf", or "truth" for work on controllers.
-        params: values under ArduPilot's names, over the airframe's own and the defaults.
+        params: values under ArduPilot's names, over the airframe's own and the defaults; or a file of parameters, which
+            are taken as a vehicle takes them (docs/reference/parameter-files.md). They are kept as a dictionary.
         world: name (``sitl.worlds.names()``), path of a .toml file, or a World. Its origin is at ``home``, and the
             vehicle stands at ``start``; home's heading does not count.
         start: name of one of the world's start poses, or x, y, z [m], yaw [deg] in the world's frame; None: the
@@ -75,7 +77,7 @@ class Scenario:
     home: Home | None = None
     seed: int | None = None
     estimator: str = ESTIMATORS[0]
-    params: Mapping[str, float] | None = field(default_factory=dict)
+    params: files.Given | None = field(default_factory=dict)
     world: str | Path | World | None = None
     start: StartPose | None = None
     physics: str = NATIVE
@@ -85,7 +87,7 @@ class Scenario:
     def __post_init__(self) -> None:
         if self.estimator not in ESTIMATORS:
             raise OptionError(f"estimator {self.estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
-        object.__setattr__(self, "params", dict(self.params or {}))
+        object.__setattr__(self, "params", files.given(self.params))
         faults = (self.faults,) if isinstance(self.faults, str | Failure) else self.faults
         try:
             object.__setattr__(self, "faults", tuple(str(Failure.of(fault)) for fault in faults))
@@ -110,6 +112,12 @@ class Scenario:
         if isinstance(frame, Scenario):
             return replace(frame, **options) if options else frame
         return cls(**options) if frame is None else cls(frame, **options)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """``params`` as they are kept."""
+        assert isinstance(self.params, dict)
+        return self.params
 
     @cached_property
     def airframe(self) -> Airframe:
@@ -167,6 +175,7 @@ class Scenario:
         else:
             named = airframe.name in vehicles.names() and vehicles.load(airframe.name) is airframe
             frame = airframe.name if named else None
+        of_files = {"params_of_files": True} if isinstance(self.params, files.FileValues) else {}
         return {
             "vehicle": airframe.kind,
             "frame": frame,
@@ -177,7 +186,8 @@ class Scenario:
             "physics": self.physics,
             "world": _world_to_json(self.world),
             "start": start if start is None or isinstance(start, str) else [float(number) for number in start],
-            "params": {name: float(value) for name, value in (self.params or {}).items()},
+            "params": {name: float(value) for name, value in self.parameters.items()},
+            **of_files,
             "faults": list(map(str, self.faults)),
             "terrain": self.terrain,
         }
@@ -195,12 +205,14 @@ class Scenario:
             options["world"] = data["world"]["file"]
             if options["world"] is None:
                 raise OptionError(f"world {data['world']['name']!r} was made by a program; it has to be given")
-        start = data["start"]
+        start, params = data["start"], data["params"]
+        if not isinstance(params, dict):
+            raise OptionError(f"parameters of a recording are a table, not {params!r}")
         found: dict[str, Any] = {
             "home": tuple(data["home"]),
             "seed": data["seed"],
             "estimator": data["estimator"],
-            "params": data["params"],
+            "params": files.FileValues(params) if data.get("params_of_files") else params,
             "start": tuple(start) if isinstance(start, list) else start,
             "physics": data["physics"],
             "faults": data.get("faults", ()),

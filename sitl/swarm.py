@@ -358,7 +358,7 @@ def _scenarios(
         raise OptionError(f"{len(starts)} start poses for {len(given)} vehicles: each needs one")
     seed, found = common.seed_or_default, []
     for k, (scenario, start) in enumerate(zip(given, starts, strict=True)):
-        params = {**(scenario.params or {}), "MAV_SYSID": 1.0 + k}
+        params = scenario.parameters | {"MAV_SYSID": 1.0 + k}
         own = {"home": common.home, "world": world, "start": start, "seed": seed + k, "params": params}
         found.append(replace(scenario, **own))  # type: ignore[arg-type]
     return found

@@ -7,6 +7,7 @@ import argparse
 import contextlib
 import math
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -131,9 +132,9 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
 
 def build_plant(options: argparse.Namespace, choice: Choice) -> LocalPlant:
     """Physics and world by the options, and by those of the parameter files that act on them."""
-    values: dict[str, float] = {}
-    for path in options.params:
-        values.update(files.load(path))
+    values = files.load_all(options.params)
+    for text in files.not_read(values):
+        print(f"sitl: {text}", file=sys.stderr)
     scenario = scenario_of(options, choice.for_physics(values))
     with CompileProgress() as progress:
         return stand_alone(scenario, progress=progress)
@@ -169,13 +170,10 @@ def build_session(
     if choice.kind == ARDUPILOT:
         return ArduPilotSession(
             choice, plant, links, instance=options.instance, speedup=speedup or FASTEST,
-            params=[Path(path) for path in options.params], folder=options.autopilot_dir, say=say, tap=tap,
+            params=files.load_all(options.params), folder=options.autopilot_dir, say=say, tap=tap,
             is_relayed_by_slice=is_relayed_by_slice,
         )  # fmt: skip
-    values: dict[str, float] = {}
-    for path in options.params:
-        values.update(files.load(path))
-    theirs = {name: value for name, value in values.items() if not name.startswith("SIM_")}
+    theirs = {name: x for name, x in files.load_all(options.params).items() if not name.startswith("SIM_")}
     return Px4Session(
         choice, plant, instance=options.instance, speedup=speedup, params=theirs,
         folder=options.autopilot_dir, say=say,

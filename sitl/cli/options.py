@@ -106,7 +106,13 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
         default="ekf",
         help="ekf (default), or truth: the true state, without estimator errors",
     )
-    parser.add_argument("--params", action="append", default=[], metavar="FILE", help=".parm file (repeatable)")
+    parser.add_argument(
+        "--params",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="file of parameters of any ground station: .parm, .param, .params (repeatable)",
+    )
     add_fail_option(parser)
     parser.add_argument(
         "--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="folder for the .tlog and .bin logs"
@@ -121,10 +127,15 @@ def check_kind(frame: str, airframe: vehicles.Airframe, vehicle: str) -> None:
 
 
 def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None = None) -> Scenario:
-    """What the options of a command describe, with these parameters in their units."""
+    """What the options of a command describe, with these parameters in their units; says what files of parameters have
+    that this vehicle does not take."""
     vehicle = getattr(options, "vehicle", DEFAULT)
     airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
     check_kind(options.frame, airframe, vehicle)
+    if isinstance(params, files.FileValues) and not params.is_told:
+        params.is_told = True
+        for text in files.notes(KINDS[airframe.kind].firmware.table, params):
+            print(f"sitl: {text}", file=sys.stderr)
     return Scenario(
         airframe,
         home=options.home,
@@ -141,18 +152,13 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
 
 def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
-    values: dict[str, float] = dict(overrides or {})
-    for path in options.params:
-        values.update(files.load(path))
+    values = files.given(overrides)
+    if options.params:
+        values = values | files.load_all(options.params)
     scenario = scenario_of(options, values)
     with CompileProgress() as progress:
         simulation = Simulation(scenario, progress=progress)
     watch_faults(simulation)
-    unknown, idle = simulation.unknown_parameters, simulation.parameters.idle()
-    for names, what in ((unknown, "are not in this firmware"), (idle, "have no effect here")):
-        if names:
-            shown = ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")
-            print(f"sitl: {len(names)} parameters of the files {what}: {shown}", file=sys.stderr)
     return simulation
 
 

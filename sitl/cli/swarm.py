@@ -77,10 +77,7 @@ def opened(options: argparse.Namespace) -> Iterator[tuple[Swarm, int, Line]]:
         raise OptionError(f"--instance {options.instance}: vehicles of --count {options.count} have ids 1 and up")
     faults = link_faults(options)
     folder = open_folder(options.log_dir)
-    values: dict[str, float] = {}
-    for path in options.params:
-        values.update(files.load(path))
-    scenario = scenario_of(options, values)
+    scenario = scenario_of(options, files.load_all(options.params))
     given = {field.name: getattr(scenario, field.name) for field in fields(scenario) if field.name != "frame"}
     with contextlib.ExitStack() as stack:
         with CompileProgress() as progress:

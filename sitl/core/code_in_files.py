@@ -33,6 +33,7 @@ def code_of_options(options: Mapping[str, Any]) -> list[str]:
             ("autopilot_path", options.get("autopilot_path") is not None),
             ("reset", options.get("reset", "reboot") != "reboot"),
             ("guard", options.get("guard") is not None),
+            ("params", isinstance(options.get("params"), str)),  # a file of this machine
         )
         if runs
     ]

@@ -109,15 +109,17 @@ class Session:
 
     def _parameters(self, table: Table) -> dict[str, float]:
         """Of default files, storage and command line; what the firmware does not take is told and left out."""
-        values: dict[str, float] = {"SIM_WIND_T": 0.0}  # ArduPilot's, with less wind near the ground
-        for path in self._line.defaults:
-            values.update(files.load(path))
+        of_files = files.load_all(self._line.defaults)
+        for text in files.notes(table, of_files):
+            self._say(text)
+        values = {"SIM_WIND_T": 0.0, **of_files}  # ArduPilot's, with less wind near the ground
         values.update(self.storage.parameters)
         if self._line.sysid is not None:
             values["MAV_SYSID"] = self._line.sysid
         if self._line.speedup is not None:
             values["SIM_SPEEDUP"] = self._line.speedup
-        self._tell("parameters that this firmware does not have", [name for name in values if name not in table])
+        strange = [name for name in values if name not in table and name not in of_files]
+        self._tell("parameters that this firmware does not have", strange)
         known = {name: value for name, value in values.items() if name in table}
         refusals = {name: text for name, value in known.items() if (text := table[name].no_number(value))}
         for text in refusals.values():

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..autopilot.params.files import text_of
 from ..core.constants import TICK_HZ
 from ..physics.native.power_on import Home
 from ..vehicle.kinds import KINDS
@@ -44,7 +45,7 @@ def defaults(airframe: Airframe, sees_ground: bool) -> str:
             "RNGFND1_TYPE": _RANGEFINDER, "RNGFND1_ORIENT": _DOWN, "RNGFND1_MIN": low, "RNGFND1_MAX": high,
             "RNGFND1_MIN_CM": round(100 * low), "RNGFND1_MAX_CM": round(100 * high),
         }  # fmt: skip
-    return "".join(f"{name} {value:g}\n" for name, value in values.items())
+    return text_of(values)
 
 
 def command(
@@ -79,13 +80,12 @@ def start(
     instance: int = 0,
     speedup: float = FASTEST,
     sees_ground: bool = False,
-    params: Sequence[Path] = (),
     overrides: str = "",
     folder: Path | None = None,
 ) -> AutopilotProcess:
-    """Start it; see ``command`` and ``defaults``. ``params`` are more files, ``overrides`` the text of a last one."""
+    """Start it; see ``command`` and ``defaults``. ``overrides`` is the text of a second file of parameters."""
     files = {DEFAULTS: defaults(airframe, sees_ground)}
-    named: list[Path | str] = ["{folder}/" + DEFAULTS, *(path.resolve() for path in params)]
+    named: list[Path | str] = ["{folder}/" + DEFAULTS]
     if overrides:
         files["overrides.parm"] = overrides
         named.append("{folder}/overrides.parm")

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..autopilot.params.files import FileValues
 from ..core.code_in_files import REACHED
 from ..errors import OptionError
 from ..vehicle.kinds import KINDS
@@ -44,7 +45,8 @@ class Choice:
         """Those of the parameters that act on our physics. An ArduPilot has sensors, a battery and failing outputs of
         its own, so only the wind does; a PX4 has no SIM_ parameters like ours."""
         prefix = WIND if self.kind == ARDUPILOT else "SIM_"
-        return {name: value for name, value in values.items() if name.startswith(prefix)}
+        found = {name: value for name, value in values.items() if name.startswith(prefix)}
+        return FileValues(found) if isinstance(values, FileValues) else found
 
 
 def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | None:

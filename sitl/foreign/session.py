@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
+from ..autopilot.params.files import text_of
 from ..bridge.hil.protocol import BASE_PORT
 from ..bridge.links.link import Link
 from ..errors import LinkLostError
@@ -57,7 +58,7 @@ class ArduPilotSession:
         links: for its clients, of a program that is started.
         instance: 10 more for the default port of the physics, 1 more for its MAV_SYSID.
         speedup: times the wall clock.
-        params: files of parameters.
+        params: under ArduPilot's names.
         folder: see ``AutopilotProcess``.
         say: prints a message for the user.
         tap: see ``Relay``.
@@ -75,7 +76,7 @@ class ArduPilotSession:
         *,
         instance: int = 0,
         speedup: float = 1.0,
-        params: Sequence[Path] = (),
+        params: Mapping[str, float] | None = None,
         folder: Path | None = None,
         say: Say = lambda text: None,
         tap: Tap = lambda frame: None,
@@ -96,10 +97,11 @@ class ArduPilotSession:
             undo.callback(self.host.close)
             if choice.program is not None:
                 base = free_tcp_run(ardupilot.SERIAL_PORTS)
+                number = {"MAV_SYSID": 1.0 + instance, "SYSID_THISMAV": 1.0 + instance}
                 self.process = ardupilot.start(
                     choice.program, plant.vehicle.airframe, plant.home, self.host.address[1], base, instance=instance,
                     speedup=speedup, sees_ground=plant.rangers is not None and plant.rangers.has_rangefinder,
-                    params=params, overrides=f"MAV_SYSID {1 + instance}\nSYSID_THISMAV {1 + instance}\n", folder=folder,
+                    overrides=text_of(params or {}) + text_of(number), folder=folder,
                 )  # fmt: skip
                 undo.callback(self.process.stop)
                 self.relay = Relay((HOST, base), links, listened)

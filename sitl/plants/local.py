@@ -223,7 +223,7 @@ def stand_alone(
     table.set_defaults(v.autopilot.params)
     values = Values(table, v.autopilot.params)
     files.apply(values, airframe.parameters, f"airframe {airframe.name}")
-    files.apply(values, scenario.params or {})
+    files.apply(values, scenario.parameters)
     vehicle = SimulatedVehicle(kind, airframe, fleet, 0, v, RecordReader(fleet, 0), lambda: None)
     plant = LocalPlant(vehicle, scenario, None, progress)
     restart(plant)

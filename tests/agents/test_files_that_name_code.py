@@ -27,6 +27,7 @@ NAMED = [
     ({"autopilot_path": "./theirs"}, r"autopilot_path = '\./theirs'"),
     ({"connection": "tcp:127.0.0.1:1", "reset": "force"}, "reset = 'force'"),
     ({"connection": "tcp:127.0.0.1:1", "guard": False}, "guard = False"),
+    ({"params": "/etc/theirs.parm"}, "params = '/etc/theirs.parm'"),
 ]
 
 

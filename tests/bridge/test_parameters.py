@@ -8,11 +8,13 @@ import math
 import random
 import struct
 
+import numpy as np
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pymavlink.mavftp import MAVFTP
 
 from sitl.autopilot.copter.parameters import TABLE
+from sitl.autopilot.params.parameter import stored
 from sitl.bridge.frame import Splitter
 from sitl.bridge.metadata import file_crc
 from sitl.bridge.services.parameters import TOLD
@@ -71,6 +73,19 @@ def test_a_value_out_of_range_is_kept_and_the_nearest_in_range_is_used(bench: Be
     (answer,) = write(bench, "GUID_TIMEOUT", 5.0)
     assert answer.param_value == 5.0 == bench.vehicle.v.autopilot.params.GUID_TIMEOUT
     assert "GUID_TIMEOUT" not in bench.vehicle.parameters.kept
+
+
+@pytest.mark.parametrize("kind", ["bench", "rover_bench"])
+def test_every_bound_is_taken_without_a_word(kind: str, request: pytest.FixtureRequest) -> None:
+    """As PARAM_SET carries it: in single precision."""
+    bench: Bench = request.getfixturevalue(kind)
+    for p in bench.vehicle.parameters.table:
+        for bound in filter(math.isfinite, (p.low, p.high)):
+            if p.read_only or p.name == "MAV_SYSID":
+                continue
+            answers = write(bench, p.name, bound)
+            said = [m.text for m in answers if m.get_type() == "STATUSTEXT" and p.name in m.text]
+            assert not said and answers[-1].param_value == np.float32(stored(p, bound)), p
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])

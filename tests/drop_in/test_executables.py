@@ -46,10 +46,15 @@ def test_sticks_on_udp(core: Core, tmp_path: Path) -> None:
 
 def test_parameters_and_mission_are_kept_until_they_are_wiped(core: Core, tmp_path: Path) -> None:
     defaults = tmp_path / "defaults.parm"
-    defaults.write_text("CRUISE_SPEED 3.5\nWP_SPEED 1.5\nNO_SUCH_NAME 5\n")
-    start = ("--model", "rover", "--defaults", f"{defaults},{defaults}", *FAST)
+    defaults.write_text("CRUISE_SPEED 1\nWP_SPEED 1.5\nNO_SUCH_NAME 5\n")
+    saved = tmp_path / "qgc.params"
+    saved.write_text("# Stack: ArduPilot\n1\t1\tCRUISE_SPEED\t3.5\t9\n1\t1\tLOG_BACKEND_TYPE\t2\t2\n")
+    start = ("--model", "rover", "--defaults", f"{defaults},{saved}", *FAST)
     with running(tmp_path, *start, program="ardurover") as vehicle, closing(Client(vehicle.url())) as client:
         assert any("NO_SUCH_NAME" in line for line in vehicle.said)
+        assert (
+            any("LOG_BACKEND_TYPE 2 (1)" in line for line in vehicle.said) and client.params["LOG_BACKEND_TYPE"] == 2.0
+        )
         assert (client.params["CRUISE_SPEED"], client.params["STAT_BOOTCNT"]) == (3.5, 1.0)
         client.params["CRUISE_SPEED"] = 4.5
         client.params["SCHED_LOOP_RATE"] = 400  # out of range: taken and kept, as ArduPilot does

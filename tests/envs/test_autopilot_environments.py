@@ -14,6 +14,7 @@ import pytest
 from gymnasium.error import InvalidAction
 from pytest import approx
 
+from sitl.autopilot.params.files import ParameterWarning
 from sitl.envs import EnvOptionError
 from sitl.envs.tasks import Task
 from sitl.errors import LinkLostError
@@ -212,6 +213,21 @@ def test_figures_are_drawn_anew():
         env.reset(seed=seed)
         masses.append(float(env.unwrapped.robot.view(0).physics.airframe.mass))
     assert masses[0] == masses[2] != masses[1]
+
+
+def test_a_file_of_parameters_is_taken_as_a_vehicle_takes_it(tmp_path):
+    (tmp_path / "mine.params").write_text("1\t1\tWP_SPEED\t1.5\t9\n1\t1\tLOG_BACKEND_TYPE\t2\t2\n1\t1\tNO_SUCH\t1\t9\n")
+    with pytest.warns(ParameterWarning) as told:
+        env = gym.make(ROVER, params=tmp_path / "mine.params", randomise={"mass": (700.0, 900.0)})
+        env.reset(seed=1)
+        env.reset(seed=2)
+    values = env.unwrapped.robot.simulation(0).parameters
+    assert (values["WP_SPEED"], values["LOG_BACKEND_TYPE"]) == (1.5, 2.0)
+    said = [str(w.message) for w in told]
+    assert len(said) == 2 and "NO_SUCH" in said[0] and "LOG_BACKEND_TYPE 2 (1)" in said[1], (
+        "told once, not each episode"
+    )
+    env.close()
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from .parameter import INT8, INT16, ParameterGroup, param
+from .parameter import BITS16, INT8, INT16, ParameterGroup, param
 
 _FAR = 1e9
 
@@ -18,7 +18,7 @@ class Fence(ParameterGroup):
     MARGIN: float = param(2.0, -_FAR, _FAR, "m", "Room that is kept to the fences")
     TOTAL: float = param(0, -128, 127, "", "Points of areas that are loaded, as FENCE_POINT counts them", INT8)
     OPTIONS: float = param(
-        0, 0, 32767, "",
+        0, *BITS16, "",
         "Bits: 1 no other mode while breached, 2 one of the areas to stay in is enough, 4 tells of a margin breached",
         INT16,
     )  # fmt: skip

@@ -1,69 +1,224 @@
 # SPDX-License-Identifier: BSD-3-Clause
-""".parm files: one ``NAME VALUE`` a line, separated by blanks, a tab or a comma; ``#`` starts a comment.
-
-The format of Mission Planner, MAVProxy and ArduPilot's default-parameter files.
-"""
+"""Files of parameters: their values for a vehicle, what is to be said of them, and a vehicle's values as a file."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...errors import SitlError
+from ...errors import did_you_mean
 from .parameter import FLOAT, Parameter, stored
-from .table import Values
+from .reader import ParameterError, Reader
+from .renamed import here
+from .table import Table, Values
+
+__all__ = [
+    "FileValues", "Given", "ParameterError", "ParameterWarning", "apply", "check", "dump", "format_value", "given",
+    "load", "load_all", "not_read", "notes", "parse", "save", "tell", "text_of",
+]  # fmt: skip
+
+_SHOWN = 6
+"""Number of names in a message about many."""
 
 
-class ParameterError(SitlError, ValueError):
-    """A parameter's name or value that cannot be taken."""
+class ParameterWarning(UserWarning):
+    """What a file of parameters has that this vehicle does not take, or takes otherwise."""
 
 
-def parse(text: str, source: str = "parameters") -> dict[str, float]:
-    """Names and values of a .parm text.
+class FileValues(dict[str, float]):
+    """Values of files of parameters, by name.
+
+    A vehicle takes them as it takes PARAM_SET, and as ArduPilot takes ``--defaults``: it passes over names that its
+    firmware does not have, and where a value is out of range it keeps the value and uses the nearest one in range.
+    """
+
+    def __init__(self, values: Mapping[str, float] | None = None) -> None:
+        super().__init__(values or {})
+        self.sources: dict[str, list[str]] = {}
+        """Names that each file has."""
+        self.remarks: list[str] = []
+        """What was passed over in the files."""
+        self.read_only: frozenset[str] = frozenset()
+        """Names that are marked ``@READONLY``."""
+        self._told = [False]
+        if isinstance(values, FileValues):
+            self._add(values)
+
+    def __or__(self, other: Mapping[str, float]) -> FileValues:  # type: ignore[override]
+        """With others over these."""
+        both = FileValues(self)
+        both.update(other)
+        if isinstance(other, FileValues):
+            both._add(other)
+        return both
+
+    __ior__ = __or__  # type: ignore[assignment]
+
+    def __ror__(self, other: Mapping[str, float]) -> FileValues:  # type: ignore[override]
+        """These over others."""
+        both = FileValues(self)
+        for name, value in other.items():
+            both.setdefault(name, value)
+        return both
+
+    @property
+    def is_told(self) -> bool:
+        """Whether the user has been told what there is to say of them (``notes``), or of a copy."""
+        return self._told[0]
+
+    @is_told.setter
+    def is_told(self, value: bool) -> None:
+        self._told[0] = value
+
+    def _add(self, other: FileValues) -> None:
+        self.sources.update(other.sources)
+        self.remarks += other.remarks
+        self.read_only = (self.read_only - other.keys()) | other.read_only
+        self._told = other._told
+
+
+Given = Mapping[str, float] | str | Path
+"""Parameters as they are given: values by name, or a file."""
+
+
+def parse(text: str, source: str = "parameters") -> FileValues:
+    """Names and values of the text of a file of parameters.
 
     Raises:
         ParameterError: names the source, the line and what is wrong with it.
     """
-    values: dict[str, float] = {}
-    for number, line in enumerate(text.splitlines(), 1):
-        words = re.split(r"[\s,]+", line.split("#", 1)[0].strip())
-        if words == [""]:
-            continue
-        if len(words) < 2:
-            raise ParameterError(f"{source}, line {number}: expected 'NAME VALUE', found {line.strip()!r}")
-        try:
-            values[words[0].upper()] = float(words[1])
-        except ValueError:
-            raise ParameterError(f"{source}, line {number}: {words[1]!r} is not a number ({words[0]})") from None
+    reader = Reader()
+    reader.text(text, source)
+    return _of(reader, source)
+
+
+def load(path: str | Path) -> FileValues:
+    """Names and values of a file of parameters, in any form that ``reader`` knows.
+
+    Raises:
+        ParameterError: it cannot be read, is no file of parameters, or has a value that is no number.
+    """
+    reader = Reader()
+    reader.read(Path(path))
+    return _of(reader, str(path))
+
+
+def load_all(paths: Iterable[str | Path]) -> FileValues:
+    """Of several files; each stands over those before it."""
+    values = FileValues()
+    for path in paths:
+        values |= load(path)
     return values
 
 
-def load(path: str | Path) -> dict[str, float]:
-    """Names and values of a .parm file; ParameterError when it cannot be read or parsed."""
-    try:
-        return parse(Path(path).read_text(encoding="utf-8"), str(path))
-    except OSError as error:
-        raise ParameterError(f"parameter file {str(path)!r} cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"parameter file {str(path)!r} is not text: {error}") from None
+def _of(reader: Reader, source: str) -> FileValues:
+    values = FileValues(reader.values)
+    values.sources[source] = list(reader.values)
+    values.remarks, values.read_only = reader.remarks, frozenset(reader.read_only)
+    return values
+
+
+def given(params: Given | None) -> dict[str, float]:
+    """A copy of parameters as they are given; those of a file are ``FileValues``.
+
+    Raises:
+        ParameterError: see ``load``.
+    """
+    if isinstance(params, str | Path):
+        return load(params)
+    return FileValues(params) if isinstance(params, FileValues) else dict(params or {})
 
 
 def apply(values: Values, given: Mapping[str, float], source: str = "parameters") -> list[str]:
     """Set a vehicle's parameters to all values given, or none of them; returns the names that its firmware lacks.
 
-    Files of another version of ArduPilot have names that this one does not know; they are returned, so that the
-    caller can say so.
+    Those of files (``FileValues``) are set as a vehicle takes them; the user is told what it does not take, if that has
+    not been done, and nothing is returned.
 
     Raises:
         ParameterError: a known parameter's value is refused; nothing was set.
     """
     known = {name: value for name, value in given.items() if name in values.table}
-    refused = [text for name, value in known.items() if (text := values.table[name].refusal(value))]
-    if refused:
-        raise ParameterError(f"{source}: " + "; ".join(refused))
+    if isinstance(given, FileValues):
+        tell(values.table, given)
+        values.update(known)
+        return []
+    check(values.table, known, source)
     values.update(known)
     return [name for name in given if name not in known]
+
+
+def check(table: Table, values: Mapping[str, float], source: str = "parameters") -> None:
+    """Check values of parameters that the table has.
+
+    Raises:
+        ParameterError: names all that are refused.
+    """
+    if refused := [text for name, value in values.items() if (text := table[name].refusal(value))]:
+        raise ParameterError(f"{source}: " + "; ".join(refused))
+
+
+def tell(table: Table, values: FileValues) -> None:
+    """Warn of what there is to say of files, once."""
+    if not values.is_told:
+        values.is_told = True
+        for text in notes(table, values):
+            warnings.warn(text, ParameterWarning, stacklevel=3)
+
+
+def not_read(values: FileValues) -> list[str]:
+    """What the user of files is told whatever the firmware is: lines that were passed over, files that are empty."""
+    empty = [source for source, names in values.sources.items() if not names]
+    return values.remarks + [f"{source}: nothing was set: it has no parameters" for source in empty]
+
+
+def notes(table: Table, values: FileValues) -> list[str]:
+    """What the user of files is told: lines that were passed over, and values that this firmware does not take as they
+    are."""
+    names = {name for listed in values.sources.values() for name in listed}
+    found = {name: value for name, value in values.items() if name in names}
+    known = {name: value for name, value in found.items() if name in table}
+    texts = not_read(values)
+    for source, listed in values.sources.items():
+        if listed and not any(name in table for name in listed):
+            texts.append(f"{source}: nothing was set: none of its parameters is in this firmware")
+    if unknown := [name for name in found if name not in table]:
+        texts.append(f"{_counted(unknown)} of the files are not in this firmware: {_some(unknown)}")
+        if renamed := list(_renamed(table, {name: found[name] for name in unknown})):
+            texts[-1] += f"; {_some(renamed)} here"
+        elif len(unknown) == 1:
+            texts[-1] += did_you_mean(unknown[0], table.names())
+    if idle := [name for name in known if not (table[name].has_effect or table[name].doc)]:
+        texts.append(f"{_counted(idle)} of the files have no effect here: {_some(idle)}")
+    if outside := [table[name] for name, value in known.items() if table[name].out_of_range(value)]:
+        told = [f"{p.name} {known[p.name]:g} ({p.used(stored(p, known[p.name])):g})" for p in outside]
+        texts.append(f"{_counted(outside)} of the files are out of range (used instead): {', '.join(told)}")
+    if marked := [name for name in known if name in values.read_only]:
+        texts.append(f"{_counted(marked)} of the files are @READONLY, and can be set here: {_some(marked)}")
+    return texts
+
+
+def _renamed(table: Table, unknown: Mapping[str, float]) -> Iterator[str]:
+    """What parameters of other versions are called here, if they would change something; rates of telemetry last."""
+    for name, value in sorted(unknown.items(), key=lambda item: item[0].startswith("SR")):
+        ours, factor = here(name) or ("", 1.0)
+        if ours in table and table[ours].has_effect and stored(table[ours], factor * value) != table[ours].default:
+            yield f"{name} {value:g} is {ours} {factor * value:g}"
+
+
+def _counted(names: Sequence[object]) -> str:
+    return f"{len(names)} parameters"
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:_SHOWN]) + (", ..." if len(names) > _SHOWN else "")
+
+
+def text_of(values: Mapping[str, float]) -> str:
+    """Values as the text of a file for an ArduPilot."""
+    marked = values.read_only if isinstance(values, FileValues) else ()
+    return "".join(f"{name} {value:.9g}{' @READONLY' if name in marked else ''}\n" for name, value in values.items())
 
 
 def format_value(parameter: Parameter, value: float) -> str:

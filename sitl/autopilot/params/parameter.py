@@ -28,6 +28,9 @@ from ...core.records import Record, array, noted, repeat
 
 FLOAT, INT8, INT16, INT32 = "float", "int8", "int16", "int32"
 
+BITS16, BITS32 = (-(2**15), 2**15 - 1), (-(2**31), 2**31 - 1)
+"""Ranges of parameters whose bits are looked at one by one: a bit that means nothing here is kept and passed over."""
+
 _INTEGER_LIMITS = {INT8: 127, INT16: 32767, INT32: 2**31 - 1}
 _FLOAT_LIMIT = float(np.finfo(np.float32).max)
 
@@ -70,22 +73,27 @@ class Parameter(NamedTuple):
 
     def out_of_range(self, value: float) -> str | None:
         """What is wrong with a number that is out of range, or None when it is not."""
-        if self.low <= stored(self, value) <= self.high:
+        kept = stored(self, value)
+        if kept == self.used(kept):
             return None
         unit = f" {self.unit}" if self.unit else ""
         return f"{self.name}: {value:g} is outside {self.low:g} .. {self.high:g}{unit}"
 
     def used(self, value: float) -> float:
-        """The value nearest to ``value`` that is in range."""
-        return min(max(value, self.low), self.high)
+        """The value nearest to ``value`` that is in range, at the precision at which the firmware keeps it."""
+        return min(max(value, stored(self, self.low)), stored(self, self.high))
 
 
 def stored(parameter: Parameter, value: float) -> float:
-    """``value`` as the firmware keeps it: integers truncate and stop at their type's ends, floats are float32."""
+    """``value`` as the firmware keeps it: floats are float32; integers truncate and stop at their type's ends.
+
+    Before it truncates, ArduPilot adds 0.01 away from zero, so that 2.999 is 3 (``AP_Param::set_float``).
+    """
     if parameter.kind == FLOAT:
         return float(np.float32(value))
     limit = _INTEGER_LIMITS[parameter.kind]
-    return float(int(min(max(value, -limit - 1), limit)))
+    inside = np.float32(min(max(value, -limit - 1), limit))
+    return float(int(min(max(float(inside + np.copysign(np.float32(0.01), inside)), -limit - 1), limit)))
 
 
 class ParameterGroup(Record):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from .parameter import INT8, INT16, ParameterGroup, param
+from .parameter import BITS16, INT8, INT16, ParameterGroup, param
 
 
 class PrecisionLanding(ParameterGroup):
@@ -34,6 +34,6 @@ class PrecisionLanding(ParameterGroup):
         8.0, 0.0, 50.0, "m", "And up to this one, by range-finder; elsewhere there is no second try; both 0: everywhere"
     )
     OPTIONS: float = param(
-        0, 0, 7, "", "Bits: 1 the target moves, 2 goes on after sticks moved the vehicle, 4 no slow end of the descent",
-        INT16,
+        0, *BITS16, "",
+        "Bits: 1 the target moves, 2 goes on after sticks moved the vehicle, 4 no slow end of the descent", INT16,
     )  # fmt: skip

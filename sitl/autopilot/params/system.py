@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .parameter import INT8, INT16, INT32, ParameterGroup, group, param
+from .parameter import BITS32, INT8, INT16, INT32, ParameterGroup, group, param
 from .simulation import Axes, hard_iron
 
 
@@ -15,8 +15,7 @@ class Arming(ParameterGroup):
     RUDDER: float = param(2, 0, 2, "", "Yaw stick: 0 nothing, 1 arms, 2 arms and disarms", INT8)
     CHECK: float = param(
         1,
-        0,
-        2097150,
+        *BITS32,
         "",
         "Checks before arming: 1 all, else 2 barometer, 4 compass, 8 GPS, 16 IMU, 64 RC, 256 battery",
         INT32,
@@ -89,7 +88,7 @@ class Log(ParameterGroup):
     """LOG_: the on-board log (``sitl.logs.dataflash``); the core does not read these."""
 
     BACKEND_TYPE: float = param(1, 0, 1, "", "Where the on-board log goes: 0 nowhere, 1 into a file", INT8)
-    BITMASK: float = param(180222, 0, 2147483647, "", "What is logged: a bit for each group of messages", INT32)
+    BITMASK: float = param(180222, *BITS32, "", "What is logged: a bit for each group of messages", INT32)
     DISARMED: float = param(0, 0, 3, "", "0 log while armed, 1 and 2 always, 3 always, but keep only flights", INT8)
 
 

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
+from sitl.autopilot.params.files import text_of
 from sitl.bridge.hil.protocol import BASE_PORT
 from sitl.client.byte_socket import ByteStream, open_stream
 from sitl.client.commands import command_number
@@ -337,7 +338,7 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
         elif choice.program is not None:
             process = ardupilot.start(
                 choice.program, airframe, plant.home, json_host.address[1], base,
-                overrides="".join(f"{name} {value:g}\n" for name, value in params.items()),
+                overrides=text_of(params),
             )  # fmt: skip
         undo.pop_all()
     return Foreign(host, plant, where, process, inbox, patience)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from sitl.autopilot.params import files
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, Choice
@@ -75,7 +76,7 @@ class ForeignVehicles(Vehicles):
             before.close()
         try:
             start = (*pose[:3], math.degrees(pose[3]))
-            params = dict(options.params or {})
+            params = files.given(options.params)
             scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
             plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
             if rebooted is None:

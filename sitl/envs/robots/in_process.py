@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from sitl.autopilot.params.files import ParameterError
+from sitl.autopilot.params.files import FileValues, ParameterError
 from sitl.bridge.links import LinkAddressError, open_link
 from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError
@@ -48,7 +48,8 @@ def check_parameters(simulation: Simulation) -> None:
     """
     if simulation.unknown_parameters:
         raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
-    if idle := simulation.parameters.idle():
+    told = isinstance(simulation.scenario.params, FileValues)
+    if (idle := simulation.parameters.idle()) and not told:
         warnings.warn(f"no effect in this simulator: {', '.join(idle)}", stacklevel=2)
 
 
@@ -121,7 +122,7 @@ class InProcessVehicles(Vehicles):
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
         own = {name: value for name, value in figures if name not in WIND}
-        params = {**(scenario.params or {}), **wind}
+        params = scenario.parameters | wind
         try:
             scenario = replace(scenario, frame=airframe.changed(**own) if own else airframe, params=params, start=start)
             return make(scenario)

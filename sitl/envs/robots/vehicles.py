@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, ClassVar
 
+from sitl.autopilot.params.files import Given
 from sitl.bridge.dialect import MessageType
 from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
@@ -66,7 +67,8 @@ class AutopilotOptions:
             time.
         take_off: height at which a copter hovers at the start of an episode, 0.5 .. 100 [m].
         home: latitude, longitude [deg], altitude [m] of the world's origin; the heading is not used.
-        params: parameter values by ArduPilot's names, for vehicles in process.
+        params: parameter values by ArduPilot's names, or a file of parameters, for vehicles in process or with a
+            foreign autopilot.
         gcs: address of a ground station that receives the first vehicle's telemetry, as in ``sitl run --out``; None:
             none.
         patience: wall time without an answer after which a connection counts as lost [s].
@@ -93,7 +95,7 @@ class AutopilotOptions:
     connection: str = INPROCESS
     take_off: float = 1.0
     home: Home = DEFAULT_HOME
-    params: Mapping[str, float] | None = None
+    params: Given | None = None
     gcs: str | None = None
     patience: float = 10.0
     physics: str = NATIVE

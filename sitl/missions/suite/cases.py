@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sitl import vehicles
+from sitl.autopilot.params import files
 from sitl.core import code_in_files, documents
 from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
@@ -48,7 +49,7 @@ _TYPES: dict[str, tuple[type | tuple[type, ...], str]] = {
     "home": (list, "[latitude, longitude, altitude, heading]"),
     "seed": (int, "a whole number"),
     "seeds": (list, "a list of whole numbers"),
-    "params": (dict, "a table of parameters, which are numbers"),
+    "params": ((dict, str), "a table of parameters, which are numbers, or a file of parameters"),
     "physics": (str, "the name of an engine"),
     "tolerance": ((str, dict), '"same", "alike", a file or a table'),
     "time_limit": ((int, float), "a number of seconds above 0"),
@@ -103,7 +104,8 @@ def find(folder: str | Path) -> list[Case]:
     defaults = _checked(folder, "[defaults]", table.get("defaults", {}), _SETTINGS)
     missions = [_checked(folder, "[[missions]]", row, _MISSION) for row in table.get("missions", [])]
     variants = [_checked(folder, "[[variants]]", row, _VARIANT) for row in table.get("variants", [])] or [{}]
-    named = [name for row in (defaults, *missions, *variants) for name in code_in_files.code_of_options(row)]
+    rows = [{**row, "params": None} for row in (defaults, *missions, *variants)]  # files only in the suite's own folder
+    named = [name for row in rows for name in code_in_files.code_of_options(row)]
     refused = code_in_files.refusal(folder / TOML, named)
     if refused is not None:
         raise SuiteError(refused)
@@ -159,7 +161,7 @@ _CHECKS: dict[str, Callable[[Any], bool]] = {
     "vehicle": lambda value: value in KINDS,
     "home": lambda value: len(value) == 4 and all(map(_is_number, value)),
     "seeds": lambda value: bool(value) and all(map(_is_whole, value)),
-    "params": lambda value: all(map(_is_number, value.values())),
+    "params": lambda value: isinstance(value, str) or all(map(_is_number, value.values())),
     "time_limit": lambda value: _is_number(value) and value > 0,
     "name": lambda value: bool(re.fullmatch(r"[\w.+=,-]+", value)),
     "missions": lambda value: all(isinstance(pattern, str) for pattern in value),
@@ -177,6 +179,23 @@ def _tolerance(folder: Path, value: Any) -> str | Mapping[str, Any]:
         value = str(folder / value)
     load_tolerance(value)
     return value  # type: ignore[no-any-return]
+
+
+def _params(folder: Path, table: dict[str, Any]) -> dict[str, float]:
+    """Parameters of an entry: a table, or a file in the suite's folder.
+
+    Raises:
+        SuiteError: the file cannot be read, or is elsewhere.
+    """
+    value = table.get("params", {})
+    if not isinstance(value, str):
+        return dict(value)
+    if not (folder / value).resolve().is_relative_to(folder.resolve()):
+        raise SuiteError(f"{folder / TOML}: params = {value!r} is not in the folder of the suite")
+    try:
+        return files.load(folder / value)
+    except files.ParameterError as error:
+        raise SuiteError(f"{folder / TOML}: {error}") from None
 
 
 def _files(folder: Path) -> list[dict[str, Any]]:
@@ -221,7 +240,7 @@ def _cases(folder: Path, row: dict[str, Any], variant: dict[str, Any]) -> list[C
         return []
     settings = {**row, **variant}
     seeds = variant.get("seeds", [variant["seed"]] if "seed" in variant else row.get("seeds", [row.get("seed", 0)]))
-    params = {**(entry.params if entry else {}), **row.get("params", {}), **variant.get("params", {})}
+    params = dict(entry.params if entry else {}) | _params(folder, row) | _params(folder, variant)
     name = stem + (f"-{variant['name']}" if "name" in variant else "")
     tolerance = _tolerance(folder, settings["tolerance"]) if "tolerance" in settings else None
     home = settings.get("home")

@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         ("seed", "N", "seed of sensor noise, unless a test says another (default 0)"),
         ("physics", "NAME", "native, pybullet, jsbsim, ..., unless a test says another (default native)"),
         ("autopilot", "NAME[:PROGRAM]", "native, or ardupilot:PROGRAM, unless a test says another (default native)"),
-        ("params", "FILE", "parameters (.parm) of all vehicles"),
+        ("params", "FILE", "file of parameters of all vehicles (.parm, .param, .params)"),
     ):
         group.addoption(f"--sitl-{name}", metavar=metavar, help=text)
         parser.addini(f"sitl_{name.replace('-', '_')}", text)
@@ -136,7 +136,7 @@ def _defaults(config: pytest.Config, folder: Path) -> Any:
     if not re.fullmatch(r"(-?\d+)?", seed):
         raise pytest.UsageError(f"--sitl-seed {seed!r} is not a whole number")
     params = option(config, "params")
-    values = files.load(config.rootpath / params) if params else {}
+    values = files.load(config.rootpath / params) if params else files.FileValues()
     physics, autopilot = option(config, "physics", "native"), option(config, "autopilot", "native")
     return Defaults(
         int(seed) if seed else None, physics, autopilot, values, (folder, config.invocation_params.dir, config.rootpath)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from inspect import signature
 from pathlib import Path
@@ -53,6 +53,8 @@ class Setup:
     start: StartPose | None = None
     physics: str = NATIVE
     autopilot: str = OURS
+    has_files: bool = False
+    """Whether some parameters are of files, which are taken as a vehicle takes them."""
 
     @property
     def kind(self) -> str:
@@ -65,21 +67,29 @@ class Setup:
         if choice is not None:
             if self.estimator != "ekf":
                 raise OptionError(f"estimator {self.estimator!r}: autopilot {choice.name} has estimators of its own")
-            params = dict(self.params)
+            params = self._parameters()
             plant = stand_alone(
                 self.frame, home=self.home, seed=self.seed, params=choice.for_physics(params), world=self.world,
                 start=self.start, physics=self.physics,
             )  # fmt: skip
             return launch(choice, plant, params, Inbox(), PATIENCE_S)
         simulation = Simulation(
-            self.frame, home=self.home, seed=self.seed, estimator=self.estimator, params=dict(self.params),
+            self.frame, home=self.home, seed=self.seed, estimator=self.estimator, params=self._parameters(),
             world=self.world, start=self.start, physics=self.physics,
             core=_core(self.kind) if self.physics == NATIVE else None,
         )  # fmt: skip
         if simulation.unknown_parameters:
             simulation.close()
-            raise OptionError(f"the {self.kind} has no parameters {', '.join(simulation.unknown_parameters)}")
+            raise _unknown(self.kind, simulation.unknown_parameters)
         return simulation
+
+    def _parameters(self) -> dict[str, float]:
+        values = dict(self.params)
+        return files.FileValues(values) if self.has_files else values
+
+
+def _unknown(kind: str, names: Sequence[str]) -> OptionError:
+    return OptionError(f"the {kind} has no parameters {', '.join(names)}")
 
 
 def _core(kind: str) -> Core:
@@ -96,7 +106,7 @@ class Defaults:
     seed: int | None = None
     physics: str = NATIVE
     autopilot: str = OURS
-    params: Mapping[str, float] = field(default_factory=dict)
+    params: files.FileValues = field(default_factory=files.FileValues)
     folders: tuple[Path, ...] = (Path(),)
     """Where files are looked for."""
 
@@ -109,7 +119,7 @@ def setup(
     home: Sequence[float] | None = None,
     seed: int | None = None,
     estimator: str = "ekf",
-    params: Mapping[str, float] | str | Path | None = None,
+    params: files.Given | None = None,
     world: str | Path | World | None = None,
     start: StartPose | None = None,
     physics: str | None = None,
@@ -124,7 +134,7 @@ def setup(
         kind: "copter" or "rover"; None: what the frame or the mission says, or a copter.
         frame: airframe name, a .py file, or an airframe; None: the kind's first.
         home: latitude, longitude [deg], altitude [m], heading [deg].
-        params: values, or a .parm file.
+        params: values, or a file of parameters (docs/reference/parameter-files.md).
         world, start: as ``Simulation`` takes them.
         autopilot: "native", or another one ("ardupilot:PROGRAM"; ``sitl.foreign.choice``).
         wind: speed [m/s], or (speed, where it comes from [deg], turbulence [m/s]).
@@ -149,7 +159,8 @@ def setup(
             home = (*file.home, 0.0)
     if isinstance(params, str | Path):
         params = files.load(_beside(params, defaults.folders))
-    values.update(params or {})
+    params = files.given(params)
+    values = values | params
     if wind is not None:
         figures = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
         if not 1 <= len(figures) <= 3 or not all(map(math.isfinite, figures)):
@@ -163,15 +174,21 @@ def setup(
         raise OptionError(f"frame {frame} is a {vehicles.load(frame).kind}, not a {kind}")
     if isinstance(world, str | Path) and str(world).endswith(".toml"):
         world = _beside(world, defaults.folders)
-    known = KINDS[vehicles.load(frame).kind].firmware.table
-    values = {**{name: value for name, value in defaults.params.items() if name in known}, **values}
+    values = defaults.params | values
+    if values.sources and (autopilot or defaults.autopilot) == OURS:
+        table = KINDS[vehicles.load(frame).kind].firmware.table
+        if not isinstance(params, files.FileValues):  # what the test itself says is not taken that lightly
+            if strange := [name for name in params if name not in table]:
+                raise _unknown(vehicles.load(frame).kind, strange)
+            files.check(table, params)
+        files.tell(table, values)
     place = tuple(float(x) for x in home) if home is not None else None
     if place is not None and len(place) != 4:
         raise OptionError(f"home {home!r} is not (latitude, longitude, altitude, heading)")
     return Setup(
         frame, place, defaults.seed if seed is None else seed, estimator, tuple(sorted(values.items())), world,
         tuple(start) if isinstance(start, list) else start, physics or defaults.physics,
-        autopilot or defaults.autopilot,
+        autopilot or defaults.autopilot, bool(values.sources),
     )  # type: ignore[arg-type]  # fmt: skip
 
 

@@ -129,6 +129,12 @@ def test_reads_every_separator_and_comments() -> None:
     [
         ("WPNAV_SPEED 500\nRTL_ALT", r"x\.parm, line 2: expected 'NAME VALUE'"),
         ("RTL_ALT ten", r"x\.parm, line 1: 'ten' is not a number \(RTL_ALT\)"),
+        ("RTL_ALT 1e99999", r"x\.parm, line 1: '1e99999' is not a number \(RTL_ALT\)"),
+        ("RTL_ALT nan", r"x\.parm, line 1: 'nan' is not a number \(RTL_ALT\)"),
+        ("RTL_ALT 1_000", r"x\.parm, line 1: '1_000' is not a number \(RTL_ALT\)"),
+        ("ATC_RAT_RLL_P 0,135", r"x\.parm, line 1: '0,135' has a comma \(ATC_RAT_RLL_P\); write 0\.135"),
+        ("QGC WPL 110\n0\t1\t0\t16", r"x\.parm, line 1: 'WPL' is not a number \(QGC\)"),
+        ("some\ntext", r"x\.parm, line 1: 'some' is not NAME VALUE, and no other line is"),
     ],
 )
 def test_a_bad_line_is_named(text: str, says: str) -> None:
@@ -158,7 +164,9 @@ def test_saved_and_loaded_is_the_same_bits(params, tmp_path) -> None:
     params.update({"ATC_RAT_RLL_P": 0.1234567, "FRSKY_OPTIONS": 7.9, "BATT3_ARM_VOLT": 11.1})
     files.save(params, tmp_path / "all.parm")
     again = Values(TABLE, TABLE.record())
-    files.apply(again, files.load(tmp_path / "all.parm"))
+    TABLE.set_defaults(again._record)
+    with pytest.warns(files.ParameterWarning, match="parameters of the files have no effect here"):
+        files.apply(again, files.load(tmp_path / "all.parm"))
     assert everything(again) == everything(params)
     assert again["FRSKY_OPTIONS"] == 7.0 and "BATT3_ARM_VOLT" not in {p.name for p in params.listed()}
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from sitl.autopilot.params.files import ParameterWarning
 from sitl.cli import main
 from sitl.errors import MissingExtra
 from sitl.missions import library
@@ -15,6 +16,7 @@ from sitl.missions.comparison.tolerance import ToleranceError
 from sitl.missions.suite.cases import SuiteError, find
 from sitl.missions.suite.fly import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN, fly_case
 from sitl.missions.suite.run import run
+from sitl.simulation import Simulation
 
 
 @pytest.fixture
@@ -67,6 +69,15 @@ missions = ["copter"]
     assert {case.tolerance for case in cases.values()} == {"alike"}
 
 
+def test_parameters_of_a_suite_may_be_a_file_in_its_folder(folder: Path) -> None:
+    (folder / "mine.params").write_text("1\t1\tWPNAV_SPEED\t300\t9\n1\t1\tACRO_Y_RATE\t600\t9\n")
+    text = "[defaults]\nparams = 'mine.params'\n[[variants]]\nparams = { SIM_WIND_SPD = 2.0 }\n"
+    params = find(toml(folder, text))[0].params
+    assert params == {"WPNAV_SPEED": 300.0, "ACRO_Y_RATE": 600.0, "SIM_WIND_SPD": 2.0}
+    with pytest.warns(ParameterWarning, match="out of range"):
+        assert Simulation("erle_copter", params=params).parameters["ACRO_Y_RATE"] == 600.0
+
+
 def test_the_suite_toml_of_the_documentation_is_one(folder: Path) -> None:
     page = (Path(__file__).parents[3] / "docs" / "regression.md").read_text()
     text = page.split("```toml\n")[2].split("```")[0]
@@ -89,6 +100,8 @@ def test_the_suite_toml_of_the_documentation_is_one(folder: Path) -> None:
         ("[defaults]\nhome = [1, 2]\n", r"home = \[1, 2\] is not"),
         ("[defaults]\nseeds = []\n", r"seeds = \[\] is not a list of whole numbers"),
         ("[defaults]\nparams = { A = 'x' }\n", "which are numbers"),
+        ("[defaults]\nparams = 'absent.parm'\n", "parameter file '.*absent.parm' cannot be read"),
+        ("[defaults]\nparams = '../mine.parm'\n", "params = '../mine.parm' is not in the folder of the suite"),
         ("[defaults]\ntime_limit = -5\n", "above 0"),
         ("[[variants]]\nname = '../x'\n", "name = '../x' is not a name"),
         ("[[variants]]\nmissions = [3]\n", "list of patterns"),

@@ -66,6 +66,30 @@ def test_fixtures_and_markers(project: pytest.Pytester) -> None:
     result.assert_outcomes(passed=3)  # a rover has no RTL_ALT, and does without
 
 
+def test_files_of_parameters_are_taken_as_a_vehicle_takes_them(project: pytest.Pytester) -> None:
+    project.makeini("[pytest]\nsitl_params = base.params")
+    project.makefile(".params", base="# Onboard parameters\n1\t1\tRTL_ALT\t1200\t4\n1\t1\tLAND_SPEED\t40\t4\n")
+    project.makefile(".param", mine="ACRO_Y_RATE,600\nRTL_ALT,1300\nQ_ENABLE,1\n")
+    project.makepyfile(
+        """
+        import pytest
+
+        @pytest.mark.sitl(params="mine.param")
+        def test_copter(copter):
+            assert [copter.parameter(name) for name in ("ACRO_Y_RATE", "RTL_ALT", "LAND_SPEED")] == [600, 1300, 40]
+
+        def test_its_own_values_are_checked(vehicle_factory):
+            with pytest.raises(ValueError, match="the copter has no parameters NO_SUCH"):
+                vehicle_factory("copter", params={"NO_SUCH": 1})
+            with pytest.raises(ValueError, match="ACRO_Y_RATE: 600 is outside"):
+                vehicle_factory("copter", params={"ACRO_Y_RATE": 600})
+        """
+    )
+    result = project.runpytest_inprocess()
+    result.assert_outcomes(passed=2, warnings=2)
+    result.stdout.fnmatch_lines_random(["*not in this firmware: Q_ENABLE*", "*ACRO_Y_RATE 600 (360)*"])
+
+
 def test_an_option_that_there_is_not_is_named(project: pytest.Pytester) -> None:
     project.makepyfile(
         """

@@ -12,7 +12,7 @@ from ...params import parameters as shared
 from ...params.avoidance import CopterPathPlanning, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
-from ...params.parameter import INT8, INT16, INT32, ParameterGroup, numbered, param
+from ...params.parameter import BITS32, INT8, INT16, INT32, ParameterGroup, numbered, param
 from ...params.precision_landing import PrecisionLanding
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
@@ -70,8 +70,7 @@ class Parameters(shared.Parameters):
     ATC: Attitude
     AUTO_OPTIONS: float = param(
         0,
-        0,
-        255,
+        *BITS32,
         "",
         "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
         INT32,
@@ -88,7 +87,7 @@ class Parameters(shared.Parameters):
     EK3: Ekf3
     FENCE: Fence
     FHLD: FlowHold
-    FLIGHT_OPTIONS: float = param(0, 0, 7, "", "Bits: 1 does not look for a loss of thrust", INT32)
+    FLIGHT_OPTIONS: float = param(0, *BITS32, "", "Bits: 1 does not look for a loss of thrust", INT32)
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     FOLL: Follow

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...params import follow, system
-from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
+from ...params.parameter import BITS16, BITS32, INT8, INT16, INT32, ParameterGroup, param
 
 
 class Acro(ParameterGroup):
@@ -29,8 +29,7 @@ class Circle(ParameterGroup):
     RATE: float = param(20.0, -90.0, 90.0, "deg/s", "Greatest turn rate around the circle")
     OPTIONS: float = param(
         1,
-        0,
-        15,
+        *BITS16,
         "",
         "CIRCLE: 1 sticks change radius and rate, 2 the nose points along the circle, 4 around where it is",
         INT16,
@@ -41,7 +40,7 @@ class Guided(ParameterGroup):
     """GUID_: GUIDED."""
 
     OPTIONS: float = param(
-        0, 0, 1023, "", "1 armed by the transmitter, 4 ignores the yaw stick, 8 SET_ATTITUDE_TARGET has thrust", INT32
+        0, *BITS32, "", "1 armed by the transmitter, 4 ignores the yaw stick, 8 SET_ATTITUDE_TARGET has thrust", INT32
     )
     TIMEOUT: float = param(3.0, 0.1, 3600.0, "s", "Velocity, acceleration and attitude set-points are good for so long")
 
@@ -125,7 +124,7 @@ class Rtl(ParameterGroup):
 class SmartRtl(system.SmartRtl):
     """SRTL_: SMART_RTL, and its path."""
 
-    OPTIONS: float = param(0, 0, 4, "", "4: the yaw stick does nothing on the way back", INT32)
+    OPTIONS: float = param(0, *BITS32, "", "4: the yaw stick does nothing on the way back", INT32)
 
 
 class Follow(follow.Follow):

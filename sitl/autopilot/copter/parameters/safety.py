@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...params import fence, simulation, system
-from ...params.parameter import INT8, INT16, INT32, param
+from ...params.parameter import BITS32, INT8, INT16, INT32, param
 
 
 class Battery(system.Battery):
@@ -50,7 +50,7 @@ class Failsafes(system.Failsafes):
     VIBE_ENABLE: float = param(1, 0, 1, "", "1: height is held without accelerations that vibration spoils", INT8)
     CRASH_CHECK: float = param(1, 0, 1, "", "Disarm after a crash", INT8)
     OPTIONS: float = param(
-        16, 0, 127, "", "Goes on: 1 AUTO, 4 GUIDED without radio; 2 AUTO, 16 pilot modes without GCS; 8 LAND", INT32
+        16, *BITS32, "", "Goes on: 1 AUTO, 4 GUIDED without radio; 2 AUTO, 16 pilot modes without GCS; 8 LAND", INT32
     )
 
 

@@ -15,7 +15,7 @@ from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
 from ...params.fence import Rally
 from ...params.follow import Follow
-from ...params.parameter import INT8, INT16, INT32, group, numbered, param
+from ...params.parameter import BITS32, INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered
 from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, SmartRtl, Statistics, StreamRates
@@ -64,7 +64,7 @@ class Parameters(shared.Parameters):
     GPS_AUTO_SWITCH: float
     GPS_PRIMARY: float
     GUID_OPTIONS: float = param(
-        0, 0, 64, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
+        0, *BITS32, "", "64: positions are driven to along planned legs; else the target is shaped", INT32
     )
     INITIAL_MODE: float
     INS: Inertial = group(GYRO_FILTER=4, ACCEL_FILTER=10)

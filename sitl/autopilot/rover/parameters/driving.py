@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...params import system
-from ...params.parameter import INT8, INT16, INT32, ParameterGroup, param
+from ...params.parameter import BITS32, INT8, INT16, INT32, ParameterGroup, param
 
 
 class Circle(ParameterGroup):
@@ -45,7 +45,7 @@ class Loiter(ParameterGroup):
 class Manual(ParameterGroup):
     """MANUAL_: MANUAL."""
 
-    OPTIONS: float = param(0, 0, 1, "", "1: steering shrinks with speed, as in the other modes", INT32)
+    OPTIONS: float = param(0, *BITS32, "", "1: steering shrinks with speed, as in the other modes", INT32)
     STR_EXPO: float = param(0.0, -0.5, 0.95, "", "Softness of the steering stick around its middle")
 
 

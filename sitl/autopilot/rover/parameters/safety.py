@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...params import fence, system
-from ...params.parameter import INT8, INT16, INT32, param
+from ...params.parameter import BITS32, INT8, INT16, INT32, param
 
 
 class Battery(system.Battery):
@@ -48,7 +48,7 @@ class Failsafes(system.Failsafes):
     EKF_THRESH: float = param(
         0.8, 0.0, 2.0, "", "Test ratio of the estimator that counts as bad; 0 switches the check off"
     )
-    OPTIONS: float = param(0, 0, 1, "", "1: radio and GCS failsafes act in HOLD, too", INT32)
+    OPTIONS: float = param(0, *BITS32, "", "1: radio and GCS failsafes act in HOLD, too", INT32)
 
 
 class Fence(fence.Fence):

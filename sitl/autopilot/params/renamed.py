@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Names of parameters in other versions of ArduPilot, and what they are here.
+
+No file is converted (a real ArduPilot does not convert ``--defaults`` either): the user is told the name and the value
+that mean the same. Older versions have SYSID_THISMAV and GPS_TYPE; in 4.7 as it was released speeds and lengths are in
+metres, angles in degrees. Source: the parameter lists of 4.6 and 4.7 and their release notes.
+"""
+
+from __future__ import annotations
+
+import re
+
+_STREAM = re.compile(r"SR(\d)_(\w+)")
+_GPS = re.compile(r"GPS_(TYPE|DELAY_MS|RATE_MS|GNSS_MODE|COM_PORT)(2?)")
+_LOOP = re.compile(r"PSC_(NE|D)_(POS|VEL|ACC)_(\w+)")
+_AXES = {"NE": "XY", "D": "Z"}
+_CENTI, _DECI, _MILLI = 100.0, 10.0, 1000.0
+_LOOP_FACTORS = {"VEL_IMAX": _CENTI, "ACC_P": _DECI, "ACC_I": _DECI, "ACC_IMAX": _MILLI}
+
+RENAMED: dict[str, tuple[str, float]] = {
+    "SYSID_THISMAV": ("MAV_SYSID", 1.0),
+    "SYSID_MYGCS": ("MAV_GCS_SYSID", 1.0),
+    "TELEM_DELAY": ("MAV_TELEM_DELAY", 1.0),
+    "PSC_JERK_NE": ("PSC_JERK_XY", 1.0),
+    "PSC_JERK_D": ("PSC_JERK_Z", 1.0),
+    "PHLD_BRK_RATE": ("PHLD_BRAKE_RATE", 1.0),
+    "PHLD_BRK_ANGLE": ("PHLD_BRAKE_ANGLE", _CENTI),
+    "WP_ACC_CNR": ("WPNAV_ACCEL_C", 1.0),
+    "WP_JERK": ("WPNAV_JERK", 1.0),
+    "WP_RFND_USE": ("WPNAV_RFND_USE", 1.0),
+    "WP_TER_MARGIN": ("WPNAV_TER_MARGIN", 1.0),
+    "WP_ACC": ("WPNAV_ACCEL", _CENTI),
+    "WP_ACC_Z": ("WPNAV_ACCEL_Z", _CENTI),
+    "WP_RADIUS_M": ("WPNAV_RADIUS", _CENTI),
+    "WP_SPD": ("WPNAV_SPEED", _CENTI),
+    "WP_SPD_DN": ("WPNAV_SPEED_DN", _CENTI),
+    "WP_SPD_UP": ("WPNAV_SPEED_UP", _CENTI),
+    "ATC_ANGLE_MAX": ("ANGLE_MAX", _CENTI),
+    "ATC_ACC_P_MAX": ("ATC_ACCEL_P_MAX", _CENTI),
+    "ATC_ACC_R_MAX": ("ATC_ACCEL_R_MAX", _CENTI),
+    "ATC_ACC_Y_MAX": ("ATC_ACCEL_Y_MAX", _CENTI),
+    "ATC_RATE_WPY_MAX": ("ATC_SLEW_YAW", _CENTI),
+    "CIRCLE_RADIUS_M": ("CIRCLE_RADIUS", _CENTI),
+    "LAND_ALT_LOW_M": ("LAND_ALT_LOW", _CENTI),
+    "LAND_SPD_MS": ("LAND_SPEED", _CENTI),
+    "LAND_SPD_HIGH_MS": ("LAND_SPEED_HIGH", _CENTI),
+    "LOIT_SPEED_MS": ("LOIT_SPEED", _CENTI),
+    "LOIT_ACC_MAX_M": ("LOIT_ACC_MAX", _CENTI),
+    "LOIT_BRK_ACC_M": ("LOIT_BRK_ACCEL", _CENTI),
+    "LOIT_BRK_JRK_M": ("LOIT_BRK_JERK", _CENTI),
+    "PILOT_ACC_Z": ("PILOT_ACCEL_Z", _CENTI),
+    "PILOT_SPD_DN": ("PILOT_SPEED_DN", _CENTI),
+    "PILOT_SPD_UP": ("PILOT_SPEED_UP", _CENTI),
+    "PILOT_TKO_ALT_M": ("PILOT_TKOFF_ALT", _CENTI),
+    "RTL_ALT_M": ("RTL_ALT", _CENTI),
+    "RTL_ALT_FINAL_M": ("RTL_ALT_FINAL", _CENTI),
+    "RTL_CLIMB_MIN_M": ("RTL_CLIMB_MIN", _CENTI),
+    "RTL_SPEED_MS": ("RTL_SPEED", _CENTI),
+}
+"""Name elsewhere -> name here, and the factor from the value elsewhere to the one here."""
+
+
+def here(name: str) -> tuple[str, float] | None:
+    """Name and factor of a parameter that other versions call ``name``; None: none is known."""
+    if found := RENAMED.get(name):
+        return found
+    if stream := _STREAM.fullmatch(name):
+        return f"MAV{int(stream[1]) + 1}_{stream[2]}", 1.0
+    if gps := _GPS.fullmatch(name):
+        return f"GPS{gps[2] or 1}_{gps[1]}", 1.0
+    if loop := _LOOP.fullmatch(name):
+        axes, law, part = loop.groups()
+        return f"PSC_{law}{_AXES[axes]}_{part}", _LOOP_FACTORS.get(f"{law}_{part}", 1.0)
+    return None
