@@ -145,8 +145,8 @@ class Simulation:
         unknown = files.apply(self.parameters, self.airframe.parameters, label)
         if unknown:
             raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
-        self.unknown_parameters = files.apply(self.parameters, scenario.parameters)
-        """Names in ``params`` that this firmware does not have; those of a file are passed over."""
+        if unknown := files.apply(self.parameters, scenario.parameters):
+            raise files.ParameterError(files.unknown(self.kind.name, unknown, self.firmware.table))
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
         vehicle = SimulatedVehicle(
