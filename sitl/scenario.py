@@ -87,7 +87,12 @@ class Scenario:
     def __post_init__(self) -> None:
         if self.estimator not in ESTIMATORS:
             raise OptionError(f"estimator {self.estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
-        object.__setattr__(self, "params", files.given(self.params))
+        try:
+            object.__setattr__(self, "params", files.given(self.params))
+        except (TypeError, ValueError) as error:
+            if isinstance(error, files.ParameterError):
+                raise
+            raise OptionError(f"params = {self.params!r}: values by name or a file of parameters are needed") from None
         faults = (self.faults,) if isinstance(self.faults, str | Failure) else self.faults
         try:
             object.__setattr__(self, "faults", tuple(str(Failure.of(fault)) for fault in faults))

@@ -147,8 +147,8 @@ class Simulation:
         unknown = files.apply(self.parameters, self.airframe.parameters, label)
         if unknown:
             raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
-        self.unknown_parameters = files.apply(self.parameters, scenario.parameters)
-        """Names in ``params`` that this firmware does not have; those of a file are passed over."""
+        if unknown := files.apply(self.parameters, scenario.parameters):
+            raise files.ParameterError(files.unknown(self.kind.name, unknown, self.firmware.table))
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
         vehicle = SimulatedVehicle(
@@ -401,6 +401,7 @@ class Simulation:
             raise OptionError(f"the snapshot is of world {snapshot.world}, this is world {here}")
         if snapshot.physics != self.physics:
             raise OptionError(f"the snapshot is of physics {snapshot.physics}, this is {self.physics}")
+        self.bridge.get(FaultService).look()  # at the time that is left
         kept = self._record.tobytes()
         if self.bridge.board.journal is not None:
             self.bridge.board.journal.restored()

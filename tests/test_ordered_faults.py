@@ -208,6 +208,7 @@ def test_inject_failure() -> None:
     assert order(MOTOR, OFF, 2) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 2
     assert order(MOTOR, OFF, 3) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 6
     assert order(MOTOR, OK, 2) == ACCEPTED and client.params["SIM_ENGINE_FAIL"] == 4
+    assert order(MOTOR, OFF, 6) == DENIED and order(MOTOR, OK, 5) == DENIED and client.params["SIM_ENGINE_FAIL"] == 4
     assert order(MOTOR, OFF, 9) == DENIED and order(MOTOR, OFF, 1.5) == DENIED
     assert order(RC, STUCK, 5) == ACCEPTED and order(RC, OFF, 5) == DENIED and order(RC, OK, 5) == ACCEPTED
     for unit, kind in ((VIO, OFF), (77, OFF), (GPS, SLOW), (GPS, 8), (GPS, 1.5), (BATTERY, OFF), (-1, OFF)):

@@ -19,6 +19,7 @@ from ..run import runner
 from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import KINDS
 from . import execute, recordings
+from .fault_options import say_faults
 from .options import add_vehicle_options, build_simulation, open_folder
 from .view_options import add_view_options, check_view, default_speedup, shown
 
@@ -61,6 +62,7 @@ def demo(options: argparse.Namespace) -> int:
         with FlightProgress(simulation) as progress, shown(simulation, options, then=progress.refresh) as on_slice:
             code = execute.run_script(simulation, command, options.speedup, None, on_slice)
     finally:
+        say_faults(simulation)
         simulation.close()
     wall = time.monotonic() - start
     if code:

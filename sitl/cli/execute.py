@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 from ..foreign.choice import ARDUPILOT, Choice, choose
 from ..foreign.session import ArduPilotSession
 from ..run import runner
-from ..run.pacing import Pacing, parse_speedup
+from ..run.pacing import Pacing, parse_speedup, whole_ticks
 from ..run.swarm import SwarmPacing, serve_swarm
 from ..simulation import OptionError, Simulation
 from ..swarm import Swarm
@@ -26,6 +26,7 @@ from ..vehicle.kinds import DEFAULT, KINDS
 from ..warp import CannotBuild, ClockPage, Pacer, preload_library, start_script
 from ..warp.build import static_runtime
 from . import foreign, recordings, run, swarm
+from .fault_options import say_faults
 from .status import StatusLine
 from .view_options import DEFAULT_TEXT, check_view, shown
 
@@ -86,6 +87,7 @@ def execute(options: argparse.Namespace) -> int:
         return code
     finally:
         status.close()
+        say_faults(simulation)
         simulation.close()
 
 
@@ -113,6 +115,7 @@ class ScriptPace:
     """Publishes the script's clock after each slice and waits until the next is due."""
 
     def __init__(self, pacer: Pacer) -> None:
+        pacer.slice_us = whole_ticks(pacer.slice_us)
         self._pacer = pacer
         self.slice_us = pacer.slice_us
 

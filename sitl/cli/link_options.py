@@ -7,6 +7,7 @@ import argparse
 
 from ..bridge.links import LinkFaults
 from ..bridge.links.faults import OPTIONS
+from .fault_options import link_cuts
 
 
 def add_link_options(parser: argparse.ArgumentParser) -> None:
@@ -22,4 +23,5 @@ def link_faults(options: argparse.Namespace) -> LinkFaults | None:
     Raises:
         OptionError: a word that cannot be understood, or a value that cannot be.
     """
-    return LinkFaults.of_texts({name: getattr(options, f"link_{name}", []) for name in OPTIONS})
+    words = {name: getattr(options, f"link_{name}", []) for name in OPTIONS}
+    return LinkFaults.of_texts({**words, "cut": [*words["cut"], *link_cuts(options)]})

@@ -15,9 +15,9 @@ from ..physics.engines import NATIVE
 from ..plants.plant import FORMS
 from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, checked_home
 from ..simulation import OptionError, Simulation
-from ..vehicle.faults import FORM
 from ..vehicle.kinds import DEFAULT, KINDS
 from ..worlds.heights import FORMS as FORMS_OF_HEIGHTS
+from .fault_options import add_fail_option, vehicle_faults, watch_faults
 from .progress import CompileProgress
 
 
@@ -113,13 +113,7 @@ def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="file of parameters of any ground station: .parm, .param, .params (repeatable)",
     )
-    parser.add_argument(
-        "--fail",
-        action="append",
-        default=[],
-        metavar="FAULT",
-        help=f"inject a fault: {FORM}, such as gps@12 or motor:2=0.5@20..30 (repeatable; sitl help faults)",
-    )
+    add_fail_option(parser)
     parser.add_argument(
         "--log-dir", type=Path, default=Path("logs"), metavar="DIR", help="folder for the .tlog and .bin logs"
     )
@@ -151,7 +145,7 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
         world=options.world,
         start=options.start,
         physics=options.physics,
-        faults=getattr(options, "fail", ()),
+        faults=vehicle_faults(options),
         terrain=getattr(options, "terrain", None),
     )
 
@@ -163,7 +157,9 @@ def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float]
         values = values | files.load_all(options.params)
     scenario = scenario_of(options, values)
     with CompileProgress() as progress:
-        return Simulation(scenario, progress=progress)
+        simulation = Simulation(scenario, progress=progress)
+    watch_faults(simulation)
+    return simulation
 
 
 def open_folder(folder: Path, option: str = "--log-dir") -> Path:

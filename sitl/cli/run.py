@@ -17,6 +17,7 @@ from ..run.swarm import SwarmPacing, serve_swarm, serve_swarm_lockstep
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
 from . import foreign, recordings, swarm
+from .fault_options import say_faults
 from .link_options import add_link_options, link_faults
 from .options import add_vehicle_options, build_simulation, instance, open_folder, port, seconds, stream_rate
 from .status import StatusLine
@@ -138,6 +139,7 @@ def run(options: argparse.Namespace) -> int:
         recordings.say_why(simulation, signal.Signals(stopped[0]).name if stopped else "--duration")
     finally:
         status.close()
+        say_faults(simulation)
         simulation.close()
     return 0
 

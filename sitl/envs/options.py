@@ -15,12 +15,17 @@ COMMON = (
 """Options that every environment takes besides "render_mode", whatever its robot."""
 
 
+LISTED = 100
+"""A message lists no more names than these."""
+
+
 class EnvOptionError(OptionError):
     """An option of an environment that cannot be used; the message names it, its value and what is allowed."""
 
 
 def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:
-    """The error for a name that is not among those known, with the nearest of them."""
+    """The error for a name that is not among those known: with all of them if they are few, and with the nearest."""
     names = list(known)
     hint = did_you_mean(str(value), names)
-    return EnvOptionError(f"{option} {value!r} is not known; it is one of {', '.join(names)}{hint}")
+    listed = f"; it is one of {', '.join(names)}" if len(names) <= LISTED else ""
+    return EnvOptionError(f"{option} {value!r} is not known{listed}{hint}")

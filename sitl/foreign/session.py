@@ -220,15 +220,17 @@ class Px4Session:
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
         process, end, pacing, due_us = self.process, self.server.end, Pacing(self._speedup), 0
+        looked_us = end.time_us
 
         def goes_on() -> bool:
-            nonlocal due_us
+            nonlocal due_us, looked_us
             if process is not None:
                 process.check()
             on_turn()
             if end.time_us >= due_us:  # PX4 goes as fast as its physics: this is what holds it
+                passed_us, looked_us = end.time_us - looked_us, end.time_us
                 due_us = end.time_us + pacing.slice_us
-                wait = pacing.wait_s()
+                wait = pacing.wait_s(passed_us)
                 if wait > 0.0:
                     time.sleep(wait)
             return running()

@@ -27,7 +27,7 @@ class SwarmPacing:
 
     def after_slice(self, simulation: Swarm) -> None:
         """Wait until the next slice is due, and answer clients meanwhile."""
-        self._pacing.listen(simulation)
+        self._pacing.listen(simulation, simulation.time_us)
         self.slice_us = self._pacing.slice_us
 
 

@@ -206,6 +206,7 @@ COPTER = Kind(
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=apply_sim_parameters,
+    outputs=lambda airframe: range(1, len(airframe.rotors) + 1),
     default_frame="erle_copter",
     mav_type=QUADROTOR,
     other_mav_types=OTHER_MULTIROTORS,

@@ -204,11 +204,21 @@ class Failure:
         """Whether it is a SIM_ parameter, not a unit of the table."""
         return self.unit.startswith(PARAMETERS)
 
+    @property
+    def drives_outputs(self) -> bool:
+        """Whether motors or servos fail, which only move while the vehicle is armed."""
+        return self.unit in ("motor", "servo") or self.unit.startswith(("SIM_ENGINE_", "SIM_SERVO_"))
+
+    def effect(self, table: Table) -> Effect:
+        """What of the table it is, for a vehicle for which it has been ``checked``; no parameter is."""
+        types = known(table)[self.unit]
+        return types[self.type or next(iter(types))]
+
     def numbers(self, table: Table) -> list[int]:
         """The instances that fail, of a vehicle for which it has been ``checked``."""
         if self.is_parameter:
             return []
-        return [self.instance] if self.instance else list(range(1, known(table)[self.unit][self.type].instances + 1))
+        return [self.instance] if self.instance else list(range(1, self.effect(table).instances + 1))
 
     def __str__(self) -> str:
         instance = f":{self.instance}" if self.instance else ""
@@ -263,7 +273,7 @@ class Failure:
         """
         if self.is_parameter:
             return {self.unit: self.amount or 0.0}
-        effect = known(table)[self.unit][self.type]
+        effect = self.effect(table)
         amount = self.amount if self.amount is not None else effect.amount or 0.0
         which = self.numbers(table)
         found = {}

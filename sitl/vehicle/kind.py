@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, TypeVar
@@ -60,6 +60,10 @@ class Kind:
     """MAV_TYPE of its HEARTBEAT."""
     other_mav_types: tuple[int, ...] = ()
     """MAV_TYPEs of vehicles that the same firmware controls: their missions and logs are of this kind, too."""
+    outputs: Callable[[Any], Sequence[int] | None] = lambda airframe: None
+    """Which outputs of an airframe drive a motor or a servo that can fail, from 1; None: nobody knows."""
+    idle_parameters: Callable[[Any], tuple[str, ...]] = lambda airframe: ()
+    """Beginnings of the SIM_ parameters that do nothing to an airframe."""
     flies: bool
     """It takes off, and lands at the end; else it stays on the ground."""
     has_reversible_outputs: bool

@@ -142,7 +142,7 @@ class OrderedFaults:
         """When the next one begins or ends."""
         return min((o.end_us if o.has_begun else o.begin_us for o in self.orders), default=NEVER)
 
-    def order(self, failure: Failure, now_us: int) -> None:
+    def order(self, failure: Failure, now_us: int) -> Ordered:
         """Let something fail; its times count from now.
 
         Raises:
@@ -150,7 +150,9 @@ class OrderedFaults:
         """
         failure = failure.checked(self._table)
         end_us = NEVER if failure.end is None else now_us + round(1e6 * failure.end)
-        self.orders = (*self.orders, Ordered(str(failure), now_us + round(1e6 * failure.begin), end_us))
+        order = Ordered(str(failure), now_us + round(1e6 * failure.begin), end_us)
+        self.orders = (*self.orders, order)
+        return order
 
     def repair(self, repair: Repair) -> None:
         """These are over, and those to come do not begin; of the same fault ordered twice the later one is over."""

@@ -29,6 +29,7 @@ from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
 from ..physics.native.tick import TICK_S
 from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
+from ..vehicles.figures.rover import STEERING_SKID
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
@@ -163,6 +164,12 @@ def motor_output(v: Rover) -> float:
     return float(v.actuators.controls[THROTTLE_OUTPUT])
 
 
+def idle_parameters(airframe: RoverAirframe) -> tuple[str, ...]:
+    """Wind moves no rover, and a skid-steered one has no steering servo."""
+    is_skid = airframe.value("steering_model") == STEERING_SKID
+    return ("SIM_WIND_", "SIM_SERVO_") if is_skid else ("SIM_WIND_",)
+
+
 ROVER = Kind(
     firmware=FIRMWARE,
     airframe=RoverAirframe,
@@ -175,6 +182,8 @@ ROVER = Kind(
     pieces=pieces,
     init_physics=init,
     apply_sim_parameters=apply_sim_parameters,
+    outputs=lambda airframe: (STEERING_OUTPUT + 1, THROTTLE_OUTPUT + 1),
+    idle_parameters=idle_parameters,
     default_frame="erle_rover",
     mav_type=GROUND_ROVER,
     other_mav_types=(BOAT,),

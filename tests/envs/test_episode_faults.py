@@ -127,7 +127,10 @@ def test_amounts_are_drawn_for_each_episode() -> None:
     [
         ({"randomise": {"gps": (0, 1)}}, "fault gps/off takes no amount"),
         ({"randomise": {"gps/wrong@3": (0, 1)}}, "neither is said"),
-        ({"randomise": {"motor:2": (0.5, 1.5)}}, "SIM_ENGINE_MUL: 1.5 is outside 0 .. 1"),
+        ({"randomise": {"motor:1": (0.5, 1.5)}}, "SIM_ENGINE_MUL: 1.5 is outside 0 .. 1"),
+        ({"randomise": {"motor:2": (0.5, 0.9)}}, "there is no number 2; airframe erle_rover has 1, 3, and 0 for all"),
+        ({"randomise": {"SIM_WIND_SPD": (0, 8)}}, "SIM_WIND_SPD does nothing to airframe erle_rover"),
+        ({"faults": {"servo:4": 1.0}}, "there is no number 4"),
         ({"randomise": {"motor:2": (0.5, 0.2)}}, r"\(0.5, 0.2\) is not \(low, high\)"),
         ({"randomise": {"motor:2": 3}}, r"it must be \(low, high\) or a function"),
         ({"randomise": {"SIM_GPS1_NUMSATS": (3, 9)}}, "is not a whole number"),

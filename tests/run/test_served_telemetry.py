@@ -18,7 +18,6 @@ from sitl.bridge.links.udp import DATAGRAM_BYTES
 from sitl.client.endpoint import Endpoint
 from sitl.logs.tlog import read_tlog
 from sitl.run import runner
-from sitl.run.pacing import Pacing
 from sitl.simulation import Core, Simulation
 
 ALL_AT_4_HZ = encode_v2(
@@ -263,26 +262,3 @@ def test_a_log_holds_once_what_each_client_is_answered(core: Core, tmp_path: Pat
     while read.recv_match() is not None:
         pass
     assert read.params["RTL_ALT"] == 2200.0 and len(read.params) == len(simulation.bridge.vehicle.parameters.listed())
-
-
-def test_slices_grow_while_nobody_says_anything() -> None:
-    now = [100.0]
-
-    class Bridge:
-        heard = 0
-
-    class Vehicle:
-        bridge = Bridge()
-
-    vehicle, wall_s_a_simulated_s = Vehicle(), 1e-3
-    pacing = Pacing(None, lambda: now[0])
-    simulated_us = 0
-    for _ in range(500):
-        now[0] += pacing.slice_us * 1e-6 * wall_s_a_simulated_s
-        simulated_us += pacing.slice_us
-        pacing.after_slice(vehicle)  # type: ignore[arg-type]
-        assert 20_000 <= pacing.slice_us <= max(20_000, simulated_us // 10)
-    assert pacing.slice_us * 1e-6 * wall_s_a_simulated_s == pytest.approx(1e-3, rel=0.01)
-    vehicle.bridge.heard = 1
-    pacing.after_slice(vehicle)  # type: ignore[arg-type]
-    assert pacing.slice_us == 20_000

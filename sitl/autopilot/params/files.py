@@ -150,6 +150,13 @@ def apply(values: Values, given: Mapping[str, float], source: str = "parameters"
     return [name for name in given if name not in known]
 
 
+def unknown(kind: str, names: Sequence[str], table: Table) -> str:
+    """What is to be said of names that a kind of vehicle does not have: those that may be meant, not all there are."""
+    hints = [did_you_mean(str(name).upper(), table.names()).removeprefix("; ") for name in names[:_SHOWN]]
+    shown = [f"{name} ({hint})" if hint else str(name) for name, hint in zip(names, hints)]
+    return f"the {kind} has no parameters {', '.join(shown)}" + (", ..." if len(names) > _SHOWN else "")
+
+
 def check(table: Table, values: Mapping[str, float], source: str = "parameters") -> None:
     """Check values of parameters that the table has.
 

@@ -78,6 +78,11 @@ class LinkFaults:
         """Least and greatest ``delay`` [s]."""
         return self.delay if isinstance(self.delay, tuple) else (self.delay, self.delay)
 
+    @property
+    def does_nothing(self) -> bool:
+        """Whether frames arrive as if there were none."""
+        return self == LinkFaults(direction=self.direction, seed=self.seed)
+
     def acts(self, direction: str) -> bool:
         """Whether frames in this direction ("to-vehicle" or "to-client") are concerned."""
         return self.direction in (BOTH, direction)

@@ -8,8 +8,10 @@ from typing import Any
 from ...autopilot.params.parameter import stored
 from ...autopilot.shell_parameters import FAILURES
 from ...errors import OptionError
+from ...vehicle.equipment import Equipment
+from ...vehicle.fault_history import Acted, FaultHistory, Key, changes_nothing
 from ...vehicle.faults import TYPES, UNITS, Failure, known
-from ...vehicle.ordered_faults import Ordered, OrderedFaults, Repair
+from ...vehicle.ordered_faults import ONE_SHOT, Ordered, OrderedFaults, Repair
 from ..wire.port import NEVER
 from .parameters import ParameterService
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
@@ -24,6 +26,8 @@ class FaultService(Service):
         self._faults = OrderedFaults(self._table)
         self.is_setting = False
         """Whether the parameter that is set now is set by a fault."""
+        self.history: FaultHistory | None = None
+        """Which faults have acted; None: nobody wants to know."""
 
     @property
     def texts(self) -> list[str]:
@@ -31,10 +35,12 @@ class FaultService(Service):
         return [str(failure) for order in self._faults.orders for failure in order.failures(self._table)]
 
     def check(self, failure: Failure) -> None:
-        """OptionError when the vehicle has no such fault, or it does nothing to its physics."""
+        """OptionError when the vehicle has no such fault, nothing of what fails, or it does nothing to its physics."""
         vehicle: Any = self.bridge.vehicle
         table = self._table
-        names, idle = failure.checked(table).values(table, {}), vehicle.plant.idle_parameters
+        failure = failure.checked(table)
+        self.equipment.check(failure, self._without_faults)
+        names, idle = failure.values(table, {}), vehicle.plant.idle_parameters
         without = [name for name in names if name.startswith(idle)] if idle else []
         if without and (failure.instance or len(without) == len(names)):  # of all instances some may do nothing
             works = [unit for unit, types in known(table).items() for effect in types.values()
@@ -44,6 +50,17 @@ class FaultService(Service):
                 f"fault {failure.unit}: {without[0]} does nothing to physics {vehicle.physics}; there are {there_are}"
             )
 
+    @property
+    def equipment(self) -> Equipment:
+        """What the vehicle has of all that can fail."""
+        vehicle: Any = self.bridge.vehicle
+        return Equipment(vehicle.kind, vehicle.airframe, vehicle.world is not None, ":" in vehicle.physics)
+
+    def _without_faults(self, name: str) -> float:
+        """A parameter as it is without faults."""
+        before = self._faults.before.get(name)
+        return self.bridge.vehicle.parameters[name] if before is None else before
+
     def repair_of(self, what: object, instance: object = 0) -> Repair:
         """What is to be repaired, checked.
 
@@ -52,15 +69,59 @@ class FaultService(Service):
         """
         return Repair.of(what, instance, self._table)
 
-    def fail(self, failure: Failure) -> None:
-        """Let something fail now or later.
+    def fail(self, failure: Failure) -> Acted | None:
+        """Let something fail now or later; gives what will be known of it if somebody wants to know.
 
         Raises:
             OptionError: as of ``check``.
         """
         self.check(failure)
-        self._faults.order(failure, self.bridge.elapsed_us)
+        order = self._faults.order(failure, self.bridge.elapsed_us)
+        acted = self._note(order) if self.history is not None else None
         self.service(self.bridge.now_us)
+        return acted
+
+    def keep_history(self) -> FaultHistory:
+        """Take down from now on which faults act, and when."""
+        if self.history is None:
+            self.history = FaultHistory()
+            for order in self._faults.orders:
+                self._note(order)
+            self.look()
+        return self.history
+
+    def _note(self, order: Ordered) -> Acted:
+        assert self.history is not None
+        values = Failure.of_text(order.fault).values(self._table, {})
+        lasts = [1000 * int(values[name]) for name in ONE_SHOT if name in values]
+        return self.history.ordered(order, max(lasts, default=NEVER))
+
+    def look(self) -> None:
+        """Something has changed that faults may depend on."""
+        if self.history is not None:
+            self.history.look(self.bridge.elapsed_us, dict(map(self._state, self._begun())))
+
+    def _begun(self) -> list[Ordered]:
+        return [order for order in self._faults.orders if order.has_begun]
+
+    def _state(self, order: Ordered) -> tuple[Key, str]:
+        """A fault that has begun, and why it does not act; "": it does."""
+        vehicle: Any = self.bridge.vehicle
+        table, why = self._table, ""
+        for failure in order.failures(table):
+            values = {name: stored(table[name], x) for name, x in failure.values(table, self._faults.before).items()}
+            left = {name: value for name, value in values.items() if name not in order.released}
+            before = {name: self._without_faults(name) for name in left}
+            why = changes_nothing(failure, left, before) if left else f"a client set {next(iter(values))} meanwhile"
+            if not why and failure.drives_outputs and not vehicle.v.autopilot.arming.armed:
+                why = "the vehicle was not armed"
+            try:
+                self.equipment.check(failure, self._without_faults)
+            except OptionError as error:
+                why = why or str(error).partition(": ")[2]
+            if not why:
+                break
+        return (order.fault, order.begin_us), why
 
     def repair(self, repair: Repair) -> None:
         """Faults are over: parameters are what they would be without them, and none of them begins later."""
@@ -84,12 +145,17 @@ class FaultService(Service):
         self._look()
 
     def _look(self) -> None:
+        self.look()
         due_us = self._faults.due_us
         self.due_us = NEVER if due_us >= NEVER else due_us - (self.bridge.elapsed_us - self.bridge.now_us)
+
+    def arming_changed(self) -> None:
+        self.look()
 
     def parameter_changed(self, name: str) -> None:
         if not self.is_setting:
             self._faults.was_set(name)
+            self.look()
 
     def command(self, unit: float, kind: float, instance: float) -> int:
         """MAV_CMD_INJECT_FAILURE; gives the MAV_RESULT."""
@@ -103,20 +169,21 @@ class FaultService(Service):
         if kind != 0.0 and TYPES[int(kind)] not in types:
             return UNSUPPORTED
         meant = types.values() if kind == 0.0 else (types[TYPES[int(kind)]],)
-        if instance not in range(max(effect.instances for effect in meant) + 1):
+        most = max(effect.instances for effect in meant)
+        if instance not in (0, *self.equipment.numbers(name, most)):
             return DENIED
         if kind == 0.0:
             self.repair(self.repair_of(name, int(instance)))
         else:
             try:
                 self.fail(Failure(name, TYPES[int(kind)], int(instance)))
-            except OptionError:  # not with this physics
+            except OptionError:  # not with this physics, or not on this vehicle
                 return UNSUPPORTED
         return ACCEPTED
 
     def follow(self, before: FaultService) -> None:
         """Go on after a reboot."""
-        self._faults = before._faults
+        self._faults, self.history = before._faults, before.history
         self._look()
 
     def snapshot(self) -> Any:

@@ -45,6 +45,9 @@ class Service:
     def parameter_changed(self, name: str) -> None:
         """A parameter was set, over MAVLink or by another service."""
 
+    def arming_changed(self) -> None:
+        """The vehicle was armed or disarmed."""
+
     def service(self, now_us: int) -> None:
         """Called at or after ``due_us``."""
 

@@ -148,6 +148,8 @@ class EventService(Service):
             self.bridge.get(TerrainService).look_up()
         if code in (core.ARMED, core.DISARMED):
             self.bridge.get(PreArmService).find_due()
+            for service in self.bridge.services.values():
+                service.arming_changed()
         if code == core.EKF_INITIALISED:
             say(INFO, "AHRS: EKF3 active")
         elif code == core.EKF_ORIGIN_SET:

@@ -25,6 +25,7 @@ from sitl.move import Move
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
 from sitl.simulation import OptionError, Simulation
+from sitl.vehicle.equipment import Equipment
 from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
@@ -187,7 +188,8 @@ class AutopilotRobot:
         """See ``sitl.envs.faults.FailingRobot``."""
         if not self._vehicles.has_snapshots:
             raise EnvOptionError(f"{self._vehicles.where}: only vehicles in process fail on demand")
-        failure.checked(KINDS[self.airframe.kind].firmware.table)
+        kind = KINDS[self.airframe.kind]
+        Equipment(kind, self.airframe).check(failure.checked(kind.firmware.table))
 
     def fail(self, index: int, failure: Failure) -> None:
         """See ``sitl.envs.faults.FailingRobot``."""

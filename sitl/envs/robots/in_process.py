@@ -25,7 +25,7 @@ from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
 
 from ..mavlink.preparation import INTERVAL_US
-from ..options import EnvOptionError, unknown
+from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
@@ -41,13 +41,7 @@ WIND = {
 
 
 def check_parameters(simulation: Simulation) -> None:
-    """Warn of parameters of an environment that have no effect.
-
-    Raises:
-        EnvOptionError: there is no such parameter.
-    """
-    if simulation.unknown_parameters:
-        raise unknown("parameter", simulation.unknown_parameters[0], simulation.firmware.table.names())
+    """Warn of parameters of an environment that have no effect."""
     told = isinstance(simulation.scenario.params, FileValues)
     if (idle := simulation.parameters.idle()) and not told:
         warnings.warn(f"no effect in this simulator: {', '.join(idle)}", stacklevel=2)

@@ -11,8 +11,9 @@ from sitl.autopilot.mission.item import NAV_SPLINE_WAYPOINT
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.execute import terminable
+from sitl.cli.fault_options import say_faults
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
-from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown, wants_view
+from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown
 from sitl.errors import OptionError
 from sitl.run import runner
 from sitl.run.pacing import StoppablePacing, parse_speedup
@@ -99,8 +100,6 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
                 say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
         pace = StoppablePacing(speedup)
         with shown(simulation, options, pace) as on_slice:
-            if speedup is None and not wants_view(options):
-                pace.slice_us = 100_000  # nobody else is to be served
             outcome = fly(
                 simulation,
                 file.mission,
@@ -114,6 +113,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
     finally:
         simulation.close()
     print(summary(outcome))
+    say_faults(simulation)
     print(f"log: {log}" + (f"\nrecording: {options.rec}" if options.rec else ""))
     return 0 if outcome.completed else 1
 

@@ -30,6 +30,8 @@ from ..tlog_replay.fly import LogFlight
 from ..tlog_replay.log import Log
 from ..tlog_replay.steps import Upload
 
+STEP_US = 200_000
+"""Simulated time between two looks at the status line at --speedup max [us]."""
 DECIDED = ("home", "start", "seed", "params")
 """Options of a vehicle that a recording decides."""
 
@@ -96,10 +98,10 @@ def replay_recording(options: argparse.Namespace) -> int:
     began = time.monotonic()
     try:
         while simulation.time_us < min(until_us, recording.end_us):
-            flown.advance_to(min(simulation.time_us + 10 * pace.slice_us, until_us))
+            step_us = STEP_US if pace.speedup is None else pace.slice_us
+            flown.advance_to(min(simulation.time_us + step_us, until_us))
             status.refresh()
-            for _ in range(10 if pace.speedup is not None else 0):
-                pace.after_slice(simulation)
+            pace.after_slice(simulation)
         flown.advance_to(until_us)
         took = time.monotonic() - began
         astray = flown.verify()

@@ -117,6 +117,14 @@ class VehicleFactory:
             vehicle.set_link_faults(link_faults)
         return vehicle
 
+    def judge_faults(self) -> list[tuple[str, list[str]]]:
+        """What became of the faults of all vehicles: (vehicle, a line for each)."""
+        return [(vehicle.name, vehicle.judge_faults()) for vehicle in self.vehicles if vehicle.failures]
+
+    def idle_faults(self) -> list[str]:
+        """Why faults that must act have not, by vehicle. After ``judge_faults``."""
+        return [f"{vehicle.name}: {text}" for vehicle in self.vehicles for text in vehicle.idle_faults]
+
     def keep_logs(self, error: BaseException | None) -> list[tuple[str, list[str]]]:
         """Logs of all vehicles: (vehicle, what there is to say)."""
         return [(vehicle.name, keep(vehicle, self.logs, vehicle.name, error)) for vehicle in self.vehicles]

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 FACTORY = pytest.StashKey["VehicleFactory"]()
 TAKEN = pytest.StashKey[dict[Path, str]]()
+FAULT = "sitl_fault"
+"""Name of a report's property: what became of a fault."""
+ALLOWED = "a test of a fault that never acts tests nothing; fail(..., may_not_act=True) allows it"
 WRITTEN = "sitl_golden"
 """Name of a report's property: a golden that the test has written."""
 
@@ -163,7 +166,24 @@ def _log_folder(config: pytest.Config, nodeid: str) -> Path:
 
 
 class Reporter:
-    """Keeps the logs of failing tests; it is there as soon as the first vehicle is."""
+    """Judges faults and keeps the logs of failing tests; it is there as soon as the first vehicle is."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Any:
+        """A test whose fault never acted has tested nothing: it fails."""
+        __tracebackhide__ = True
+        factory = item.stash.get(FACTORY, None)
+        try:
+            result = yield
+        finally:
+            if factory is not None:
+                faults = [f"{name}: {line}" for name, lines in factory.judge_faults() for line in lines]
+                item.user_properties += [(FAULT, line) for line in faults]
+                if faults:
+                    item.add_report_section("call", "sitl: faults", "\n".join(faults))
+        if factory is not None and (idle := factory.idle_faults()):
+            pytest.fail("\n".join((*idle, ALLOWED)), pytrace=False)
+        return result
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:

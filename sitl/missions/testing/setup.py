@@ -78,18 +78,11 @@ class Setup:
             world=self.world, start=self.start, physics=self.physics,
             core=_core(self.kind) if self.physics == NATIVE else None,
         )  # fmt: skip
-        if simulation.unknown_parameters:
-            simulation.close()
-            raise _unknown(self.kind, simulation.unknown_parameters)
         return simulation
 
     def _parameters(self) -> dict[str, float]:
         values = dict(self.params)
         return files.FileValues(values) if self.has_files else values
-
-
-def _unknown(kind: str, names: Sequence[str]) -> OptionError:
-    return OptionError(f"the {kind} has no parameters {', '.join(names)}")
 
 
 def _core(kind: str) -> Core:
@@ -179,7 +172,7 @@ def setup(
         table = KINDS[vehicles.load(frame).kind].firmware.table
         if not isinstance(params, files.FileValues):  # what the test itself says is not taken that lightly
             if strange := [name for name in params if name not in table]:
-                raise _unknown(vehicles.load(frame).kind, strange)
+                raise files.ParameterError(files.unknown(vehicles.load(frame).kind, strange, table))
             files.check(table, params)
         files.tell(table, values)
     place = tuple(float(x) for x in home) if home is not None else None

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.autopilot.params.files import FileValues
 from sitl.scenario import Home
 from sitl.vehicle.kinds import KINDS
 
@@ -179,8 +180,8 @@ def home_of(log: Log) -> Home | None:
     return (*home, heading) if home is not None else None
 
 
-def parameters_of(log: Log) -> dict[str, float]:
-    """The vehicle's own values, before anybody set them, of what says how it is flown."""
+def parameters_of(log: Log) -> FileValues:
+    """The vehicle's own values, before anybody set them, of what says how it is flown; taken as those of a file."""
     found: dict[str, float] = {}
     prefixes = KINDS[log.kind].flight_parameters
     for message in log.of_vehicle("PARAM_VALUE"):
@@ -190,4 +191,7 @@ def parameters_of(log: Log) -> dict[str, float]:
     for message in log.to_vehicle():
         if message.name == "PARAM_SET":
             found.pop(message.fields.param_id.decode(errors="replace"), None)
-    return found
+    values = FileValues(found)
+    if found:
+        values.sources["parameters of the log"] = list(found)
+    return values

@@ -58,6 +58,22 @@ def test_fly_a_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert (tmp_path / "logs" / "hop.tlog").stat().st_size > 1000
 
 
+LONG_WAIT = """QGC WPL 110
+0	1	0	16	0	0	0	0	-35.3632610	149.1652300	584.0	1
+1	0	3	22	0	0	0	0	0	0	15	1
+2	0	3	19	1200	0	0	0	0	0	15	1
+3	0	3	21	0	0	0	0	0	0	0	1
+"""
+
+
+@pytest.mark.slow
+def test_a_wait_of_twenty_minutes_is_flown(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("long_wait.txt").write_text(LONG_WAIT)
+    Path("no_battery.parm").write_text("BATT_MONITOR 0\n")
+    assert cli.main(["mission", "fly", "long_wait.txt", "--params", "no_battery.parm", "--quiet"]) == 0
+    assert "mission completed" in capsys.readouterr().out
+
+
 def test_a_mission_with_a_fault(capsys: pytest.CaptureFixture[str]) -> None:
     save(Draft("copter", "").take_off(4).to((6, 0), z=4.0).land().file(), "hop.plan")
     assert (

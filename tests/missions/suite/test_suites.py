@@ -203,7 +203,7 @@ def test_parameters_that_a_vehicle_does_not_have_are_named(folder: Path) -> None
     case = find(toml(folder, "[defaults]\nparams = { CRUISE_SPEED = 2.0 }\n"))[0]
     result = fly_case(case, update=True)
     assert result.status == FAILED
-    assert "a copter has no parameters CRUISE_SPEED" in result.words
+    assert "the copter has no parameters CRUISE_SPEED" in result.words
     assert not case.golden.exists()
 
 

@@ -20,6 +20,7 @@ from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.logs import fly_again
 from sitl.missions.testing.vehicle import Copter
 from sitl.vehicle.kinds import KINDS
+from sitl.vehicles import load
 
 
 def test_a_velocity_stays_until_another_order(make: VehicleFactory) -> None:
@@ -148,13 +149,15 @@ def test_a_fault_ends_alone(make: VehicleFactory, tmp_path: Path) -> None:
 
 def test_faults_of_another_autopilot_are_its_parameters() -> None:
     kind = KINDS["copter"]
+    plant = SimpleNamespace(vehicle=SimpleNamespace(airframe=load("erle_copter")))
 
     class Other(Copter):
         params = {p.name: p.default for p in kind.firmware.table} | {"SIM_WIND_DIR": 45.0}  # type: ignore[assignment]
-        connection: Any = SimpleNamespace(simulation=None, kind=kind)
+        connection: Any = SimpleNamespace(simulation=None, kind=kind, time_us=0, plant=plant)
         _faults = None
 
     copter: Any = object.__new__(Other)
+    copter.failures, copter._of_client = [], {}
     has = lambda *names: [copter.params[f"SIM_{name}"] for name in names]  # noqa: E731
     with copter.fail("wind", speed=9, direction=270), copter.fail("motor", motor=1), copter.fail("gyro"):
         with copter.fail("motor", motor=3, thrust=0.5):
@@ -165,6 +168,8 @@ def test_faults_of_another_autopilot_are_its_parameters() -> None:
     assert has("ENGINE_FAIL", "WIND_SPD", "WIND_DIR", "GYR2_BIAS_X") == [0, 0, 45, 0]
     with pytest.raises(OptionError, match="of another autopilot it begins now"):
         copter.fail("gps", at=3.0)
+    with pytest.raises(OptionError, match="there is no number 6; airframe erle_copter has 1, 2, 3, 4"):
+        copter.fail("motor:6=0")
 
 
 def test_an_argument_that_does_nothing_is_refused(make: VehicleFactory) -> None:
