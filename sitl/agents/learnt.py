@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sitl.core import code_in_files
+from sitl.errors import did_you_mean
 
-from . import algorithms, environments
+from . import algorithms, baselines, environments
 from .algorithms import Policy
 from .deep import onnx_file, policy_file
 from .deep.policy import DeepPolicy
@@ -34,6 +35,8 @@ def load(path: Path) -> Learnt:
         AgentError: there is none, or it names code that the user has not allowed.
     """
     if path.suffix != policy_file.SUFFIX:
+        if not path.is_dir():
+            raise AgentError(_no_policy(path))
         run = RunFolder(path)
         return Learnt(run.config, algorithms.policy_of(run), _step_time(run.config))
     about, policy = policy_file.read(path)
@@ -49,6 +52,17 @@ def load(path: Path) -> Learnt:
     if refused is not None:
         raise AgentError(refused)
     return Learnt(config, policy, step_time)
+
+
+def _no_policy(path: Path) -> str:
+    what = "is there" if path.exists() else "is not there"
+    hint = did_you_mean(str(path), baselines.names())
+    if path.suffix == onnx_file.SUFFIX:
+        hint = "; .onnx is for other programs: export it as .npz"
+    return (
+        f"{path} {what}, and is no policy: a policy is the folder of a run (sitl train), a file {policy_file.SUFFIX} of "
+        f"`sitl export`, or the name of a baseline{hint}"
+    )
 
 
 def save(run: RunFolder, path: Path) -> None:
