@@ -60,8 +60,8 @@ def _no_policy(path: Path) -> str:
     if path.suffix == onnx_file.SUFFIX:
         hint = "; .onnx is for other programs: export it as .npz"
     return (
-        f"{path} {what}, and is no policy: a policy is the folder of a run (sitl train), a file {policy_file.SUFFIX} of "
-        f"`sitl export`, or the name of a baseline{hint}"
+        f"{path} {what}, and is no policy: a policy is the folder of a run (sitl train), a file {policy_file.SUFFIX} "
+        f"of `sitl export`, or the name of a baseline{hint}"
     )
 
 

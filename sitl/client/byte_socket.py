@@ -28,6 +28,7 @@ class ByteStream(Protocol):
     def write(self, data: bytes) -> None: ...
     def wait(self, seconds: float) -> bool: ...
     def receive(self) -> bytes: ...
+    def limit(self, seconds: float) -> None: ...
     def close(self) -> None: ...
 
 
@@ -138,6 +139,11 @@ class ByteSocket:
                 self._peer = address
             parts.append(data)
         return b"".join(parts)
+
+    def limit(self, seconds: float) -> None:
+        """From now on, sending takes at most so long [s of wall time]; what is not sent by then raises."""
+        if self._stream:
+            self._socket.settimeout(seconds)
 
     def close(self) -> None:
         """Close the socket; may be called twice."""
