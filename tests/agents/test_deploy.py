@@ -90,7 +90,11 @@ def raises(error):
     return deed
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt(), RuntimeError("no such tensor"), SystemExit(143)], ids=repr)
+@pytest.mark.parametrize(
+    "error",
+    [KeyboardInterrupt(), RuntimeError("no such tensor"), SystemExit(143), MemoryError(), RecursionError()],
+    ids=repr,
+)
 def test_a_policy_that_raises_leaves_the_vehicle_in_a_safe_mode(flown, error):
     policy, simulation, out = learnt.load(flown), hovering(), Deployed()
     acting = policy._replace(policy=Acting(policy.policy, raises(error)))
@@ -128,7 +132,11 @@ def _heed_ctrl_c():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
+@pytest.mark.parametrize(
+    "number",
+    [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP, signal.SIGKILL],
+    ids=lambda number: number.name,
+)
 def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     simulation = hovering()
     words = [sys.executable, "-m", "sitl", "deploy", str(flown), "--episodes", "1000", "--guard", "late=60",
@@ -188,6 +196,33 @@ def test_the_command_says_what_happened(flown, capsys):
     assert "left out, since a simulator alone has them: latency, randomise" in out
     assert "taken over" in out and "handed over: closed" in out and "episode 0: 5 steps" in out
     assert mode(simulation) == LOITER
+
+
+def test_a_policy_that_names_a_connection_is_flown_there_only_when_the_user_says_so(flown, capsys, monkeypatch):
+    monkeypatch.setenv("SITL_ALLOW_CODE", "")
+    simulation = hovering()
+    with RealVehicle(simulation, waits=True) as vehicle:
+        url = f"udpout:127.0.0.1:{vehicle.port}"
+        named = learnt.load(flown)
+        about = {"env": ID, "algorithm": "ppo", "max_steps": 5, "step_time": 0.1, "versions": {},
+                 "options": {"connection": url, "reset": "none", "guard": {"late": 60.0}, "wait": 5.0}}  # fmt: skip
+        policy_file.write(flown, named.policy, about)
+        words = ["rollout", str(flown), "--episodes", "1", "--robots", "1"]
+        assert cli.main(words) == 2
+        said = capsys.readouterr().err
+        assert f"connection = '{url}'" in said and f"--option connection={url}" in said and not vehicle.received
+        word = [f"connection={url}", "reset=none", 'guard={"late": 60.0}']
+        again = [part for each in word for part in ("--option", each)]
+        assert cli.main([*words, *again, "--jobs", "2"]) == 2
+        assert "leads to one vehicle: one process of this machine flies it" in capsys.readouterr().err
+        assert not vehicle.received
+        assert cli.main([*words, *again]) == 0
+        assert mode(simulation) == BRAKE and vehicle.count("SET_POSITION_TARGET_LOCAL_NED") >= 5
+        simulation.bridge.autopilot.set_mode(GUIDED)
+        # deploy gives these options itself, whatever the file says
+        words = ["deploy", str(flown), "--connection", url, "--guard", "late=60"]
+        monkeypatch.setenv("SITL_ALLOW_CODE", "")
+        assert cli.main(words) == 0 and mode(simulation) == BRAKE
 
 
 def test_what_cannot_be_is_refused_before_the_vehicle_hears_anything(flown):

@@ -9,9 +9,9 @@ from dataclasses import fields
 from sitl.envs.mavlink.guard import NOT_HANDED_OVER, Guard
 
 from .. import baselines, learnt
-from ..deploy import Deployed, deploy, options_of
+from ..deploy import REPLACED, Deployed, deploy, options_of
 from ..errors import check_names
-from .options import assignment, assignments, positive
+from .options import assignment, assignments, env_option, positive
 
 RESETS = ("none", "return", "reboot", "force")
 
@@ -55,7 +55,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )  # fmt: skip
     parser.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=circuit",
@@ -67,7 +67,8 @@ def run(options: argparse.Namespace) -> int:
     """Run the command."""
     guard = assignments(options.guard)
     check_names(guard, [field.name for field in fields(Guard)], "guard {!r}")
-    policy, given = learnt.load(options.policy), assignments(options.option)
+    given = assignments(options.option)
+    policy = learnt.load(options.policy, (*REPLACED, *given))
     left_out = options_of(policy, given)[1]
     if left_out:
         print(f"left out, since a simulator alone has them: {', '.join(left_out)}")
