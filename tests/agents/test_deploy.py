@@ -205,7 +205,7 @@ def test_a_policy_that_names_a_connection_is_flown_there_only_when_the_user_says
         url = f"udpout:127.0.0.1:{vehicle.port}"
         named = learnt.load(flown)
         about = {"env": ID, "algorithm": "ppo", "max_steps": 5, "step_time": 0.1, "versions": {},
-                 "options": {"connection": url, "reset": "none", "guard": {"late": 60.0}, "wait": 5.0}}  # fmt: skip
+                 "options": {"connection": url, "reset": "none", "guard": {"late": 60.0}, "patience": 0.5}}  # fmt: skip
         policy_file.write(flown, named.policy, about)
         words = ["rollout", str(flown), "--episodes", "1", "--robots", "1"]
         assert cli.main(words) == 2

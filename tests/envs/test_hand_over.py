@@ -16,9 +16,11 @@ import pytest
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
+from sitl.client.connection import RealTime
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink import hand_over
 from sitl.envs.mavlink.endings import ENDINGS
+from sitl.envs.mavlink.telemetry import StepTelemetry
 from tests.envs.test_guarded_vehicles import BRAKE, LOITER, STILL, environment, mode
 from tests.envs.test_reset_of_real_vehicles import DISARM, MODE, REBOOT, RealVehicle, hovering
 
@@ -228,8 +230,9 @@ class Watching:
         self._fail("close")
 
 
-@pytest.mark.parametrize("when", ["start", "step", "close"])
-@pytest.mark.parametrize("many", [False, True])
+@pytest.mark.parametrize(
+    ("when", "many"), [("start", False), ("step", False), ("close", False), ("step", True), ("close", True)]
+)
 def test_a_page_that_fails_does_not_stop_it(when, many):
     simulation = hovering()
     with RealVehicle(simulation) as vehicle:
@@ -304,3 +307,77 @@ def test_a_copy_of_the_process_commands_no_vehicle():
         assert mode(simulation) == GUIDED and vehicle.commands() == sent
         env.close()
         assert mode(simulation) == BRAKE
+
+
+class BrokenStream:
+    """A link that fails ``count`` times when something is sent or received, and then passes on what is sent."""
+
+    name = "udp:broken"
+
+    def __init__(self, count, answer):
+        self._left, self._answer, self.sent, self._said = count, answer, [], b""
+
+    def _fail(self):
+        if self._left > 0:
+            self._left -= 1
+            raise (OSError("cable"), MemoryError(), RuntimeError("odd"))[self._left % 3]
+
+    def limit(self, seconds):
+        raise OSError("no limits")
+
+    def write(self, data):
+        self._fail()
+        self.sent.append(data)
+        self._said = self._answer
+
+    def wait(self, seconds):
+        return bool(self._said)
+
+    def receive(self):
+        self._fail()
+        said, self._said = self._said, b""
+        return said
+
+
+def heard(name, system=1, **fields):
+    kind = message(name)
+    return encode_v2(kind, kind.payload(**fields), 0, system, 1)
+
+
+FLYING = heard("HEARTBEAT", base_mode=209, custom_mode=GUIDED)
+
+
+@pytest.mark.parametrize(
+    ("answer", "done"),
+    [
+        (heard("COMMAND_ACK", command=MODE, result=0), True),
+        (heard("HEARTBEAT", base_mode=209, custom_mode=BRAKE), True),
+        (heard("HEARTBEAT", base_mode=209, custom_mode=LOITER), True),
+        (heard("HEARTBEAT", base_mode=81, custom_mode=GUIDED), True),  # disarmed
+        (FLYING, False),
+        (heard("COMMAND_ACK", command=MODE, result=5), False),  # in progress
+        (heard("COMMAND_ACK", command=MODE, result=0, system=2), False),  # another vehicle's
+        (heard("HEARTBEAT", base_mode=209, custom_mode=BRAKE, system=2), False),
+        (heard("COMMAND_ACK", command=REBOOT, result=0), False),
+        (bytes(range(256)) + FLYING[:9], False),
+    ],
+)
+def test_what_ends_it(monkeypatch, answer, done):
+    monkeypatch.setattr(hand_over, "BOUND_S", 0.2)
+    monkeypatch.setattr(hand_over, "REPEAT_S", 0.01)
+    stream = BrokenStream(7, answer)
+    inbox = StepTelemetry(8)
+    inbox.system, inbox.mode, inbox.armed = 1, GUIDED, True
+    link = RealTime(stream, inbox, 1.0)
+    deed = hand_over.HandOver(link, BRAKE, GUIDED)
+    deed.run()
+    assert deed.is_done == done and len(stream.sent) >= 1 and (done or "does not answer" in deed.failure)
+
+
+def test_a_vehicle_that_is_not_ours_is_not_asked():
+    for mode_, armed in ((LOITER, True), (GUIDED, False)):
+        stream, inbox = BrokenStream(0, b""), StepTelemetry(8)
+        inbox.system, inbox.mode, inbox.armed = 1, mode_, armed
+        deed = hand_over.HandOver(RealTime(stream, inbox, 1.0), BRAKE, GUIDED)
+        deed.run()
+        assert deed.is_done and not stream.sent

@@ -81,5 +81,6 @@ def run(options: argparse.Namespace) -> int:
     finally:
         for deed in done.deeds:
             print(f"{deed.time:.3f} s: {deed.what}{': ' if deed.why else ''}{deed.why}")
-        print("\n".join(done.sentences(policy.step_time)), flush=True)
+        for sentence in done.sentences(policy.step_time):
+            print(sentence, flush=True)
     return 1 if done.handed_over or any(deed.what == NOT_HANDED_OVER for deed in done.deeds) else 0

@@ -48,10 +48,11 @@ class Endings:
         self._number, self._left = 0, -float("inf")
         """The signal that told the process to end, and when [s]."""
 
-    def owe(self, who: object, settle: Callable[[], object]) -> None:
+    def owe(self, who: object, settle: Callable[[], object]) -> bool:
         """A vehicle is under command from now on, until ``forget``; ``settle`` hands it over.
 
-        Outside of the main thread, which alone may catch signals, only the end of the interpreter is watched.
+        Returns whether signals are caught. Outside of the main thread, which alone may catch them, only the end of the
+        interpreter is watched.
         """
         self._owed[who] = settle
         left_alone, ignored = _numbers(_LEFT_ALONE), _numbers(_IGNORED)
@@ -65,6 +66,7 @@ class Endings:
             with contextlib.suppress(ValueError, OSError):
                 signal.signal(number, signal.SIG_IGN if number in ignored else self._heard)
                 self._installed.add(number)
+        return bool(self._installed)
 
     def owes(self, who: object) -> bool:
         """Whether a vehicle is under the command of ``who``; never in a copy of the process (``os.fork``)."""

@@ -76,7 +76,7 @@ class SocketVehicles(Vehicles):
         self._height = 0.0
         """How high that was above its home [m]."""
         self._heard_ms = -1000
-        self._is_put_down = False
+        self._is_put_down = self._is_warned = False
         self._may_sink_level: bool | None = None
         """Whether ``sink_level`` does what it says, once that is known."""
 
@@ -135,7 +135,7 @@ class SocketVehicles(Vehicles):
                 self.close()
                 raise refusal(link)
             if guard_of(self.options.guard, link.is_simulator) is not None:
-                ENDINGS.owe(self, self.close)  # it takes off
+                self._owe()  # it takes off
             reboot(link)
             origin = self.prepare(link, pose)
             if isinstance(link, Lockstep):
@@ -255,7 +255,7 @@ class SocketVehicles(Vehicles):
             return
         if self.watch is None:
             self.watch = Watch(guard, self.setup.kind.takes_off, time.monotonic)
-        ENDINGS.owe(self, self.close)
+        self._owe()
         north, east, down = link.inbox.position[1:4]
         self.watch.take_over(1e-3 * link.inbox.time_ms, from_ned(origin[0] + north, origin[1] + east, origin[2] + down))
 
@@ -272,6 +272,15 @@ class SocketVehicles(Vehicles):
         if inbox.mode != self.setup.kind.guided:
             return f"the vehicle is in mode {inbox.mode}: its pilot or a failsafe has it"
         return ""
+
+    def _owe(self) -> None:
+        """From now on the vehicle is to be handed over, however this process ends."""
+        if not ENDINGS.owe(self, self.close) and not self._is_warned:
+            self._is_warned = True
+            say(
+                f"the vehicle at {self._connection} is commanded from a thread that is not the main one, where no "
+                "signal can be caught: SIGTERM, SIGHUP and others end this process without a hand-over"
+            )
 
     def told_to_end(self) -> str:
         """Why the agent must not go on: the process was told to end, and the agent has passed over it; "": it was
