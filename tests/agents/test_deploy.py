@@ -161,6 +161,49 @@ def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     assert np.linalg.norm(simulation.v.physics.body.vel) < 0.3
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux has it")
+@pytest.mark.parametrize("words", ["{} | head -1", "{} >/dev/full", "{} >&- 2>&-", "{} --guard log=/dev/full"])
+def test_output_that_goes_nowhere_stops_no_hand_over(flown, words):
+    simulation = hovering()
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with RealVehicle(simulation, waits=True) as vehicle:
+        url = f"udpout:127.0.0.1:{vehicle.port}"
+        command = f"{sys.executable} -m sitl deploy {flown} --guard late=60 --guard floor=2 --connection {url}"
+        subprocess.run(["bash", "-c", words.format(command)], env=paths, capture_output=True, timeout=120)
+    assert mode(simulation) == BRAKE and simulation.v.autopilot.arming.armed == 1
+    assert vehicle.count("SET_POSITION_TARGET_LOCAL_NED") > 20
+
+
+SCRIPT = """
+import sys, threading, time
+import gymnasium as gym
+import sitl.envs
+env = gym.make(sys.argv[1], connection=sys.argv[2], reset="none", patience=0.5, guard={"late": 60.0})
+env.reset(seed=1)
+env.step(env.action_space.sample())
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "end",
+    ["", "1 / 0", "sys.exit(3)", "threading.Thread(target=time.sleep, args=(1000,)).start(); 1 / 0"],
+)
+def test_a_script_that_ends_without_close_hands_over(end):
+    simulation = hovering()
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with RealVehicle(simulation, waits=True) as vehicle:
+        words = [sys.executable, "-W", "ignore", "-c", SCRIPT + end, ID, f"udpout:127.0.0.1:{vehicle.port}"]
+        with subprocess.Popen(words, env=paths, stderr=subprocess.PIPE) as process:
+            try:
+                while mode(simulation) != BRAKE and ("Thread" in end or process.poll() is None):
+                    vehicle.wait()
+            finally:
+                process.kill()
+    assert mode(simulation) == BRAKE and simulation.v.autopilot.arming.armed == 1
+
+
 def test_a_vehicle_without_a_lidar_flies_what_reads_none(flown):
     policy, simulation = learnt.load(flown), hovering()
     with RealVehicle(simulation, unsent=("OBSTACLE_DISTANCE", "DEBUG_FLOAT_ARRAY"), waits=True) as vehicle:

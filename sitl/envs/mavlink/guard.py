@@ -201,8 +201,8 @@ class Watch:
         except (OSError, ValueError) as error:
             if not self._log_is_lost:
                 self._log_is_lost = True
-                why = getattr(error, "strerror", "") or error
-                text = f"guard: log {str(self.guard.log)!r} cannot be written: {why}"
+                fault = getattr(error, "strerror", "") or error
+                text = f"guard: log {str(self.guard.log)!r} cannot be written: {fault}"
                 self.deeds.append(Deed(deed.time, "log lost", text))
                 say(f"{text}; the flight goes on without it")
 
