@@ -30,6 +30,8 @@ from .runs.config import RunConfig
 SIMULATED = ("autopilot", "autopilot_path", "begin", "faults", "gcs", "latency", "params", "physics", "randomise",
              "start", "threads")  # fmt: skip
 """Options of an environment that a simulator has and a vehicle at a connection has not: they are left out."""
+REPLACED = (*SIMULATED, "connection", "guard", "reset", "wait")
+"""Options that ``deploy`` leaves out or gives itself: what a policy's file says of them is not used."""
 NEUTRAL = {"faults": None, "latency": 0.0, "randomise": None, "start": None}
 """Those of them that an environment may have by its id."""
 SLOW = 1.5

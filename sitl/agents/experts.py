@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from sitl.client import Client
 from sitl.client.errors import ClientError
+from sitl.core import code_in_files
 from sitl.envs.actions import POSITION, VELOCITY, Discrete
 from sitl.envs.navigate import Navigate
 from sitl.envs.robots.autopilot import AutopilotRobot
@@ -186,7 +187,7 @@ class Learnt(Expert):
     """A policy: one that comes with the program, of a run's folder or of a file."""
 
     def __init__(self, env: gym.Env[Any, Any], path: Path) -> None:
-        found = learnt.load(path)
+        found = learnt.load(path, code_in_files.EVERY)
         found.policy.check(env.observation_space, env.action_space)
         self.name, self._policy = path.stem, found.policy
         self.about = f"a policy that was learnt by {found.config.algorithm} in {found.config.env}"

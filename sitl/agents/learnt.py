@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from pathlib import Path
 from typing import NamedTuple
 
 from sitl.core import code_in_files
+from sitl.errors import did_you_mean
 
-from . import algorithms, environments
+from . import algorithms, baselines, environments
 from .algorithms import Policy
 from .deep import onnx_file, policy_file
 from .deep.policy import DeepPolicy
@@ -27,15 +29,23 @@ class Learnt(NamedTuple):
     """Simulated time of a step in that environment [s]: the rate that it was learnt at."""
 
 
-def load(path: Path) -> Learnt:
+def load(path: Path, replaced: Container[str] = ()) -> Learnt:
     """The policy of a run's folder, or of a file (.npz) that ``save`` wrote.
 
+    Args:
+        path: of the folder or file.
+        replaced: options of the environment in whose place others come, so that it does not matter what the file says
+            of them.
+
     Raises:
-        AgentError: there is none, or it names code that the user has not allowed.
+        AgentError: there is none, or it reaches outside of this process and the user has not said so.
     """
     if path.suffix != policy_file.SUFFIX:
-        run = RunFolder(path)
-        return Learnt(run.config, algorithms.policy_of(run), _step_time(run.config))
+        if not path.is_dir():
+            raise AgentError(_no_policy(path))
+        run = RunFolder(path, replaced)
+        kept = code_in_files.without(run.config.env_options, replaced)
+        return Learnt(run.config, algorithms.policy_of(run), _step_time(run.config.with_(env_options=kept)))
     about, policy = policy_file.read(path)
     try:
         config = RunConfig(
@@ -45,10 +55,32 @@ def load(path: Path) -> Learnt:
         step_time = float(about["step_time"])
     except (KeyError, TypeError, ValueError) as error:
         raise AgentError(f"{path} is no file of a policy: {error}") from None
-    refused = code_in_files.refusal(path, config.code)
+    refused = code_in_files.refusal(path, config.code_but(replaced))
     if refused is not None:
         raise AgentError(refused)
     return Learnt(config, policy, step_time)
+
+
+def policy_of(path: Path) -> Policy:
+    """The policy alone, whatever it was learnt in.
+
+    Raises:
+        AgentError: see ``load``.
+    """
+    if path.suffix == policy_file.SUFFIX:
+        return policy_file.read(path)[1]
+    return algorithms.policy_of(RunFolder(path, code_in_files.EVERY))
+
+
+def _no_policy(path: Path) -> str:
+    what = "is there" if path.exists() else "is not there"
+    hint = did_you_mean(str(path), baselines.names())
+    if path.suffix == onnx_file.SUFFIX:
+        hint = "; .onnx is for other programs: export it as .npz"
+    return (
+        f"{path} {what}, and is no policy: a policy is the folder of a run (sitl train), a file {policy_file.SUFFIX} "
+        f"of `sitl export`, or the name of a baseline{hint}"
+    )
 
 
 def save(run: RunFolder, path: Path) -> None:

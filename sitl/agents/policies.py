@@ -88,7 +88,7 @@ def policies_of(policy: Named, env: gym.vector.VectorEnv[Any, Any, Any]) -> Poli
     if isinstance(policy, Path):
         from . import learnt
 
-        found = learnt.load(policy).policy
+        found = learnt.policy_of(policy)
         found.check(env.single_observation_space, env.single_action_space)
         return found.many(env.num_envs)
     if policy == RANDOM:

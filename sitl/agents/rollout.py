@@ -17,11 +17,14 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import code_in_files
+from sitl.envs.robots.vehicles import INPROCESS
+
 from . import environments, learnt
 from .errors import AgentError
 from .evaluate import Evaluation, Played
 from .policies import Named, policies_of
-from .runs.backends import Workers
+from .runs.backends import BACKENDS, Workers
 from .runs.config import MAX_STEPS, RunConfig
 from .runs.files import make_folder, write_arrays
 from .runs.local import SendProgress, Stopped
@@ -89,6 +92,9 @@ def rollout(
         name, value = ("episodes", episodes) if episodes < 1 else ("robots", robots)
         raise AgentError(f"{name} = {value}; it must be 1 or more")
     config = _config(policy, env, max_steps, dict(options or {}))
+    place = config.env_options.get("connection", INPROCESS)
+    if place != INPROCESS and (workers.jobs > 1 or workers.backend != BACKENDS[0]):
+        raise AgentError(f"connection {place!r} leads to one vehicle: one process of this machine flies it (--jobs 1)")
     if workers.backend == "local" and workers.jobs > 1:
         _check_sendable(policy)
     length = robots * EPISODES_A_ROBOT
@@ -107,8 +113,11 @@ def rollout(
 
 def _config(policy: Named, env: str | None, max_steps: int | None, options: Mapping[str, Any]) -> RunConfig:
     if isinstance(policy, Path):
-        run = learnt.load(policy).config
+        run = learnt.load(policy, code_in_files.EVERY).config
         same = env in (None, run.env)
+        refused = code_in_files.refusal(policy, run.code_but(options)) if same else None
+        if refused is not None:
+            raise AgentError(refused)
         return run.with_(
             env=env or run.env,
             max_steps=max_steps or run.max_steps,

@@ -29,6 +29,7 @@ class ByteStream(Protocol):
     def write(self, data: bytes) -> None: ...
     def wait(self, seconds: float) -> bool: ...
     def receive(self) -> bytes: ...
+    def limit(self, seconds: float) -> None: ...
     def close(self) -> None: ...
 
 
@@ -161,6 +162,11 @@ class ByteSocket:
                     continue
             parts.append((data, address))
         return parts
+
+    def limit(self, seconds: float) -> None:
+        """From now on, sending takes at most so long [s of wall time]; what is not sent by then raises."""
+        if self._stream:
+            self._socket.settimeout(seconds)
 
     def close(self) -> None:
         """Close the socket; may be called twice."""

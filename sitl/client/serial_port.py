@@ -78,6 +78,10 @@ class SerialPort:
         except self._lost as error:
             raise LinkLostError(f"connection {self.name} is lost: {error}") from None
 
+    def limit(self, seconds: float) -> None:
+        """From now on, sending takes at most so long [s of wall time]; what is not sent by then raises."""
+        self._port.write_timeout = seconds
+
     def close(self) -> None:
         """Close the line; may be called twice."""
         self._port.close()

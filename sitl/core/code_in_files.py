@@ -1,59 +1,148 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Data files that name code: refused unless the user allows it.
+"""Data files that reach outside of the process: refused unless the user says the same himself.
 
-A suite's table, a recipe, a run's folder may name an airframe's Python file, a module with environments, or a program
-to be started. To open somebody's file must not run it, so such a file is taken only when the environment variable
-``SITL_ALLOW_CODE`` is 1, or when this user has named the same code himself (``allow``). Processes that are started from
-this one have the same permission.
+A policy, a recipe, a plan, a suite's table, a run's folder may name an airframe's Python file, a program to be started,
+the address of a vehicle, a file to be read. To open somebody's file must do none of that, so a file may say only what
+stands in one list (``FREE``). All else is taken only when the environment variable ``SITL_ALLOW_CODE`` is 1, or when
+the user has said the same on the command line (``allow``). Processes that are started from this one have the same
+permission.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+import re
+import shlex
+from collections.abc import Callable, Container, Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 VARIABLE = "SITL_ALLOW_CODE"
 _ALL = "1"
 REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
 """How the place of an autopilot that runs already begins, behind its kind; all else is a program to start."""
+_ACTS = ("env", "frame", "autopilot", "autopilot_path", "reset", "guard")
+"""Options that run code or act on a vehicle; others of those that are refused open a socket, a window or a file."""
 
 
-def code_of_options(options: Mapping[str, Any]) -> list[str]:
-    """What of an environment's options runs code of others, or acts on a vehicle, each as "name = value"."""
-    frame, autopilot = options.get("frame"), options.get("autopilot", "native")
-    starts = isinstance(autopilot, str) and autopilot != "native"
-    if starts and autopilot.partition(":")[2].startswith(REACHED):
-        starts = False
-    return [
-        f"{name} = {options[name]!r}"
-        for name, runs in (
-            ("frame", isinstance(frame, str) and frame.endswith(".py")),
-            ("autopilot", starts),
-            ("autopilot_path", options.get("autopilot_path") is not None),
-            ("reset", options.get("reset", "reboot") != "reboot"),
-            ("guard", options.get("guard") is not None),
-            ("params", isinstance(options.get("params"), str)),  # a file of this machine
-        )
-        if runs
-    ]
+def is_name(value: Any) -> bool:
+    """Whether a value is a name that a table of this package knows, or "KIND:settings" of something that is made, and
+    neither a file nor an address."""
+    return isinstance(value, str) and bool(re.fullmatch(r"[\w -]*(:[\w=,.+-]*)?", value)) and "://" not in value
+
+
+def _is_one_of(*values: Any) -> Callable[[Any], bool]:
+    return lambda value: any(value is one or (type(value) is type(one) and value == one) for one in values)
+
+
+def _is_free(value: Any) -> bool:
+    return True
+
+
+FREE: Mapping[str, Callable[[Any], bool]] = {
+    # what reaches outside with other values
+    "autopilot": _is_one_of("native"),
+    "autopilot_path": _is_one_of(None),
+    "connection": _is_one_of("inprocess"),
+    "frame": lambda value: is_name(value) and ":" not in value,
+    "gcs": _is_one_of(None),
+    "guard": _is_one_of(None),
+    "params": lambda value: not isinstance(value, str),  # a text is a file of this machine
+    "physics": lambda value: is_name(value) and ":" not in value,
+    "render_mode": _is_one_of(None, "rgb_array"),
+    "reset": _is_one_of("reboot"),
+    "world": lambda value: value is None or is_name(value),
+    # what is numbers, or names that are looked up in tables
+    **dict.fromkeys(
+        ("action", "autoreset_mode", "begin", "faults", "home", "info", "latency", "max_episode_steps", "observation",
+         "params", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "threads",
+         "tiled", "wait"), _is_free,
+    ),
+}  # fmt: skip
+"""All that a file may say of an environment of this package: name of the option -> whether a value is taken.
+
+Of an option that is not here, and of environments of other packages, only numbers are.
+"""
+
+
+def _is_numbers(value: Any) -> bool:
+    if isinstance(value, list | tuple):
+        return all(map(_is_numbers, value))
+    return value is None or isinstance(value, bool | int | float)
+
+
+def code_of_options(options: Mapping[str, Any], is_ours: bool = True) -> list[str]:
+    """What of an environment's options reaches outside of the process, each as "name = value".
+
+    Args:
+        options: by name.
+        is_ours: whether the environment is one of this package.
+    """
+    free = FREE if is_ours else {}
+    named = [name for name, value in options.items() if not free.get(name, _is_numbers)(value)]
+    return [f"{name} = {options[name]!r}" for name in sorted(named, key=lambda name: name not in _ACTS)]
+
+
+def lies_in(folder: str | Path, file: str | Path) -> bool:
+    """Whether a file, as a file in ``folder`` names it, lies in that folder or below it: who is given a folder is given
+    what is in it."""
+    try:
+        here = Path(folder).resolve()
+        return (here / file).resolve().is_relative_to(here)
+    except (OSError, ValueError, RuntimeError):
+        return False
 
 
 def allow(named: Iterable[str]) -> None:
-    """The user has named this code himself, not a file: it may stand in files from here on."""
+    """The user has said this himself, not a file: it may stand in files from here on."""
     known = os.environ.get(VARIABLE, "").splitlines()
-    new = [name for name in named if name not in known]
+    new = [name.replace("\0", "") for name in named if name not in known]
     if new:
         os.environ[VARIABLE] = "\n".join([*known, *new])
 
 
-def refusal(file: Any, named: Iterable[str]) -> str | None:
-    """Why a file that names this code is not opened; None when it may be."""
+def allow_options(options: Mapping[str, Any]) -> None:
+    """The user has given these options of an environment on the command line, whatever its package is."""
+    allow(code_of_options(options, is_ours=False))
+
+
+class _Every:
+    def __contains__(self, name: object) -> bool:
+        return True
+
+
+EVERY: Container[str] = _Every()
+"""Nothing that a file says of the environment is used."""
+
+
+def without(options: Mapping[str, Any], replaced: Container[str]) -> dict[str, Any]:
+    """Those options whose values in a file count: others come in the place of the rest."""
+    return {name: value for name, value in options.items() if name not in replaced}
+
+
+def refusal(file: Any, named: Iterable[str], say: str = "--option {name}={value}") -> str | None:
+    """Why a file that names this is not opened; None when it may be.
+
+    Args:
+        file: what is to be opened.
+        named: what reaches outside, each as "name = value".
+        say: how the user says the same; "": no option does.
+    """
     known = os.environ.get(VARIABLE, "").splitlines()
     strange = [] if _ALL in known else [name for name in named if name not in known]
     if not strange:
         return None
+    acts = any(name.partition(" = ")[0] in _ACTS for name in strange)
+    what = "names code that would be run, or acts on a vehicle" if acts else "reaches outside of this process"
+    said = [_said(name, say) for name in strange if say and not name.startswith("env = ")]
+    how = f"say the same on the command line ({' '.join(said)}), or " if said else ""
     return (
-        f"{file} names code that would be run, or acts on a vehicle: {'; '.join(strange)}. A file may do so only if "
-        f"you trust it: set the environment variable {VARIABLE}=1"
+        f"{file} {what}: {'; '.join(strange)}. A file may do so only if you trust it: {how}set the environment "
+        f"variable {VARIABLE}=1"
     )
+
+
+def _said(name: str, say: str) -> str:
+    option, _, value = name.partition(" = ")
+    plain = value[1:-1] if value[:1] in "'\"" else {"None": "null", "True": "true", "False": "false"}.get(value, value)
+    return say.format(name=option, value=shlex.quote(plain))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from functools import partial
 from typing import Any
 
@@ -89,6 +90,13 @@ class Navigate(gym.Env[Any, Any]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """See ``gymnasium.Env.reset``; options: "pose", the start pose of this episode."""
+        try:
+            return self._reset(seed, options)
+        except BaseException as error:
+            self._session.abandon(error)
+            raise
+
+    def _reset(self, seed: int | None, options: dict[str, Any] | None) -> tuple[Any, dict[str, Any]]:
         if options and "reset_mask" in options:
             raise EnvOptionError("reset: option 'reset_mask' is for vector environments only")
         super().reset(seed=seed)
@@ -120,6 +128,13 @@ class Navigate(gym.Env[Any, Any]):
             InvalidAction: the action is not in the space.
             ResetNeeded: before the first ``reset``.
         """
+        try:
+            return self._step(action)
+        except BaseException as error:
+            self._session.abandon(error)
+            raise
+
+    def _step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         if not self._is_begun:
             raise gym.error.ResetNeeded("step() before the first reset(): call reset() first")
         session = self._session
@@ -192,12 +207,13 @@ class Navigate(gym.Env[Any, Any]):
 
     def close(self) -> None:
         """Close the window or the page, and the robot's connections; may be called twice."""
-        if self._watcher is not None:
-            self._watcher.close()
-            self._watcher = None
-        if self._renderer is not None:
-            self._renderer.close()
-        self._session.robot.close()
+        watcher, self._watcher = self._watcher, None
+        with ExitStack() as rest:  # whatever fails: first the vehicle is left in a safe mode
+            if self._renderer is not None:
+                rest.callback(self._renderer.close)
+            if watcher is not None:
+                rest.callback(watcher.close)
+            self._session.robot.close()
 
     def __getstate__(self) -> dict[str, Any]:
         bound = ("_check", "_actions", "_advance", "_observe", "_info", "_over")

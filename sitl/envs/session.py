@@ -319,6 +319,12 @@ class Session:
             found |= {"touched": self.robot.collided != 0, "outside": step.outside.copy()}
         return found
 
+    def abandon(self, error: BaseException) -> None:
+        """A step or a reset has raised: a vehicle at a connection is handed over."""
+        abandon = getattr(self.robot, "abandon", None)
+        if abandon is not None:
+            abandon(error)
+
     def snapshot(self, index: int, rng: np.random.Generator) -> Snapshot:
         """A snapshot of one robot, with the state of its random generator."""
         late = None if self.latency is None else self.latency.memory(index)

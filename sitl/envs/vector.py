@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
 
@@ -126,6 +127,15 @@ class NavigateVector(OfSubEnvironments):
             EnvOptionError: an option that cannot be used.
             ValueError: not as many seeds as robots.
         """
+        try:
+            return self._reset(seed, options)
+        except BaseException as error:
+            self._session.abandon(error)
+            raise
+
+    def _reset(
+        self, seed: int | Sequence[int | None] | None, options: dict[str, Any] | None
+    ) -> tuple[Any, dict[str, Any]]:
         if seed is None or isinstance(seed, int | np.integer):
             seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
         else:
@@ -184,6 +194,13 @@ class NavigateVector(OfSubEnvironments):
             InvalidAction: there is not one action in the space for each robot.
             ResetNeeded: before the first reset; without autoreset, when an episode has ended, too.
         """
+        try:
+            return self._step(actions)
+        except BaseException as error:
+            self._session.abandon(error)
+            raise
+
+    def _step(self, actions: Any) -> tuple[Any, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         session, mode = self._session, self.autoreset_mode
         self._take(actions)
         self.generator(0)
@@ -317,12 +334,12 @@ class NavigateVector(OfSubEnvironments):
 
     def close_extras(self, **kwargs: Any) -> None:
         """See ``gymnasium.vector.VectorEnv.close``."""
-        watcher = getattr(self, "_watcher", None)
-        if watcher is not None:
-            watcher.close()
-            self._watcher = None
-        if hasattr(self, "_session"):  # older Gymnasiums close what was refused while it was made, too
-            self._session.robot.close()
+        watcher, self._watcher = getattr(self, "_watcher", None), None
+        with ExitStack() as rest:  # whatever fails: first the vehicles are left in a safe mode
+            if watcher is not None:
+                rest.callback(watcher.close)
+            if hasattr(self, "_session"):  # older Gymnasiums close what was refused while it was made, too
+                self._session.robot.close()
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:

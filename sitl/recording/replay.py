@@ -11,7 +11,7 @@ from typing import Any
 
 from ..bridge.frame import Splitter
 from ..bridge.links.inprocess import FrameWriter
-from ..core import documents
+from ..core import code_in_files, documents
 from ..core.compile import Progress
 from ..errors import SitlError
 from ..logs.dataflash.log import attach
@@ -293,6 +293,22 @@ def _build(
         raise RecordingError(f"{_title(recording)}: what it was made of cannot be understood ({why})") from error
 
 
+def _files(recording: Recording, world: str | Path | World | None) -> list[str]:
+    """What files its scenario names, each as "name = value", but those that lie in the recording's own folder."""
+    header = recording.header
+    file = header["world"]["file"] if world is None and header["world"] is not None else None
+    named = {"world": file, "terrain": header.get("terrain")}
+    folder = recording.path.parent
+    return [
+        f"{name} = {value!r}"
+        for name, value in named.items()
+        if value is not None
+        and not code_in_files.is_name(value)
+        and Path(value.partition(":")[0]).exists()
+        and not code_in_files.lies_in(folder, Path(value).absolute())
+    ]
+
+
 def _simulation(
     recording: Recording,
     frame: str | Airframe | None,
@@ -312,6 +328,9 @@ def _simulation(
     if world is None and header["world"] is not None and header["world"]["file"] is None:
         name = header["world"]["name"]
         raise RecordingError(f"{title}: its world {name!r} was made by a program; give it: --world FILE")
+    refused = code_in_files.refusal(title, _files(recording, world), say="--{name} {value}")
+    if refused is not None:
+        raise RecordingError(refused)
     try:
         scenario = Scenario.from_json(header, frame=frame, world=world, physics=physics)
         return Simulation(scenario, core=core, progress=progress)

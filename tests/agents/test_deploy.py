@@ -90,7 +90,11 @@ def raises(error):
     return deed
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt(), RuntimeError("no such tensor"), SystemExit(143)], ids=repr)
+@pytest.mark.parametrize(
+    "error",
+    [KeyboardInterrupt(), RuntimeError("no such tensor"), SystemExit(143), MemoryError(), RecursionError()],
+    ids=repr,
+)
 def test_a_policy_that_raises_leaves_the_vehicle_in_a_safe_mode(flown, error):
     policy, simulation, out = learnt.load(flown), hovering(), Deployed()
     acting = policy._replace(policy=Acting(policy.policy, raises(error)))
@@ -128,7 +132,11 @@ def _heed_ctrl_c():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
+@pytest.mark.parametrize(
+    "number",
+    [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP, signal.SIGKILL],
+    ids=lambda number: number.name,
+)
 def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     simulation = hovering()
     words = [sys.executable, "-m", "sitl", "deploy", str(flown), "--episodes", "1000", "--guard", "late=60",
@@ -151,6 +159,51 @@ def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     assert simulation.v.autopilot.arming.armed == 1 and height(simulation) > 1.0
     assert mode(simulation) == (GUIDED if number == signal.SIGKILL else BRAKE)
     assert np.linalg.norm(simulation.v.physics.body.vel) < 0.3
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux has it")
+@pytest.mark.parametrize("words", ["{} | head -1", "{} >/dev/full", "{} >&- 2>&-", "{} --guard log=/dev/full"])
+def test_output_that_goes_nowhere_stops_no_hand_over(flown, words):
+    simulation = hovering()
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with RealVehicle(simulation, waits=True) as vehicle:
+        url = f"udpout:127.0.0.1:{vehicle.port}"
+        command = f"{sys.executable} -m sitl deploy {flown} --guard late=60 --guard floor=2 --connection {url}"
+        subprocess.run(["bash", "-c", words.format(command)], env=paths, capture_output=True, timeout=120)
+    assert simulation.v.autopilot.arming.armed == 1
+    flew = vehicle.count("SET_POSITION_TARGET_LOCAL_NED") > 0
+    assert flew == (">/dev/full" not in words)  # which is noticed before the vehicle hears anything
+    assert mode(simulation) == (BRAKE if flew else GUIDED)
+
+
+SCRIPT = """
+import sys, threading, time
+import gymnasium as gym
+import sitl.envs
+env = gym.make(sys.argv[1], connection=sys.argv[2], reset="none", patience=0.5, guard={"late": 60.0})
+env.reset(seed=1)
+env.step(env.action_space.sample())
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "end",
+    ["", "1 / 0", "sys.exit(3)", "threading.Thread(target=time.sleep, args=(1000,)).start(); 1 / 0"],
+)
+def test_a_script_that_ends_without_close_hands_over(end):
+    simulation = hovering()
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    with RealVehicle(simulation, waits=True) as vehicle:
+        words = [sys.executable, "-W", "ignore", "-c", SCRIPT + end, ID, f"udpout:127.0.0.1:{vehicle.port}"]
+        with subprocess.Popen(words, env=paths, stderr=subprocess.PIPE) as process:
+            try:
+                while mode(simulation) != BRAKE and ("Thread" in end or process.poll() is None):
+                    vehicle.wait()
+            finally:
+                process.kill()
+    assert mode(simulation) == BRAKE and simulation.v.autopilot.arming.armed == 1
 
 
 def test_a_vehicle_without_a_lidar_flies_what_reads_none(flown):
@@ -188,6 +241,33 @@ def test_the_command_says_what_happened(flown, capsys):
     assert "left out, since a simulator alone has them: latency, randomise" in out
     assert "taken over" in out and "handed over: closed" in out and "episode 0: 5 steps" in out
     assert mode(simulation) == LOITER
+
+
+def test_a_policy_that_names_a_connection_is_flown_there_only_when_the_user_says_so(flown, capsys, monkeypatch):
+    monkeypatch.setenv("SITL_ALLOW_CODE", "")
+    simulation = hovering()
+    with RealVehicle(simulation, waits=True) as vehicle:
+        url = f"udpout:127.0.0.1:{vehicle.port}"
+        named = learnt.load(flown)
+        about = {"env": ID, "algorithm": "ppo", "max_steps": 5, "step_time": 0.1, "versions": {},
+                 "options": {"connection": url, "reset": "none", "guard": {"late": 60.0}, "patience": 0.5}}  # fmt: skip
+        policy_file.write(flown, named.policy, about)
+        words = ["rollout", str(flown), "--episodes", "1", "--robots", "1"]
+        assert cli.main(words) == 2
+        said = capsys.readouterr().err
+        assert f"connection = '{url}'" in said and f"--option connection={url}" in said and not vehicle.received
+        word = [f"connection={url}", "reset=none", 'guard={"late": 60.0}']
+        again = [part for each in word for part in ("--option", each)]
+        assert cli.main([*words, *again, "--jobs", "2"]) == 2
+        assert "leads to one vehicle: one process of this machine flies it" in capsys.readouterr().err
+        assert not vehicle.received
+        assert cli.main([*words, *again]) == 0
+        assert mode(simulation) == BRAKE and vehicle.count("SET_POSITION_TARGET_LOCAL_NED") >= 5
+        simulation.bridge.autopilot.set_mode(GUIDED)
+        # deploy gives these options itself, whatever the file says
+        words = ["deploy", str(flown), "--connection", url, "--guard", "late=60"]
+        monkeypatch.setenv("SITL_ALLOW_CODE", "")
+        assert cli.main(words) == 0 and mode(simulation) == BRAKE
 
 
 def test_what_cannot_be_is_refused_before_the_vehicle_hears_anything(flown):

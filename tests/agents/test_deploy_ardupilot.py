@@ -63,7 +63,9 @@ def test_a_policy_that_raises_leaves_it_in_brake(hovering):
     assert out.deeds[-1].why == "closed" and still(pilot) < 0.3 and pilot.mode == "BRAKE"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL], ids=lambda number: number.name
+)
 def test_a_process_that_ends_leaves_it_flying(hovering, number):
     pilot, url = hovering
     words = [sys.executable, "-m", "sitl", "deploy", "copter-hover", "--episodes", "1000", "--connection", url]

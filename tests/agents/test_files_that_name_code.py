@@ -8,12 +8,15 @@ import os
 
 import pytest
 
+from sitl import cli
 from sitl.agents.errors import AgentError
 from sitl.agents.recipes import recipe
 from sitl.agents.rehearsal import plan
 from sitl.agents.runs.config import RunConfig
 from sitl.agents.runs.folder import CONFIG, RunFolder
 from sitl.core import code_in_files
+from sitl.envs.options import COMMON
+from sitl.envs.robots.vehicles import AutopilotOptions
 from sitl.missions.suite import cases
 
 ROVER = "GazeboMazeErleRoverLIDAR-v0"
@@ -71,9 +74,54 @@ def test_an_environment_of_the_old_gym_is_code(tmp_path):
         RunFolder(run_folder(tmp_path / "run", env="GymV26Environment-v0", env_options={"env_id": "theirs:Env-v0"}))
 
 
-def test_an_autopilot_that_runs_elsewhere_is_no_program(tmp_path):
-    options = {"autopilot": "ardupilot:tcp:127.0.0.1:5760"}
-    assert RunFolder(run_folder(tmp_path / "run", env_options=options)).config.code == []
+OUTSIDE = [
+    ({"connection": "tcp:127.0.0.1:1"}, "connection = 'tcp:127.0.0.1:1'", "connection=tcp:127.0.0.1:1"),
+    ({"connection": "serial:/dev/ttyACM0:57600"}, "connection = 'serial:", "connection=serial:/dev/ttyACM0:57600"),
+    ({"gcs": "udp:127.0.0.1:14550"}, "gcs = 'udp:127.0.0.1:14550'", "gcs=udp:127.0.0.1:14550"),
+    ({"world": "theirs.toml"}, r"world = 'theirs\.toml'", "world=theirs.toml"),
+    ({"world": "/dev/zero"}, "world = '/dev/zero'", "world=/dev/zero"),
+    ({"world": "../a b.toml"}, r"world = '\.\./a b\.toml'", "world='../a b.toml'"),
+    ({"physics": "json:127.0.0.1:9002"}, "physics = 'json:127.0.0.1:9002'", "physics=json:127.0.0.1:9002"),
+    ({"render_mode": "human"}, "render_mode = 'human'", "render_mode=human"),
+    ({"save_to": "/tmp/log"}, "save_to = '/tmp/log'", "save_to=/tmp/log"),
+    ({"address": {"host": "a"}}, "address = {'host': 'a'}", "address='{'"),
+]
+
+
+@pytest.mark.parametrize(("options", "said", "option"), OUTSIDE)
+def test_what_opens_a_socket_a_window_or_a_file(tmp_path, options, said, option):
+    with pytest.raises(AgentError, match=f"config.json reaches outside of this process: {said}") as error:
+        RunFolder(run_folder(tmp_path / "run", env_options=options))
+    assert option[:-1] in str(error.value) and "SITL_ALLOW_CODE=1" in str(error.value)
+    code_in_files.allow_options(options)
+    assert RunFolder(run_folder(tmp_path / "run", env_options=options)).config.env_options == options
+
+
+@pytest.mark.parametrize("autopilot", ["ardupilot:tcp:127.0.0.1:5760", "px4:udp:127.0.0.1:14540"])
+def test_an_autopilot_that_runs_elsewhere(tmp_path, autopilot):
+    with pytest.raises(AgentError, match=REFUSED.format(f"autopilot = '{autopilot}'")):
+        RunFolder(run_folder(tmp_path / "run", env_options={"autopilot": autopilot}))
+
+
+def test_environments_of_others_take_numbers_alone(tmp_path):
+    theirs = {"env": "FrozenLake-v1", "env_options": {"is_slippery": False, "reward_schedule": [1, 0, 0]}}
+    assert RunFolder(run_folder(tmp_path / "run", **theirs)).config.code == []
+    with pytest.raises(AgentError, match="reaches outside of this process: map_name = '8x8'"):
+        RunFolder(run_folder(tmp_path / "run", env="FrozenLake-v1", env_options={"map_name": "8x8"}))
+
+
+def test_every_option_that_a_file_may_say_is_an_option():
+    known = {*COMMON, *AutopilotOptions.names(), "render_mode", "max_episode_steps", "autoreset_mode", "tiled"}
+    assert set(code_in_files.FREE) == known
+
+
+@pytest.mark.parametrize(
+    ("options", "again"), [({"world": "circuit2"}, ()), ({"world": "there.toml"}, ["--option", "world=there.toml"])]
+)
+def test_the_command_line_says_it(tmp_path, capsys, options, again):
+    folder = run_folder(tmp_path / "run", env_options=options)
+    assert cli.main(["export", str(folder), str(tmp_path / "p.npz"), *again]) == 2
+    assert "reaches outside" not in capsys.readouterr().err
 
 
 def test_what_the_user_allows(tmp_path, monkeypatch):
@@ -88,7 +136,17 @@ def test_what_the_user_allows(tmp_path, monkeypatch):
         RunFolder(theirs)
 
 
-@pytest.mark.parametrize("options", [{"frame": "erle_rover"}, {"autopilot": "ardupilot:tcp:127.0.0.1:5760"}, {}])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"frame": "erle_rover"},
+        {},
+        {"world": "forest:seed=3,difficulty=0.8", "physics": "pybullet", "connection": "inprocess"},
+        {"world": "maze-erlerover", "randomise": {"mass": [0.9, 1.1]}, "faults": {"motor:2=0.5": [1, 2]}},
+        {"observation": {"seen": "scan", "goal": ["goal", "velocity"]}, "action": {"ahead": [1, 0, 0, 0]}},
+        {"start": "random:400", "home": [-35.0, 149.0, 584.0, 0.0], "params": {"SIM_WIND_SPD": 3.0}},
+    ],
+)
 def test_data_are_taken(tmp_path, options):
     assert RunFolder(run_folder(tmp_path / "run", env_options=options)).config.code == []
 
@@ -106,6 +164,42 @@ def test_a_rehearsal_plan(tmp_path):
     file.write_text('[[change]]\nname = "a"\ngroup = "world"\noptions = {frame = "theirs.py"}\n')
     with pytest.raises(AgentError, match="plan .*theirs.toml: it " + REFUSED.format("frame")):
         plan.load(str(file))
+
+
+def test_a_plan_whose_recipe_is_a_file(tmp_path):
+    file = tmp_path / "theirs.toml"
+    file.write_text('[training]\nrecipe = "/etc/a.toml"\n[[change]]\nname = "a"\ngroup = "world"\nmirror = true\n')
+    with pytest.raises(AgentError, match=r"it reaches outside of this process: training.recipe = '/etc/a\.toml'"):
+        plan.load(str(file))
+
+
+SUITES = [
+    ('world = "/etc/hosts"', "world = '/etc/hosts'"),
+    ('world = "elsewhere.toml"', r"world = 'elsewhere\.toml'"),
+    ('physics = "hil:tcp:127.0.0.1:4560"', "physics = 'hil:tcp:127.0.0.1:4560'"),
+    ('tolerance = "../t.toml"', r"tolerance = '\.\./t\.toml'"),
+]
+
+
+@pytest.mark.parametrize(("line", "said"), SUITES)
+@pytest.mark.parametrize("table", ["[defaults]", "[[missions]]\nlibrary = 'rover/*'"])
+def test_a_suite_reaches_no_further_than_its_folder(tmp_path, monkeypatch, table, line, said):
+    (tmp_path / "suite").mkdir()
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "elsewhere.toml").write_text("")
+    (tmp_path / "suite" / cases.TOML).write_text(f"{table}\n{line}\n")
+    with pytest.raises(cases.SuiteError, match=rf"suite\.toml reaches outside of this process: {said}"):
+        cases.find(tmp_path / "suite")
+
+
+@pytest.mark.parametrize("file", ["/etc/hosts", "../*.txt", "link.txt", "*.txt"])
+def test_a_suites_missions_lie_in_its_folder(tmp_path, file):
+    (tmp_path / "suite").mkdir()
+    (tmp_path / "m.txt").write_text("QGC WPL 110\n")
+    (tmp_path / "suite" / "link.txt").symlink_to(tmp_path / "m.txt")
+    (tmp_path / "suite" / cases.TOML).write_text(f"[[missions]]\nfile = '{file}'\n")
+    with pytest.raises(cases.SuiteError, match="reaches outside of this process: file = "):
+        cases.find(tmp_path / "suite")
 
 
 @pytest.mark.parametrize("table", ["[defaults]", "[[missions]]\nlibrary = 'rover/*'"])

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import json
+import zipfile
 
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
+from sitl import cli
 from sitl.agents import learnt
 from sitl.agents.deep import onnx_file, policy_file
 from sitl.agents.deep.actions import Actions
@@ -80,7 +82,8 @@ def changed(path, **changes):
         ({"about": {"options": {"autopilot": "ardupilot:./theirs"}}}, "names code"),
         ({"weight0": np.zeros((8, 5), np.float32)}, r"layer 0: float32 \(8, 5\)"),
         ({"bias1": np.full(2, np.nan, np.float32)}, "layer 1 has numbers that are not finite"),
-        ({"weight1": np.array([None])}, "no file of a policy"),
+        ({"weight1": np.zeros((2, 8), np.complex64)}, "no file of a policy: weight1: an array of '<c8'"),
+        ({"weight1": np.zeros((2, 8), "datetime64[s]")}, "no file of a policy: weight1: an array of '<M8"),
     ],
 )
 def test_what_is_no_policy_is_refused(tmp_path, monkeypatch, changes, says):
@@ -89,6 +92,42 @@ def test_what_is_no_policy_is_refused(tmp_path, monkeypatch, changes, says):
     changed(tmp_path / "p.npz", **changes)
     with pytest.raises(AgentError, match=says):
         learnt.load(tmp_path / "p.npz")
+
+
+@pytest.mark.parametrize(
+    ("header", "says"),
+    [
+        (b"{'descr': '<f4', 'fortran_order': False, 'shape': (300000, 300000), }\n", "360,000,000,000 bytes"),
+        (b"{'descr': '<f4', 'fortran_order': False, 'sha", "header of an array is damaged"),
+        (b"{'descr': '|O', 'fortran_order': False, 'shape': (2,), }\n", "an array of '|O'"),
+    ],
+)
+def test_a_header_that_lies_is_refused_by_the_commands(tmp_path, capsys, header, says):
+    policy_file.write(tmp_path / "p.npz", made(), ABOUT)
+    with zipfile.ZipFile(tmp_path / "p.npz") as before:
+        members = {name: before.read(name) for name in before.namelist()}
+    members["weight1.npy"] = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header + bytes(64)
+    with zipfile.ZipFile(tmp_path / "p.npz", "w") as after:
+        for name, content in members.items():
+            after.writestr(name, content)
+    for words in (["rollout", "--episodes", "1"], ["deploy", "--connection", "udpout:127.0.0.1:1"]):
+        assert cli.main([words[0], str(tmp_path / "p.npz"), *words[1:]]) == 2
+        said = capsys.readouterr().err
+        assert "p.npz is no file of a policy: weight1: " in said and says in said and said.count("\n") == 1
+
+
+def test_what_is_no_policy_at_all_is_told_what_one_is(tmp_path, capsys):
+    (tmp_path / "junk.txt").write_text("junk")
+    (tmp_path / "p.onnx").write_text("junk")
+    for name, says in [
+        (tmp_path / "junk.txt", "junk.txt is there, and is no policy: a policy is the folder of a run (sitl train), a"),
+        (tmp_path / "p.onnx", "; .onnx is for other programs: export it as .npz"),
+        (tmp_path / "nothing", "nothing is not there"),
+        ("copter-hovr", "did you mean 'copter-hover'?"),
+    ]:
+        for words in (["rollout", "--episodes", "1"], ["deploy", "--connection", "udpout:127.0.0.1:1"]):
+            assert cli.main([words[0], str(name), *words[1:]]) == 2
+            assert says in capsys.readouterr().err
 
 
 def test_files_that_are_not_there_or_something_else(tmp_path):

@@ -6,13 +6,16 @@ from __future__ import annotations
 import contextlib
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sitl.core import code_in_files
 from sitl.errors import SitlError
 from sitl.logs.tlog import LogError
 from sitl.missions.comparison.flight import of_recording
@@ -155,6 +158,30 @@ def test_what_cannot_be_made_again(hopped: Recorded, core: Core, change: dict[st
     recording.header.update(change)
     with pytest.raises(RecordingError, match=f"hop.rec.*{message}"):
         Replay(recording, core=core)
+
+
+def test_files_that_a_recording_names_are_read_only_where_the_user_says_so(hopped, core, tmp_path, monkeypatch):
+    monkeypatch.setenv(code_in_files.VARIABLE, "")
+    (tmp_path / "there").mkdir()
+    elsewhere = tmp_path / "there" / "w.toml"
+    elsewhere.write_text("[floor]\nz = 0.0\n")
+    heights = tmp_path / "there" / "h.npy"
+    np.save(heights, np.zeros((3, 3)))
+    for change, says in [
+        ({"world": {"file": str(elsewhere), "name": "w", "digest": ""}}, f"world = '{elsewhere}'.*--world {elsewhere}"),
+        ({"terrain": f"{heights}:30"}, f"terrain = '{heights}:30'.*--terrain {heights}:30"),
+        ({"world": {"file": "/dev/zero", "name": "w", "digest": ""}}, "world = '/dev/zero'"),
+    ]:
+        recording = read(hopped.path)
+        recording.header.update(change)
+        with pytest.raises(RecordingError, match=f"hop.rec.* reaches outside of this process: {says}"):
+            Replay(recording, core=core)
+    recording = replace(read(hopped.path), path=elsewhere.with_name("hop.rec"))  # beside it
+    recording.header.update({"world": {"file": str(elsewhere), "name": "w", "digest": ""}})
+    Replay(recording, core=core).simulation.close()
+    recording = read(hopped.path)
+    recording.header.update({"world": {"file": "/dev/zero", "name": "w", "digest": ""}})
+    Replay(recording, core=core, world=elsewhere).simulation.close()
 
 
 def test_a_long_recording_is_packed_in_whole_entries(

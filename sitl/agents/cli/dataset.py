@@ -11,7 +11,7 @@ from tqdm import tqdm
 from .. import datasets
 from ..experts import AUTOPILOTS
 from ..policies import RANDOM
-from .options import assignment, assignments, positive, whole
+from .options import assignments, env_option, positive, whole
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -39,7 +39,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     record.add_argument("--name", metavar="DATASET", help="id of the dataset (default: sitl/ENV/EXPERT-v0)")
     record.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=circuit",

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 import argparse
-import signal
 from dataclasses import fields
 
-from sitl.envs.mavlink.guard import Guard
+from sitl.envs.mavlink.guard import NOT_HANDED_OVER, Guard
 
 from .. import baselines, learnt
-from ..deploy import Deployed, deploy, options_of
+from ..deploy import REPLACED, Deployed, deploy, options_of
 from ..errors import check_names
-from .options import assignment, assignments, positive
+from .options import assignment, assignments, env_option, positive
 
 RESETS = ("none", "return", "reboot", "force")
 
@@ -22,7 +21,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "deploy",
         description="Runs a policy on a vehicle that stands or hovers in GUIDED. A guard limits speed, height and "
-        "distance. At the end, on Ctrl-C and on every error the vehicle goes into a safe mode.",
+        "distance. At the end, on Ctrl-C and other signals and on every error the vehicle goes into a safe mode.",
     )
     parser.add_argument(
         "policy",
@@ -56,7 +55,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )  # fmt: skip
     parser.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=circuit",
@@ -68,25 +67,20 @@ def run(options: argparse.Namespace) -> int:
     """Run the command."""
     guard = assignments(options.guard)
     check_names(guard, [field.name for field in fields(Guard)], "guard {!r}")
-    policy, given = learnt.load(options.policy), assignments(options.option)
+    given = assignments(options.option)
+    policy = learnt.load(options.policy, (*REPLACED, *given))
     left_out = options_of(policy, given)[1]
     if left_out:
         print(f"left out, since a simulator alone has them: {', '.join(left_out)}")
     done = Deployed()
-    before = signal.signal(signal.SIGTERM, _leave)
     try:
         deploy(
             policy, options.connection, episodes=options.episodes, max_steps=options.max_steps, reset=options.reset,
             guard=guard, wait=options.wait, options=given, out=done,
         )  # fmt: skip
     finally:
-        signal.signal(signal.SIGTERM, before)
         for deed in done.deeds:
             print(f"{deed.time:.3f} s: {deed.what}{': ' if deed.why else ''}{deed.why}")
-        print("\n".join(done.sentences(policy.step_time)), flush=True)
-    return 1 if done.handed_over else 0
-
-
-def _leave(number: int, _: object) -> None:
-    """SIGTERM ends the command as Ctrl-C does: the vehicle is handed over."""
-    raise SystemExit(128 + number)
+        for sentence in done.sentences(policy.step_time):
+            print(sentence, flush=True)
+    return 1 if done.handed_over or any(deed.what == NOT_HANDED_OVER for deed in done.deeds) else 0

@@ -11,7 +11,7 @@ from sitl.cli.output import add_json_option, print_json
 
 from ..evaluations import evaluate_runs
 from ..runs import folder as folders
-from .options import add_jobs, assignment, assignments, positive, whole, workers
+from .options import add_jobs, assignments, env_option, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -32,7 +32,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=circuit",

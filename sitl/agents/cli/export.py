@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .. import learnt
 from ..runs import folder as folders
+from .options import add_said_again
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -18,6 +19,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("run", type=Path, metavar="RUN", help="run folder; of several runs the first is written")
     parser.add_argument("file", type=Path, metavar="FILE", help=".npz or .onnx")
+    add_said_again(parser)
     parser.set_defaults(function=export)
 
 

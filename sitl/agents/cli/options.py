@@ -8,6 +8,8 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
+from sitl.core import code_in_files
+
 from ..errors import AgentError
 from ..report import curves
 from ..report.statistics import scipy_stats
@@ -46,6 +48,22 @@ def assignment(text: str) -> tuple[str, Any]:
         return name.strip(), json.loads(value)
     except ValueError:
         return name.strip(), value
+
+
+def env_option(text: str) -> tuple[str, Any]:
+    """NAME=VALUE of an environment's option: what the user says here, a file may say, too."""
+    name, value = assignment(text)
+    code_in_files.allow_options({name: value})
+    return name, value
+
+
+def add_said_again(parser: argparse.ArgumentParser) -> None:
+    """--option, of a command that changes no option: what a run's folder may say of its environment, too."""
+    parser.add_argument(
+        "--option", type=env_option, action="append", metavar="NAME=VALUE",
+        help="option of the environment that the folder of the run names, said again: needed where it reaches outside "
+        "of this process, as a world file does (SECURITY.md)",
+    )  # fmt: skip
 
 
 def assignments(pairs: Iterable[tuple[str, Any]] | None) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from ..report.group import Group, unique_names
 from ..runs.backends import Workers
 from ..runs.files import make_folder
 from ..runs.plan import EvaluationPlan
-from .options import add_jobs, check_report_libraries, positive, whole, workers
+from .options import add_jobs, add_said_again, check_report_libraries, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -48,6 +48,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--jitter", type=float, metavar="X", help="move start poses by up to X m and X rad (default: of the run)"
     )
+    add_said_again(parser)
     add_jobs(parser)
     parser.add_argument(
         "--out", type=Path, default=Path("reports/rehearsal"), metavar="DIR", help="default: reports/rehearsal"

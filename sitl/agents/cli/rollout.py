@@ -20,7 +20,7 @@ from ..evaluate import Played
 from ..policies import RANDOM, Named
 from ..rollout import ROBOTS, rollout
 from ..runs.files import make_folder
-from .options import add_jobs, assignment, assignments, positive, whole, workers
+from .options import add_jobs, assignments, env_option, positive, whole, workers
 
 RESULTS = "episodes.csv"
 
@@ -56,7 +56,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=circuit",

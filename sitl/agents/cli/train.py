@@ -25,7 +25,7 @@ from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
 from ..runs.sweep import OPTION, Sweep, is_sweep
 from ..runs.training import is_done, train_all
-from .options import add_jobs, assignment, assignments, positive, workers
+from .options import add_jobs, assignment, assignments, env_option, positive, workers
 from .showing_training import shown_training
 
 
@@ -172,7 +172,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=maze",
@@ -222,15 +222,16 @@ def _groups(path: Path, runs: list[RunFolder]) -> dict[Path, list[RunFolder]]:
 def _runs(options: argparse.Namespace) -> tuple[Path, list[RunFolder]]:
     """The folder, and the runs in it that shall be trained."""
     if options.resume and options.env is None and options.recipe is None:
-        if options.out is not None or any(
-            (options.algo, options.set, options.option, options.sweep, options.max_steps)
-        ):
-            raise AgentError(
-                "--resume RUN continues a run with its own settings: give --episodes, --steps or --jobs, nothing else"
-            )
-        path = Path(options.resume)
+        alone = AgentError(
+            "--resume RUN continues a run with its own settings: give --episodes, --steps or --jobs, nothing else"
+        )
+        if options.out is not None or any((options.algo, options.set, options.sweep, options.max_steps)):
+            raise alone
+        path, said = Path(options.resume), assignments(options.option)
         runs = [run for group in _groups(path, []).values() for run in group] or folders.find(path)
         for run in runs:
+            if {**run.config.env_options, **said} != run.config.env_options:  # the same may be said again
+                raise alone
             run.extend(options.episodes, options.steps)
         return path, runs
     if options.env is None and options.recipe is None:

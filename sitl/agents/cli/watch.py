@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import showing
 from ..errors import AgentError
 from ..runs import folder as folders
-from .options import assignment, assignments, positive, whole
+from .options import assignments, env_option, positive, whole
 
 SPEED = 5.0
 
@@ -36,7 +36,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--option",
-        type=assignment,
+        type=env_option,
         action="append",
         metavar="NAME=VALUE",
         help="option of the environment, such as world=circuit",

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from sitl.core import documents
+from sitl.core import array_files, documents
+from sitl.core.array_files import MIB, each_array, read_npz, unpack
 
 from ..errors import AgentError
 from ..runs.files import write_bytes
@@ -34,7 +35,11 @@ _REMEMBERED = ("actions", "rewards", "dones", "timeouts")
 _SEEN = ("observations", "next_observations")
 """Arrays of a replay buffer; of a goal-conditioned one the latter are arrays by name, and it has those of _EPISODES."""
 _EPISODES = ("ep_start", "ep_length")
-_BEGUN = "_current_ep_start"
+_BEGUN, _PLACE = "_current_ep_start", "place"
+MOST = 1024 * MIB
+"""Memory that each of a model's weights, its state and the description may take when it is read [bytes]; that of a
+replay buffer, what the buffer has."""
+_STATE_KINDS = array_files.KINDS + "SU" + array_files.RECORDS
 _COUNTED = (
     "num_timesteps", "_total_timesteps", "_num_timesteps_at_start", "_episode_num", "_n_updates", "_n_calls",
     "_current_progress_remaining", "exploration_rate", "_last_obs", "_last_episode_starts", "_last_original_obs",
@@ -93,7 +98,7 @@ def score_of(path: Path) -> Score:
     """
     try:
         with _opened(path) as archive:
-            return tuple(float(figure) for figure in documents.of_json(archive.read(_ABOUT))["score"])
+            return tuple(float(figure) for figure in documents.of_json(unpack(archive, _ABOUT, MOST))["score"])
     except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
         raise AgentError(f"{path} is no best model: {error}") from None
 
@@ -112,14 +117,14 @@ def resume(path: Path, model: Any, robots: Any) -> None:
     try:
         with _opened(path) as archive:
             _read_weights(archive, model)
-            with np.load(io.BytesIO(archive.read(_ARRAYS)), allow_pickle=False) as arrays:
-                state = plain.decode(documents.of_json(archive.read(_STATE)), dict(arrays))
+            arrays = read_npz(unpack(archive, _ARRAYS, MOST), MOST, _STATE_KINDS)
+            state = plain.decode(documents.of_json(unpack(archive, _STATE, MOST)), arrays)
             for name in _COUNTED:
                 if name in state["model"]:
                     setattr(model, name, state["model"][name])
             robots.recall(state["robots"])
             if _MEMORY in archive.namelist():
-                _remember(model.replay_buffer, archive.read(_MEMORY))
+                _remember(model.replay_buffer, archive)
         _recall_generators(model, state["random"])
     except (*_BROKEN, AttributeError) as error:
         raise AgentError(f"{path} cannot be gone on with: {error}") from None
@@ -133,7 +138,7 @@ def load(path: Path, algorithm: str) -> tuple[Any, Spaces]:
     """
     try:
         with _opened(path) as archive:
-            about = documents.of_json(archive.read(_ABOUT))
+            about = documents.of_json(unpack(archive, _ABOUT, MOST))
             seen, actions = space_of(about["features"]), space_of(about["moves"])
             model = models.empty(algorithm, about["net_arch"], seen, actions)
             _read_weights(archive, model)
@@ -196,12 +201,21 @@ def _tensors(values: Any) -> bytes:
     return content.getvalue()
 
 
+def _checked(content: bytes) -> bytes:
+    """Tensors as torch writes them: nothing in the file is packed. Raises ValueError when it unpacks to much more."""
+    with zipfile.ZipFile(io.BytesIO(content)) as tensors:
+        size = sum(member.file_size for member in tensors.infolist())
+    if size > len(content):
+        raise ValueError(f"a file of {len(content):,} bytes unpacks to {size:,}")
+    return content
+
+
 def _loaded(archive: zipfile.ZipFile, name: str) -> Any:
     """Tensors alone: ``weights_only`` refuses everything that would run code."""
     from pickle import UnpicklingError  # torch's word for what it refuses
 
     try:
-        return torch().load(io.BytesIO(archive.read(name)), map_location="cpu", weights_only=True)
+        return torch().load(io.BytesIO(_checked(unpack(archive, name, MOST))), map_location="cpu", weights_only=True)
     except UnpicklingError as error:
         raise ValueError(f"{name} holds more than weights: {str(error).splitlines()[0]}") from None
 
@@ -238,7 +252,7 @@ def _remembered(memory: Any) -> bytes:
     rows = {name: array[:filled] for name, array in _columns(memory).items()}
     if hasattr(memory, _BEGUN):
         rows[_BEGUN] = getattr(memory, _BEGUN)
-    return _arrays({"place": np.array([memory.pos, memory.full]), **rows})
+    return _arrays({_PLACE: np.array([memory.pos, memory.full]), **rows})
 
 
 def _columns(memory: Any) -> plain.Arrays:
@@ -250,11 +264,19 @@ def _columns(memory: Any) -> plain.Arrays:
     return out
 
 
-def _remember(memory: Any, content: bytes) -> None:
-    with np.load(io.BytesIO(content), allow_pickle=False) as stored:
-        memory.pos, memory.full = int(stored["place"][0]), bool(stored["place"][1])
-        for name, array in _columns(memory).items():
-            rows = stored[name]
-            array[: len(rows)] = rows
-        if hasattr(memory, _BEGUN):
-            getattr(memory, _BEGUN)[:] = stored[_BEGUN]
+def _remember(memory: Any, archive: zipfile.ZipFile) -> None:
+    """Raises ValueError when it is more than the buffer holds, or something else."""
+    columns = _columns(memory)
+    most = sum(array.nbytes for array in columns.values()) + MIB
+    seen = set()
+    for name, rows in each_array(unpack(archive, _MEMORY, most + MIB), most):
+        seen.add(name)
+        if name == _PLACE:
+            memory.pos, memory.full = int(rows[0]), bool(rows[1])
+        elif name == _BEGUN and hasattr(memory, _BEGUN):
+            getattr(memory, _BEGUN)[:] = rows
+        else:
+            columns[name][: len(rows)] = rows
+    missing = {_PLACE, *columns} - seen
+    if missing:
+        raise ValueError(f"its memory has no {', '.join(sorted(missing))}")

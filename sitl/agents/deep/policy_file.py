@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import io
 import json
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from sitl.core import documents
+from sitl.core.array_files import MIB, read_file, read_npz
 
 from ..errors import AgentError
 from ..runs.files import write_bytes
@@ -29,6 +29,8 @@ from .spaces import described, space_of
 
 SUFFIX = ".npz"
 FORMAT = 1
+MOST = 64 * MIB
+"""Length of a file, and memory that its arrays may take [bytes]: those that come with the package have 0.1 MiB."""
 
 
 def write(path: Path, policy: DeepPolicy, about: Mapping[str, Any]) -> None:
@@ -67,18 +69,20 @@ def read(path: Path) -> tuple[dict[str, Any], DeepPolicy]:
         AgentError: there is no such file, or it is none of a policy.
     """
     try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:
-            about = documents.of_json(bytes(arrays["about"]))
-            if about["format"] != FORMAT:
-                raise AgentError(f"{path} has format {about['format']!r}; this version reads {FORMAT}")
-            layers = [
-                Layer(arrays[f"weight{k}"], arrays[f"bias{k}"], activation)
-                for k, activation in enumerate(about["activations"])
-            ]
-            return about, _policy(about, layers)
+        arrays = read_npz(read_file(path, MOST), MOST)
+        if "about" not in arrays:
+            raise ValueError("it has no 'about'")
+        about = documents.of_json(bytes(arrays["about"]))
+        if about["format"] != FORMAT:
+            raise AgentError(f"{path} has format {about['format']!r}; this version reads {FORMAT}")
+        layers = [
+            Layer(arrays[f"weight{k}"], arrays[f"bias{k}"], activation)
+            for k, activation in enumerate(about["activations"])
+        ]
+        return about, _policy(about, layers)
     except OSError as error:
         raise AgentError(f"{path} cannot be read: {error.strerror or error}") from None
-    except (ValueError, KeyError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError, TypeError, IndexError, OverflowError) as error:
         raise AgentError(f"{path} is no file of a policy: {error}") from None
 
 

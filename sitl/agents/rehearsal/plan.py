@@ -148,7 +148,11 @@ def _read(path: Path) -> Plan:
         if not isinstance(robots, list) or not all(isinstance(robot, str) for robot in robots):
             raise AgentError(f"robots = {robots!r}; it must be a list of names")
         made = tuple(Change.of(change) for change in changes)
-        refused = code_in_files.refusal("it", [name for one in made for name in code_of("", one.options)])
+        named = [name for one in made for name in code_of("", one.options)]
+        recipe = values["training"].get("recipe") if isinstance(values.get("training"), dict) else None
+        if recipe is not None and not code_in_files.is_name(recipe):
+            named.append(f"training.recipe = {recipe!r}")
+        refused = code_in_files.refusal("it", named, say="")
         if refused is not None:
             raise AgentError(refused)
         return Plan(

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+import gymnasium as gym
+
 import sitl
+from sitl import envs
 from sitl.core import code_in_files, documents
 
 from ..errors import AgentError
@@ -33,11 +36,17 @@ def versions(*libraries: str) -> dict[str, str]:
 
 
 def code_of(env: Any, *options: Any) -> list[str]:
-    """What of an environment's id and options runs code of others, or acts on a vehicle."""
+    """What of an environment's id and options reaches outside of this process (``sitl.core.code_in_files``); an id of
+    "" may be any of this package."""
     runs = isinstance(env, str) and (":" in env or env.startswith(_OF_OLD_GYM))  # Gymnasium imports what stands before
-    named = [f"env = {env!r}"] if runs else []
+    named, is_ours = [f"env = {env!r}"] if runs else [], env == "" or _is_ours(env)
     tables = [table for table in options if isinstance(table, Mapping)]
-    return named + [name for table in tables for name in code_in_files.code_of_options(table)]
+    return named + [name for table in tables for name in code_in_files.code_of_options(table, is_ours)]
+
+
+def _is_ours(env: Any) -> bool:
+    spec = gym.registry.get(env) if isinstance(env, str) else None
+    return spec is not None and isinstance(spec.entry_point, str) and spec.entry_point.startswith(f"{envs.__name__}.")
 
 
 @dataclass(frozen=True)
@@ -85,8 +94,13 @@ class RunConfig:
 
     @property
     def code(self) -> list[str]:
-        """What runs code of others, or acts on a vehicle (``sitl.core.code_in_files``)."""
-        return code_of(self.env, self.env_options, self.evaluation.options)
+        """What reaches outside of this process (``sitl.core.code_in_files``)."""
+        return self.code_but(())
+
+    def code_but(self, replaced: Container[str]) -> list[str]:
+        """The same without what of the options is replaced."""
+        tables = (self.env_options, self.evaluation.options)
+        return code_of(self.env, *(code_in_files.without(table, replaced) for table in tables))
 
     def with_(self, **changes: Any) -> RunConfig:
         """A copy with some fields replaced."""
@@ -102,11 +116,15 @@ class RunConfig:
         write_json(path, asdict(self))
 
     @classmethod
-    def load(cls, path: Path) -> RunConfig:
+    def load(cls, path: Path, replaced: Container[str] = ()) -> RunConfig:
         """Read a configuration that ``save`` wrote.
 
+        Args:
+            path: of the file.
+            replaced: options in whose place others come, so that it does not matter what the file says of them.
+
         Raises:
-            AgentError: it is something else, or it names code that the user has not allowed.
+            AgentError: it is something else, or it reaches outside of this process and the user has not said so.
         """
         try:
             values = documents.of_json(path.read_text())
@@ -121,7 +139,7 @@ class RunConfig:
             found = cls(**{**values, "evaluation": EvaluationPlan.of(values.get("evaluation", {}))})
         except AgentError as error:
             raise AgentError(f"{path}: {error}") from None
-        refused = code_in_files.refusal(path, found.code)
+        refused = code_in_files.refusal(path, found.code_but(replaced))
         if refused is not None:
             raise AgentError(refused)
         return found

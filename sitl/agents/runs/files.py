@@ -12,8 +12,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...core.whole_file import write_whole
+from sitl.core.array_files import MIB, ArrayFileError, read_file, read_npz
+from sitl.core.whole_file import write_whole
+
 from ..errors import AgentError
+
+MOST_TABLE = 1024 * MIB
+"""Memory that the arrays of a file may take [bytes]."""
 
 
 def make_folder(path: Path) -> None:
@@ -53,12 +58,13 @@ def read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
     """Read the arrays that ``write_arrays`` wrote.
 
     Raises:
-        AgentError: there is no such file, or it is something else.
+        AgentError: there is no such file, or it is something else, or larger than ``MOST_TABLE``.
     """
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            return dict(stored)
+        return read_npz(read_file(path, MOST_TABLE), MOST_TABLE)
     except FileNotFoundError:
         raise AgentError(f"there is no model {path}") from None
-    except Exception as error:  # numpy, zip and zlib raise many kinds when a file is damaged
+    except OSError as error:
+        raise AgentError(f"{path} cannot be read: {error.strerror or error}") from None
+    except ArrayFileError as error:
         raise AgentError(f"{path} is no model: {error}") from None

@@ -10,7 +10,7 @@ runs is a group: the same run with several seeds.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from pathlib import Path
 
 from sitl.core import code_in_files
@@ -29,14 +29,15 @@ class RunFolder:
 
     Args:
         path: path of the folder, which has a config.json.
+        replaced: options of its environment in whose place others come (``RunConfig.load``).
 
     Raises:
         AgentError: it has none.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, replaced: Container[str] = ()) -> None:
         self.path = Path(path)
-        self.config = RunConfig.load(self.path / CONFIG)
+        self.config = RunConfig.load(self.path / CONFIG, replaced)
         self.episodes = EpisodeLog(self.path / "episodes.csv")
 
     @classmethod

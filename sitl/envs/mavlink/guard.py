@@ -2,14 +2,19 @@
 """What stands between an agent and a vehicle at a connection: limits, a geofence, a watch on the agent's rate, and the
 hand-over to the vehicle's own modes when the agent is late, done or in doubt.
 
-The vehicle's own failsafes stay what they are. When this process dies without a word, a vehicle in GUIDED stops by
-itself after GUID_TIMEOUT, 3 s, and FS_GCS_ENABLE acts on the heartbeats that come no more.
+The vehicle's own failsafes stay what they are. When this process dies without a word (SIGKILL, a crash, no power, no
+link), a vehicle in GUIDED stops by itself after GUID_TIMEOUT, 3 s, and FS_GCS_ENABLE acts on the heartbeats that come
+no more.
 """
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import json
 import math
+import os
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -25,6 +30,8 @@ AHEAD_S, BRAKING = 3.0, 2.0
 then braked at 2 m/s^2, ends at the fence."""
 BEYOND = 2.0
 """So far outside of the fence the agent is not in charge any more [m]."""
+NOT_HANDED_OVER = "not handed over"
+"""What a guard has done (``Deed``) when the vehicle is not known to be in its mode."""
 GUARDED = (VELOCITY, POSITION, ATTITUDE, ACCELERATION)
 """Set-points with limits."""
 
@@ -42,7 +49,8 @@ class Guard:
         acceleration: greatest, of acceleration set-points [m/s^2].
         late: wall time between two steps after which the agent is late [s].
         hand_over: mode that takes over; "": BRAKE for a copter, HOLD for a rover.
-        log: file that gets a line (JSON) for each thing that was done; None: none.
+        log: file that gets a line (JSON) for each thing that was done; None: none. One that cannot be opened is refused
+            when the environment is made; one that cannot be written later ends nothing.
     """
 
     radius: float = 50.0
@@ -74,7 +82,7 @@ class Deed(NamedTuple):
     time: float
     """Of the vehicle, since its boot [s]."""
     what: str
-    """"taken over", "limited", "take-off", "put down" or "handed over"."""
+    """"taken over", "limited", "take-off", "put down", "handed over", "not handed over" or "log lost"."""
     why: str
 
 
@@ -96,7 +104,7 @@ class Watch:
         self.reason = ""
         """Why it is not."""
         self._centre = np.zeros(3)
-        self._limited = False
+        self._limited = self._log_is_lost = False
         self._seen: float | None = None
 
     def take_over(self, time: float, place: Sequence[float]) -> None:
@@ -106,10 +114,9 @@ class Watch:
         self.in_charge, self.reason, self._limited, self._seen = True, "", False, None
         self.note(time, "taken over", "")
 
-    def give_up(self, time: float, why: str) -> None:
-        """The agent is not in charge any more."""
+    def give_up(self, why: str) -> None:
+        """The agent is not in charge any more. It is noted later: the vehicle comes first."""
         self.in_charge, self.reason = False, why
-        self.note(time, "handed over", why)
 
     def doubt(self, pose: Sequence[float], row: Sequence[float]) -> str:
         """Why the agent must not go on: it is late, its set-point is no number, the vehicle is outside; "": it may.
@@ -184,12 +191,42 @@ class Watch:
         return [*(min(max(number, -most), most) for number in row[:3]), *row[3:]]
 
     def note(self, time: float, what: str, why: str) -> None:
-        """Add a deed, at a time of the vehicle [s]."""
+        """Add a deed, at a time of the vehicle [s]. A log that cannot be written is told of, once, and ends nothing."""
         deed = Deed(round(time, 3), what, why)
         self.deeds.append(deed)
-        if self.guard.log is not None:
-            with Path(self.guard.log).open("a", encoding="utf-8") as file:
-                file.write(json.dumps(deed._asdict()) + "\n")
+        if self.guard.log is None:
+            return
+        try:
+            append(self.guard.log, json.dumps(deed._asdict()) + "\n")
+        except (OSError, ValueError) as error:
+            if not self._log_is_lost:
+                self._log_is_lost = True
+                fault = getattr(error, "strerror", "") or error
+                text = f"guard: log {str(self.guard.log)!r} cannot be written: {fault}"
+                self.deeds.append(Deed(deed.time, "log lost", text))
+                say(f"{text}; the flight goes on without it")
+
+
+def append(path: str | Path, text: str) -> None:
+    """Add to a file, which is made if it is not there. Waits for nobody who reads it.
+
+    Raises:
+        OSError: it cannot be written, or not all of it.
+    """
+    flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NONBLOCK", 0)
+    file = os.open(path, flags, 0o666)
+    try:
+        data = text.encode()
+        if data and os.write(file, data) < len(data):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    finally:
+        os.close(file)
+
+
+def say(text: str) -> None:
+    """On standard error, if anybody is there: it stops nothing."""
+    with contextlib.suppress(Exception):
+        print(f"sitl: {text}", file=sys.stderr, flush=True)
 
 
 def _speed_within(room: float) -> float:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import math
 import time
@@ -11,19 +10,20 @@ from typing import ClassVar
 
 from gymnasium import logger
 
-from sitl.client.connection import Connection, Lockstep, connect
+from sitl.client.connection import Connection, Lockstep, Remote, connect
 from sitl.client.endpoint import ACCEPTED, AUTOPILOT
 from sitl.core.algebra import quat_from_euler
 from sitl.core.vectors import Euler
-from sitl.errors import LinkLostError, NotReadyError, OptionError
+from sitl.errors import NotReadyError, OptionError
 from sitl.vehicle.kinds import KINDS
 from sitl.worlds.shapes import from_ned, to_ned
 
-from ..mavlink.guard import Guard, Watch, guard_of
+from ..mavlink.endings import ENDINGS
+from ..mavlink.guard import NOT_HANDED_OVER, Guard, Watch, append, guard_of, say
+from ..mavlink.hand_over import HandOver
 from ..mavlink.preparation import (
     AIRBORNE,
     BY_FORCE,
-    CUSTOM_MODE_ENABLED,
     NONE,
     RETURN,
     has_landed,
@@ -69,7 +69,9 @@ class SocketVehicles(Vehicles):
             raise EnvOptionError(
                 f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
             )
-        self._safe = self._mode_of(guard_of(options.guard, False) or Guard(), setup)
+        guard = guard_of(options.guard, False) or Guard()
+        self._safe = self._mode_of(guard, setup)
+        self._check_log(guard)
         super().__init__(setup)
         self._pose: Pose | None = None
         self._origin: Origin | None = None
@@ -79,7 +81,7 @@ class SocketVehicles(Vehicles):
         self._height = 0.0
         """How high that was above its home [m]."""
         self._heard_ms = -1000
-        self._is_put_down = False
+        self._is_put_down = self._is_warned = False
         self._may_sink_level: bool | None = None
         """Whether ``sink_level`` does what it says, once that is known."""
 
@@ -95,6 +97,15 @@ class SocketVehicles(Vehicles):
         if wanted not in names:
             raise unknown("guard: hand_over", wanted, names)
         return names[wanted]
+
+    @staticmethod
+    def _check_log(guard: Guard) -> None:
+        if guard.log is not None:
+            try:
+                append(guard.log, "")
+            except (OSError, ValueError) as error:
+                why = getattr(error, "strerror", "") or error
+                raise EnvOptionError(f"guard: log {str(guard.log)!r} cannot be written: {why}") from None
 
     @property
     def where(self) -> str:
@@ -128,6 +139,8 @@ class SocketVehicles(Vehicles):
             if not link.is_simulator and self.options.reset != BY_FORCE:
                 self.close()
                 raise refusal(link)
+            if guard_of(self.options.guard, link.is_simulator) is not None:
+                self._owe()  # it takes off
             reboot(link)
             origin = self.prepare(link, pose)
             if isinstance(link, Lockstep):
@@ -247,7 +260,7 @@ class SocketVehicles(Vehicles):
             return
         if self.watch is None:
             self.watch = Watch(guard, self.setup.kind.takes_off, time.monotonic)
-            atexit.register(self.close)
+        self._owe()
         north, east, down = link.inbox.position[1:4]
         self.watch.take_over(1e-3 * link.inbox.time_ms, from_ned(origin[0] + north, origin[1] + east, origin[2] + down))
 
@@ -265,24 +278,69 @@ class SocketVehicles(Vehicles):
             return f"the vehicle is in mode {inbox.mode}: its pilot or a failsafe has it"
         return ""
 
+    def _owe(self) -> None:
+        """From now on the vehicle is to be handed over, however this process ends."""
+        if not ENDINGS.owe(self, self.close) and not self._is_warned:
+            self._is_warned = True
+            say(
+                f"the vehicle at {self._connection} is commanded from a thread that is not the main one, where no "
+                "signal can be caught: SIGTERM, SIGHUP and others end this process without a hand-over"
+            )
+
+    def told_to_end(self) -> str:
+        """Why the agent must not go on: the process was told to end, and the agent has passed over it; "": it was
+        not."""
+        return f"the process was told to end ({ENDINGS.signal})" if ENDINGS.signal else ""
+
     def hand_over(self, why: str) -> None:
-        """The vehicle goes into the guard's mode; the agent is not in charge any more."""
-        link, watch = self.links[0], self.watch
-        if link is None or watch is None or not watch.in_charge:
+        """The vehicle goes into the guard's mode; the agent is not in charge any more.
+
+        The vehicle first, then words: nothing is written before it has answered.
+        """
+        link, watch, deed = self.links[0], self.watch, None
+        if link is None or not ENDINGS.owes(self):
             return
-        inbox = link.inbox
-        watch.give_up(1e-3 * inbox.time_ms, why)
-        if inbox.armed and inbox.mode == self.setup.kind.guided:
-            with contextlib.suppress(LinkLostError):
-                if link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, self._safe) != ACCEPTED:
-                    watch.note(1e-3 * inbox.time_ms, "refused", f"mode {self._safe}; the vehicle stops by itself")
+        assert isinstance(link, Remote)
+        try:
+            with ENDINGS.undisturbed():
+                if not ENDINGS.owes(self):
+                    return  # another thread was quicker
+                knows = watch is not None and watch.in_charge
+                if watch is not None:
+                    watch.in_charge = False
+                deed = HandOver(link, self._safe, self.setup.kind.guided, knows)
+                deed.run()
+                if ENDINGS.signal and ENDINGS.signal not in why:
+                    why = f"{why} ({ENDINGS.signal})"
+                ENDINGS.forget(self)
+        finally:
+            if deed is not None:
+                with contextlib.suppress(Exception):
+                    self._tell(link, deed, why)
+
+    def _tell(self, link: Remote, deed: HandOver, why: str) -> None:
+        """What became of a hand-over: into the guard's log, and aloud where the vehicle is not known to be safe."""
+        watch = self.watch
+        if watch is not None:
+            watch.give_up(why)
+        if not deed.is_done:
+            say(
+                f"NOT HANDED OVER: the vehicle at {link.name}: {deed.failure}. Take it over by radio or by a ground "
+                f"station; in GUIDED it stops by itself after GUID_TIMEOUT. It was to be handed over because of: {why}"
+            )
+        if watch is not None:
+            now = 1e-3 * link.inbox.time_ms
+            if deed.is_done:
+                watch.note(now, "handed over", why)
+            else:
+                watch.note(now, NOT_HANDED_OVER, f"{why}; {deed.failure}")
 
     def close(self) -> None:
         """Close the connection; a vehicle that the agent is in charge of goes into the guard's mode."""
-        self.hand_over("closed")
-        if self.watch is not None:
-            atexit.unregister(self.close)
-        super().close()
+        try:
+            self.hand_over("closed")
+        finally:
+            super().close()
 
     def time_us(self, index: int) -> int:
         link = self.links[index]

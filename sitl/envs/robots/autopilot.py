@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,16 @@ from .truth import TRUE_REPORT
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
 
 _TRIES = 20
+
+
+def _words(error: BaseException) -> str:
+    """Why a vehicle is handed over; whatever the text of the error does when it is asked for."""
+    if isinstance(error, KeyboardInterrupt | SystemExit):
+        return "closed"
+    name = type(error).__name__
+    with suppress(Exception):
+        return f"{name}: {str(error)[:200]}"
+    return name
 
 
 def make_vehicles(setup: VehicleSetup, choice: Choice | None) -> Vehicles:
@@ -296,12 +307,18 @@ class AutopilotRobot:
         """The guard at work between an agent and a vehicle at a connection; None: there is none."""
         return self._vehicles.watch
 
+    def abandon(self, error: BaseException) -> None:
+        """A step or a reset has raised: nobody knows whether another one comes, so a vehicle that may be real is handed
+        over."""
+        if isinstance(self._vehicles, SocketVehicles):
+            self._vehicles.hand_over(_words(error))
+
     def _allows(self, index: int, watch: Watch, row: list[float]) -> bool:
         """Whether the agent may go on; else the vehicle is somebody else's, or has been handed over."""
         vehicles = self._vehicles
         assert isinstance(vehicles, SocketVehicles)
         if watch.in_charge:
-            why = vehicles.taken() or watch.doubt(self.pose[index].tolist(), row)
+            why = vehicles.taken() or vehicles.told_to_end() or watch.doubt(self.pose[index].tolist(), row)
             if why:
                 vehicles.hand_over(why)
         self.over[index] = not watch.in_charge

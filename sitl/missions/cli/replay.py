@@ -13,6 +13,7 @@ from sitl.cli.options import add_vehicle_options, build_simulation, open_folder,
 from sitl.cli.progress import CompileProgress
 from sitl.cli.recordings import new_file
 from sitl.cli.status import StatusLine
+from sitl.core import code_in_files
 from sitl.errors import OptionError
 from sitl.logs.tlog import TlogWriter
 from sitl.physics.engines import NATIVE
@@ -76,6 +77,10 @@ def replay_recording(options: argparse.Namespace) -> int:
     recording = read(options.file, options.unfinished)
     if recording.fault:
         print(f"{options.file} {recording.fault}; it is flown up to {recording.end_us * 1e-6:.3f} s", file=sys.stderr)
+    if options.terrain is not None:
+        if options.terrain != recording.header.get("terrain"):
+            raise OptionError("--terrain: the recording decides that")
+        code_in_files.allow([f"terrain = {options.terrain!r}"])
     path = options.snapshot or options.rec
     log = ReplayLog(options.file.stem, open_folder(options.log_dir)) if options.log_dir is not None else None
     with CompileProgress() as progress:

@@ -20,6 +20,7 @@ from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import DEFAULT, KINDS
 
 from .. import library
+from ..comparison.tolerance import PRESETS
 from ..comparison.tolerance import load as load_tolerance
 from ..files import load
 from ..fly import LIMIT_S
@@ -104,11 +105,6 @@ def find(folder: str | Path) -> list[Case]:
     defaults = _checked(folder, "[defaults]", table.get("defaults", {}), _SETTINGS)
     missions = [_checked(folder, "[[missions]]", row, _MISSION) for row in table.get("missions", [])]
     variants = [_checked(folder, "[[variants]]", row, _VARIANT) for row in table.get("variants", [])] or [{}]
-    rows = [{**row, "params": None} for row in (defaults, *missions, *variants)]  # files only in the suite's own folder
-    named = [name for row in rows for name in code_in_files.code_of_options(row)]
-    refused = code_in_files.refusal(folder / TOML, named)
-    if refused is not None:
-        raise SuiteError(refused)
     rows = [row for one in missions for row in _expanded(folder, one)] or _files(folder)
     found: dict[str, Case] = {}
     for row in rows:
@@ -144,9 +140,32 @@ def _checked(folder: Path, title: str, row: Any, known: tuple[str, ...]) -> dict
         kind, words = _TYPES[key]
         if not isinstance(value, kind) or isinstance(value, bool) or not _CHECKS.get(key, lambda _: True)(value):
             raise SuiteError(f"{title}: {key} = {value!r} is not {words}")
-        if key == "tolerance":
-            _tolerance(folder, value)
+    refused = code_in_files.refusal(folder / TOML, _outside(folder, row), say="")
+    if refused is not None:
+        raise SuiteError(refused)
+    if "tolerance" in row:
+        _tolerance(folder, row["tolerance"])
     return row
+
+
+def _outside(folder: Path, row: Mapping[str, Any]) -> list[str]:
+    """What a table names that is neither in the suite's folder nor known here by its name."""
+    options = {key: row[key] for key in ("frame", "physics", "world") if key in row}
+    if _lies_beside(folder, options.get("world")):
+        del options["world"]
+    named = code_in_files.code_of_options(options)
+    tolerance, file = row.get("tolerance", {}), row.get("file", "")
+    is_file = isinstance(tolerance, str) and (not code_in_files.is_name(tolerance) or Path(tolerance).exists())
+    if is_file and tolerance not in PRESETS and not _lies_beside(folder, tolerance):
+        named.append(f"tolerance = {tolerance!r}")
+    found = folder.glob(file) if file and not Path(file).is_absolute() else []
+    if not all(code_in_files.lies_in(folder, path) for path in (file, *(path.absolute() for path in found))):
+        named.append(f"file = {file!r}")
+    return named
+
+
+def _lies_beside(folder: Path, name: str | None) -> bool:
+    return name is not None and (folder / name).is_file() and code_in_files.lies_in(folder, name)
 
 
 def _is_number(value: Any) -> bool:

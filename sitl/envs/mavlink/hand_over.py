@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The hand-over: a vehicle is asked for one of its own modes until it is in it.
+
+It depends on nothing that can fail beside the link: no log, no text, none of the state that an exception may have left
+half changed. What it found is said afterwards, by others.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from typing import Any
+
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter, encode_v2
+from sitl.client.commands import command_number
+from sitl.client.connection import ACCEPTED, Remote
+from sitl.client.endpoint import ACK, AUTOPILOT, HEARTBEAT, IN_PROGRESS
+
+from .preparation import CUSTOM_MODE_ENABLED
+from .telemetry import ARMED
+
+BOUND_S = 10.0
+"""Wall time after which a vehicle that has not answered is given up [s]."""
+REFUSED_S = 2.0
+"""The same of one that refuses [s]."""
+REPEAT_S = 0.25
+"""Wall time after which the command is sent again [s]."""
+_WRITE_S = 1.0
+"""Wall time that sending it may take: a full line must not hold up the rest [s]."""
+_OLD_S = 1.5
+"""So long after the first command, a heartbeat is of the time after it [s]."""
+_LONG, _SET_MODE = message("COMMAND_LONG"), command_number("DO_SET_MODE")
+
+
+class HandOver:
+    """One hand-over.
+
+    Args:
+        link: to the vehicle.
+        mode: number of the mode that takes over.
+        guided: number of the mode that the vehicle is in while it is ours.
+        knows: whether what the link has heard last of mode and arming is so: not while the vehicle is being prepared.
+    """
+
+    def __init__(self, link: Remote, mode: int, guided: int, knows: bool = True) -> None:
+        self._link, self._mode, self._guided, self._knows = link, mode, guided, knows
+        self._splitter = Splitter()  # the link's own may have been interrupted in the middle of a frame
+        self.is_done = False
+        """Whether the vehicle is in the mode, or in another's hands."""
+        self.sent = 0
+        """How often the vehicle was asked."""
+        self.result: int | None = None
+        """MAV_RESULT of the last answer; None: there was none."""
+        self.error: Exception | None = None
+        """The last one that sending or listening raised."""
+        self._began = time.monotonic()
+
+    def run(self) -> None:
+        """Ask until the vehicle is in the mode, or is in another's hands, or does not answer. Raises no
+        ``Exception``."""
+        with contextlib.suppress(Exception):
+            self._link.stream.limit(_WRITE_S)
+        with contextlib.suppress(Exception):
+            inbox = self._link.inbox
+            self.is_done = self._knows and not (inbox.armed and inbox.mode == self._guided)
+        self._listen(0.0)  # a pilot may have taken it since
+        while not self.is_done:
+            now = time.monotonic()
+            if now - self._began > (BOUND_S if self.result is None else REFUSED_S):
+                return
+            self._send()
+            while not self.is_done and (left := now + REPEAT_S - time.monotonic()) > 0.0:
+                self._listen(left)
+
+    def _send(self) -> None:
+        try:
+            link, endpoint = self._link, self._link.endpoint
+            payload = _LONG.payload(
+                target_system=link.inbox.system, target_component=AUTOPILOT, command=_SET_MODE,
+                confirmation=min(self.sent, 255), param1=CUSTOM_MODE_ENABLED, param2=self._mode,
+            )  # fmt: skip
+            self.sent += 1
+            frame = encode_v2(_LONG, payload, endpoint.sequence & 0xFF, endpoint.system, endpoint.component)
+            endpoint.sequence = (endpoint.sequence + 1) & 0xFF
+            link.stream.write(frame)  # past what an interrupted step has left to be sent
+        except Exception as error:
+            self.error = error
+
+    def _listen(self, seconds: float) -> None:
+        try:
+            stream = self._link.stream
+            if stream.wait(seconds):
+                data = stream.receive()
+                for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
+                    if component == AUTOPILOT and system == self._link.inbox.system and kind in (HEARTBEAT, ACK):
+                        self._hear(kind, kind.decode(payload))
+                self._link.inbox.feed(data)
+        except Exception as error:
+            self.error = error
+            time.sleep(min(seconds, REPEAT_S))  # of a link that is gone, too, the vehicle is asked again
+
+    def _hear(self, kind: Any, fields: Any) -> None:
+        if kind is HEARTBEAT:
+            is_ours = bool(fields.base_mode & ARMED) and fields.custom_mode == self._guided
+            is_news = self._knows or time.monotonic() - self._began > _OLD_S
+            self.is_done = self.is_done or fields.custom_mode == self._mode or (is_news and not is_ours)
+        elif fields.command == _SET_MODE and self.sent and fields.result != IN_PROGRESS:
+            self.result = int(fields.result)
+            self.is_done = self.is_done or self.result == ACCEPTED
+
+    @property
+    def failure(self) -> str:
+        """What is known when the vehicle could not be brought into the mode."""
+        if self.result is not None:
+            return f"it refuses mode {self._mode} (MAV_RESULT {self.result})"
+        why = f" ({self.error})" if self.error is not None else ""
+        return f"it does not answer DO_SET_MODE to mode {self._mode}, sent {self.sent} times in {BOUND_S:g} s{why}"
