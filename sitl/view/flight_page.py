@@ -18,6 +18,8 @@ from . import horizon, library
 from .cameras import FREE, VIEWS, Cameras
 from .colours import css, of_ends, of_mode
 from .flights import Flight, Floats
+from .guard import Guard
+from .incoming import check_value
 from .page import LOCAL, free_port
 from .scene import surroundings
 from .scene.vehicle import VehicleNodes
@@ -81,7 +83,7 @@ class FlightScene:
         return frames
 
 
-class FlightPage:
+class FlightPage(Guard):
     """A page of one or more flights with a common clock.
 
     Args:
@@ -113,7 +115,7 @@ class FlightPage:
         """What is shown, of each flight."""
         self._add_widgets(differences or {})
         self._moves_bar = False
-        self.player = Player(self.length, self._show, begin=self.begin)
+        self.player = Player(self.length, lambda time: self.safely(lambda: self._show(time)), begin=self.begin)
         self.player.go_to(self.begin)
 
     def _look_at_all(self) -> None:
@@ -140,12 +142,17 @@ class FlightPage:
         view = gui.add_dropdown("Camera", VIEWS, initial_value=self.cameras.view)
         self._state = gui.add_html("")
         self._add_plots(gui, differences)
-        self.bar.on_update(self._bar_moved)
-        self.play.on_click(lambda event: self.player.play())
-        self.stop.on_click(lambda event: self.player.stop())
-        self.speed.on_update(lambda event: setattr(self.player, "speed", float(event.target.value)))
-        self.event.on_update(lambda event: self.jump(names.index(event.target.value)))
-        view.on_update(lambda event: self._look(event.target.value))
+        for widget, act in (
+            (self.bar, self._bar_moved), (self.speed, self._set_speed), (view, lambda event: self._look(view.value)),
+            (self.event, lambda event: self.jump(names.index(self.event.value))),
+        ):  # fmt: skip
+            widget.on_update(self.guarded(act))
+        self.play.on_click(self.guarded(lambda event: self.player.play()))
+        self.stop.on_click(self.guarded(lambda event: self.player.stop()))
+
+    def _set_speed(self, event: Any) -> None:
+        check_value(self.speed, self.speed.value)
+        self.player.speed = float(self.speed.value)
 
     def _add_plots(self, gui: Any, differences: Series) -> None:
         for title, column, sign in _PLOTTED:
@@ -164,6 +171,7 @@ class FlightPage:
 
     def _bar_moved(self, event: Any) -> None:
         if not self._moves_bar:
+            check_value(self.bar, self.bar.value)
             self.player.go_to(float(self.bar.value))
 
     def _look(self, view: str) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import SitlError
 from .frame import Frame, Source
+from .incoming import check_value
 
 _LINES = ("#2e86de", "#e67e22", "#27ae60", "#c0392b", "#8e44ad", "#16a085", "#f39c12", "#34495e")
 _MOST = 6
@@ -136,7 +137,9 @@ class Plots:
         self._choice.options = tuple(found[:_OFFERED]) or (_NOTHING,)
 
     def _add_chosen(self) -> None:
-        into = None if self._into.value == _OWN else next(p for p in self._plots if p.title == self._into.value)
+        for widget in (self._choice, self._into):
+            check_value(widget, widget.value)
+        into = next((p for p in self._plots if p.title == self._into.value), None)
         self.add(self._choice.value, None if into is None else into.names[0])
 
     @property

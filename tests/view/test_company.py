@@ -56,7 +56,7 @@ def test_a_number_that_no_vehicle_has_is_said_and_changes_nothing(page: LivePage
     page.notify = lambda text, client=None, title="": said.append(text)  # type: ignore[method-assign]
     for number in (9, 0):
         page.vehicle_number.value = number
-    assert said == ["vehicle 9: there are vehicles 1 to 3", "vehicle 0: there are vehicles 1 to 3"]
+    assert said == ["Vehicle: 9 is outside 1 .. 3", "Vehicle: 0 is outside 1 .. 3"]
     assert page.chosen == 0
 
 
