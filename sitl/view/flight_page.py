@@ -26,7 +26,10 @@ from .scene.vehicle import VehicleNodes
 
 COLOURS = ((46, 134, 222), (230, 126, 34), (39, 174, 96), (192, 57, 43), (142, 68, 173), (22, 160, 133))
 SPEEDS = ("0.1", "0.5", "1", "2", "5", "10", "50")
-_PLOTTED = (("height [m]", "down", -1.0), ("north [m]", "north", 1.0), ("east [m]", "east", 1.0))
+_PLOTTED = (
+    ("height above home, as logged [m]", "down", -1.0), ("north of home, as logged [m]", "north", 1.0),
+    ("east of home, as logged [m]", "east", 1.0),
+)  # fmt: skip
 _SAVED_FRAMES = 1200
 """Of a saved page, at most."""
 _SAVED_RATE = 10.0
@@ -262,10 +265,11 @@ def state(flights: Sequence[Flight], frames: Sequence[Any], time: float) -> str:
             f"<td>{'armed' if frame.armed else 'disarmed'}</td><td>{-frame.pos.z:.1f} m</td>"
             f"<td>{speed:.1f} m/s</td></tr>"
         )
+    heads = "<tr style='color:#888'><td>as logged</td><td></td><td></td><td>above home</td><td>ground speed</td></tr>"
     gap = ""
     if len(frames) > 1:
         gap = f"<div>{math.dist(frames[0].pos, frames[1].pos):.2f} m apart at {time:.1f} s</div>"
     return (
-        f'<div style="padding:0 0.6em;font-size:0.8em"><table style="width:100%">{"".join(rows)}</table>{gap}'
+        f'<div style="padding:0 0.6em;font-size:0.8em"><table style="width:100%">{heads}{"".join(rows)}</table>{gap}'
         f"{horizon.draw(frames[0])}</div>"
     )

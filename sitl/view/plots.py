@@ -59,7 +59,7 @@ class Plot:
         for k, name in enumerate(self.names):
             colour = _LINES[(self._first_colour + k) % len(_LINES)]
             scale = "y" if _group(name) == _group(self.names[0]) else "right"
-            series.append({"label": name, "stroke": colour, "width": 1.5, "scale": scale})
+            series.append({"label": f"{name}{whose(name)}", "stroke": colour, "width": 1.5, "scale": scale})
         scales: dict[str, Any] = {"x": {"time": False, "auto": True}, "y": {"auto": True}}
         axes: list[dict[str, Any]] = [{"scale": "x"}, {"scale": "y"}]
         if any(each.get("scale") == "right" for each in series):
@@ -100,6 +100,14 @@ class Plot:
         """Take it off the page."""
         if self._node is not None:
             self._node.remove()
+
+
+def whose(name: str) -> str:
+    """Whether a signal of a vehicle is what it says or believes, or the truth; nothing of other signals."""
+    part = name.partition(".")[0]
+    if part.isupper() or part in ("autopilot", "sensors", "actuators"):
+        return " (vehicle)"
+    return " (truth)" if part == "physics" else ""
 
 
 def _group(name: str) -> str:
