@@ -22,6 +22,7 @@ from .guard import Guard
 from .incoming import check_value
 from .page import LOCAL, free_port
 from .scene import surroundings
+from .scene.bearings import Bearings
 from .scene.vehicle import VehicleNodes
 
 COLOURS = ((46, 134, 222), (230, 126, 34), (39, 174, 96), (192, 57, 43), (142, 68, 173), (22, 160, 133))
@@ -47,6 +48,7 @@ class FlightScene:
         """All of it (``cameras``)."""
         scene.configure_default_lights(cast_shadow=True)
         surroundings.draw(scene, None)
+        self._show_bearings(Bearings(scene), flights[0].places())
         self.vehicles, self._labels = [], []
         size = flights[0].shape.size
         for k, flight in enumerate(flights):
@@ -70,6 +72,12 @@ class FlightScene:
             "/stage/flights/gap", none, (192, 57, 43), thickness=2.0, thickness_units="screen"
         )
         self._flights, self._size = flights, size
+
+    @staticmethod
+    def _show_bearings(bearings: Bearings, places: Floats) -> None:
+        """Beside the whole way."""
+        low, high = places.min(axis=0), places.max(axis=0)
+        bearings.show((float(low[0]), float(high[1]), 0.0), 0.4 * float((high - low).max()))
 
     def show(self, time: float) -> list[Any]:
         """Draw a moment [s]; gives the frames of it."""

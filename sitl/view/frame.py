@@ -84,6 +84,8 @@ class Company:
     """Body to NED, shape (n, 4)."""
     chosen: int = 0
     """The vehicle that the frame is of."""
+    notes: tuple[str, ...] = ()
+    """System, mode and arming of each; empty: only the chosen one's are known."""
 
 
 VEHICLE, LOG = "vehicle", "log"

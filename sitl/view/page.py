@@ -156,7 +156,7 @@ class Page(Guard):
         draws = self._drawn % _PANEL_EVERY == 0
         self._drawn += 1
         with self.server.atomic():
-            self.scene.show(frame)
+            self.scene.show(frame, self.cameras.span(frame))
             if draws:
                 self.panel.show(frame, f"{factor:.1f} x")
             self.panel.show_texts(frame.texts)

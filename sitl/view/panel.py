@@ -11,8 +11,8 @@ from typing import Any
 
 from ..core.algebra import euler_of
 from . import horizon
-from .colours import css, of_mode, of_severity
-from .frame import Frame, Text, Told
+from .colours import css, of_mode, of_severity, of_vehicle
+from .frame import Company, Frame, Text, Told
 from .horizon import degrees, number, true_height
 
 _KEPT_TEXTS = 40
@@ -23,6 +23,7 @@ class Panel:
     """The instruments."""
 
     def __init__(self, gui: Any) -> None:
+        self._company = gui.add_html("")
         self._state = gui.add_html("")
         self._horizon = gui.add_html("")
         with gui.add_folder("Texts"):
@@ -35,12 +36,19 @@ class Panel:
         return str(self._state.content)
 
     @property
+    def company_html(self) -> str:
+        """What is shown of all vehicles, where there are several."""
+        return str(self._company.content)
+
+    @property
     def texts(self) -> list[str]:
         """Texts that are shown, oldest first."""
         return [each.text for each in self._kept]
 
     def show(self, frame: Frame, speed: str) -> None:
         """Show a moment; ``speed``: how fast simulated time goes."""
+        if frame.company is not None:
+            self._company.content = company(frame.company)
         self._state.content = state(frame, speed)
         self._horizon.content = f'<div style="padding:0 0.6em">{horizon.draw(frame)}</div>'
 
@@ -61,6 +69,28 @@ def _row(text: Text) -> str:
         f'<div><span style="color:#888">{text.time_us * 1e-6:8.1f}</span> '
         f'<span style="color:{colour}">{escape(text.text)}</span></div>'
     )
+
+
+_LISTED = 32
+"""Vehicles that are listed, at most."""
+
+
+def company(vehicles: Company) -> str:
+    """Each of several vehicles in its colour, the chosen one in bold type."""
+    rows = []
+    for k in range(len(vehicles.pos)) if vehicles.notes and len(vehicles.pos) <= _LISTED else (vehicles.chosen,):
+        north, east, down = vehicles.pos[k].tolist()
+        weight = "bold" if k == vehicles.chosen else "normal"
+        note = (
+            f"{vehicles.notes[k]}; truth: {number(-down, 1, 'm')} high, {_place((north, east))}"
+            if vehicles.notes
+            else ""
+        )
+        rows.append(
+            f'<div style="font-weight:{weight}"><span style="color:{css(of_vehicle(k))}">&#9632;</span> '
+            f"<b>{k + 1}</b> {escape(note)}</div>"
+        )
+    return f'<div style="{_LIST}">{"".join(rows)}</div>'
 
 
 def state(frame: Frame, speed: str) -> str:
@@ -126,7 +156,7 @@ _COLUMNS = (
 
 
 def _place(place: tuple[float, float] | None) -> str:
-    return "-" if place is None else f"{place[0]:.1f} N, {place[1]:.1f} E"
+    return "-" if place is None else f"{number(place[0], 1, 'N')}, {number(place[1], 1, 'E')}"
 
 
 def _grid(cells: Sequence[tuple[str, str]]) -> str:

@@ -86,8 +86,8 @@ def compare(simulation: Simulation, source: LiveSource) -> None:
     assert first(shown["heading"][0]) == hud.heading
     yaw = math.degrees(euler_of(body.q).yaw) % 360.0
     assert first(shown["heading"][1]) == round(yaw) % 360
-    assert shown["place"][0] == f"{local.x:.1f} N, {local.y:.1f} E"
-    assert shown["place"][1] == f"{body.pos.x:.1f} N, {body.pos.y:.1f} E"
+    assert shown["place"][0] == f"{horizon.number(local.x, 1, 'N')}, {horizon.number(local.y, 1, 'E')}"
+    assert shown["place"][1] == f"{horizon.number(body.pos.x, 1, 'N')}, {horizon.number(body.pos.y, 1, 'E')}"
     assert first(below["battery (vehicle)"]) == pytest.approx(said["SYS_STATUS"].voltage_battery * 1e-3, abs=0.051)
     assert below["GPS (vehicle)"] == f"3D, {said['GPS_RAW_INT'].satellites_visible} sat"
     assert below["item (vehicle)"] == str(said["MISSION_CURRENT"].seq)
