@@ -138,7 +138,8 @@ def page(name: str) -> str:
     box = task.arena
     seconds = spec.max_episode_steps * env.step_time
     setpoint, frame = env.session.action.setpoint.name, "forward, left, up: x, y, z axes turned by the robot's yaw"
-    picture = f"![One episode seen from above: path of the trained policy (blue), target (green)](images/{name}.png)"
+    shows = "The task seen from above, and an episode of the trained policy in the colours of its speed"
+    picture = f"![{shows}](images/{name}.png)"
     lines = [
         f"# {title}", "", "<!-- Made by python docs/make_environment_pages.py -->", "", summary, "",
         "```python", "import gymnasium as gym", "", f'env = gym.make("sitl.envs:sitl/{name}-v0")          # continuous',

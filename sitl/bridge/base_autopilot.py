@@ -95,7 +95,11 @@ class BaseAutopilot:
         return bool(self._arming.disarm(self._v, BY_MAVLINK, force))
 
     def run_prearm_checks(self) -> None:
-        self._say(CRITICAL, self._arming.texts(self._v, self._arming.check(self._v), "PreArm: "))
+        self._say(CRITICAL, self.prearm_texts(self._v, "PreArm: "))
+
+    def prearm_texts(self, v: Any, prefix: str = "") -> list[str]:
+        """What keeps a vehicle of this firmware from arming; ``v``: its record, or a copy of one."""
+        return list(self._arming.texts(v, self._arming.check(v), prefix))
 
     def set_mode(self, number: int) -> bool:
         return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events

@@ -20,6 +20,8 @@ _CATCH_UP_S = 0.05
 _QUIET_SLICE_WALL_S = 0.001
 _STOPPED_WALL_S = 0.02
 """While time is stopped, clients and requests are looked at so often [s]."""
+LONGEST_STEP_US = 60_000_000
+"""Of time that stands, by one request [us]."""
 _QUIET = 10
 """A slice is no longer than this part of the simulated time since clients said something."""
 LONGEST_QUIET_US = 10_000_000
@@ -31,7 +33,7 @@ SLOWEST, FASTEST = 0.001, 100000.0
 
 
 class SpeedupError(SitlError, ValueError):
-    """A speed-up that is neither a number within the limits nor "max"."""
+    """A speed-up that is neither a number within the limits nor "max", or a step of time that is none."""
 
 
 def parse_speedup(text: str) -> float | None:
@@ -179,7 +181,13 @@ class StoppablePacing(Pacing):
         self.set_speedup(self.speedup)
 
     def step(self, us: int) -> None:
-        """Let a simulated time [us] go by, then stand."""
+        """Let a simulated time [us] go by, then stand.
+
+        Raises:
+            SpeedupError: it is nothing, or longer than LONGEST_STEP_US.
+        """
+        if not 0 < us <= LONGEST_STEP_US:
+            raise SpeedupError(f"step {us} us is outside 1 .. {LONGEST_STEP_US}")
         self.stop()
         self._step_us = us
 

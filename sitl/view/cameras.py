@@ -19,6 +19,10 @@ from .frame import Frame
 
 FREE, FOLLOW, FIRST_PERSON, TOP = "free", "follow", "first person", "top"
 VIEWS = (FREE, FOLLOW, FIRST_PERSON, TOP)
+NARROW = 600
+"""Width below which the panel lies over the lower part of the scene [pixels]: the vehicle is shown above it."""
+_LOWER = 0.4
+"""By how much of its distance a camera then looks below the vehicle."""
 _UP = (0.0, 0.0, 1.0)
 
 
@@ -46,6 +50,10 @@ class Cameras:
         x, y, z = self._stage.position
         return (float(x), float(y), float(z))
 
+    def span(self, frame: Frame) -> float:
+        """How much is seen around the vehicle at least [m]."""
+        return 0.3 * self._height(frame) if self.view == TOP else 1.5 * self._size
+
     def show(self, clients: dict[int, Any], frame: Frame) -> None:
         """Look at a moment."""
         if self.view == FREE:
@@ -66,15 +74,27 @@ class Cameras:
             eye = size * (0.9 * ahead + 0.35 * up)
             _put(camera, eye, eye + 5.0 * ahead, tuple(up))
         elif self.view == TOP:
-            middle, wide = np.zeros(3), 0.0
+            middle = np.zeros(3)
             if frame.company is not None:  # all of them
                 low, high = frame.company.pos.min(axis=0), frame.company.pos.max(axis=0)
                 middle = np.array(place(Vec3(*(0.5 * (low + high)).tolist()))) - place(frame.pos)
-                wide = float((high - low).max())
-            height = max(30.0 * size, 1.5 * place(frame.pos)[2], 0.9 * wide)
+            height = self._height(frame)
+            middle = middle - (is_narrow(camera) * _LOWER * height, 0.0, 0.0)
             _put(camera, middle + np.array([-0.02 * height, 0.0, height]), middle, _UP)
         else:
-            _put(camera, size * np.array([-2.6, 1.3, 1.3]), np.zeros(3), _UP)
+            eye = size * np.array([-2.6, 1.3, 1.3])
+            below = np.array([0.0, 0.0, is_narrow(camera) * _LOWER * float(np.linalg.norm(eye))])
+            _put(camera, eye, -below, _UP)
+
+    def _height(self, frame: Frame) -> float:
+        """Of the camera above the vehicle, in the view from above [m]."""
+        wide = 0.0 if frame.company is None else float(np.ptp(frame.company.pos, axis=0).max())
+        return max(30.0 * self._size, 1.5 * place(frame.pos)[2], 0.9 * wide)
+
+
+def is_narrow(camera: Any) -> bool:
+    """Whether a browser's window is."""
+    return int(camera.image_width) < NARROW
 
 
 def rotated(frame: Frame, axis: tuple[float, float, float]) -> Any:

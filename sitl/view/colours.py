@@ -26,12 +26,21 @@ _SPEEDS: tuple[Colour, ...] = (
 )  # fmt: skip
 _TOP_SPEED = 15.0
 """From here on the last colour [m/s]."""
+_VEHICLES: tuple[Colour, ...] = (
+    (46, 134, 222), (230, 126, 34), (39, 174, 96), (142, 68, 173), (241, 196, 15), (22, 160, 133), (233, 30, 140),
+    (121, 85, 72), (52, 73, 94), (139, 195, 74),
+)  # fmt: skip
 _SEVERITIES = ("#c0392b", "#c0392b", "#c0392b", "#d35400", "#d35400", "#2c3e50", "#2c3e50", "#7f8c8d")
 
 
 def of_mode(name: str) -> Colour:
     """Of a mode by its name: always the same."""
     return _MODES.get(name) or _OTHERS[crc32(name.encode()) % len(_OTHERS)]
+
+
+def of_vehicle(number: int) -> Colour:
+    """Of one of several vehicles, counted from 0: in the scene and beside it. None is the red of what is in front."""
+    return _VEHICLES[number % len(_VEHICLES)]
 
 
 def of_speed(speed: float) -> Colour:

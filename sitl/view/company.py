@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..autopilot.modes import shown
 from ..simulation import Simulation
 from . import kind
 from .frame import Company, Frame, Points
@@ -23,6 +24,7 @@ class CapturedCompany(NamedTuple):
     of: Captured
     pos: Points
     q: Points
+    notes: tuple[str, ...]
 
 
 class CompanySource:
@@ -62,12 +64,13 @@ class CompanySource:
     def capture(self) -> CapturedCompany:
         """The vehicles as they are now."""
         chosen = self.chosen
-        return CapturedCompany(chosen, self._source(chosen).capture(), np.array(self._pos), np.array(self._q))
+        pos, q, notes = np.array(self._pos), np.array(self._q), tuple(map(note, self._vehicles))
+        return CapturedCompany(chosen, self._source(chosen).capture(), pos, q, notes)
 
     def frame(self, captured: CapturedCompany) -> Frame:
         """What the page shows of a moment."""
         frame = self._source(captured.chosen).frame(captured.of)
-        return replace(frame, company=Company(captured.pos, captured.q, captured.chosen))
+        return replace(frame, company=Company(captured.pos, captured.q, captured.chosen, captured.notes))
 
     def signal_names(self) -> list[str]:
         """What can be plotted, of the vehicle that is chosen."""
@@ -86,3 +89,10 @@ class CompanySource:
         """Listen no longer."""
         for source in self._sources.values():
             source.close()
+
+
+def note(vehicle: Simulation) -> str:
+    """System, mode and arming of a vehicle."""
+    ap = vehicle.v.autopilot
+    mode = vehicle.firmware.mode_names.get(int(shown(ap.modes)), "?")
+    return f"system {vehicle.bridge.system}, {mode}, {'armed' if ap.arming.armed else 'disarmed'}"

@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any, TypeVar
 
 from ..autopilot.params.parameter import Parameter
-from ..run.pacing import MAX, StoppablePacing
+from ..run.pacing import MAX, StoppablePacing, parse_speedup
 from ..simulation import Simulation
 from ..vehicle.faults import FORM
 from .frame import Stage
+from .incoming import check_value
 from .pilot import Pilot
 from .sticks import Sticks
 
@@ -52,7 +54,7 @@ class Controls:
         with gui.add_folder("Pilot"):
             self._add_pilot(gui, stage)
         with gui.add_folder("Sticks", expand_by_default=False):
-            self.sticks = Sticks(gui, lambda axes: ask(lambda: pilot().hold(axes), None), stage.flies)
+            self.sticks = Sticks(gui, lambda axes: ask(lambda: pilot().hold(axes()), None), stage.flies)
         if pace is not None:
             with gui.add_folder("Time"):
                 self._add_time(gui, pace, not stage.company)
@@ -69,7 +71,7 @@ class Controls:
         self.disarm = self._button(gui, "Disarm", lambda: pilot().disarm())
         if stage.flies:
             self.height = gui.add_number("Height", 10.0, min=0.5, max=500.0, step=0.5, hint="above home [m]")
-            self.take_off = self._button(gui, "Take off", lambda: pilot().take_off(float(self.height.value)))
+            self.take_off = self._button(gui, "Take off", lambda: pilot().take_off(number(self.height)))
         self.mode = gui.add_dropdown("Mode", stage.modes, initial_value=stage.modes[0])
         self.set_mode = self._button(gui, "Set mode", lambda: pilot().set_mode(self.mode.value))
         self.clicks = gui.add_checkbox("Click on the ground to go there", True, hint="GUIDED, at the present height")
@@ -79,15 +81,14 @@ class Controls:
         speeds = SPEEDS if now in SPEEDS else (now, *SPEEDS)
         self.speed = gui.add_dropdown("Speed", speeds, initial_value=now, hint="simulated seconds a second")
 
-        def set_speed(event: Any) -> None:
-            text = event.target.value
-            self._ask(lambda: pace.set_speedup(None if text == MAX else float(text)), event)
+        def set_speed() -> None:
+            pace.set_speedup(parse_speedup(self.speed.value))
 
-        self.speed.on_update(set_speed)
+        self.speed.on_update(lambda event: self._ask(set_speed, event))
         self.pause = self._button(gui, "Stop time", pace.stop)
         self.go_on = self._button(gui, "Go on", pace.go_on)
         self.step_s = gui.add_number("Step", _STEP_S, min=0.0025, max=60.0, step=0.0025, hint="[s]")
-        self.step = self._button(gui, "One step", lambda: pace.step(round(float(self.step_s.value) * 1e6)))
+        self.step = self._button(gui, "One step", lambda: pace.step(round(number(self.step_s) * 1e6)))
         if is_alone:  # a snapshot is of one vehicle: those that share its world would be at another time
             self._add_snapshot(gui)
 
@@ -96,12 +97,16 @@ class Controls:
         self.go_back = self._button(gui, "Back to it", lambda: self._pilot().go_back())
 
     def _clicked(self, event: Any) -> None:
-        if not self.clicks.value:
-            return
-        origin = [at - moved for at, moved in zip(event.ray_origin, self._shift(), strict=True)]
-        place = on_ground(origin, event.ray_direction)
-        if place is not None:
-            self._ask(lambda: self._pilot().go_to(*place), event)
+        shift = tuple(self._shift())
+
+        def go() -> None:
+            origin = [at - moved for at, moved in zip(event.ray_origin, shift, strict=True)]
+            place = on_ground(origin, event.ray_direction)
+            if place is not None:
+                self._pilot().go_to(*place)
+
+        if self.clicks.value:
+            self._ask(go, event)
 
 
 class ParameterControls:
@@ -138,7 +143,7 @@ class ParameterControls:
             self.about.content = describe(parameter, value)
 
     def _set(self) -> None:
-        self._pilot().set_parameter(self.choice.value, float(self.value.value))
+        self._pilot().set_parameter(self.choice.value, number(self.value))
 
 
 class Weather:
@@ -159,15 +164,23 @@ class Weather:
 
 
 def _setter(ask: Ask, pilot: Chosen[Pilot], name: str) -> Callable[[Any], None]:
-    def set_it(event: Any) -> None:
-        value = float(event.target.value)
-        ask(lambda: pilot().set_parameter(name, value), event)
+    return lambda event: ask(lambda: pilot().set_parameter(name, number(event.target)), event)
 
-    return set_it
+
+def number(widget: Any) -> float:
+    """The value of a widget for numbers.
+
+    Raises:
+        OptionError: it is not one that the widget takes.
+    """
+    check_value(widget, widget.value)
+    return float(widget.value)
 
 
 def on_ground(origin: Sequence[float], direction: Sequence[float]) -> tuple[float, float] | None:
     """North, east [m] where a ray of the scene meets the ground; None: it goes to the sky."""
+    if not all(map(math.isfinite, (*origin, *direction))):
+        return None
     if direction[2] >= -1e-6 or origin[2] <= 0.0:
         return None
     share = -origin[2] / direction[2]

@@ -86,7 +86,7 @@ class FleetPage(Page):
 
     def _add_looks(self, gui: Any) -> None:
         self.layout = gui.add_dropdown("Vehicles", LAYOUTS, initial_value=GRID, hint="each in a world of its own")
-        self.layout.on_update(lambda event: self._lay_out(event.target.value))
+        self.layout.on_update(self.guarded(lambda event: self._lay_out(event.target.value)))
 
     def _lay_out(self, layout: str) -> None:
         self._of.layout = layout

@@ -18,13 +18,19 @@ from . import horizon, library
 from .cameras import FREE, VIEWS, Cameras
 from .colours import css, of_ends, of_mode
 from .flights import Flight, Floats
+from .guard import Guard
+from .incoming import check_value
 from .page import LOCAL, free_port
 from .scene import surroundings
+from .scene.bearings import Bearings
 from .scene.vehicle import VehicleNodes
 
 COLOURS = ((46, 134, 222), (230, 126, 34), (39, 174, 96), (192, 57, 43), (142, 68, 173), (22, 160, 133))
 SPEEDS = ("0.1", "0.5", "1", "2", "5", "10", "50")
-_PLOTTED = (("height [m]", "down", -1.0), ("north [m]", "north", 1.0), ("east [m]", "east", 1.0))
+_PLOTTED = (
+    ("height above home, as logged [m]", "down", -1.0), ("north of home, as logged [m]", "north", 1.0),
+    ("east of home, as logged [m]", "east", 1.0),
+)  # fmt: skip
 _SAVED_FRAMES = 1200
 """Of a saved page, at most."""
 _SAVED_RATE = 10.0
@@ -42,6 +48,7 @@ class FlightScene:
         """All of it (``cameras``)."""
         scene.configure_default_lights(cast_shadow=True)
         surroundings.draw(scene, None)
+        self._show_bearings(Bearings(scene), flights[0].places())
         self.vehicles, self._labels = [], []
         size = flights[0].shape.size
         for k, flight in enumerate(flights):
@@ -66,6 +73,12 @@ class FlightScene:
         )
         self._flights, self._size = flights, size
 
+    @staticmethod
+    def _show_bearings(bearings: Bearings, places: Floats) -> None:
+        """Beside the whole way."""
+        low, high = places.min(axis=0), places.max(axis=0)
+        bearings.show((float(low[0]), float(high[1]), 0.0), 0.4 * float((high - low).max()))
+
     def show(self, time: float) -> list[Any]:
         """Draw a moment [s]; gives the frames of it."""
         frames = [flight.frame(min(time, flight.length)) for flight in self._flights]
@@ -81,7 +94,7 @@ class FlightScene:
         return frames
 
 
-class FlightPage:
+class FlightPage(Guard):
     """A page of one or more flights with a common clock.
 
     Args:
@@ -113,7 +126,7 @@ class FlightPage:
         """What is shown, of each flight."""
         self._add_widgets(differences or {})
         self._moves_bar = False
-        self.player = Player(self.length, self._show, begin=self.begin)
+        self.player = Player(self.length, lambda time: self.safely(lambda: self._show(time)), begin=self.begin)
         self.player.go_to(self.begin)
 
     def _look_at_all(self) -> None:
@@ -140,12 +153,17 @@ class FlightPage:
         view = gui.add_dropdown("Camera", VIEWS, initial_value=self.cameras.view)
         self._state = gui.add_html("")
         self._add_plots(gui, differences)
-        self.bar.on_update(self._bar_moved)
-        self.play.on_click(lambda event: self.player.play())
-        self.stop.on_click(lambda event: self.player.stop())
-        self.speed.on_update(lambda event: setattr(self.player, "speed", float(event.target.value)))
-        self.event.on_update(lambda event: self.jump(names.index(event.target.value)))
-        view.on_update(lambda event: self._look(event.target.value))
+        for widget, act in (
+            (self.bar, self._bar_moved), (self.speed, self._set_speed), (view, lambda event: self._look(view.value)),
+            (self.event, lambda event: self.jump(names.index(self.event.value))),
+        ):  # fmt: skip
+            widget.on_update(self.guarded(act))
+        self.play.on_click(self.guarded(lambda event: self.player.play()))
+        self.stop.on_click(self.guarded(lambda event: self.player.stop()))
+
+    def _set_speed(self, event: Any) -> None:
+        check_value(self.speed, self.speed.value)
+        self.player.speed = float(self.speed.value)
 
     def _add_plots(self, gui: Any, differences: Series) -> None:
         for title, column, sign in _PLOTTED:
@@ -164,6 +182,7 @@ class FlightPage:
 
     def _bar_moved(self, event: Any) -> None:
         if not self._moves_bar:
+            check_value(self.bar, self.bar.value)
             self.player.go_to(float(self.bar.value))
 
     def _look(self, view: str) -> None:
@@ -251,10 +270,11 @@ def state(flights: Sequence[Flight], frames: Sequence[Any], time: float) -> str:
             f"<td>{'armed' if frame.armed else 'disarmed'}</td><td>{-frame.pos.z:.1f} m</td>"
             f"<td>{speed:.1f} m/s</td></tr>"
         )
+    heads = "<tr style='color:#888'><td>as logged</td><td></td><td></td><td>above home</td><td>ground speed</td></tr>"
     gap = ""
     if len(frames) > 1:
         gap = f"<div>{math.dist(frames[0].pos, frames[1].pos):.2f} m apart at {time:.1f} s</div>"
     return (
-        f'<div style="padding:0 0.6em;font-size:0.8em"><table style="width:100%">{"".join(rows)}</table>{gap}'
+        f'<div style="padding:0 0.6em;font-size:0.8em"><table style="width:100%">{heads}{"".join(rows)}</table>{gap}'
         f"{horizon.draw(frames[0])}</div>"
     )

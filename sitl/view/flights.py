@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -16,7 +17,7 @@ from ..core.vectors import Euler, Vec3
 from ..logs.track import Track
 from ..vehicle.kinds import KINDS
 from . import kind
-from .frame import Frame
+from .frame import LOG, Frame, Told
 from .shape import ROTOR, Shape
 
 _TURNING = 120.0
@@ -77,6 +78,10 @@ class Flight:
             pos=Vec3(of("north"), of("east"), of("down")),
             q=quat_from_euler(Euler(of("roll"), of("pitch"), yaw)),
             vel=Vec3(of("vn"), of("ve"), of("vd")),
+            told=Told(
+                by=LOG, height=-of("down"), place=(of("north"), of("east")), speed=math.hypot(of("vn"), of("ve")),
+                climb=-of("vd"), heading=math.degrees(yaw) % 360.0, roll=of("roll"), pitch=of("pitch"),
+            ),
             home=Vec3(0.0, 0.0, 0.0), mode=self.mode(time), armed=armed, ready=True,
             rotors=tuple((_TURNING if k % 4 < 2 else -_TURNING) * armed for k in range(len(rotors))),
             rolled=(way, way),

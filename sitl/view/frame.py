@@ -84,11 +84,39 @@ class Company:
     """Body to NED, shape (n, 4)."""
     chosen: int = 0
     """The vehicle that the frame is of."""
+    notes: tuple[str, ...] = ()
+    """System, mode and arming of each; empty: only the chosen one's are known."""
+
+
+VEHICLE, LOG = "vehicle", "log"
+"""Whose numbers ``Told`` has: what the vehicle says now, or what a log kept of it."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Told:
+    """A vehicle's own numbers, as a ground station shows them. Fields that it does not tell (yet) are None."""
+
+    by: str = VEHICLE
+    """VEHICLE or LOG."""
+    height: float | None = None
+    """Above home (GLOBAL_POSITION_INT.relative_alt) [m]."""
+    place: tuple[float, float] | None = None
+    """North, east of its origin (LOCAL_POSITION_NED), in a log of home [m]."""
+    speed: float | None = None
+    """Over the ground (VFR_HUD.groundspeed) [m/s]."""
+    climb: float | None = None
+    """VFR_HUD.climb [m/s]"""
+    heading: float | None = None
+    """VFR_HUD.heading [deg]"""
+    roll: float = 0.0
+    """ATTITUDE [rad]"""
+    pitch: float = 0.0
+    """ATTITUDE [rad]"""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frame:
-    """A vehicle at one moment."""
+    """A vehicle at one moment. Place, attitude and motion are the truth, but for flights of logs."""
 
     time_us: int
     """Simulated time since the start of the simulation [us]."""
@@ -110,6 +138,10 @@ class Frame:
     armed: bool = False
     ready: bool = False
     """The arming checks find nothing."""
+    unready: tuple[str, ...] = ()
+    """What they find, as the texts after "PreArm: " say it."""
+    told: Told | None = None
+    """What the vehicle says of itself; None: there is no autopilot that says anything."""
     voltage: float = 0.0
     """[V]"""
     current: float = 0.0

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..errors import MissingExtra, SitlError
+from .incoming import LONGEST, Visit
 from .origins import guarded
 
 
@@ -46,30 +47,59 @@ def viser() -> Any:
 
 
 def serve(host: str, port: int, title: str) -> Any:
-    """A server of viser that turns away other sites' pages (``origins``). It prints its addresses, whatever it is told:
-    not here.
+    """A server of viser that turns away other sites' pages (``origins``), and of its own pages' messages takes those
+    that pass (``incoming``). It prints its addresses, whatever it is told: not here.
 
     Raises:
         MissingExtra: it is not installed.
         UnguardedError: this version of it cannot be guarded.
     """
     module = viser()
-    with contextlib.redirect_stdout(io.StringIO()), _guarded() as listening:
+    with contextlib.redirect_stdout(io.StringIO()), _guarded() as doors:
         server = module.ViserServer(host=host, port=port, label=title, verbose=False)
-    if not listening:
+    if not doors or not isinstance(getattr(server.gui, _WIDGETS, None), dict):
         stop(server)
-        raise UnguardedError(
-            f"viser {module.__version__} lets every site press the page's buttons; viser 1.1.1 does not"
-        )
+        raise UnguardedError(f"viser {module.__version__} takes whatever a browser sends; viser 1.1.1 can be guarded")
+    for door in doors:
+        door.server = server
     return server
 
 
+_WIDGETS = "_gui_input_handle_from_uuid"
+"""Where viser keeps its widgets by what browsers call them."""
+
+
+class _Door:
+    """Lets visits into a server, once there is one."""
+
+    server: Any = None
+
+    def widget(self, uuid: str) -> Any:
+        """A widget by its identifier; None: there is none."""
+        return None if self.server is None else getattr(self.server.gui, _WIDGETS).get(uuid)
+
+    def tell(self, visit: Any, text: str) -> None:
+        """Show a browser what was refused."""
+        visits = getattr(getattr(self.server, "_websock_server", None), "_live_connections", {})
+        clients = self.server.get_clients() if self.server is not None else {}
+        for number, each in list(visits.items()):
+            if each is visit and number in clients:
+                note(clients[number], text)
+
+
+def note(client: Any, text: str, title: str = "Not done") -> None:
+    """Show a note in a browser, for a while."""
+    client.add_notification(title, text, auto_close_seconds=8.0, color="red")
+
+
 @contextlib.contextmanager
-def _guarded() -> Iterator[list[Any]]:
-    """Meanwhile servers that viser begins ask ``origins`` first; gives a list of these. It takes no such option."""
+def _guarded() -> Iterator[list[_Door]]:
+    """Meanwhile servers that viser begins ask ``origins`` first, and get messages by way of ``incoming``; gives their
+    doors. It takes no such option."""
+    import msgspec.msgpack
     from websockets.asyncio import server as websockets
 
-    listening: list[Any] = []
+    doors: list[_Door] = []
     plain: Any = websockets.serve
 
     class Guarded(plain):  # type: ignore[misc]
@@ -78,13 +108,19 @@ def _guarded() -> Iterator[list[Any]]:
         def __init__(self, handler: Any, *args: Any, **options: Any) -> None:
             if handler.__module__.startswith("viser."):
                 options["process_request"] = guarded(options.get("process_request"))
-                listening.append(self)
+                options["max_size"] = LONGEST
+                door, inner = _Door(), handler
+                doors.append(door)
+
+                async def handler(connection: Any) -> None:
+                    await inner(Visit(connection, msgspec.msgpack.decode, door.widget, door.tell))
+
             super().__init__(handler, *args, **options)
 
     with _LOCK:
         websockets.serve = Guarded  # type: ignore[misc]
         try:
-            yield listening
+            yield doors
         finally:
             websockets.serve = plain  # type: ignore[misc]
 

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +17,12 @@ from ..autopilot.fence.state import CIRCLE, CIRCLE_IN, CIRCLE_OUT
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.place import point
 from ..autopilot.modes import shown
+from ..bridge.base_autopilot import BaseAutopilot
 from ..client.commands import command_name
 from ..core.geodesy import offset_ne
 from ..core.vectors import Vec3
 from ..simulation import Simulation
-from .frame import Frame, Mark, Plan, Points, Text
+from .frame import Frame, Mark, Plan, Points, Text, Told
 from .record import Array, RecordSource
 
 _CORNERS = 48
@@ -29,6 +31,12 @@ _NAV_LAST = 95
 """MAV_CMD_NAV_LAST: commands from here on are not flown to."""
 _FENCES = ("greatest height", "circle", "areas", "least height")
 _GLITCH = "GPS glitch"
+
+
+_TOLD = (
+    "GLOBAL_POSITION_INT.relative_alt", "LOCAL_POSITION_NED.x", "LOCAL_POSITION_NED.y", "VFR_HUD.groundspeed",
+    "VFR_HUD.climb", "VFR_HUD.heading", "ATTITUDE.roll", "ATTITUDE.pitch",
+)  # fmt: skip
 
 
 class Captured(NamedTuple):
@@ -54,6 +62,8 @@ class AutopilotSource(RecordSource):
         modes = tuple(names[number] for number in sorted(names))
         super().__init__(simulation.kind, fleet, index, simulation.airframe.name, simulation.world, modes)
         self._plan: tuple[object, Plan] = (None, Plan())
+        self._autopilot = simulation.bridge.autopilot
+        self._tells: Callable[[], dict[str, float]] | None = None
 
     def frame(self, captured: Captured) -> Frame:
         """What the page shows of a moment."""
@@ -73,11 +83,30 @@ class AutopilotSource(RecordSource):
             leg=(leg.origin + offset, leg.origin + leg.unit * leg.length + offset) if is_on_leg else None,
             home=ap.home.pos + offset if ap.home.is_set else None,
             mode=self._names.get(int(shown(modes)), "?"), armed=bool(ap.arming.armed), ready=bool(ap.arming.prearm_ok),
+            unready=self._unready(), told=self._told(),
             voltage=battery.voltage, current=battery.current, charge_left=battery.remaining_pct,
             satellites=int(gps.gps_satellites), fix=int(gps.gps_fix),
             failsafes=self._failsafes(), mission_current=int(modes.nav.mission_current),
             plan=self._planned(captured.mission, offset), texts=captured.texts, **self._moment(),
         )  # fmt: skip
+
+    def _told(self) -> Told:
+        """What its telemetry says."""
+        if self._tells is None:
+            found = self._find_signals()
+            self._tells = found.reader(tuple(name for name in _TOLD if name in found.names))
+        height, north, east, speed, climb, heading, roll, pitch = map(self._tells().get, _TOLD)
+        place = None if north is None or east is None else (north, east)
+        return Told(
+            height=None if height is None else height * 1e-3, place=place, speed=speed, climb=climb, heading=heading,
+            roll=roll or 0.0, pitch=pitch or 0.0,
+        )  # fmt: skip
+
+    def _unready(self) -> tuple[str, ...]:
+        arming = self._v.autopilot.arming
+        if arming.armed or arming.prearm_ok or not isinstance(self._autopilot, BaseAutopilot):
+            return ()
+        return tuple(self._autopilot.prearm_texts(self._v))
 
     def _origin(self) -> Vec3:
         """The estimator's origin in the scene [m]."""

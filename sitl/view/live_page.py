@@ -5,10 +5,9 @@ for."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from queue import Empty, SimpleQueue
+from queue import Empty, Full, Queue
 from typing import Any
 
-from ..errors import SitlError
 from ..run.pacing import StoppablePacing
 from ..simulation import Simulation
 from .company import CompanySource
@@ -18,6 +17,8 @@ from .page import Page
 from .pilot import Pilot
 
 Request = Callable[[], None]
+MOST_REQUESTS = 64
+"""That wait for the vehicle."""
 
 
 class LivePage(Page):
@@ -37,7 +38,7 @@ class LivePage(Page):
         port: int = 0,
         controls: bool = True,
     ) -> None:
-        self._requests: SimpleQueue[tuple[Request, Any]] = SimpleQueue()
+        self._requests: Queue[tuple[Request, Any]] = Queue(MOST_REQUESTS)
         self._vehicles = [vehicles] if isinstance(vehicles, Simulation) else list(vehicles)
         self._live = source = LiveSource(vehicles) if isinstance(vehicles, Simulation) else CompanySource(vehicles)
         self._pilots: dict[int, Pilot] = {}
@@ -77,20 +78,25 @@ class LivePage(Page):
         return self._pilots[number]
 
     def ask(self, request: Request, event: Any = None) -> None:
-        """Let something be done to the vehicle, by its own thread; called from the page's."""
-        self._requests.put((request, getattr(event, "client", None)))
+        """Let something be done to the vehicle, by its own thread; called from the page's. Whoever asks too much is
+        told so."""
+        client = getattr(event, "client", None)
+        try:
+            self._requests.put_nowait((request, client))
+        except Full:
+            self.notify(f"{MOST_REQUESTS} requests wait for the vehicle already", client)
 
     def attend(self) -> None:
         """Do what was asked for (``sitl.run.watched.Viewer``)."""
-        while True:
+        for _ in range(MOST_REQUESTS):
             try:
                 request, client = self._requests.get_nowait()
             except Empty:
                 break
-            try:
-                request()
-            except SitlError as error:
-                self.notify(str(error), client)
+            self.safely(request, client)
+        self.safely(self._attend_pilots)
+
+    def _attend_pilots(self) -> None:
         for number, pilot in self._pilots.items():
             if number != self.chosen:
                 pilot.hold(None)

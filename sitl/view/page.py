@@ -11,13 +11,14 @@ import socket
 import threading
 import time
 import traceback
-from collections.abc import Callable
 from typing import Any, cast
 
 from ..errors import SitlError
 from . import library
 from .cameras import VIEWS, Cameras
 from .frame import CompanyOfSources, Frame, Source
+from .guard import Guard
+from .incoming import check_value
 from .panel import Panel
 from .plots import Plots
 from .scene.scene import Scene
@@ -34,7 +35,7 @@ class PageAddressError(SitlError, ValueError):
     """A port that the page cannot have."""
 
 
-class Page:
+class Page(Guard):
     """A page that shows one vehicle.
 
     Args:
@@ -77,8 +78,7 @@ class Page:
         source = cast(CompanyOfSources, self.source)
 
         def choose(event: Any) -> None:
-            if not 1 <= number.value <= count:  # a browser lets its user type anything
-                raise SitlError(f"vehicle {number.value:g}: there are vehicles 1 to {count}")
+            check_value(number, number.value)
             source.choose(int(number.value) - 1)
 
         number.on_update(self.guarded(choose))
@@ -90,11 +90,11 @@ class Page:
             self.panel = Panel(gui)
         with tabs.add_tab("Look"):
             view = gui.add_dropdown("Camera", VIEWS, initial_value=self.cameras.view)
-            view.on_update(lambda event: self.cameras.choose(event.target.value))
+            view.on_update(self.guarded(lambda event: self.cameras.choose(event.target.value)))
             colours = gui.add_dropdown("Trail's colour", (BY_MODE, BY_SPEED), initial_value=BY_MODE)
-            colours.on_update(lambda event: setattr(self.scene.trail, "colours", event.target.value))
+            colours.on_update(self.guarded(lambda event: setattr(self.scene.trail, "colours", event.target.value)))
             clear = gui.add_button("Forget the trail")
-            clear.on_click(lambda event: self.scene.trail.clear())
+            clear.on_click(self.guarded(lambda event: self.scene.trail.clear()))
             self._add_looks(gui)
         with tabs.add_tab("Plots"):
             self.plots = Plots(gui, self.source, self.guarded)
@@ -156,7 +156,7 @@ class Page:
         draws = self._drawn % _PANEL_EVERY == 0
         self._drawn += 1
         with self.server.atomic():
-            self.scene.show(frame)
+            self.scene.show(frame, self.cameras.span(frame))
             if draws:
                 self.panel.show(frame, f"{factor:.1f} x")
             self.panel.show_texts(frame.texts)
@@ -168,22 +168,6 @@ class Page:
         """Wait until all that it was given is drawn."""
         with self._filled:
             self._filled.wait_for(lambda: self._room is None or self._closed)
-
-    def guarded(self, act: Callable[[Any], None]) -> Callable[[Any], None]:
-        """``act`` on an event of the page; an error is shown to who caused it."""
-
-        def run(event: Any) -> None:
-            try:
-                act(event)
-            except SitlError as error:
-                self.notify(str(error), getattr(event, "client", None))
-
-        return run
-
-    def notify(self, text: str, client: Any = None, title: str = "Not done") -> None:
-        """Show a note in one browser, or in all (None)."""
-        for each in [client] if client is not None else self.server.get_clients().values():
-            each.add_notification(title, text, auto_close_seconds=8.0, color="red")
 
     def close(self) -> None:
         """Close the page; browsers say that the connection is lost."""

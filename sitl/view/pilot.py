@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from ..client.commands import command_name, command_number, entry_name
 from ..client.controls import CUSTOM_MODE_ENABLED, FORCED, POSITION_ONLY, RELATIVE_INT
 from ..client.endpoint import Endpoint
@@ -15,13 +17,17 @@ from ..core.geodesy import add_offset
 from ..errors import OptionError, did_you_mean
 from ..recording.recorder import Recorder
 from ..simulation import Simulation, Snapshot
+from .incoming import finite
 from .sticks import Axes
 
 SYSTEM, COMPONENT = 254, 190
 """MAVLink ids of the page: a second ground station, so that no link of another one is taken for its own."""
 GUIDED = "GUIDED"
+_REAL_32_MAX = float(np.finfo(np.float32).max)
 IN_PROGRESS = 5
 """MAV_RESULT"""
+FARTHEST = 100_000.0
+"""From the scene's origin to where a vehicle can be sent [m]."""
 _STICKS_US = 100_000
 """Simulated time between two MANUAL_CONTROL [us]."""
 
@@ -117,7 +123,12 @@ class Pilot:
         self._command("DO_SET_MODE", CUSTOM_MODE_ENABLED, numbers[name])
 
     def take_off(self, height: float) -> None:
-        """GUIDED, armed if need be, to a height above home [m]."""
+        """GUIDED, armed if need be, to a height above home [m].
+
+        Raises:
+            OptionError: the height is no finite number.
+        """
+        height = finite("height", height)
         if self._mode != GUIDED:
             self.set_mode(GUIDED)
         if not self._is_armed:
@@ -125,7 +136,12 @@ class Pilot:
         self._command("NAV_TAKEOFF", 0, 0, 0, 0, 0, 0, height)
 
     def go_to(self, north: float, east: float) -> None:
-        """GUIDED, to a place of the scene [m], at the present height."""
+        """GUIDED, to a place of the scene [m], at the present height.
+
+        Raises:
+            OptionError: it is not armed, or the place is farther than FARTHEST.
+        """
+        north, east = finite("north", north, FARTHEST), finite("east", east, FARTHEST)
         v = self._simulation.v
         if not self._is_armed:
             raise OptionError("it is not armed: arm it, or take off, before it can go anywhere")
@@ -141,11 +157,12 @@ class Pilot:
         """Set a parameter, SIM_ ones, too.
 
         Raises:
-            OptionError: there is no such parameter.
+            OptionError: there is no such parameter, or the value is no finite number.
         """
         table = self._simulation.firmware.table
         if name not in table:
             raise OptionError(f"there is no parameter {name!r}{did_you_mean(name, table.names())}")
+        value = finite(name, value, _REAL_32_MAX)
         self._send("PARAM_SET", param_id=name.encode(), param_value=value, param_type=REAL_32)
 
     # ------------------------------------------------------------------ what only a simulator can

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import SitlError
 from .frame import Frame, Source
+from .incoming import check_value
 
 _LINES = ("#2e86de", "#e67e22", "#27ae60", "#c0392b", "#8e44ad", "#16a085", "#f39c12", "#34495e")
 _MOST = 6
@@ -58,7 +59,7 @@ class Plot:
         for k, name in enumerate(self.names):
             colour = _LINES[(self._first_colour + k) % len(_LINES)]
             scale = "y" if _group(name) == _group(self.names[0]) else "right"
-            series.append({"label": name, "stroke": colour, "width": 1.5, "scale": scale})
+            series.append({"label": f"{name}{whose(name)}", "stroke": colour, "width": 1.5, "scale": scale})
         scales: dict[str, Any] = {"x": {"time": False, "auto": True}, "y": {"auto": True}}
         axes: list[dict[str, Any]] = [{"scale": "x"}, {"scale": "y"}]
         if any(each.get("scale") == "right" for each in series):
@@ -101,6 +102,14 @@ class Plot:
             self._node.remove()
 
 
+def whose(name: str) -> str:
+    """Whether a signal of a vehicle is what it says or believes, or the truth; nothing of other signals."""
+    part = name.partition(".")[0]
+    if part.isupper() or part in ("autopilot", "sensors", "actuators"):
+        return " (vehicle)"
+    return " (truth)" if part == "physics" else ""
+
+
 def _group(name: str) -> str:
     """The message or the part of the record that a signal is of: its signals share an axis."""
     return name.rpartition(".")[0]
@@ -136,7 +145,9 @@ class Plots:
         self._choice.options = tuple(found[:_OFFERED]) or (_NOTHING,)
 
     def _add_chosen(self) -> None:
-        into = None if self._into.value == _OWN else next(p for p in self._plots if p.title == self._into.value)
+        for widget in (self._choice, self._into):
+            check_value(widget, widget.value)
+        into = next((p for p in self._plots if p.title == self._into.value), None)
         self.add(self._choice.value, None if into is None else into.names[0])
 
     @property

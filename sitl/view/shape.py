@@ -101,6 +101,21 @@ def moved(mesh: Mesh, x: float, y: float, z: float) -> Mesh:
     return Mesh(mesh.vertices + np.array([x, y, z], np.float32), mesh.faces)
 
 
+def painted(shape: Shape) -> Colour:
+    """The colour of a shape that stands for the vehicle's own: that of its rear, else of its greatest piece."""
+    solid = [piece for piece in shape.pieces if piece.opacity == 1.0]
+    if any(piece.colour == REAR for piece in solid):
+        return REAR
+    return max(solid, key=lambda piece: float(np.ptp(piece.mesh.vertices, axis=0).prod())).colour
+
+
+def tinted(shape: Shape, colour: Colour) -> Shape:
+    """A shape in another vehicle's colour."""
+    own = painted(shape)
+    pieces = (piece._replace(colour=colour) if piece.colour == own else piece for piece in shape.pieces)
+    return Shape(tuple(pieces), shape.size)
+
+
 def plain(length: float, width: float, height: float) -> Shape:
     """A box with a nose, for a vehicle of which nothing more is known."""
     body = Piece("body", box((length, width, height), (0.0, 0.0, 0.0)), GREY)

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from .incoming import check_value
+
 _FULL = 1000
 """Greatest value of an axis."""
 _FLYING = (("Roll", -100.0, 0.0), ("Pitch", -100.0, 0.0), ("Throttle", 0.0, 0.0), ("Yaw", -100.0, 0.0))
@@ -33,11 +35,11 @@ class Sticks:
 
     Args:
         gui: of the page.
-        hold: is given the axes when they change, None when they are let go.
+        hold: is given what reads the axes when they change; that gives None when they are let go.
         flies: a copter's; False: a rover's.
     """
 
-    def __init__(self, gui: Any, hold: Callable[[Axes | None], None], flies: bool) -> None:
+    def __init__(self, gui: Any, hold: Callable[[Callable[[], Axes | None]], None], flies: bool) -> None:
         self._hold, self._flies = hold, flies
         self.held = gui.add_checkbox("Hold the sticks", False, hint="MANUAL_CONTROL, ten times a second")
         self.sliders = {
@@ -51,14 +53,20 @@ class Sticks:
 
     @property
     def axes(self) -> Axes:
-        """What the sliders say."""
+        """What the sliders say.
+
+        Raises:
+            OptionError: one of them is not where it can be.
+        """
+        for slider in self.sliders.values():
+            check_value(slider, slider.value)
         value = {name: round(float(slider.value) * 0.01 * _FULL) for name, slider in self.sliders.items()}
         if self._flies:
             return Axes(value["Pitch"], value["Roll"], value["Throttle"], value["Yaw"])
         return Axes(0, value["Steering"], value["Throttle"], 0)
 
     def _changed(self) -> None:
-        self._hold(self.axes if self.held.value else None)
+        self._hold(lambda: self.axes if self.held.value else None)
 
     def _to_centre(self) -> None:
         for name, slider in self.sliders.items():

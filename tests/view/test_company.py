@@ -14,6 +14,7 @@ from sitl.run.swarm import SwarmPacing, serve_swarm
 from sitl.run.watched import Watched
 from sitl.swarm import Swarm
 from sitl.view.axes import place, turn
+from sitl.view.colours import css, of_ends, of_vehicle
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
 from sitl.view.live_page import LivePage
@@ -56,7 +57,7 @@ def test_a_number_that_no_vehicle_has_is_said_and_changes_nothing(page: LivePage
     page.notify = lambda text, client=None, title="": said.append(text)  # type: ignore[method-assign]
     for number in (9, 0):
         page.vehicle_number.value = number
-    assert said == ["vehicle 9: there are vehicles 1 to 3", "vehicle 0: there are vehicles 1 to 3"]
+    assert said == ["Vehicle: 9 is outside 1 .. 3", "Vehicle: 0 is outside 1 .. 3"]
     assert page.chosen == 0
 
 
@@ -95,3 +96,21 @@ def test_telemetry_and_records_are_the_same_bits_with_a_page() -> None:
         return bits
 
     assert run(True) == run(False)
+
+
+def test_each_has_its_number_and_its_colour_in_the_scene_and_beside_it(page: LivePage) -> None:
+    company = page.scene.company
+    assert company is not None and page.frame is not None
+    assert [label.text for label in company.labels] == ["1", "2", "3"]
+    for label, vehicle in zip(company.labels, page._vehicles, strict=True):
+        x, y, z = place(vehicle.v.physics.body.pos)
+        assert label.position[:2] == pytest.approx((x, y), abs=1e-4) and label.position[2] > z
+    colours = [tuple(row) for row in of_ends([of_vehicle(k) for k in range(3)]).tolist()]
+    drawn = {tuple(row) for node, which in company.nodes for row in np.atleast_2d(node.batched_colors).tolist()}
+    assert len(set(colours)) == 3 and set(colours) <= drawn
+    page.show(page.frame)
+    page.show(page.frame)
+    html = page.panel.company_html
+    for k, vehicle in enumerate(page._vehicles):
+        assert f'color:{css(of_vehicle(k))}">&#9632;</span> <b>{k + 1}</b> system {vehicle.bridge.system}, ' in html
+    assert "STABILIZE, disarmed" in html and "MANUAL, disarmed" in html

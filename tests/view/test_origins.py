@@ -80,7 +80,7 @@ def test_a_viser_that_cannot_be_guarded_is_not_used(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(library, "viser", Other)
     monkeypatch.setattr(library, "stop", stopped.append)
-    with pytest.raises(library.UnguardedError, match=r"viser 9\.9 lets every site"):
+    with pytest.raises(library.UnguardedError, match=r"viser 9\.9 takes whatever"):
         library.serve(LOCAL, 1, "test")
     assert stopped == ["the server"]
 

@@ -37,7 +37,7 @@ class EnvPage(Page):
     def _add_looks(self, gui: Any) -> None:
         if self.env_source.stage.company:
             self.layout = gui.add_dropdown("Robots", LAYOUTS, initial_value=GRID, hint="each in a world of its own")
-            self.layout.on_update(lambda event: self._lay_out(event.target.value))
+            self.layout.on_update(self.guarded(lambda event: self._lay_out(event.target.value)))
 
     def _lay_out(self, layout: str) -> None:
         self.env_source.layout = layout

@@ -165,6 +165,7 @@ class EnvSource:
         vx, vy, vz, yaw = state[k, 4], state[k, 5], state[k, 6], state[k, 3]
         c, s = math.cos(yaw), math.sin(yaw)
         speed = math.hypot(vx, vy)
+        whose = "truth" if knows_truth(self._robot) else "robot"
         self._roll(captured, float(vx))
         return Frame(
             time_us=round(captured.time * 1e6),
@@ -175,7 +176,8 @@ class EnvSource:
             company=Company(pos, np.array([tuple(each) for each in q]), k) if len(state) > 1 else None,
             facts=(
                 ("time", f"{captured.time:.1f} s"), ("return", f"{captured.total:.2f}"),
-                ("place", f"{state[k, 0]:.2f}, {state[k, 1]:.2f}, {state[k, 2]:.2f} m"), ("speed", f"{speed:.2f} m/s"),
+                (f"place ({whose})", f"{state[k, 0]:.2f}, {state[k, 1]:.2f}, {state[k, 2]:.2f} m"),
+                (f"speed ({whose})", f"{speed:.2f} m/s"),
             ),
         )  # fmt: skip
 
@@ -208,9 +210,14 @@ class EnvSource:
         return self._plan[1]
 
 
+def knows_truth(robot: Robot) -> bool:
+    """Whether it is known where a robot really is: its physics is here."""
+    return getattr(robot, "camera_mount", None) is not None
+
+
 def states(robot: Robot) -> Points:
     """Where robots really are, or where they say that they are when nobody knows better, shape (count, 12)."""
-    if getattr(robot, "camera_mount", None) is not None:
+    if knows_truth(robot):
         return np.array(robot.true_state())  # type: ignore[attr-defined]
     out = np.zeros((robot.count, 12))
     out[:, :4], out[:, 4:8] = robot.pose, robot.velocity

@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..axes import places, turns
-from ..colours import of_ends
+from ..colours import of_ends, of_vehicle
 from ..frame import Company
-from ..shape import DARK, FRONT, Mesh, Piece, Shape, joined, moved
+from ..shape import DARK, FRONT, Mesh, Piece, Shape, joined, moved, painted
 
+LABELLED = 32
+"""Up to so many have their numbers above them."""
 _FEW = 64
 """Up to so many are drawn with all of their pieces."""
 
@@ -32,16 +34,24 @@ class CompanyNodes:
         for number, shape in enumerate(shapes):
             rows.setdefault(id(shape), []).append(number)
         self._groups = []
+        own = of_ends([of_vehicle(number) for number in range(self.count)])
         for number, which in enumerate(rows.values()):
             shape = shapes[which[0]]
             for k, (colour, mesh) in enumerate(by_colour(shape, is_plain=self.count > _FEW)):
                 still = np.tile([1.0, 0.0, 0.0, 0.0], (len(which), 1))
+                colours = own[which] if colour == painted(shape) else of_ends([colour])[0]
                 node = scene.add_batched_meshes_simple(
                     f"/stage/company/{number}_{k}", mesh.vertices, mesh.faces, batched_wxyzs=still,
-                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=of_ends([colour])[0],
+                    batched_positions=np.zeros((len(which), 3), np.float32), batched_colors=colours,
                     lod="off", flat_shading=True, cast_shadow=self.count <= _FEW, side="double",
                 )  # fmt: skip
                 self._groups.append((node, np.array(which)))
+        self.labels = [
+            scene.add_label(f"/stage/company/label{k + 1}", str(k + 1), anchor="bottom-center", font_screen_scale=0.9)
+            for k in range(self.count if self.count <= LABELLED else 0)
+        ]
+        """Number of each, counted from 1; none where there are too many."""
+        self._above = [0.5 * shape.size for shape in shapes[: len(self.labels)]]
 
     @property
     def nodes(self) -> list[tuple[Any, npt.NDArray[np.int64]]]:
@@ -53,6 +63,8 @@ class CompanyNodes:
         at, q = places(company.pos).astype(np.float32), turns(company.q).astype(np.float32)
         for node, which in self._groups:
             node.batched_positions, node.batched_wxyzs = at[which], q[which]
+        for label, (x, y, z), above in zip(self.labels, at[: len(self.labels)].tolist(), self._above, strict=True):
+            label.position = (x, y, z + above)
 
 
 def by_colour(shape: Shape, is_plain: bool = False) -> list[tuple[tuple[int, int, int], Mesh]]:

@@ -10,8 +10,11 @@ import numpy as np
 from ...core.algebra import norm
 from ...core.vectors import Quat, Vec3
 from ..axes import place
+from ..colours import of_vehicle
 from ..frame import Frame, Points, Stage
+from ..shape import tinted
 from . import surroundings
+from .bearings import Bearings
 from .company import CompanyNodes
 from .contacts import Contacts
 from .plan import PlanNodes
@@ -36,11 +39,12 @@ class Scene:
         self._scene, self._shapes, self._chosen = scene, stage.company, 0
         self.company = CompanyNodes(scene, stage.company) if stage.company else None
         """All vehicles, where there are several."""
-        self._shape = stage.shape
-        self.vehicle = VehicleNodes(scene, "/stage/vehicle", stage.shape)
+        shape = tinted(stage.shape, of_vehicle(0)) if stage.company else stage.shape
+        self.vehicle = VehicleNodes(scene, "/stage/vehicle", shape)
         self.trail = Trail(scene, "/stage/trail", size)
         self.contacts = Contacts(scene, size)
         self.plan = PlanNodes(scene, size)
+        self.bearings = Bearings(scene)
         self.estimate = Ghost(scene, "/stage/estimate", stage.shape, _ESTIMATE, 0.35)
         self.set_point = scene.add_icosphere(
             "/stage/set_point", radius=0.07 * size, color=_WANTED, opacity=0.9, visible=False
@@ -52,8 +56,8 @@ class Scene:
             head_radius=0.09 * size, head_length=0.2 * size,
         )  # fmt: skip
 
-    def show(self, frame: Frame) -> None:
-        """Draw a moment."""
+    def show(self, frame: Frame, span: float) -> None:
+        """Draw a moment; ``span``: metres that are seen around the vehicle."""
         if self.company is not None and frame.company is not None:
             self._choose(frame.company.chosen)
             self.company.show(frame.company)
@@ -66,6 +70,7 @@ class Scene:
         if frame.set_point is not None:
             self.set_point.position = place(frame.set_point)
         self._show_wind(frame)
+        self.bearings.show(place(frame.pos), span)
 
     def place_world(self, copies: Points | None) -> None:
         """Draw the world at other places, shape (n, 3) [m]; None: once, at the origin."""
@@ -82,12 +87,10 @@ class Scene:
         self.trail.clear()
         self.contacts.clear()
         shape = self._shapes[number]
-        if shape is not self._shape:
-            self._shape = shape
-            self.vehicle.body.remove()
-            self.estimate.body.remove()
-            self.vehicle = VehicleNodes(self._scene, "/stage/vehicle", shape)
-            self.estimate = Ghost(self._scene, "/stage/estimate", shape, _ESTIMATE, 0.35)
+        self.vehicle.body.remove()
+        self.estimate.body.remove()
+        self.vehicle = VehicleNodes(self._scene, "/stage/vehicle", tinted(shape, of_vehicle(number)))
+        self.estimate = Ghost(self._scene, "/stage/estimate", shape, _ESTIMATE, 0.35)
 
     def _show_wind(self, frame: Frame) -> None:
         x, y, z = place(frame.pos)
