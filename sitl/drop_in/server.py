@@ -110,8 +110,8 @@ class Session:
     def _parameters(self, table: Table) -> dict[str, float]:
         """Of default files, storage and command line; what the firmware does not take is told and left out."""
         of_files = files.load_all(self._line.defaults)
-        for text in files.notes(table, of_files):
-            self._say(text)
+        for note in files.notes(table, of_files):
+            self._say(note)
         values = {"SIM_WIND_T": 0.0, **of_files}  # ArduPilot's, with less wind near the ground
         values.update(self.storage.parameters)
         if self._line.sysid is not None:

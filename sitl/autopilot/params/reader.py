@@ -75,7 +75,8 @@ class Reader:
             ParameterError: names the source, the line and what is wrong with it.
         """
         junk: list[str] = []
-        others, taken, at = 0, 0, {}
+        others, taken = 0, 0
+        at: dict[str, int] = {}
         for number, line in enumerate(re.split(r"\r\n|\r|\n", text), 1):
             where = f"{source}, line {number}"
             stripped = line.strip()
