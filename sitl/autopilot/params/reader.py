@@ -58,7 +58,8 @@ class Reader:
         Raises:
             ParameterError: it cannot be read, is no file of parameters, or has a value that is no number.
         """
-        self._file(_bytes(path), str(path), path, path.resolve().parent, ())
+        data, file = _bytes(path), path.resolve()  # a link stands for the file that it leads to
+        self._file(data, str(path), file, file.parent, ())
 
     def text(self, text: str, source: str, file: Path | None = None, root: Path | None = None,
              within: tuple[Path, ...] = ()) -> None:  # fmt: skip
@@ -115,7 +116,7 @@ class Reader:
             self.read_only.add(name)
 
     def _file(self, data: bytes, source: str, path: Path, root: Path, within: tuple[Path, ...]) -> None:
-        self.text(_decoded(data, source), source, path, root, (*within, path.resolve()))
+        self.text(_decoded(data, source), source, path, root, (*within, path))
 
     def _directive(self, line: str, where: str, file: Path | None, root: Path | None, within: tuple[Path, ...]) -> None:
         word, *rest = line.split("#", 1)[0].split(None, 1)

@@ -140,6 +140,14 @@ def test_an_included_file_is_read_where_it_stands(tmp_path: Path) -> None:
     assert found == {"LAND_SPEED": 50.0, "RTL_ALT": 2.0, "WPNAV_SPEED": 500.0} and not files.not_read(found)
 
 
+def test_a_link_stands_for_the_file_that_it_leads_to(tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "a.parm").write_text("@include b.parm\n")
+    (tmp_path / "kept" / "b.parm").write_text("RTL_ALT 2000\n")
+    (tmp_path / "now.parm").symlink_to(tmp_path / "kept" / "a.parm")
+    assert files.load(tmp_path / "now.parm") == {"RTL_ALT": 2000.0}
+
+
 def test_a_file_that_is_not_there_is_named_and_the_rest_is_read() -> None:
     found = files.load(FOLDER / "include.parm")
     assert found == {"FENCE_RADIUS": 700.0}
