@@ -95,4 +95,4 @@ def test_a_mission_moves_switches(core: Core) -> None:
     d.fly(15.0)
     assert d.said("Mission: 2 AuxFunction")
     assert d.mode == HOLD
-    assert d.reached == [1, 2]
+    assert d.reached == [1]

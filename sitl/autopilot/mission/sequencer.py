@@ -43,6 +43,7 @@ from . import jumps, returning
 from .commands import Commands
 from .item import (
     COMMANDS,
+    DO_AUX_FUNCTION,
     DO_LAND_START,
     DO_RETURN_PATH_START,
     NAV_TAKEOFF,
@@ -385,7 +386,7 @@ class Sequencer:
         elif item.command == DO_RETURN_PATH_START and nav.mission_part == OUTWARD:
             nav.mission_part = RETURN_PATH
         notes += self.commands.run(v, item)
-        if nav.condition_kind == CONDITION_NONE:
+        if nav.condition_kind == CONDITION_NONE and item.command != DO_AUX_FUNCTION:  # of switches nothing is told
             notes.append(ItemReached(seq))
 
     def _condition_met(self, v: Vehicle, seq: int) -> list[Note]:

@@ -47,5 +47,9 @@ def convert(options: argparse.Namespace) -> int:
     if file.mission.items and file.has_fence_or_rally and target.suffix.lower() != ".plan":
         print(f"{target}: geofence and rally points are left out: the format has no place for them", file=sys.stderr)
     say_notes(file)
-    print(f"{target}: {max(len(file.mission) - 1, 0)} items")
+    if file.mission.items:
+        print(f"{target}: {max(len(file.mission) - 1, 0)} items")
+    else:
+        areas = len(file.circles) + len(file.polygons)
+        print(f"{target}: no mission; geofence of {areas} areas, {len(file.rally)} rally points")
     return 0

@@ -142,6 +142,8 @@ def test_a_path_is_flown_at_an_altitude(capsys: pytest.CaptureFixture[str], tmp_
     assert "geofence of 1 areas" in out
     assert cli.main(["mission", "convert", "path.kml", "path.plan", "--altitude", "4", "--vehicle", "rover"]) == 0
     assert [item.command for item in load("path.plan").mission.items[1:]] == [16, 16]
+    assert cli.main(["mission", "convert", "area.poly", "area.waypoints"]) == 0
+    assert "area.waypoints: no mission; geofence of 1 areas, 0 rally points" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
