@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import socket
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -13,7 +15,7 @@ import pytest
 from sitl import Simulation
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
-from sitl.client import Client, InProcess, LinkLostError
+from sitl.client import Client, InProcess, LinkLostError, connect
 from sitl.client.byte_socket import ByteSocket
 from sitl.client.connection import Connection, Remote
 from sitl.client.endpoint import Endpoint, Inbox
@@ -284,3 +286,40 @@ def test_a_listener_speaks_to_the_sender_of_the_vehicles_heartbeat_and_hears_no_
         stream.flush()
         assert vehicle.recv(1 << 12)
         stream.close()
+
+
+@pytest.mark.parametrize("wanted", [1, 2])
+def test_the_vehicle_that_is_named_is_waited_for(wanted: int) -> None:
+    with contextlib.ExitStack() as stack:
+        vehicles = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(2)]
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        stream = ByteSocket(f"udp:127.0.0.1:{port}")
+        stack.callback(stream.close)
+        link = Remote(stream, None, 2.0)
+        link.inbox.system = wanted
+        for system, each in enumerate(vehicles, 1):
+            each.sendto(heartbeat(system), ("127.0.0.1", port))
+        link.find()
+        assert link.system == wanted and stream.peer is not None
+        assert stream.peer[1] == vehicles[wanted - 1].getsockname()[1]
+
+
+def test_one_that_is_named_and_not_there_is_not_found() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port, asked = server.getsockname()[1], bytearray()
+
+        def vehicle() -> None:
+            peer, _ = server.accept()
+            with peer:
+                peer.sendall(heartbeat(1))
+                while data := peer.recv(1 << 12):
+                    asked.extend(data)
+
+        thread = threading.Thread(target=vehicle)
+        thread.start()
+        with pytest.raises(LinkLostError, match="no vehicle of system 2 answers within"):
+            connect(f"tcp:127.0.0.1:{port}", patience=0.1, target=2)
+        thread.join()
+    assert {each.kind.decode(each.payload).target_system for each in Splitter().feed(bytes(asked))} == {2}

@@ -161,8 +161,8 @@ def running(tmp_path):
 
 def test_a_copter_is_run_in_a_world_and_wind_is_set_in_flight(running):
     copter = running("copter", "--world", "office_erlecopter")
-    copter.wait_ready()
     assert copter.connection.prove(), copter.connection.doubt
+    copter.wait_ready()
     copter.take_off(2.0)
     copter.delay(2.0)
     assert copter.message("DISTANCE_SENSOR").current_distance == pytest.approx(200, abs=40)
