@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..report.compare import compare
 from ..report.group import Group, unique_names
-from .options import add_jobs, positive, workers
+from .options import add_jobs, add_said_again, positive, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -28,6 +28,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="N",
         help="also evaluate each run in N greedy episodes",
     )
+    add_said_again(parser)
     add_jobs(parser)
     parser.set_defaults(function=run)
 
