@@ -11,10 +11,12 @@ import pytest
 from sitl.agents import showing
 from sitl.agents.cli import watch
 from sitl.agents.errors import AgentError
+from sitl.agents.gif import Gif
 from sitl.agents.runs.watch import Watch
 from sitl.agents.showing import Reel
 from sitl.agents.tabular import training
 from tests.agents.small_runs import new
+from tests.full_disk import WORDS, full_disk
 
 pytest.importorskip("pygame", reason="pictures need the extra 'viz'")
 Image = pytest.importorskip("PIL.Image", reason="pictures need the extra 'viz'")
@@ -65,6 +67,19 @@ def test_a_gif_gets_colours_that_the_first_picture_did_not_have(tmp_path):
             shown = np.asarray(film.convert("RGB")).astype(int)
             assert np.abs(shown - picture)[(picture == (200, 50, 40)).all(axis=2)].max(initial=0) <= 16
             assert k < 12 or np.abs(shown - picture).max() <= 16
+
+
+def test_a_gif_that_finds_the_disk_full_is_removed(tmp_path):
+    path = tmp_path / "film.gif"
+    film = Gif(path, 0.1)
+    film.add(np.zeros((400, 400, 3), np.uint8))
+    noise = np.random.default_rng(1).integers(0, 255, (400, 400, 3), np.uint8)
+    with full_disk(2000), pytest.raises(AgentError, match=rf"film\.gif cannot be written: {WORDS}"):
+        for _ in range(5):
+            film.add(noise)
+            noise = noise[::-1]
+    film.close()
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_gif_whose_pictures_do_not_change_has_them_all(tmp_path):

@@ -334,3 +334,12 @@ def test_build_leaves_no_unit_of_a_vehicle_to_be_compiled_later() -> None:
         built = {unit.name for entry in all_entries(kind) for unit in reached(entry)}
         own = {name for name in UNITS if f".{kind.name}." in name}
         assert own and own <= built, own - built
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux")
+def test_output_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+    with open("/dev/full", "w") as full:
+        words = [sys.executable, "-m", "sitl", "params", "WPNAV_SPEED"]
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, cwd=tmp_path, env=environment())
+    assert done.returncode == 2
+    assert done.stderr == "sitl params: its output cannot be written: No space left on device\n"

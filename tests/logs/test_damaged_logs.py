@@ -14,6 +14,7 @@ import pytest
 
 from sitl.errors import SitlError
 from sitl.logs import track_bin, track_tlog
+from sitl.logs.flight import read as read_columns
 from sitl.logs.track import COLUMNS, Track, TrackError
 from sitl.logs.track_bytes import MAGIC
 from sitl.missions.comparison.alignment import part
@@ -34,6 +35,7 @@ COUNT = 80
         ("x.tlog", telemetry(), track_tlog.read),
         ("y.tlog", telemetry(), Log),
         ("z.bin", binary(flight(), V36), read),
+        ("z.tlog", telemetry(), read_columns),
     ],
 )
 def test_damaged_logs(tmp_path: Path, name: str, data: bytes, reader: Callable[[Path], object]) -> None:

@@ -11,11 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sitl.logs import track_observer
 from sitl.logs.dataflash.reader import Row
 from sitl.logs.tlog import LogError
 from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
 from sitl.logs.track_bin import _Reader as Reader
 from sitl.logs.track_observer import TrackObserver
+from sitl.missions.comparison import alignment
 from sitl.missions.comparison.alignment import AlignmentError, match, pair, part
 from sitl.missions.comparison.flight import measure, read
 from sitl.recording.entries import of_state
@@ -265,3 +267,19 @@ def test_flights_far_apart_are_each_seen_from_home() -> None:
     both = pair(straight(), away)
     assert measure(both)["position"].max == 0.0
     assert "km from the golden flight's home" in both.notes[0]
+
+
+def test_flights_that_are_too_long_to_compare_say_how_long_may_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(alignment, "MOST_CELLS", 50_000)
+    with pytest.raises(AlignmentError, match=r"0\.0 hours are too long to be compared: at most 0\.0"):
+        match(straight(20.0), moved(straight(20.0), slice(1, 2), (0.1,)))
+
+
+def test_a_track_ends_where_it_may_be_no_longer(core: Core, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(track_observer, "LONGEST_S", 2.0)
+    simulation = Simulation(core=core, seed=5)
+    observer = TrackObserver(simulation)
+    simulation.advance(30.0)
+    track = observer.track()
+    simulation.close()
+    assert track.t[-1] - track.t[0] == pytest.approx(2.0)
