@@ -15,6 +15,8 @@ from sitl import Simulation
 from sitl.client import Client
 from sitl.worlds.drawing import plan
 
+plt.rcParams.update({"font.size": 13, "legend.fontsize": 12, "axes.titlesize": 14})
+
 STICKS = ((1400, 1500), (1500, 1600), (1500, 1400), (1420, 1540))
 """Pitch and roll [us], each for 8 s; the lidar does not see behind the vehicle."""
 
@@ -60,7 +62,7 @@ def in_a_circle(behave: int) -> list[tuple[float, float]]:
 
 def main() -> None:
     """Write docs/images/avoidance.png."""
-    figure, (office, circle) = plt.subplots(1, 2, figsize=(12, 6))
+    figure, (office, circle) = plt.subplots(1, 2, figsize=(10, 5.8))
     for avoids, colour in ((False, "tab:red"), (True, "tab:blue")):
         places, simulation = in_the_office(avoids)
         office.plot(*zip(*((n, -e) for n, e in places), strict=True), color=colour,
@@ -75,12 +77,12 @@ def main() -> None:
     for radius, style in ((15.0, "-"), (12.0, "--")):
         turn = [math.tau * k / 200 for k in range(201)]
         circle.plot([radius * math.sin(a) for a in turn], [radius * math.cos(a) for a in turn], style, color="0.3")
-    circle.set_title("GUIDED velocities, FENCE_RADIUS 15, FENCE_MARGIN 3")
+    circle.set_title("GUIDED, FENCE_RADIUS 15, FENCE_MARGIN 3")
     circle.set(aspect="equal", xlabel="east [m]", ylabel="north [m]")
-    office.legend(loc="upper right")
-    circle.legend(loc="upper right")
+    for axes in (office, circle):
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False)
     figure.tight_layout()
-    figure.savefig(Path(__file__).parent / "images" / "avoidance.png", dpi=70)
+    figure.savefig(Path(__file__).parent / "images" / "avoidance.png", dpi=100)
 
 
 if __name__ == "__main__":

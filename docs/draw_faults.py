@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 from sitl import Simulation
 from sitl.client import Client
 
+plt.rcParams.update({"font.size": 13, "legend.fontsize": 12, "axes.titlesize": 13})
 IMAGES = Path(__file__).parent / "images"
 Row = tuple[float, ...]
 FAULT = "0.85"
@@ -50,16 +51,16 @@ def true(pilot: Client) -> Any:
 
 def draw(name: str, rows: list[Row], labels: Sequence[str], ylabel: str, span: tuple[float, float], title: str) -> None:
     """A picture with a line for each column behind the time."""
-    figure, axes = plt.subplots(figsize=(6, 2.4))
+    figure, axes = plt.subplots(figsize=(7.2, 3.2))
     axes.axvspan(*span, color=FAULT, lw=0)
     time, *columns = zip(*rows, strict=True)
     for column, label in zip(columns, labels, strict=True):
-        axes.plot(time, column, label=label, lw=1.3)
+        axes.plot(time, column, label=label, lw=1.8)
     axes.set(xlabel="time [s]", ylabel=ylabel)
-    axes.set_title(title, fontsize=9)
-    axes.legend(fontsize=8)
+    axes.set_title(title)
+    axes.legend()
     figure.tight_layout()
-    figure.savefig(IMAGES / f"fault-{name}.png", dpi=70)
+    figure.savefig(IMAGES / f"fault-{name}.png", dpi=100)
     plt.close(figure)
 
 
@@ -90,7 +91,7 @@ def copters() -> None:
 
 def rover() -> None:
     """Paths with the same sticks."""
-    figure, axes = plt.subplots(figsize=(6, 3.2))
+    figure, axes = plt.subplots(figsize=(7.2, 4.2))
     for fault in ("", "motor:3=0.4@3", "servo:1@3", "servo:1/stuck@3"):
         pilot = Client(Simulation("ardupilot_rover"))
         pilot.wait_ready()
@@ -105,12 +106,12 @@ def rover() -> None:
                 pilot.rc({1: 1400, 3: 1650})
             pilot.delay(0.1)
             places.append((true(pilot).pos.y, true(pilot).pos.x))
-        axes.plot(*zip(*places, strict=True), label=fault or "without faults", lw=1.3)
+        axes.plot(*zip(*places, strict=True), label=fault or "without faults", lw=1.8)
     axes.set(aspect="equal", xlabel="east [m]", ylabel="north [m]")
-    axes.set_title("MANUAL, the same sticks for 10 s", fontsize=9)
-    axes.legend(fontsize=8)
+    axes.set_title("MANUAL, the same sticks for 10 s")
+    axes.legend()
     figure.tight_layout()
-    figure.savefig(IMAGES / "fault-rover.png", dpi=70)
+    figure.savefig(IMAGES / "fault-rover.png", dpi=100)
     plt.close(figure)
 
 

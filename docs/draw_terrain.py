@@ -15,6 +15,8 @@ from sitl import Simulation
 from sitl.client import Client
 from sitl.client.terrain import TerrainAnswers
 
+plt.rcParams.update({"font.size": 13, "legend.fontsize": 12, "axes.titlesize": 14})
+
 LAT, LON, ALT = -35.363262, 149.165237, 584.0
 ABOVE_GROUND, ABOVE_HOME = 10, 3
 """MAV_FRAMEs."""
@@ -44,7 +46,7 @@ def flight(frame: int) -> list[tuple[float, float, float]]:
 
 def main() -> None:
     """Draw images/terrain.png."""
-    figure, ax = plt.subplots(figsize=(10, 4))
+    figure, ax = plt.subplots(figsize=(8, 3.8))
     rows = flight(ABOVE_GROUND)
     north, height, ground = zip(*rows, strict=True)
     ax.fill_between(north, ground, -2.0, color="0.8", label="simulated ground: points 100 m apart")

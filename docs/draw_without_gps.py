@@ -15,6 +15,8 @@ from sitl.client import Client
 from sitl.client.odometry import PARAMETERS, Odometry
 from sitl.worlds.drawing import plan
 
+plt.rcParams.update({"font.size": 13, "legend.fontsize": 12, "axes.titlesize": 14})
+
 FLOW: dict[str, float] = {
     "EK3_SRC1_POSXY": 0, "EK3_SRC1_VELXY": 5, "EK3_SRC1_VELZ": 0, "FLOW_TYPE": 10, "SIM_FLOW_ENABLE": 1, "GPS1_TYPE": 0,
     "WPNAV_SPEED": 100,
@@ -47,7 +49,7 @@ def squares(params: dict[str, float]) -> tuple[list[tuple[float, float]], Simula
 
 def main() -> None:
     """Draw images/without_gps.png."""
-    figure, axes = plt.subplots(1, 2, figsize=(10, 5), sharex=True, sharey=True)
+    figure, axes = plt.subplots(1, 2, figsize=(9, 4.6), sharex=True, sharey=True)
     for ax, (title, params) in zip(axes, (("optical flow", FLOW), ("odometry", PARAMETERS)), strict=True):
         places, simulation = squares(params)
         assert simulation.world is not None

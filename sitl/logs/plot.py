@@ -44,7 +44,7 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT)
         LogError: the flight holds no position, attitude or outputs; the picture cannot be written.
     """
     position = flight["LOCAL_POSITION_NED"]
-    figure = new_figure(12.0, 8.0, title)
+    figure = new_figure(9.6, 7.2, title)
     axes = figure.subplots(3, 2, width_ratios=(1, 1.2))
     grid = axes[0, 0].get_gridspec()
     for row in range(3):
@@ -60,9 +60,9 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT)
         for t, _ in flight.reached:
             axis.axvline(t, color="r", lw=0.6, alpha=0.6)
         if axis.get_legend_handles_labels()[0]:
-            axis.legend(loc="upper right", ncols=4, fontsize=8)
+            axis.legend(loc="best", ncols=4, fontsize=10)
     for t, seq in flight.reached:
-        axes[0, 1].annotate(str(seq), (t, axes[0, 1].get_ylim()[1]), color="r", fontsize=8)
+        axes[0, 1].annotate(str(seq), (t, axes[0, 1].get_ylim()[1]), color="r", fontsize=10)
     axes[2, 1].set(xlabel="simulated time [s]")
     with whole_file(path, LogError, f"picture {path}") as beside:
         figure.savefig(beside, dpi=110)
