@@ -87,7 +87,7 @@ def _of_header(header: Any) -> tuple[Track, int]:
         raise ValueError(f"its home is {home!r}")
     if not (abs(home[0]) <= 90.0 and abs(home[1]) <= 180.0):
         raise ValueError(f"its home is {home!r}")
-    found = []
+    found: list[list[Any]] = []
     for name, types, rows in zip(_HEADER[2:], ((str,), (int,), (int, str), (bool,)), events, strict=False):
         if not isinstance(rows, list) or len(rows) > MOST_EVENTS:
             raise ValueError(f"its {name} are no list of at most {MOST_EVENTS}")

@@ -77,7 +77,7 @@ def complete(
     return track
 
 
-def integrated(powers: Rows) -> list[tuple[float, float]]:
+def integrated(powers: Rows) -> list[tuple[float, ...]]:
     """Energy [Wh] from (time [s], power [W])."""
     if not powers:
         return []
