@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import worlds
-from ..errors import OptionError
+from ..errors import OptionError, SitlError
 from .output import add_json_option, print_json
 
 
@@ -65,9 +65,9 @@ def show_world(options: argparse.Namespace) -> int:
     path = options.png or Path(f"{world.name}.png")
     try:
         drawing.draw(world, path, options.height)
-    except (OSError, ValueError) as error:  # ValueError: an ending that matplotlib does not know
-        raise OptionError(
-            f"--png {str(path)!r} cannot be written: {getattr(error, 'strerror', None) or error}"
-        ) from None
+    except SitlError as error:
+        raise OptionError(f"--png {error}") from None
+    except ValueError as error:  # an ending that matplotlib does not know
+        raise OptionError(f"--png {str(path)!r} cannot be written: {error}") from None
     print(f"plan: {path}")
     return 0

@@ -69,7 +69,7 @@ def draw(world: World, path: str | Path, height: float | None = None) -> None:
     figure = Figure(figsize=(9, 7.2), layout="constrained")
     FigureCanvasAgg(figure)
     plan(figure.add_subplot(), world, world.plan_height if height is None else height)
-    with whole_file(path, title=f"picture {path}") as beside:
+    with whole_file(path, title=repr(str(path))) as beside:
         figure.savefig(beside, dpi=110)
 
 

@@ -72,12 +72,12 @@ def test_a_gif_gets_colours_that_the_first_picture_did_not_have(tmp_path):
 def test_a_gif_that_finds_the_disk_full_is_removed(tmp_path):
     path = tmp_path / "film.gif"
     film = Gif(path, 0.1)
-    film.add(np.zeros((400, 400, 3), np.uint8))
     noise = np.random.default_rng(1).integers(0, 255, (400, 400, 3), np.uint8)
+    film.add(noise)
     with full_disk(2000), pytest.raises(AgentError, match=rf"film\.gif cannot be written: {WORDS}"):
         for _ in range(5):
-            film.add(noise)
             noise = noise[::-1]
+            film.add(noise)
     film.close()
     assert not list(tmp_path.iterdir())
 
