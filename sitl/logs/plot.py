@@ -60,7 +60,7 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT)
         for t, _ in flight.reached:
             axis.axvline(t, color="r", lw=0.6, alpha=0.6)
         if axis.get_legend_handles_labels()[0]:
-            axis.legend(loc="best", ncols=4, fontsize=10)
+            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=4, fontsize=10, frameon=False)
     for t, seq in flight.reached:
         axes[0, 1].annotate(str(seq), (t, axes[0, 1].get_ylim()[1]), color="r", fontsize=10)
     axes[2, 1].set(xlabel="simulated time [s]")

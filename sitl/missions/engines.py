@@ -222,8 +222,8 @@ def table(flown: dict[str, dict[str, Flown]]) -> str:
 def plot(flown: dict[str, dict[str, Flown]], title: str, path: Path) -> None:
     """Plot each flight with all engines: plan, height or speed, pitch or heading, output, and the distance of each from
     native physics."""
-    figure = new_figure(20.0, 4.0 * len(flown), title)
-    axes = figure.subplots(len(flown), 5, squeeze=False)
+    figure = new_figure(12.0, 6.4 * len(flown), title)
+    axes = figure.subplots(2 * len(flown), 3, squeeze=False).reshape(len(flown), 6)
     for row, (flight, engines) in zip(axes, flown.items()):
         native = engines[NATIVE]
         flies = bool(native.rows[:, 3].min() < -1.0)
@@ -240,11 +240,16 @@ def plot(flown: dict[str, dict[str, Flown]], title: str, path: Path) -> None:
                 row[4].plot(t, np.linalg.norm(_places(f, t) - _places(native, t), axis=1), color=f"C{k}", label=engine)
         row[0].set(xlabel="east [m]", ylabel="north [m]", title=f"{flight}: plan", aspect="equal")
         titles = "height [m]" if flies else "speed [m/s]", "pitch [deg]" if flies else "heading [deg]"
-        for axis, text in zip(row[1:], (*titles, "mean output of the motors", "distance from native's path [m]")):
+        for axis, text in zip(row[1:5], (*titles, "mean output of the motors", "distance from native's path [m]")):
             axis.set(xlabel="t [s]", title=text)
-        row[0].legend()
-        row[4].legend()
-    figure.savefig(path, dpi=60)
+        row[5].set_axis_off()
+        row[5].legend(*row[0].get_legend_handles_labels(), loc="center", fontsize=14, frameon=False)
+        for axis in row[:5]:
+            axis.grid(alpha=0.25)
+            axis.title.set_size(13)
+            axis.tick_params(labelsize=12)
+            axis.xaxis.label.set_size(12)
+    figure.savefig(path, dpi=80)
 
 
 def _places(flown: Flown, t: Array) -> Array:

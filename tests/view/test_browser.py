@@ -35,6 +35,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 from sitl.missions.comparison import flight
 from sitl.missions.view import together
+from sitl.view import library
 from sitl.view.axes import place
 from sitl.view.flight_page import FlightPage
 from sitl.view.live_page import LivePage
@@ -108,8 +109,10 @@ def click(browser: Any, label: str) -> None:
     browser.find_element(By.XPATH, f"//button[contains(., '{label}')]").click()
 
 
-def test_a_pilot_flies_from_the_page(browser: Any, served: Served) -> None:
+def test_a_pilot_flies_from_the_page(browser: Any, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     page = served.page
+    refused: list[str] = []
+    monkeypatch.setattr(library, "note", lambda client, text, title="": refused.append(text))
     browser.get(page.address)
     until(browser, lambda: "erle_copter" in text(browser) and "STABILIZE" in text(browser))
     assert page.is_seen and "disarmed" in text(browser)
@@ -140,6 +143,7 @@ def test_a_pilot_flies_from_the_page(browser: Any, served: Served) -> None:
     told = page.simulation.v.autopilot.estimate.pos
     assert math.dist(shown_place(browser), told[:2]) < 4.0, "as LOCAL_POSITION_NED has it, but for a receiver's error"
     served.pace.go_on()
+    assert refused == [], "what the library's own page sends passes"
 
 
 def shown_place(browser: Any) -> Any:

@@ -35,7 +35,7 @@ def _colours() -> Any:
 
 def _quiet(axis: Any) -> None:
     axis.grid(alpha=0.25, lw=0.6)
-    axis.tick_params(labelsize=8, color="#888")
+    axis.tick_params(labelsize=10, color="#888")
     for side in ("top", "right"):
         axis.spines[side].set_visible(False)
     for side in ("left", "bottom"):
@@ -62,14 +62,14 @@ def plan(comparison: Comparison) -> bytes:
     lines.set_clim(0.0, top)
     axis.add_collection(lines)
     bar = figure.colorbar(lines, ax=axis, shrink=0.8, pad=0.01)
-    bar.set_label("new: distance from the golden path [m]", fontsize=9)
-    bar.ax.tick_params(labelsize=8)
+    bar.set_label("new: distance from the golden path [m]", fontsize=11)
+    bar.ax.tick_params(labelsize=10)
     if np.isfinite(limit):
         bar.ax.axhline(limit, color=LIMIT, lw=1.5)
     for at, seq in new.items:
         north, east = (float(np.interp(at, new.t, new[name])) for name in ("north", "east"))
         axis.plot(east, north, "o", ms=4, color="#222", zorder=4)
-        axis.annotate(str(seq), (east, north), textcoords="offset points", xytext=(5, 4), fontsize=8, color="#222")
+        axis.annotate(str(seq), (east, north), textcoords="offset points", xytext=(5, 4), fontsize=10, color="#222")
     axis.plot(golden["east"][0], golden["north"][0], "s", ms=6, color="#222", label="start", zorder=4)
     if comparison.first is not None:
         north, east = (float(np.interp(comparison.first.t, new.t, new[name])) for name in ("north", "east"))
@@ -78,7 +78,7 @@ def plan(comparison: Comparison) -> bytes:
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.08)
     axis.set(xlabel="east [m]", ylabel="north [m]")
-    axis.legend(loc="best", fontsize=8, framealpha=0.9)
+    axis.legend(loc="best", fontsize=10, framealpha=0.9)
     _quiet(axis)
     return _png(figure)
 
@@ -101,18 +101,18 @@ def flown(comparison: Comparison) -> bytes:
     ]
     if not KINDS[new.kind].flies:
         del rows[2:4], rows[0]
-    figure = new_figure(_WIDE, 1.45 * len(rows) + 0.4)
+    figure = new_figure(_WIDE, 1.6 * len(rows) + 0.4)
     axes = figure.subplots(len(rows), 1, sharex=True)
     for axis, (label, column) in zip(axes, rows, strict=True):
         axis.plot(golden.t, column(golden), color=GOLDEN, lw=3.2, alpha=0.45, label="golden")
         axis.plot(new.t, column(new), color=NEW, lw=1.1, label="new")
-        axis.set_ylabel(label, fontsize=8.5)
+        axis.set_ylabel(label, fontsize=10)
         _events(axis, comparison)
         _quiet(axis)
-    axes[0].legend(loc="upper right", ncols=2, fontsize=8, framealpha=0.9)
+    axes[0].legend(loc="upper right", ncols=2, fontsize=10, framealpha=0.9)
     figure.align_ylabels(axes)
     _name_items(axes[0], comparison)
-    axes[-1].set_xlabel(f"simulated time since {_since(comparison)} [s]", fontsize=9)
+    axes[-1].set_xlabel(f"simulated time since {_since(comparison)} [s]", fontsize=11)
     return _png(figure)
 
 
@@ -121,7 +121,7 @@ def differing(comparison: Comparison) -> bytes:
     shown = [comparison.differences[name] for name in _SHOWN]
     if not KINDS[comparison.pair.new.kind].flies:
         shown = [series for series in shown if np.isfinite(comparison.tolerance.limit(f"{series.name}.max"))]
-    figure = new_figure(_WIDE, 1.45 * len(shown) + 0.4)
+    figure = new_figure(_WIDE, 1.6 * len(shown) + 0.4)
     axes = np.atleast_1d(figure.subplots(len(shown), 1, sharex=True))
     for axis, series in zip(axes, shown, strict=True):
         limit = comparison.tolerance.limit(f"{series.name}.max")
@@ -139,12 +139,12 @@ def differing(comparison: Comparison) -> bytes:
                 axis.axhline(value, color=LIMIT, lw=1.0, ls="--", alpha=0.8)
             reach = max(reach, 1.25 * limit) if series.max > 0.2 * limit else max(reach, 0.5 * limit)
         axis.set_ylim(-reach if len(signs) == 2 else -0.04 * reach, reach)
-        axis.set_ylabel(f"{series.title}\n[{series.unit}]", fontsize=8, color=LIMIT if is_bad else "#222")
+        axis.set_ylabel(f"{series.title}\n[{series.unit}]", fontsize=10, color=LIMIT if is_bad else "#222")
         _events(axis, comparison)
         _quiet(axis)
     figure.align_ylabels(axes)
     _name_items(axes[0], comparison)
-    axes[-1].set_xlabel(f"simulated time since {_since(comparison)} [s]", fontsize=9)
+    axes[-1].set_xlabel(f"simulated time since {_since(comparison)} [s]", fontsize=11)
     return _png(figure)
 
 
@@ -169,6 +169,6 @@ def _name_items(axis: Any, comparison: Comparison) -> None:
         if at - last >= room:
             axis.annotate(
                 str(seq), (at, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points", xytext=(0, 2),
-                fontsize=7.5, ha="center", color="#444",
+                fontsize=10, ha="center", color="#444",
             )  # fmt: skip
             last = at
