@@ -89,7 +89,7 @@ class TrackObserver:
         self._follow_events()
         if self._ready() == [0]:
             return
-        if self._rows and now * 1e-6 - self._rows[0][0] > LONGEST_S:
+        if self._rows and now * 1e-6 - self._rows[0] > LONGEST_S:
             return
         if self._is_new:
             self._find_origin()
