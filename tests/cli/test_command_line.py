@@ -80,7 +80,7 @@ def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> N
     ("arguments", "says"),
     [
         (("--frame", "nonsense"), "airframe 'nonsense' is not known; it is one of erle_copter, ardupilot_quad"),
-        (("--speedup", "0"), "speed-up '0' is not a number above 0"),
+        (("--speedup", "0"), "speed-up '0' is not a number from 0.001 to 100000"),
         (("--params", "absent.parm"), "parameter file 'absent.parm' cannot be read"),
         (("--out", "carrier:pigeon"), "'carrier' is not a kind of link; allowed: udp:HOST:PORT"),
         (("--home", "1,2"), "is not LAT,LON,ALT,HEADING"),
