@@ -55,7 +55,7 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
         ("action", "autoreset_mode", "begin", "faults", "home", "info", "latency", "max_episode_steps", "observation",
-         "params", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "threads",
+         "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "threads",
          "tiled", "wait"), _is_free,
     ),
 }  # fmt: skip

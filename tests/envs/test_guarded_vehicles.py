@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from dataclasses import replace
@@ -122,8 +123,11 @@ def test_a_height_that_has_drifted_is_right_again_after_the_copter_has_stood_on_
 @pytest.mark.parametrize("error", [0.25, -0.25])
 def test_a_landing_ends_on_the_ground_whatever_the_error_of_the_height(error):
     simulation = hovering()
-    with RealVehicle(simulation, hidden=False, waits=True) as vehicle:
-        env = environment(vehicle, task=Land(offset=0.0, pad=3.0), guard={"late": 60.0, "floor": -5.0})
+    task, guard = Land(offset=0.0, pad=3.0), {"late": 60.0, "floor": -5.0}
+    with (
+        RealVehicle(simulation, hidden=False, waits=True) as vehicle,
+        contextlib.closing(environment(vehicle, task=task, guard=guard)) as env,
+    ):
         env.reset(seed=1)
         state = env.robot._states[0]
         origin = (*state.origin[:2], state.origin[2] - error)
@@ -133,10 +137,9 @@ def test_a_landing_ends_on_the_ground_whatever_the_error_of_the_height(error):
             _, _, terminated, _, info = env.step(np.array([0.0, 0.0, down, 0.0], np.float32))
             if terminated:
                 break
-        assert terminated and info["is_success"]
+        assert terminated and info["is_success"], info
         assert simulation.v.autopilot.arming.landed and position(simulation)[2] < 0.03
         assert "put down" in [deed.what for deed in env.robot.watch.deeds]
-        env.close()
 
 
 def test_what_is_not_ready_is_waited_for_and_said():
