@@ -22,7 +22,8 @@ def add_fail_option(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FAULT",
-        help=f"inject a fault: {FORM}, such as gps@12, motor:2=0.5@20..30 or link@60..75 (repeatable; sitl help faults)",
+        help=f"inject a fault: {FORM}, such as gps@12, motor:2=0.5@20..30 or link@60..75 "
+        "(repeatable; sitl help faults)",
     )
 
 

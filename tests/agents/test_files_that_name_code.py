@@ -30,7 +30,6 @@ NAMED = [
     ({"autopilot_path": "./theirs"}, r"autopilot_path = '\./theirs'"),
     ({"connection": "tcp:127.0.0.1:1", "reset": "force"}, "reset = 'force'"),
     ({"connection": "tcp:127.0.0.1:1", "guard": False}, "guard = False"),
-    ({"params": "/etc/theirs.parm"}, "params = '/etc/theirs.parm'"),
 ]
 
 
@@ -82,6 +81,7 @@ OUTSIDE = [
     ({"world": "/dev/zero"}, "world = '/dev/zero'", "world=/dev/zero"),
     ({"world": "../a b.toml"}, r"world = '\.\./a b\.toml'", "world='../a b.toml'"),
     ({"physics": "json:127.0.0.1:9002"}, "physics = 'json:127.0.0.1:9002'", "physics=json:127.0.0.1:9002"),
+    ({"params": "/etc/theirs.parm"}, "params = '/etc/theirs.parm'", "params=/etc/theirs.parm"),
     ({"render_mode": "human"}, "render_mode = 'human'", "render_mode=human"),
     ({"save_to": "/tmp/log"}, "save_to = '/tmp/log'", "save_to=/tmp/log"),
     ({"address": {"host": "a"}}, "address = {'host': 'a'}", "address='{'"),
