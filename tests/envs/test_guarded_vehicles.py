@@ -133,7 +133,7 @@ def test_a_landing_ends_on_the_ground_whatever_the_error_of_the_height(error):
         origin = (*state.origin[:2], state.origin[2] - error)
         env.robot._vehicles._origin, env.robot._states[0] = origin, replace(state, origin=origin)
         for _ in range(400):
-            down = -0.5 if env.robot.pose[0, 2] > 0.2 else 0.0  # an agent that does not insist
+            down = -0.4 if env.robot.pose[0, 2] > 0.2 else 0.0  # 0.8 m/s, by an agent that does not insist
             _, _, terminated, _, info = env.step(np.array([0.0, 0.0, down, 0.0], np.float32))
             if terminated:
                 break
