@@ -44,11 +44,11 @@ class MissingExtra(SitlError, RuntimeError):
     """An optional dependency is not installed; the message says which extra brings it."""
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, known: Iterable[str], least: float = 0.6) -> str:
     """The end of a message about a name that is not known: "; did you mean ...?" with the first that begins
-    with it, else the nearest, or nothing."""
+    with it, else the nearest, or nothing. ``least``: how alike they must be, 0 .. 1."""
     names = list(known)
     near = [longer for longer in names if len(name) > 3 and longer.startswith(name)] or get_close_matches(
-        name, names, 1
+        name, names, 1, least
     )
     return f"; did you mean {near[0]!r}?" if near else ""

@@ -73,12 +73,12 @@ def policy_of(path: Path) -> Policy:
 
 
 def _no_policy(path: Path) -> str:
-    what = "is there" if path.exists() else "is not there"
+    what = "is not" if path.exists() else "is not there, and no name of"
     hint = did_you_mean(str(path), baselines.names())
     if path.suffix == onnx_file.SUFFIX:
         hint = "; .onnx is for other programs: export it as .npz"
     return (
-        f"{path} {what}, and is no policy: a policy is the folder of a run (sitl train), a file {policy_file.SUFFIX} "
+        f"{path} {what} a policy: a policy is the folder of a run (sitl train), a file {policy_file.SUFFIX} "
         f"of `sitl export`, or the name of a baseline{hint}"
     )
 

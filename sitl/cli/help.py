@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import pydoc
+import re
 import sys
 from functools import cache
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 from ..errors import OptionError, did_you_mean
 
 PACKAGE = Path(__file__).parents[1]
+_COMMENT = re.compile(r"^<!--.*?-->\n+", re.M | re.S)
 FOLDERS = ("tutorials", "envs", "notebooks", "reference", "")
 """Of the pages, in the order in which they are listed."""
 
@@ -35,11 +37,12 @@ def show(options: argparse.Namespace) -> int:
     if options.topic is None:
         width = max(map(len, found))
         print(*(f"{name:{width}s}  {title(page)}" for name, page in found.items()), sep="\n")
+        print("\n`sitl help` with one of these names prints that page")
         return 0
     topic = options.topic.removeprefix("docs/").removesuffix(".md")
     topic = topic if topic in found else topic.rpartition("/")[2]
     if topic in found:
-        text = found[topic].read_text(encoding="utf-8")
+        text = _COMMENT.sub("", found[topic].read_text(encoding="utf-8"))
         pydoc.pager(text) if sys.stdout.isatty() else print(text, end="")
         return 0
     if topic in COMMANDS:

@@ -120,7 +120,7 @@ def test_what_is_no_policy_at_all_is_told_what_one_is(tmp_path, capsys):
     (tmp_path / "junk.txt").write_text("junk")
     (tmp_path / "p.onnx").write_text("junk")
     for name, says in [
-        (tmp_path / "junk.txt", "junk.txt is there, and is no policy: a policy is the folder of a run (sitl train), a"),
+        (tmp_path / "junk.txt", "junk.txt is not a policy: a policy is the folder of a run (sitl train), a"),
         (tmp_path / "p.onnx", "; .onnx is for other programs: export it as .npz"),
         (tmp_path / "nothing", "nothing is not there"),
         ("copter-hovr", "did you mean 'copter-hover'?"),

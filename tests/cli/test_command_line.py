@@ -111,8 +111,8 @@ def test_parameters_of_a_file_that_do_nothing_are_mentioned(core: Core, tmp_path
     (tmp_path / "other.parm").write_text("WPNAV_SPEED 500\nTERRAIN_CACHE_SZ 1\nEK9_ENABLE 1\n")
     result = sitl(*RUN, "--duration", "1", "--params", "other.parm", folder=tmp_path)
     assert result.returncode == 0
-    assert "1 parameters of the files are not in this firmware: EK9_ENABLE" in result.stderr
-    assert "1 parameters of the files have no effect here: TERRAIN_CACHE_SZ" in result.stderr
+    assert "1 parameter of the files is not in this firmware: EK9_ENABLE" in result.stderr
+    assert "1 parameter of the files has no effect here: TERRAIN_CACHE_SZ" in result.stderr
 
 
 def test_a_taken_port_is_named(core: Core, tmp_path: Path) -> None:

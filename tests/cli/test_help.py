@@ -48,10 +48,12 @@ def test_every_page_has_a_name_of_its_own() -> None:
 def test_the_list_and_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["help"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == len(pages()) and "faults" + " " * 20 + " Fault injection" in "\n".join(lines)
+    assert len(lines) == len(pages()) + 2 and "faults" + " " * 20 + " Fault injection" in "\n".join(lines)
     for topic in ("faults", "docs/faults.md", "faults.md"):
         assert main(["help", topic]) == 0
         assert capsys.readouterr().out == (DOCS / "faults.md").read_text(encoding="utf-8")
+    assert main(["help", "CopterHover"]) == 0
+    assert "<!--" not in capsys.readouterr().out
     assert title(pages()["CopterHover"]) == "Hover in wind"
 
 

@@ -62,7 +62,7 @@ def add_said_again(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--option", type=env_option, action="append", metavar="NAME=VALUE",
         help="option of the environment that the folder of the run names, said again: needed where it reaches outside "
-        "of this process, as a world file does (SECURITY.md)",
+        "of this process, as a world file does (sitl help learning)",
     )  # fmt: skip
 
 

@@ -192,18 +192,20 @@ def notes(table: Table, values: FileValues) -> list[str]:
         if listed and not any(name in table for name in listed):
             texts.append(f"{source}: nothing was set: none of its parameters is in this firmware")
     if unknown := [name for name in found if name not in table]:
-        texts.append(f"{_counted(unknown)} of the files are not in this firmware: {_some(unknown)}")
+        texts.append(f"{_counted(unknown)} of the files {_are(unknown)} not in this firmware: {_some(unknown)}")
         if renamed := list(_renamed(table, {name: found[name] for name in unknown})):
-            texts[-1] += f"; {_some(renamed)} here"
+            texts[-1] += f"; not set, but the same here: {_some(renamed)}"
         elif len(unknown) == 1:
-            texts[-1] += did_you_mean(unknown[0], table.names())
+            texts[-1] += did_you_mean(unknown[0], table.names(), 0.85)
     if idle := [name for name in known if not (table[name].has_effect or table[name].doc)]:
-        texts.append(f"{_counted(idle)} of the files have no effect here: {_some(idle)}")
+        texts.append(
+            f"{_counted(idle)} of the files {'has' if len(idle) == 1 else 'have'} no effect here: {_some(idle)}"
+        )
     if outside := [table[name] for name, value in known.items() if table[name].out_of_range(value)]:
         told = [f"{p.name} {known[p.name]:g} ({p.used(stored(p, known[p.name])):g})" for p in outside]
-        texts.append(f"{_counted(outside)} of the files are out of range (used instead): {', '.join(told)}")
+        texts.append(f"{_counted(outside)} of the files {_are(outside)} out of range (used instead): {', '.join(told)}")
     if marked := [name for name in known if name in values.read_only]:
-        texts.append(f"{_counted(marked)} of the files are @READONLY, and can be set here: {_some(marked)}")
+        texts.append(f"{_counted(marked)} of the files {_are(marked)} @READONLY, and can be set here: {_some(marked)}")
     return texts
 
 
@@ -212,11 +214,15 @@ def _renamed(table: Table, unknown: Mapping[str, float]) -> Iterator[str]:
     for name, value in sorted(unknown.items(), key=lambda item: item[0].startswith("SR")):
         ours, factor = here(name) or ("", 1.0)
         if ours in table and table[ours].has_effect and stored(table[ours], factor * value) != table[ours].default:
-            yield f"{name} {value:g} is {ours} {factor * value:g}"
+            yield f"{ours} {factor * value:g} for {name} {value:g}"
 
 
 def _counted(names: Sequence[object]) -> str:
-    return f"{len(names)} parameters"
+    return f"{len(names)} parameter{'s' * (len(names) != 1)}"
+
+
+def _are(names: Sequence[object]) -> str:
+    return "is" if len(names) == 1 else "are"
 
 
 def _some(names: list[str]) -> str:

@@ -15,12 +15,16 @@ _GPS = re.compile(r"GPS_(TYPE|DELAY_MS|RATE_MS|GNSS_MODE|COM_PORT)(2?)")
 _LOOP = re.compile(r"PSC_(NE|D)_(POS|VEL|ACC)_(\w+)")
 _AXES = {"NE": "XY", "D": "Z"}
 _CENTI, _DECI, _MILLI = 100.0, 10.0, 1000.0
+_DEG_A_P = 45.0
+"""A stick's whole way, which 4.1 and older give as a factor of 45 degrees."""
 _LOOP_FACTORS = {"VEL_IMAX": _CENTI, "ACC_P": _DECI, "ACC_I": _DECI, "ACC_IMAX": _MILLI}
 
 RENAMED: dict[str, tuple[str, float]] = {
     "SYSID_THISMAV": ("MAV_SYSID", 1.0),
     "SYSID_MYGCS": ("MAV_GCS_SYSID", 1.0),
     "TELEM_DELAY": ("MAV_TELEM_DELAY", 1.0),
+    "ACRO_RP_P": ("ACRO_RP_RATE", _DEG_A_P),
+    "ACRO_YAW_P": ("ACRO_Y_RATE", _DEG_A_P),
     "PSC_JERK_NE": ("PSC_JERK_XY", 1.0),
     "PSC_JERK_D": ("PSC_JERK_Z", 1.0),
     "PHLD_BRK_RATE": ("PHLD_BRAKE_RATE", 1.0),

@@ -159,7 +159,7 @@ def _log_folder(config: pytest.Config, nodeid: str) -> Path:
     if given:
         return config.rootpath / given / name
     cache = getattr(config, "cache", None)
-    return (cache.mkdir("sitl-logs") if cache is not None else config.rootpath / "sitl-logs") / name
+    return (cache.mkdir("sitl-logs") if cache is not None else config.invocation_params.dir / "sitl-logs") / name
 
 
 # ---------------------------------------------------------------------- reports

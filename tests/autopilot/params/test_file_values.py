@@ -105,9 +105,9 @@ def test_names_of_other_versions_are_told_with_the_value_that_means_the_same() -
     (said,) = files.notes(COPTER, files.parse(text + "RTL_ALT 2000\n"))
     assert said == (
         "7 parameters of the files are not in this firmware: SR0_POSITION, SYSID_THISMAV, WP_SPD, GPS_TYPE, "
-        "PSC_NE_VEL_IMAX, PSC_D_ACC_P, ...; SYSID_THISMAV 3 is MAV_SYSID 3, WP_SPD 5 is WPNAV_SPEED 500, "
-        "PSC_NE_VEL_IMAX 5 is PSC_VELXY_IMAX 500, PSC_D_ACC_P 0.03 is PSC_ACCZ_P 0.3, SR0_POSITION 4 is "
-        "MAV1_POSITION 4 here"
+        "PSC_NE_VEL_IMAX, PSC_D_ACC_P, ...; not set, but the same here: MAV_SYSID 3 for SYSID_THISMAV 3, WPNAV_SPEED 500 for "
+        "WP_SPD 5, PSC_VELXY_IMAX 500 for PSC_NE_VEL_IMAX 5, PSC_ACCZ_P 0.3 for PSC_D_ACC_P 0.03, MAV1_POSITION 4 for "
+        "SR0_POSITION 4"
     )
 
 
@@ -120,7 +120,11 @@ def test_every_name_of_another_version_has_one_here() -> None:
 
 def test_a_name_that_is_nearly_one_gets_a_suggestion() -> None:
     (said,) = files.notes(COPTER, files.parse("WPNAV_SPED 500\nRTL_ALT 2000\n"))
-    assert said == "1 parameters of the files are not in this firmware: WPNAV_SPED; did you mean 'WPNAV_SPEED'?"
+    assert said == "1 parameter of the files is not in this firmware: WPNAV_SPED; did you mean 'WPNAV_SPEED'?"
+    (said,) = files.notes(COPTER, files.parse("ACRO_YAW_P 4\nRTL_ALT 2000\n"))
+    assert said.endswith("ACRO_YAW_P; not set, but the same here: ACRO_Y_RATE 180 for ACRO_YAW_P 4")
+    (said,) = files.notes(COPTER, files.parse("CRUISE_SPEED 2\nRTL_ALT 2000\n"))
+    assert said.endswith("CRUISE_SPEED"), "another parameter's name is no help"
 
 
 def test_a_file_of_which_nothing_is_in_the_firmware_is_named() -> None:
@@ -130,7 +134,7 @@ def test_a_file_of_which_nothing_is_in_the_firmware_is_named() -> None:
 
 def test_read_only_is_told_and_reaches_an_ardupilot() -> None:
     given = files.parse("RTL_ALT 2000 @READONLY\nATC_RAT_RLL_P 0.1351234\n")
-    assert files.notes(COPTER, given) == ["1 parameters of the files are @READONLY, and can be set here: RTL_ALT"]
+    assert files.notes(COPTER, given) == ["1 parameter of the files is @READONLY, and can be set here: RTL_ALT"]
     assert files.text_of(given) == "RTL_ALT 2000 @READONLY\nATC_RAT_RLL_P 0.1351234\n"
 
 
