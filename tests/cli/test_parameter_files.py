@@ -46,7 +46,8 @@ def test_a_real_vehicles_file_is_taken_and_the_user_is_told_once(tmp_path: Path,
     assert {name: simulation.parameters[name] for name in wanted} == wanted
     assert capsys.readouterr().err.splitlines() == [
         f"sitl: {mine}, line 1: @include 'none.param' is not there; it is passed over",
-        "sitl: 1 parameter of the files is not in this firmware: SYSID_THISMAV; not set, but the same here: MAV_SYSID 4 for SYSID_THISMAV 4",
+        "sitl: 1 parameter of the files is not in this firmware: SYSID_THISMAV; not set, but "
+        "the same here: MAV_SYSID 4 for SYSID_THISMAV 4",
         "sitl: 1 parameter of the files has no effect here: FRSKY_OPTIONS",
         "sitl: 2 parameters of the files are out of range (used instead): ACRO_Y_RATE 600 (360), RPM1_TYPE 10 (5)",
     ]
