@@ -106,8 +106,8 @@ def test_names_of_other_versions_are_told_with_the_value_that_means_the_same() -
     assert said == (
         "7 parameters of the files are not in this firmware: SR0_POSITION, SYSID_THISMAV, WP_SPD, GPS_TYPE, "
         "PSC_NE_VEL_IMAX, PSC_D_ACC_P, ...; not set, but the same here: MAV_SYSID 3 for SYSID_THISMAV 3, "
-        "WPNAV_SPEED 500 for WP_SPD 5, PSC_VELXY_IMAX 500 for PSC_NE_VEL_IMAX 5, PSC_ACCZ_P 0.3 for PSC_D_ACC_P 0.03, MAV1_POSITION 4 for "
-        "SR0_POSITION 4"
+        "WPNAV_SPEED 500 for WP_SPD 5, PSC_VELXY_IMAX 500 for PSC_NE_VEL_IMAX 5, PSC_ACCZ_P 0.3 for PSC_D_ACC_P 0.03, "
+        "MAV1_POSITION 4 for SR0_POSITION 4"
     )
 
 
