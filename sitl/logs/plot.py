@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,9 @@ from ..vehicle.kinds import DEFAULT
 from .flight import Flight
 from .kind import logs_of
 from .tlog import LogError
+
+_TOGETHER_M = 1.0
+"""Items that are reached so near to each other share a label in the plan view [m]."""
 
 
 def new_figure(width: float, height: float, title: str = "") -> Any:
@@ -60,7 +64,8 @@ def draw(flight: Flight, path: str | Path, title: str = "", kind: str = DEFAULT)
         for t, _ in flight.reached:
             axis.axvline(t, color="r", lw=0.6, alpha=0.6)
         if axis.get_legend_handles_labels()[0]:
-            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=4, fontsize=10, frameon=False)
+            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=4, fontsize=10, frameon=False,
+                        columnspacing=1.2, handlelength=1.2)  # fmt: skip
     for t, seq in flight.reached:
         axes[0, 1].annotate(str(seq), (t, axes[0, 1].get_ylim()[1]), color="r", fontsize=10)
     axes[2, 1].set(xlabel="simulated time [s]")
@@ -72,10 +77,17 @@ def _plan(axis: Any, flight: Flight) -> None:
     position = flight["LOCAL_POSITION_NED"]
     axis.plot(position[:, 2], position[:, 1], lw=1.5)
     axis.plot(position[0, 2], position[0, 1], "ko", ms=5, label="home")
+    labels: list[tuple[float, float, list[str]]] = []
     for t, seq in flight.reached:
-        north, east = (np.interp(t, position[:, 0], position[:, k]) for k in (1, 2))
+        north, east = (float(np.interp(t, position[:, 0], position[:, k])) for k in (1, 2))
         axis.plot(east, north, "r.", ms=9)
-        axis.annotate(str(seq), (east, north), textcoords="offset points", xytext=(6, 4), color="r")
+        near = [names for x, y, names in labels if math.hypot(x - east, y - north) < _TOGETHER_M]
+        if near:
+            near[0].append(str(seq))
+        else:
+            labels.append((east, north, [str(seq)]))
+    for east, north, names in labels:
+        axis.annotate(", ".join(names), (east, north), textcoords="offset points", xytext=(6, 4), color="r")
     axis.set(xlabel="east [m]", ylabel="north [m]", title="plan view (red: mission items reached)")
     axis.set_aspect("equal", adjustable="datalim")
     axis.grid(alpha=0.3)
@@ -90,10 +102,10 @@ def altitude(axis: Any, flight: Flight) -> None:
 
 
 def attitude(axis: Any, flight: Flight) -> None:
-    """Roll, pitch and yaw over time."""
+    """Roll, pitch and yaw over time; yaw without jumps at south."""
     attitude = flight["ATTITUDE"]
     for column, name in enumerate(("roll", "pitch", "yaw"), 1):
-        axis.plot(attitude[:, 0], np.degrees(attitude[:, column]), lw=0.9, label=name)
+        axis.plot(attitude[:, 0], np.degrees(np.unwrap(attitude[:, column])), lw=0.9, label=name)
     axis.set(ylabel="attitude [deg]")
 
 
