@@ -18,7 +18,6 @@ from ..wire.port import NEVER
 from .parameters import ParameterService
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
 
-
 STUCK = "SIM_RC_STUCK"
 LOOK_US = 100_000
 """How often is looked whether channels that are to stay as they are are transmitted."""
