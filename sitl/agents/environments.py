@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
@@ -18,6 +19,8 @@ from .runs import cores
 from .runs.config import RunConfig
 
 _Env = TypeVar("_Env")
+_OF_GYMNASIUM = {name for make in (gym.make, gym.make_vec) for name in inspect.signature(make).parameters} - {"kwargs"}
+"""What Gymnasium takes for itself: how many environments, in which processes, within which wrappers."""
 
 
 def make(config: RunConfig, **options: Any) -> gym.Env[Any, Any]:
@@ -71,13 +74,15 @@ def _made(call: Callable[[dict[str, Any]], _Env], config: RunConfig, options: Ma
     given = {**config.env_options, **options}
     if "max_episode_steps" in given:
         raise AgentError("max_episode_steps is no option of an environment; --max-steps limits an episode")
+    if own := [name for name in given if name in _OF_GYMNASIUM]:
+        raise AgentError(f"{config.env}: {own[0]} = {given[own[0]]!r} is no option of an environment")
     given = {name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
     try:
         return call(given)
     except (gym.error.Error, envs.EnvOptionError) as error:
         raise AgentError(f"{config.env}: {error}") from None
     except TypeError as error:
-        if "unexpected keyword" in str(error):
+        if "unexpected keyword" in str(error) or "multiple values" in str(error):
             raise AgentError(f"{config.env}: {error}") from None
         raise
 

@@ -21,7 +21,7 @@ from ..core.geodesy import add_offset, offset_ne
 from ..errors import OptionError
 from .errors import UnknownNameError
 from .parameters import Parameters
-from .waits import SURE_S, Waits
+from .waits import AT_REST, SURE_S, Waits
 
 __tracebackhide__ = True
 
@@ -38,8 +38,6 @@ IGNORED = 65535
 """RC_CHANNELS_OVERRIDE: this channel stays as it is; from channel 9 on, 0 says that."""
 STICKS = {"roll": "RCMAP_ROLL", "pitch": "RCMAP_PITCH", "throttle": "RCMAP_THROTTLE", "yaw": "RCMAP_YAW"}
 STICKS |= {"steering": "RCMAP_ROLL"}
-AT_REST = 0.3
-"""Slower than this a vehicle stands, or hovers [m/s]."""
 REST_US = 3_000_000
 OBEYING = ("GUIDED", "AUTO", "FOLLOW", "GUIDED_NOGPS", "AVOID_ADSB")
 """Modes in which positions may be obeyed; in AUTO, while an item of the mission says so (NAV_GUIDED_ENABLE)."""

@@ -7,9 +7,11 @@ import contextlib
 import difflib
 import math
 from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
+from numbers import Real
 from typing import Any
 
 from ..autopilot.params.table import Values
+from ..errors import OptionError
 from .errors import ClientError, ParameterRefusedError, UnknownNameError, WaitTimeoutError
 from .session import ANSWER_S, REPEAT_US, Session
 
@@ -56,9 +58,11 @@ class Parameters(Mapping[str, float]):
 
         Raises:
             ParameterRefusedError: the vehicle keeps another value.
+            OptionError: the value is no number.
             UnknownNameError, WaitTimeoutError: as for reading.
         """
         self.check(name)
+        _check_number(name, value)
         what = f"{name} to be set to {value:g}"
         for _ in range(2):  # the first answer may be to what was asked before, come late
             kept = self._exchange(name, what, "PARAM_SET", param_value=value, param_type=REAL_32)
@@ -106,8 +110,9 @@ class Parameters(Mapping[str, float]):
     def update(self, values: Mapping[str, float] | None = None, **more: float) -> None:
         """Set several, each in its unit; all names are checked first."""
         given = {**(values or {}), **more}
-        for name in given:
+        for name, value in given.items():
             self.check(name)
+            _check_number(name, value)
         for name, value in given.items():
             self[name] = value
 
@@ -115,8 +120,9 @@ class Parameters(Mapping[str, float]):
     def changed(self, values: Mapping[str, float] | None = None, **more: float) -> Iterator[None]:
         """``with vehicle.params.changed(ANGLE_MAX=2000):`` sets parameters, and sets them back afterwards."""
         given = {**(values or {}), **more}
-        for name in given:
+        for name, value in given.items():
             self.check(name)
+            _check_number(name, value)
         before: dict[str, float] = {}
         for name, value in given.items():
             before[name] = self[name]
@@ -159,8 +165,10 @@ class Parameters(Mapping[str, float]):
     def check(self, name: str) -> None:
         """Raise UnknownNameError when the vehicle, in this process, has no such parameter."""
         values = self._values
-        if values is None or name in values.table:
+        if isinstance(name, str) and (values is None or name in values.table):
             return
+        if not isinstance(name, str) or values is None:
+            raise UnknownNameError(f"the {self._session.kind} has no parameter {name!r}: a name is a text")
         near = difflib.get_close_matches(name, values.table.names(), 5, 0.5)
         hint = f"; near to it: {', '.join(near)}" if near else ""
         raise UnknownNameError(f"the {self._session.kind} has no parameter {name!r}{hint}")
@@ -186,6 +194,11 @@ class Parameters(Mapping[str, float]):
             if session.passes(arrived, REPEAT_US / 1e6):
                 return values[name]
         session.raise_error(WaitTimeoutError(what, ANSWER_S, "", begin))
+
+
+def _check_number(name: str, value: Any) -> None:
+    if not isinstance(value, Real):
+        raise OptionError(f"{name} = {value!r}; a parameter's value is a number")
 
 
 def _named(m: Any) -> str:

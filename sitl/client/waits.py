@@ -24,6 +24,12 @@ SURE_S = 1.0
 """When a vehicle has said for so long what makes a wait vain, it is over: what was asked before may act late."""
 
 
+AT_REST = 0.3
+"""Slower than this a vehicle stands, or hovers [m/s]."""
+FAR_M, FAST = 1.0, 0.5
+"""What errors of the estimate of a vehicle at rest do not make up for [m], [m/s]."""
+
+
 def turn(degrees: float) -> float:
     """An angle within +-180 degrees."""
     return (degrees + 180.0) % 360.0 - 180.0
@@ -74,15 +80,18 @@ class Waits(Session):
 
     def wait_altitude(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until its altitude above home is within ``low`` .. ``high`` [m]."""
-        self._wait_range("an altitude", "m", lambda t: t.altitude, low, high, timeout, hold)
+        in_vain = self._stands(lambda t: low - t.altitude > FAR_M)
+        self._wait_range("an altitude", "m", lambda t: t.altitude, low, high, timeout, hold, in_vain)
 
     def wait_groundspeed(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until its speed along the ground is within ``low`` .. ``high`` [m/s]."""
-        self._wait_range("a speed", "m/s", lambda t: t.groundspeed, low, high, timeout, hold)
+        in_vain = self._stands(lambda t: low - t.groundspeed > FAST)
+        self._wait_range("a speed", "m/s", lambda t: t.groundspeed, low, high, timeout, hold, in_vain)
 
     def wait_climb_rate(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:
         """Until it climbs with ``low`` .. ``high`` [m/s]; negative: it sinks."""
-        self._wait_range("a climb rate", "m/s", lambda t: t.climb_rate, low, high, timeout, hold)
+        in_vain = self._stands(lambda t: low - t.climb_rate > FAST)
+        self._wait_range("a climb rate", "m/s", lambda t: t.climb_rate, low, high, timeout, hold, in_vain)
 
     def _wait_range(
         self, what: str, unit: str, value: Callable[[Telemetry], float], low: float, high: float, timeout: float,
@@ -102,6 +111,19 @@ class Waits(Session):
             if self.armed or not t.heartbeat_at - max(begin, t.disarmed_since) >= SURE_S:
                 return ""
             return f"the {self.kind} is disarmed; arm it first"
+
+        return why
+
+    def _stands(self, is_far: Callable[[Telemetry], bool]) -> Callable[[], str]:
+        """Tells that the vehicle, which is far from what is awaited, stands disarmed, once it has done so for
+        ``SURE_S`` from now on: one that falls, or is moved, may get there."""
+        disarmed, moved = self._disarmed(), [self.now]
+
+        def why() -> str:
+            t = self.telemetry
+            if max(t.groundspeed, abs(t.climb_rate)) > AT_REST or not is_far(t):
+                moved[0] = self.now
+            return disarmed() if self.now - moved[0] >= SURE_S else ""
 
         return why
 

@@ -25,10 +25,26 @@ _ACTS = ("env", "frame", "autopilot", "autopilot_path", "reset", "guard")
 """Options that run code or act on a vehicle; others of those that are refused open a socket, a window or a file."""
 
 
+MADE = ("forest", "rooms", "labyrinth", "track", "slalom", "car_park")
+"""Worlds that are made from numbers (``sitl.worlds.generated``), which a text may have behind a colon."""
+_NUMBER = r"[+-]?[0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?"
+_SETTINGS = re.compile(rf"(\w+={_NUMBER}(,\w+={_NUMBER})*)?")
+
+
 def is_name(value: Any) -> bool:
-    """Whether a value is a name that a table of this package knows, or "KIND:settings" of something that is made, and
+    """Whether a value is a name that a table of this package knows, or "KIND:settings" of a world that is made, and
     neither a file nor an address."""
-    return isinstance(value, str) and bool(re.fullmatch(r"[\w -]*(:[\w=,.+-]*)?", value)) and "://" not in value
+    if not isinstance(value, str):
+        return False
+    kind, colon, settings = value.partition(":")
+    if not colon:
+        return bool(re.fullmatch(r"[\w -]*", value))
+    return kind.lower().replace("-", "_") in MADE and bool(_SETTINGS.fullmatch(settings))
+
+
+def _are_processors(value: Any) -> bool:
+    """Whether a number of threads is one that this machine has processors for."""
+    return isinstance(value, int) and value <= (os.cpu_count() or 1)
 
 
 def _is_one_of(*values: Any) -> Callable[[Any], bool]:
@@ -51,12 +67,13 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "physics": lambda value: is_name(value) and ":" not in value,
     "render_mode": _is_one_of(None, "rgb_array"),
     "reset": _is_one_of("reboot"),
+    "threads": _are_processors,
     "world": lambda value: value is None or is_name(value),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
         ("action", "autoreset_mode", "begin", "faults", "home", "info", "latency", "max_episode_steps", "observation",
-         "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "threads",
-         "tiled", "wait"), _is_free,
+         "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
+         "wait"), _is_free,
     ),
 }  # fmt: skip
 """All that a file may say of an environment of this package: name of the option -> whether a value is taken.
@@ -103,7 +120,7 @@ def allow(named: Iterable[str]) -> None:
 
 def allow_options(options: Mapping[str, Any]) -> None:
     """The user has given these options of an environment on the command line, whatever its package is."""
-    allow(code_of_options(options, is_ours=False))
+    allow([*code_of_options(options, is_ours=False), *code_of_options(options)])
 
 
 class _Every:

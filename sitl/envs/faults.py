@@ -115,6 +115,15 @@ class EpisodeFaults:
             raise EnvOptionError(f"faults: {error}") from None
         return failure, low, high
 
+    def unreached(self, steps: int | None, step_s: float) -> str:
+        """Which fault begins in no episode of so many steps [s each], and why; "": each may."""
+        last = NEVER if steps is None or steps < 0 else steps * step_s
+        for failure, earliest, _ in self._choices:
+            if failure is not None and earliest >= last:
+                title = str(failure).partition("@")[0]
+                return f"faults: {title} begins at {earliest:g} s, and an episode of {steps} steps ends at {last:g} s"
+        return ""
+
     def begin(self, index: int, rng: np.random.Generator) -> None:
         """Draw for the next episode of one robot, which has just been reset."""
         number = int(rng.integers(len(self._choices)))

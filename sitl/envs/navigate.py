@@ -100,6 +100,8 @@ class Navigate(gym.Env[Any, Any]):
         if options and "reset_mask" in options:
             raise EnvOptionError("reset: option 'reset_mask' is for vector environments only")
         super().reset(seed=seed)
+        if not self._is_begun:
+            self._say_unreached()
         self._session.reset(0, self.np_random, options)
         self._session.look()
         self._is_begun = True
@@ -111,6 +113,14 @@ class Navigate(gym.Env[Any, Any]):
         if self._watcher is not None:
             self._watcher.started(0)
         return self._observation(), {}
+
+    def _say_unreached(self) -> None:
+        """Warn of a fault that no episode reaches; ``gymnasium.make`` keeps to itself which limit it was given."""
+        registered = gym.registry.get(self.spec.id) if self.spec is not None else None
+        if self._session.faults is not None and registered is not None:
+            why = self._session.faults.unreached(registered.max_episode_steps, self._session.seconds)
+            if why:
+                gym.logger.warn(f"{why}, unless max_episode_steps was given")
 
     def watch(self, watcher: Watcher) -> None:
         """Show all episodes and steps to a watcher, from the next reset until the environment is closed."""

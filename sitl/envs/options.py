@@ -15,8 +15,8 @@ COMMON = (
 """Options that every environment takes besides "render_mode", whatever its robot."""
 
 
-LISTED = 100
-"""A message lists no more names than these."""
+LISTED, LISTED_BESIDE = 100, 30
+"""A message lists no more names than these; beside the one that may be meant."""
 
 
 class EnvOptionError(OptionError):
@@ -27,5 +27,6 @@ def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:
     """The error for a name that is not among those known: with all of them if they are few, and with the nearest."""
     names = list(known)
     hint = did_you_mean(str(value), names)
-    listed = f"; it is one of {', '.join(names)}" if len(names) <= LISTED else ""
+    few = len(names) <= (LISTED_BESIDE if hint else LISTED)
+    listed = f"; it is one of {', '.join(names)}" if few else ""
     return EnvOptionError(f"{option} {value!r} is not known{listed}{hint}")

@@ -72,6 +72,9 @@ class NavigateVector(OfSubEnvironments):
         self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self._session = session = Session(num_envs, NavigateOptions.of(options))
+        if session.faults is not None and (why := session.faults.unreached(max_episode_steps, session.seconds)):
+            session.robot.close()
+            raise EnvOptionError(why)
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.render_mode = render_mode

@@ -26,6 +26,8 @@ _SENSORS = {
 """Beginning of parameters -> the sensor that they spoil."""
 _MASKS = ("SIM_ENGINE_FAIL", "SIM_ENGINE_STUCK")
 """Parameters whose bits are outputs."""
+_TWO_SENSORS = {"SIM_ACC_FAIL_MSK": 3, "SIM_GYR_FAIL_MSK": 3}
+"""Parameters whose bits are sensors -> those that there are."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,12 @@ class Equipment:
         """Which of a unit's instances it has; sensors that parameters switch on count as there."""
         outputs = self.kind.outputs(self.airframe) if unit in OUTPUTS and instances > 1 else None
         return list(range(1, instances + 1)) if outputs is None else [n for n in outputs if n <= instances]
+
+    def bits(self, parameter: str) -> int | None:
+        """Bits of a parameter that stand for something that it has; None: it is no mask, or nothing is known."""
+        if parameter in _MASKS:
+            return sum(1 << (n - 1) for n in self.numbers("motor", 32))
+        return _TWO_SENSORS.get(parameter)
 
     def check(self, failure: Failure, value: Value | None = None) -> None:
         """OptionError when it has nothing of what fails.

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from .acting import Value, acts_not
 from .faults import Failure
 from .ordered_faults import NEVER, Ordered
 
@@ -103,17 +104,19 @@ class FaultHistory:
             acted.spans.append((since_us, until_us))
 
 
-def changes_nothing(failure: Failure, values: Mapping[str, float], before: Mapping[str, float]) -> str:
+def changes_nothing(failure: Failure, values: Mapping[str, float], before: Mapping[str, float], present: Value) -> str:
     """Why values of a fault do nothing; "": they do something.
 
     Args:
         failure: the fault.
         values: parameters that it sets.
         before: what they were without it.
+        present: gives what is in force of all parameters.
     """
     if failure.unit in ("motor", "servo") and failure.type == "off" and failure.amount == 1.0:
         return "all of the pulse is left"
-    same = [name for name, value in values.items() if before.get(name) == value]
-    if len(same) == len(values) and same:
-        return f"{same[0]} was {values[same[0]]:g} before, too"
-    return ""
+    reasons = [
+        f"{name} was {value:g} before, too" if before.get(name) == value else acts_not(name, present)
+        for name, value in values.items()
+    ]
+    return reasons[0] if all(reasons) and reasons else ""

@@ -8,7 +8,8 @@ import os
 
 import pytest
 
-from sitl import cli
+from sitl import cli, worlds
+from sitl.agents import environments
 from sitl.agents.errors import AgentError
 from sitl.agents.recipes import recipe
 from sitl.agents.rehearsal import plan
@@ -18,6 +19,7 @@ from sitl.core import code_in_files
 from sitl.envs.options import COMMON
 from sitl.envs.robots.vehicles import AutopilotOptions
 from sitl.missions.suite import cases
+from sitl.worlds import generated
 
 ROVER = "GazeboMazeErleRoverLIDAR-v0"
 REFUSED = "names code that would be run, or acts on a vehicle: {}.*SITL_ALLOW_CODE=1"
@@ -78,6 +80,11 @@ OUTSIDE = [
     ({"connection": "serial:/dev/ttyACM0:57600"}, "connection = 'serial:", "connection=serial:/dev/ttyACM0:57600"),
     ({"gcs": "udp:127.0.0.1:14550"}, "gcs = 'udp:127.0.0.1:14550'", "gcs=udp:127.0.0.1:14550"),
     ({"world": "theirs.toml"}, r"world = 'theirs\.toml'", "world=theirs.toml"),
+    ({"world": "x:.toml"}, r"world = 'x:\.toml'", "world=x:.toml"),
+    ({"world": "forest:.toml"}, r"world = 'forest:\.toml'", "world=forest:.toml"),
+    ({"world": "forest:seed=1.toml"}, r"world = 'forest:seed=1\.toml'", "world=forest:seed=1.toml"),
+    ({"world": "theirs:seed=1"}, "world = 'theirs:seed=1'", "world=theirs:seed=1"),
+    ({"threads": 100_000}, "threads = 100000", "threads=100000"),
     ({"world": "/dev/zero"}, "world = '/dev/zero'", "world=/dev/zero"),
     ({"world": "../a b.toml"}, r"world = '\.\./a b\.toml'", "world='../a b.toml'"),
     ({"physics": "json:127.0.0.1:9002"}, "physics = 'json:127.0.0.1:9002'", "physics=json:127.0.0.1:9002"),
@@ -108,6 +115,26 @@ def test_environments_of_others_take_numbers_alone(tmp_path):
     assert RunFolder(run_folder(tmp_path / "run", **theirs)).config.code == []
     with pytest.raises(AgentError, match="reaches outside of this process: map_name = '8x8'"):
         RunFolder(run_folder(tmp_path / "run", env="FrozenLake-v1", env_options={"map_name": "8x8"}))
+
+
+def test_names_of_worlds_are_no_files():
+    assert set(code_in_files.MADE) == set(generated.GENERATORS)
+    made = ("forest", "forest:", "forest:seed=3,difficulty=0.8", "car-park:size=4e1", *worlds.names())
+    free = [{"world": name} for name in made] + [{"threads": count} for count in (1, os.cpu_count())]
+    assert [named for options in free for named in code_in_files.code_of_options(options)] == []
+    for name in made:
+        worlds.load(name)
+
+
+@pytest.mark.parametrize(
+    "options", [{"num_envs": 10**9}, {"vector_kwargs": None}, {"disable_env_checker": True}, {"self": 1}]
+)
+def test_what_is_not_the_environments_is_no_option(tmp_path, options):
+    run = RunFolder(run_folder(tmp_path / "run", env_options=options))
+    name = next(iter(options))
+    for make in (environments.make, lambda config: environments.make_many(config, 2)):
+        with pytest.raises(AgentError, match=f"{ROVER}: .*{name}"):
+            make(run.config)
 
 
 def test_every_option_that_a_file_may_say_is_an_option():

@@ -87,6 +87,7 @@ def test_a_refused_command_says_why(core: Core) -> None:
 
 
 def test_a_wait_in_vain_says_what_was_seen(copter: Client) -> None:
+    copter.arm()
     began = copter.now
     with pytest.raises(WaitTimeoutError, match=r"waited 2 s for an altitude of at least 5 m\n  last seen: ") as failure:
         copter.wait_altitude(5, timeout=2)

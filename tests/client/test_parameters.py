@@ -10,6 +10,7 @@ import pytest
 from sitl import Simulation
 from sitl.bridge.dialect import message
 from sitl.client import Client, UnknownNameError
+from sitl.errors import OptionError
 
 
 @pytest.fixture(scope="module")
@@ -62,3 +63,22 @@ def test_one_that_says_that_it_has_none_is_believed_at_once(rover, monkeypatch):
     monkeypatch.setattr(rover.connection.endpoint, "send", refused)
     begin = rover.now
     assert "WP_SPEEED" not in rover.params and rover.now - begin < 0.5
+
+
+@pytest.mark.parametrize("value", ["x", "5", None, [1.0]])
+def test_a_value_that_is_no_number_is_named(rover, value):
+    before, said = rover.now, "WP_SPEED = .*; a parameter's value is a number"
+    with pytest.raises(OptionError, match=said):
+        rover.params["WP_SPEED"] = value
+    with pytest.raises(OptionError, match=said):
+        rover.params.update(CRUISE_SPEED=3.0, WP_SPEED=value)
+    with pytest.raises(OptionError, match=said), rover.params.changed(WP_SPEED=value):
+        pass
+    assert rover.now == before  # nothing was sent
+
+
+def test_a_name_that_is_no_text_is_named(rover, monkeypatch):
+    for _ in range(2):
+        with pytest.raises(UnknownNameError, match="no parameter 5: a name is a text"):
+            rover.params[5] = 1.0
+        elsewhere(rover, monkeypatch)

@@ -150,3 +150,30 @@ def test_an_order_that_could_not_be_given_is_not_repeated():
     with pytest.raises(WaitTimeoutError, match="HOME_POSITION"):
         client.goto(10, 0, 5)
     client.delay(10.0)
+
+
+@pytest.mark.parametrize("wait", ["wait_altitude", "wait_groundspeed", "wait_climb_rate"])
+def test_a_disarmed_vehicle_on_the_ground_neither_climbs_nor_drives(copter, wait):
+    begin = copter.now
+    with pytest.raises(ImpossibleWaitError, match="is in vain: the copter is disarmed; arm it first"):
+        getattr(copter, wait)(3)
+    assert at_once(copter, begin)
+
+
+def test_one_that_is_armed_or_there_or_nearly_is_waited_for(copter):
+    copter.wait_altitude(-1, 1, hold=2.0)
+    copter.wait_groundspeed(0, 0.5, hold=2.0)
+    with pytest.raises(WaitTimeoutError):
+        copter.wait_altitude(0.8, timeout=3.0)
+    copter.set_mode("GUIDED")
+    copter.send_command("COMPONENT_ARM_DISARM", 1)
+    for wait in (copter.wait_altitude, copter.wait_groundspeed):
+        with pytest.raises(WaitTimeoutError):  # it is armed, and stays on the ground
+            wait(5, timeout=3.0)
+
+
+def test_one_that_falls_gets_there(copter):
+    copter.take_off(15)
+    copter.disarm(force=True)
+    copter.wait_climb_rate(-math.inf, -5, timeout=5)
+    copter.wait_altitude(-1, 2, timeout=10)

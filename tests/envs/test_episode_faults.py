@@ -149,3 +149,40 @@ def test_amounts_are_drawn_for_each_episode() -> None:
 def test_what_cannot_be_is_said(options: dict[str, Any], why: str) -> None:
     with pytest.raises(EnvOptionError, match=why):
         gym.make("sitl/Navigate-v0", **{**ROVER, **options})
+
+
+OFFICE = "GazeboOfficeErleCopterLIDAR-v0"
+SECOND = {"GPS2_TYPE": 1, "SIM_GPS2_ENABLE": 1}
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        ({"faults": {"optical_flow": 0.5}}, "no optical_flow 1: SIM_FLOW_ENABLE is 0, not 1"),
+        ({"faults": {"gps:2": 0.5, "": 0.0}}, "no gps 2: GPS2_TYPE is 0, not 1"),
+        ({"faults": {"gps:2": 0.5}, "params": {"GPS2_TYPE": 1}}, "no gps 2: SIM_GPS2_ENABLE is 0, not 1"),
+        ({"faults": {"baro:2": 0.5}, "params": {"SIM_BARO_COUNT": 1}}, "no baro 2: SIM_BARO_COUNT is 1, not 2"),
+        ({"faults": {"SIM_FLOW_RND=1": 0.5}}, "SIM_FLOW_RND: .* no optical_flow 1"),
+        ({"randomise": {"gps:2/wrong": (0, 5)}}, "no gps 2"),
+    ],
+)
+def test_sensors_that_are_not_there_are_refused_at_once(options: dict[str, Any], why: str) -> None:
+    with pytest.raises(EnvOptionError, match=why):
+        gym.make(OFFICE, **options)
+
+
+def test_sensors_that_parameters_switch_on_are_there() -> None:
+    gym.make(OFFICE, faults={"gps:2": 0.5, "avoidance": 0.5}, params=SECOND).close()
+    gym.make(OFFICE, faults={"optical_flow": 0.5}, params={"SIM_FLOW_ENABLE": 1}).close()
+
+
+def test_a_time_that_no_episode_reaches_is_told() -> None:
+    options: dict[str, Any] = {**ROVER, "faults": {"servo:1": (5.0, 8.0), "gps": 0.4, "": 0.0}}
+    late = r"faults: servo:1 begins at 5 s, and an episode of 25 steps ends at 5 s"
+    with pytest.raises(EnvOptionError, match=late):
+        gym.make_vec("sitl/Navigate-v0", num_envs=2, max_episode_steps=25, **options)
+    gym.make_vec("sitl/Navigate-v0", num_envs=2, max_episode_steps=26, **options).close()
+    env = gym.make("sitl/RoverCourse-v0", faults={"gps": 9000.0})
+    with pytest.warns(UserWarning, match=r"gps begins at 9000 s, and an episode of \d+ steps ends at .* unless max_ep"):
+        env.reset(seed=1)
+    env.close()

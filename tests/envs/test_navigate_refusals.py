@@ -243,3 +243,11 @@ def test_a_vehicle_at_a_connection_keeps_its_own_wind():
     assert not env.unwrapped.session.randomisation.ranges
     with pytest.raises(EnvOptionError, match="randomise: figure 'wind_speed' is not known"):
         gym.make("sitl/CopterHover-v0", connection="udpout:127.0.0.1:9", randomise={"wind_speed": (0.0, 5.0)})
+
+
+def test_a_misspelt_name_of_many_is_answered_with_the_one_that_is_meant() -> None:
+    with pytest.raises(EnvOptionError) as error:
+        gym.make("GazeboOfficeErleCopterLIDAR-v0", randomise={"wind_sped": (0.0, 5.0)})
+    assert str(error.value) == "randomise: figure 'wind_sped' is not known; did you mean 'wind_speed'?"
+    with pytest.raises(EnvOptionError, match=r"'zzz' is not known; it is one of .*wind_speed"):
+        gym.make("GazeboOfficeErleCopterLIDAR-v0", randomise={"zzz": (0.0, 5.0)})

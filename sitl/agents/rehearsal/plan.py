@@ -150,7 +150,7 @@ def _read(path: Path) -> Plan:
         made = tuple(Change.of(change) for change in changes)
         named = [name for one in made for name in code_of("", one.options)]
         recipe = values["training"].get("recipe") if isinstance(values.get("training"), dict) else None
-        is_known = recipe is None or code_in_files.is_name(recipe)
+        is_known = recipe is None or (code_in_files.is_name(recipe) and ":" not in recipe)
         if not is_known and not code_in_files.lies_in(path.parent, Path(str(recipe)).absolute()):
             named.append(f"training.recipe = {recipe!r}")
         refused = code_in_files.refusal("it", named, say="")

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from ...autopilot.params.parameter import stored
 from ...autopilot.shell_parameters import FAILURES
 from ...errors import OptionError
+from ...vehicle.acting import ARMED
 from ...vehicle.equipment import Equipment
 from ...vehicle.fault_history import Acted, FaultHistory, Key, changes_nothing
 from ...vehicle.faults import TYPES, UNITS, Failure, known
@@ -15,6 +17,10 @@ from ...vehicle.ordered_faults import ONE_SHOT, Ordered, OrderedFaults, Repair
 from ..wire.port import NEVER
 from .parameters import ParameterService
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
+
+STUCK = "SIM_RC_STUCK"
+LOOK_US = 100_000
+"""How often is looked whether channels that are to stay as they are are transmitted."""
 
 
 class FaultService(Service):
@@ -26,6 +32,8 @@ class FaultService(Service):
         self._faults = OrderedFaults(self._table)
         self.is_setting = False
         """Whether the parameter that is set now is set by a fault."""
+        self._just_set = ""
+        """The parameter that a client has just set."""
         self.history: FaultHistory | None = None
         """Which faults have acted; None: nobody wants to know."""
 
@@ -110,9 +118,12 @@ class FaultService(Service):
         table, why = self._table, ""
         for failure in order.failures(table):
             values = {name: stored(table[name], x) for name, x in failure.values(table, self._faults.before).items()}
-            left = {name: value for name, value in values.items() if name not in order.released}
-            before = {name: self._without_faults(name) for name in left}
-            why = changes_nothing(failure, left, before) if left else f"a client set {next(iter(values))} meanwhile"
+            left = {name: x for name, x in values.items() if name not in order.released or name in ONE_SHOT}
+            why = f"a client set {next(iter(values))} meanwhile"
+            if left:
+                before = {name: self._seen(name, self._without_faults(name)) for name in left}
+                now = {name: self._seen(name, value) for name, value in left.items()}
+                why = changes_nothing(failure, now, before, self._present) or self._unheard(now, before)
             if not why and failure.drives_outputs and not vehicle.v.autopilot.arming.armed:
                 why = "the vehicle was not armed"
             try:
@@ -123,6 +134,38 @@ class FaultService(Service):
                 break
         return (order.fault, order.begin_us), why
 
+    def _seen(self, name: str, value: float) -> float:
+        """What the vehicle takes of a parameter's value: of a mask, the bits of what it has."""
+        bits = self.equipment.bits(name)
+        return value if bits is None else float(int(value) & bits)
+
+    def _present(self, name: str) -> float | None:
+        """A parameter that is in force; one that is 0 again as soon as it was taken as it was set."""
+        vehicle: Any = self.bridge.vehicle
+        if name == ARMED:
+            return float(vehicle.v.autopilot.arming.armed)
+        if name not in self._table:
+            return None
+        if name in ONE_SHOT:
+            if name == self._just_set:
+                return 1.0
+            set_by = (failure.values(self._table, {}).get(name, 0.0)
+                      for order in self._begun() for failure in order.failures(self._table))  # fmt: skip
+            return max(set_by, default=0.0)
+        return self._seen(name, vehicle.parameters[name])
+
+    def _unheard(self, values: Mapping[str, float], before: Mapping[str, float]) -> str:
+        """Why channels that are to stay as they are do nothing; "": one of them is transmitted."""
+        if values.keys() != {STUCK}:
+            return ""
+        rc: Any = self.bridge.vehicle.v.autopilot.rc
+        sent = [k + 1 for k in range(len(rc.channels)) if rc.channels[k] != 0 or rc.override[k] != 0]
+        stay = int(values[STUCK]) ^ int(before[STUCK])
+        if not sent or any(stay >> (k - 1) & 1 for k in sent):
+            return ""
+        which = ", ".join(str(k + 1) for k in range(len(rc.channels)) if stay >> k & 1)
+        return f"channel {which} is not transmitted; there are {', '.join(map(str, sent))}"
+
     def repair(self, repair: Repair) -> None:
         """Faults are over: parameters are what they would be without them, and none of them begins later."""
         self._faults.repair(repair)
@@ -132,6 +175,9 @@ class FaultService(Service):
         if self._faults.due_us <= self.bridge.elapsed_us:
             self._set_parameters()
         self._look()
+
+    def _sets(self, order: Ordered) -> set[str]:
+        return {name for failure in order.failures(self._table) for name in failure.values(self._table, {})}
 
     def _set_parameters(self) -> None:
         present, table = self.bridge.vehicle.parameters, self._table
@@ -147,6 +193,8 @@ class FaultService(Service):
     def _look(self) -> None:
         self.look()
         due_us = self._faults.due_us
+        if self.history is not None and any(STUCK in self._sets(order) for order in self._begun()):
+            due_us = min(due_us, self.bridge.elapsed_us + LOOK_US)  # a client may begin to transmit a channel
         self.due_us = NEVER if due_us >= NEVER else due_us - (self.bridge.elapsed_us - self.bridge.now_us)
 
     def arming_changed(self) -> None:
@@ -155,7 +203,9 @@ class FaultService(Service):
     def parameter_changed(self, name: str) -> None:
         if not self.is_setting:
             self._faults.was_set(name)
+            self._just_set = name
             self.look()
+            self._just_set = ""
 
     def command(self, unit: float, kind: float, instance: float) -> int:
         """MAV_CMD_INJECT_FAILURE; gives the MAV_RESULT."""

@@ -199,8 +199,10 @@ class AutopilotRobot:
         """See ``sitl.envs.faults.FailingRobot``."""
         if not self._vehicles.has_snapshots:
             raise EnvOptionError(f"{self._vehicles.where}: only vehicles in process fail on demand")
-        kind = KINDS[self.airframe.kind]
-        Equipment(kind, self.airframe).check(failure.checked(kind.firmware.table))
+        kind, scenario = KINDS[self.airframe.kind], self._setup.scenario
+        table, given = kind.firmware.table, {**self.airframe.parameters, **scenario.parameters}
+        equipment = Equipment(kind, self.airframe, has_world=True, is_remote=":" in scenario.physics)
+        equipment.check(failure.checked(table), lambda name: given.get(name, table[name].default))
 
     def fail(self, index: int, failure: Failure) -> None:
         """See ``sitl.envs.faults.FailingRobot``."""

@@ -122,7 +122,7 @@ class VehicleFactory:
         return [(vehicle.name, vehicle.judge_faults()) for vehicle in self.vehicles if vehicle.failures]
 
     def idle_faults(self) -> list[str]:
-        """Why faults that must act have not, by vehicle. After ``judge_faults``."""
+        """Why faults that must act have not, by vehicle."""
         return [f"{vehicle.name}: {text}" for vehicle in self.vehicles for text in vehicle.idle_faults]
 
     def keep_logs(self, error: BaseException | None) -> list[tuple[str, list[str]]]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from types import TracebackType
 from typing import Any
 
@@ -31,12 +31,17 @@ class Fault:
 
     Args:
         end: repairs it.
-        acted: what is known of it.
+        parts: what is known of it: of a wind, one each of its speed, direction and turbulence.
         may_not_act: the test does not fail when it never acts.
     """
 
-    def __init__(self, end: Callable[[], None], acted: Acted, may_not_act: bool) -> None:
-        self._end, self.acted, self.may_not_act = end, acted, may_not_act
+    def __init__(self, end: Callable[[], None], parts: Sequence[Acted], may_not_act: bool) -> None:
+        self._end, self._parts, self.may_not_act = end, parts, may_not_act
+
+    @property
+    def acted(self) -> Acted:
+        """When it acted: of its parts, the first that did."""
+        return next((part for part in self._parts if part.spans), self._parts[0])
 
     def repair(self) -> None:
         """All is as before."""
@@ -113,8 +118,7 @@ class Faulty(Forking):
         assert self.connection.kind is not None
         table = self.connection.kind.firmware.table
         texts = [str(failure.checked(table)) for failure in failures]
-        acted = [self._let_fail(text) for text in texts]
-        fault = Fault(lambda: self._repair(texts), acted[0], may_not_act)
+        fault = Fault(lambda: self._repair(texts), [self._let_fail(text) for text in texts], may_not_act)
         self.failures.append(fault)
         return fault
 
@@ -130,7 +134,8 @@ class Faulty(Forking):
 
     @property
     def idle_faults(self) -> list[str]:
-        """Why those that must have acted have not; after ``judge_faults``."""
+        """Why those that must have acted have not until now."""
+        self.judge_faults()
         return [str(fault.acted) for fault in self.failures if not fault.acted.spans and not fault.may_not_act]
 
     # ------------------------------------------------------------------ how they act
@@ -171,7 +176,7 @@ class Faulty(Forking):
         return acted
 
     def _keep_fault(self, acted: Acted, may_not_act: bool, unit: str) -> Fault:
-        fault = Fault(lambda: self.restore(unit), acted, may_not_act)
+        fault = Fault(lambda: self.restore(unit), [acted], may_not_act)
         self.failures.append(fault)
         return fault
 

@@ -63,6 +63,21 @@ def test_what_became_of_faults(make: VehicleFactory) -> None:
     assert copter.idle_faults == ["fault link never acted: its LinkFaults do nothing"]
 
 
+def test_faults_that_are_on(make: VehicleFactory) -> None:
+    copter = make("copter")
+    copter.fail("battery=11")
+    assert copter.idle_faults == ["fault battery/wrong=11.0 never acted: no simulated time went by"]
+    copter.delay(0.5)
+    assert copter.idle_faults == []
+    copter.fail("wind", speed=0, turbulence=2)
+    copter.delay(0.5)
+    assert copter.idle_faults == [] and make.idle_faults() == []
+    copter.restore("wind")
+    copter.fail("wind", speed=0, direction=90)
+    copter.delay(0.5)
+    assert copter.idle_faults == ["fault wind/wrong=0.0 never acted: SIM_WIND_SPD was 0 before, too"]
+
+
 TESTS = """
 def test_late(copter):
     copter.fail("gps", at=100)
