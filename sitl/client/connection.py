@@ -120,9 +120,8 @@ class Connection:
         self.run(us)
 
     def listen(self, us: int) -> None:
-        """``pause`` in small steps: something may come that was not asked for."""
-        for _ in range(us // _LOOK_US):
-            self.pause(_LOOK_US)
+        """Send what is kept and take in what comes within this wall time [us]. In process, nobody is waited for."""
+        self.run(0)
 
     def request(
         self,
@@ -255,7 +254,7 @@ class Remote(Connection):
         patience: wall time [s] without a message after which it is lost.
     """
 
-    is_exact = False
+    is_exact = is_held = False
 
     def __init__(
         self, stream: ByteStream, inbox: Inbox | None, patience: float, system: int = 255, component: int = 190
@@ -334,25 +333,28 @@ class Remote(Connection):
                     self.inbox.feed(data)
 
     def prove_at_first(self) -> None:
-        """A first impression of whether it is a simulator (``proof``).
+        """The proof of one that was just found.
 
         Raises:
             LinkLostError: it answers no question.
         """
-        signs = proof.ask(self, max(round(min(self.patience, _PROOF_S) / _REPEAT_S), 1), is_first=True)
+        signs = proof.ask(self, max(round(min(self.patience, _PROOF_S) / _REPEAT_S), 1))
         if not signs.heard:
             self.exchange(lambda: REQUEST_MESSAGE in self.inbox.acks, within=self.patience)
         self.doubt = signs.doubt
 
-    def pause(self, us: int) -> None:
+    def listen(self, us: int) -> None:
         self.stream.flush()
         end = time.monotonic() + 1e-6 * us
         while True:
             left = end - time.monotonic()
             if self.stream.wait(max(left, 0.0)):
                 self.inbox.feed(self.stream.receive())
-            elif left <= 0.0:
+            if left <= 0.0:  # whatever else comes
                 return
+
+    def pause(self, us: int) -> None:
+        self.listen(us)
 
     def close(self) -> None:
         self.stream.close()
@@ -365,8 +367,7 @@ class Lockstep(Remote):
         time_ms: its simulated time since the start [ms].
     """
 
-    is_exact = True
-    _has_listened = False
+    is_exact = is_held = True
 
     def __init__(
         self, stream: ByteStream, inbox: Inbox | None, patience: float, time_ms: int, system: int = 255,
@@ -393,12 +394,6 @@ class Lockstep(Remote):
     def pause(self, us: int) -> None:
         self.run(us)
 
-    def listen(self, us: int) -> None:
-        """By the wall clock, and once: a vehicle with the same ids that does not wait for grants is slower."""
-        if not self._has_listened:
-            super().pause(us)
-        self._has_listened = True
-
     def _reached(self, goal: int) -> bool:
         ack = self.inbox.acks.get(GRANT)
         if ack is None or ack.result != ACCEPTED or ack.result_param2 < goal:
@@ -418,8 +413,6 @@ class Lockstep(Remote):
 
 class RealTime(Remote):
     """One that goes by its own clock; ``run`` ends with the first message that is late enough."""
-
-    is_held = False
 
     def run(self, us: int) -> None:
         if us == 0:
@@ -443,10 +436,10 @@ def connect(
     component: int = 190,
     warn: Callable[[str], object] = lambda _: None,
 ) -> Lockstep | RealTime:
-    """Find the vehicle, whether it seems to be a simulator, and whether its time can be held.
+    """Find the vehicle, whether it proves to be a simulator, and whether its time can be held.
 
-    It is only asked questions. ``prove`` is the proof, when something depends on it. One whose time cannot be held is
-    used by its own clock.
+    It is only asked questions, until it has proved to be a simulator (``proof``). ``prove`` is the proof anew, when
+    something depends on it later. One whose time cannot be held is used by its own clock.
 
     Args:
         text: a form of ``open_stream``.

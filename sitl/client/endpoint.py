@@ -95,6 +95,8 @@ class Endpoint:
 HEARTBEAT, ACK, TEXT, PARAMETER = (message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "PARAM_VALUE"))
 AUTOPILOT = 1
 """MAV_COMP_ID_AUTOPILOT1: messages of other components do not count."""
+ARMED = 128
+"""MAV_MODE_FLAG_SAFETY_ARMED"""
 GROUND_STATION, NO_AUTOPILOT = 6, 8
 """MAV_TYPE and MAV_AUTOPILOT of a HEARTBEAT that is not a vehicle's, whatever ids it has."""
 ACCEPTED, BUSY, IN_PROGRESS = 0, 1, 5
@@ -129,7 +131,9 @@ class Inbox:
         self.boots = 0
         """How often the vehicle's clock has gone back."""
         self.witness: Callable[[MessageType, Any], None] | None = None
-        """Gets kind and fields of what the vehicle answers, while somebody wants to know (``proof``)."""
+        """Gets kind and fields of what counts, while somebody wants to know."""
+        self.overhear: Callable[[list[tuple[Any, ...]]], None] | None = None
+        """Gets all frames, whoever sent them, while somebody wants to know (``proof``)."""
         self._time_ms = self._before_boot_ms = 0
         self._splitter = Splitter()
 
@@ -140,18 +144,25 @@ class Inbox:
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
-        for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
+        for kind, payload, _, system, component, _, _ in self._cut(data):
             if self._is_of_vehicle(kind, system, component):
                 fields = kind.decode(payload)
-                if self._is_for_us(kind, fields):
+                if self.is_for_us(kind, fields):
                     self._note(kind, fields, system)
                     self.on_message(kind.name, fields)
+
+    def _cut(self, data: bytes) -> list[tuple[Any, ...]]:
+        """Frames that these bytes complete."""
+        frames = self._splitter.cut(data)
+        if self.overhear is not None:
+            self.overhear(frames)
+        return frames
 
     def _is_of_vehicle(self, kind: MessageType, system: int, component: int) -> bool:
         """Whether a message may count, by its sender."""
         return component == AUTOPILOT and (system == self.system or (self.system == 0 and kind is HEARTBEAT))
 
-    def _is_for_us(self, kind: MessageType, fields: Any) -> bool:
+    def is_for_us(self, kind: MessageType, fields: Any) -> bool:
         """Whether a message of the vehicle counts, by what it says: no heartbeat that is not an autopilot's, and no
         answer to another client. A target of 0 is everybody, or of an autopilot that does not tell."""
         if kind is HEARTBEAT:

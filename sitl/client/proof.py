@@ -11,7 +11,13 @@ must be there, and nothing may speak against them:
   flight controller has none, and refuses.
 - Its AUTOPILOT_VERSION names no board and no USB device. A flight controller's does.
 
-A vehicle that answers more often than it was asked is two vehicles with the same ids: none of them has proved anything.
+A refusal that is addressed to nobody speaks against it, too: an older flight controller does not say whom it answers.
+
+A vehicle that answers more often than it was asked is two vehicles with the same ids, and so is one whose telemetry
+is that of two (``voices``): none of them has proved anything. A frame that the link repeats is counted once. Two
+answers to a question that the link has repeated cannot be told from those of two vehicles, and prove nothing.
+
+It is listened to by the wall clock, at a socket, also when the vehicle's time stands: another one's does not.
 """
 
 from __future__ import annotations
@@ -20,7 +26,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..bridge.dialect import MessageType, message
 from .commands import command_number
-from .endpoint import ACCEPTED, ACK, BUSY, IN_PROGRESS, PARAMETER
+from .endpoint import ACCEPTED, ACK, AUTOPILOT, BUSY, HEARTBEAT, IN_PROGRESS, PARAMETER
+from .voices import Voices
 
 if TYPE_CHECKING:
     from .connection import Connection
@@ -31,11 +38,14 @@ VERSION, TRUTH, ERROR = (message(name) for name in ("AUTOPILOT_VERSION", "SIMSTA
 BY_NAME = 0xFFFF
 """``param_index`` of a PARAM_VALUE that was asked for by name."""
 LOOK_US, LOOKS, TRIES = 20_000, 25, 6
-"""Time between two looks at a vehicle that goes by its own clock, looks after a question, and how often it is asked."""
-QUIET_LOOKS = 5
-"""So long is it listened to before: what it was asked earlier is answered by then."""
-CONTRADICTION_US = 300_000
-"""So long is it listened to after all signs have come: another one with its ids may be slower."""
+"""Time between two looks at a vehicle [us], looks after a question, and how often it is asked."""
+QUIET_US = 100_000
+"""So long is it listened to before: what it was asked earlier is answered by then [us]."""
+CONTRADICTION_US = 1_200_000
+"""So long is it listened to after all signs have come: another one with its ids may be slower, and sends a HEARTBEAT
+each second [us]."""
+CHANGE_US = 2_200_000
+"""And so long after that, when HEARTBEATs have told of a change: it has changed, or there are two [us]."""
 
 
 class Signs:
@@ -47,17 +57,24 @@ class Signs:
 
     def __init__(self, link: Connection) -> None:
         self._link = link
+        self.voices = Voices(link.is_exact)
         self._asked = self._answers = 0
         self._given: set[MessageType] = set()
         """Which of the signs are there, each by its message."""
         self._accepted = 0
-        self.against = ""
+        self._against = ""
+        """What it has said against itself."""
+
+    @property
+    def against(self) -> str:
         """What speaks against a simulator; "": nothing."""
+        two = f"two vehicles seem to have the ids of system {self._link.system}: {self.voices.doubt}"
+        return self._against or (two if self.voices.doubt else "")
 
     @property
     def heard(self) -> bool:
         """Whether it has answered anything."""
-        return bool(self._given or self._answers or self.against)
+        return bool(self._given or self._answers or self._against)
 
     @property
     def _shows_truth(self) -> bool:
@@ -92,6 +109,18 @@ class Signs:
         self._asked += 1
         self._link.endpoint.command(REQUEST_MESSAGE, kind.id, target=self._link.system)
 
+    def hear(self, frames: list[tuple[Any, ...]]) -> None:
+        """Frames as they come, some of them the vehicle's."""
+        link = self._link
+        for kind, payload, sequence, system, component, _, _ in frames:
+            if component != AUTOPILOT or system != link.system or self.voices.is_repeated(kind, payload, sequence):
+                continue
+            fields = kind.decode(payload)
+            if kind is not HEARTBEAT or link.inbox.is_for_us(kind, fields):
+                self.voices.take(kind, sequence, fields)
+            if link.inbox.is_for_us(kind, fields):
+                self.take(kind, fields)
+
     def take(self, kind: MessageType, fields: Any) -> None:
         """A message of the vehicle."""
         system = self._link.system
@@ -99,7 +128,7 @@ class Signs:
             if fields.param_index == BY_NAME:
                 self._given.add(kind)
         elif kind is ERROR and fields.param_id.decode("ascii", "replace") == PARAMETER_NAME:
-            self.against = f"it says that it has no parameter {PARAMETER_NAME}"
+            self._against = f"it says that it has no parameter {PARAMETER_NAME}"
         elif kind is ACK and fields.command == REQUEST_MESSAGE:
             self._answered(fields)
         elif kind is TRUTH and self._asked:
@@ -107,14 +136,19 @@ class Signs:
         elif kind is VERSION:
             if fields.board_version or fields.vendor_id or fields.product_id:
                 board = f"{fields.board_version >> 16}, USB {fields.vendor_id:04x}:{fields.product_id:04x}"
-                self.against = f"its AUTOPILOT_VERSION names a flight controller (board {board})"
+                self._against = f"its AUTOPILOT_VERSION names a flight controller (board {board})"
             self._given.add(kind)
         if self._answers > self._asked:
-            self.against = f"system {system} answers more often than it is asked, as two vehicles with its ids would"
+            self._against = (
+                f"system {system} answers more often than it is asked, as two vehicles with its ids would, or one on a "
+                "link that repeats what it is asked"
+            )
 
     def _answered(self, fields: Any) -> None:
         own = self._link.endpoint
         if (fields.target_system, fields.target_component) != (own.system, own.component):
+            if fields.result not in (ACCEPTED, BUSY, IN_PROGRESS):
+                self._refused(fields.result)
             return  # an answer to everybody may be to anybody
         if fields.result in (BUSY, IN_PROGRESS):
             self._asked -= 1  # and is not counted
@@ -123,37 +157,38 @@ class Signs:
         if fields.result == ACCEPTED:
             self._accepted += 1
         else:
-            self.against = f"it refuses SIMSTATE or AUTOPILOT_VERSION (MAV_RESULT {fields.result})"
+            self._refused(fields.result)
+
+    def _refused(self, result: int) -> None:
+        self._against = f"it refuses SIMSTATE or AUTOPILOT_VERSION (MAV_RESULT {result})"
 
 
-def ask(link: Connection, tries: int = TRIES, is_first: bool = False) -> Signs:
-    """Ask a vehicle for the signs.
+def ask(link: Connection, tries: int = TRIES) -> Signs:
+    """Ask a vehicle for the signs, and listen to what contradicts them.
 
     Args:
         link: to the vehicle, which has been heard.
         tries: how often it is asked for what does not come.
-        is_first: for a first impression, to be followed by another call before anything depends on it: nobody waits
-            for a slower vehicle with the same ids.
 
     Raises:
         LinkLostError: the connection is lost.
     """
     signs, inbox = Signs(link), link.inbox
-    look_us, looks = (0, 1) if link.is_exact else (LOOK_US, LOOKS)
-    for _ in range(1 if link.is_exact else QUIET_LOOKS):
-        link.pause(look_us)
-    inbox.witness = signs.take
+    link.listen(QUIET_US)
+    inbox.overhear = signs.hear
     try:
         for _ in range(tries):
             signs.ask()
-            for _ in range(looks):
-                link.pause(look_us)
+            for _ in range(LOOKS):
+                link.listen(LOOK_US)
                 if signs.against or not signs.doubt:
                     break
             if signs.against or not signs.doubt:
                 break
-        if not signs.doubt and not is_first:
+        if not signs.doubt:
             link.listen(CONTRADICTION_US)
+        if not signs.doubt and signs.voices.has_changed:
+            link.listen(CHANGE_US)
     finally:
-        inbox.witness = None
+        inbox.overhear = None
     return signs

@@ -15,7 +15,7 @@ import pytest
 from sitl import Simulation
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
-from sitl.client import Client, InProcess, LinkLostError, connect
+from sitl.client import Client, InProcess, LinkLostError, connect, proof
 from sitl.client.byte_socket import ByteSocket
 from sitl.client.connection import Connection, Remote
 from sitl.client.endpoint import Endpoint, Inbox
@@ -73,14 +73,21 @@ class Piped(Connection):
     def __init__(self, *vehicles: Callable[[str, Any], bytes]) -> None:
         super().__init__(Endpoint())
         self.vehicles, self._splitter = vehicles, Splitter()
+        self.sequences = [100 * number for number in range(len(vehicles))]
 
     name = "pipe"
 
     def run(self, us: int) -> None:
         sent = self._splitter.feed(self.endpoint.link.peers[0].take())
         for each in sent:
-            for vehicle in self.vehicles:
-                self.inbox.feed(vehicle(each.kind.name, each.kind.decode(each.payload)))
+            for number, vehicle in enumerate(self.vehicles):
+                self.bring(number, vehicle(each.kind.name, each.kind.decode(each.payload)))
+
+    def bring(self, number: int, data: bytes) -> None:
+        """What a vehicle says, numbered as its own frames are."""
+        for each in Splitter().feed(data):
+            self.sequences[number] = (self.sequences[number] + 1) & 0xFF
+            self.inbox.feed(encode_v2(each.kind, each.payload, self.sequences[number], each.system, each.component))
 
 
 def met(*vehicles: Callable[[str, Any], bytes], system: int = 1) -> Piped:
@@ -118,6 +125,8 @@ UNTOLD, OF_OTHERS = ack(to=(0, 0)) + frame("SIMSTATE"), ack(to=(254, 190)) + fra
     ({"truth": OF_OTHERS}, "it does not send SIMSTATE"),
     ({"truth": ack(result=FAILED)}, "it refuses SIMSTATE"),
     ({"truth": ack(result=FAILED) + frame("SIMSTATE")}, "it refuses SIMSTATE"),
+    ({"truth": ack(result=FAILED, to=(0, 0)) + ack() + frame("SIMSTATE")}, "it refuses SIMSTATE"),
+    ({"version": ack(result=3, to=(255, 0)) + ack() + frame("AUTOPILOT_VERSION")}, "it refuses SIMSTATE"),
     ({"version": b""}, "it does not send"),
     ({"version": ack() + frame("AUTOPILOT_VERSION", board_version=PIXHAWK)}, r"a flight controller \(board 50"),
     ({"version": ack() + frame("AUTOPILOT_VERSION", vendor_id=0x1209, product_id=0x5741)}, "USB 1209:5741"),
@@ -150,6 +159,50 @@ def test_a_simulator_with_the_same_ids_proves_nothing(order: int) -> None:
         link = met(*[Answers(**changed), Answers()][::order])
         assert not link.prove()
         assert "more often than it is asked" in link.doubt or "refuses" in link.doubt
+
+
+class Heard(Piped):
+    """A link that brings something else each time that it is listened to so long [us]."""
+
+    def __init__(self, *vehicles: Any, **brought: list[bytes]) -> None:
+        super().__init__(*vehicles)
+        self.brought = {getattr(proof, name): list(each) for name, each in brought.items()}
+
+    def listen(self, us: int) -> None:
+        for each in self.brought.get(us, []):
+            self.bring(0, each)
+        super().listen(us)
+
+
+def states(*modes: int) -> list[bytes]:
+    return [frame("HEARTBEAT", type=QUAD, autopilot=AUTOPILOT, custom_mode=mode, base_mode=128) for mode in modes]
+
+
+def test_what_is_heard_after_the_signs_may_contradict_them() -> None:
+    for brought, why in (
+        ({"CONTRADICTION_US": states(4, 5, 4)}, "say by turns"),
+        ({"CONTRADICTION_US": states(4, 5), "CHANGE_US": states(4)}, "say by turns"),
+        ({"CONTRADICTION_US": [frame("ATTITUDE", time_boot_ms=7)]}, "while its time stands"),
+        ({"CONTRADICTION_US": states(4, 5), "CHANGE_US": states(5, 5)}, ""),  # another station has changed the mode
+    ):
+        link = Heard(Answers(), **brought)
+        link.inbox.feed(heartbeat())
+        assert link.prove() == (not why) and why in link.doubt
+
+
+def test_a_simulator_proves_itself_on_a_link_that_repeats_what_it_says_but_not_what_it_hears() -> None:
+    class Repeating(Piped):
+        def bring(self, number: int, data: bytes) -> None:
+            feed = self.inbox.feed
+            self.inbox.feed = lambda data: feed(2 * data)
+            super().bring(number, data)
+            self.inbox.feed = feed
+
+    link = Repeating(Answers())
+    link.inbox.feed(heartbeat())
+    assert link.prove(), link.doubt
+    answers = Answers()
+    assert not met(lambda name, fields: 2 * answers(name, fields)).prove()
 
 
 def test_a_simulator_proves_itself_beside_a_vehicle_that_is_none() -> None:

@@ -45,11 +45,11 @@ def is_hand_over(name, fields):
 
 class DeafVehicle(RealVehicle):
     """A vehicle that answers the hand-over with a result of its own for the first ``count`` times; None: it does not
-    hear it. ``meanwhile`` is called each time."""
+    hear it. ``meanwhile`` is called each time; ``to`` is whom it answers."""
 
-    def __init__(self, simulation, count, result=None, meanwhile=lambda: None):
+    def __init__(self, simulation, count, result=None, meanwhile=lambda: None, to=(0, 0)):
         super().__init__(simulation)
-        self._left, self._result, self._meanwhile = count, result, meanwhile
+        self._left, self._result, self._meanwhile, self._to = count, result, meanwhile, to
 
     def _take(self, frame):
         fields = frame.kind.decode(frame.payload)
@@ -58,7 +58,8 @@ class DeafVehicle(RealVehicle):
             self.received.append((frame.kind.name, fields))
             if self._result is not None:
                 ack = message("COMMAND_ACK")
-                payload = ack.payload(command=MODE, result=self._result)
+                target = {"target_system": self._to[0], "target_component": self._to[1]}
+                payload = ack.payload(command=MODE, result=self._result, **target)
                 self._refusals.append(encode_v2(ack, payload, 0, 1, 1))
             self._meanwhile()
             return
@@ -137,6 +138,17 @@ def test_a_command_that_is_lost_is_sent_again_whatever_signals_come_meanwhile(co
             env.close()
         assert mode(simulation) == BRAKE and deeds(env) == ["taken over", "handed over"]
     assert sum(is_hand_over(*each) for each in vehicle.received) == count + 1
+
+
+@pytest.mark.parametrize("to", [(254, 190), (0, 0), (255, 190)])
+def test_an_answer_to_another_station_or_to_an_earlier_command_ends_nothing(to):
+    """The command is lost; what is accepted is another one, also of this client: into GUIDED, say."""
+    simulation = hovering()
+    with DeafVehicle(simulation, 1, result=0, to=to) as vehicle:
+        env = flying(vehicle)
+        env.close()
+        assert mode(simulation) == BRAKE and deeds(env) == ["taken over", "handed over"]
+    assert sum(is_hand_over(*each) for each in vehicle.received) >= 2
 
 
 @pytest.mark.parametrize(("result", "says"), [(None, "it does not answer DO_SET_MODE to mode 17, sent"),
@@ -347,12 +359,19 @@ def heard(name, system=1, **fields):
 
 
 FLYING = heard("HEARTBEAT", base_mode=209, custom_mode=GUIDED)
+UNTOLD = heard("COMMAND_ACK", command=MODE, result=0)
+OWN = heard("COMMAND_ACK", command=MODE, result=0, target_system=255, target_component=190)
 
 
 @pytest.mark.parametrize(
     ("answer", "done"),
     [
-        (heard("COMMAND_ACK", command=MODE, result=0), True),
+        (OWN, True),
+        (UNTOLD, False),  # alone
+        (UNTOLD + heard("HEARTBEAT", base_mode=209, custom_mode=BRAKE), True),
+        (OWN + FLYING, False),  # that was an earlier command
+        (heard("COMMAND_ACK", command=MODE, result=0, target_system=254, target_component=190), False),
+        (heard("COMMAND_ACK", command=MODE, result=4, target_system=254, target_component=190), False),
         (heard("HEARTBEAT", base_mode=209, custom_mode=BRAKE), True),
         (heard("HEARTBEAT", base_mode=209, custom_mode=LOITER), True),
         (heard("HEARTBEAT", base_mode=81, custom_mode=GUIDED), True),  # disarmed
@@ -367,13 +386,15 @@ FLYING = heard("HEARTBEAT", base_mode=209, custom_mode=GUIDED)
 def test_what_ends_it(monkeypatch, answer, done):
     monkeypatch.setattr(hand_over, "BOUND_S", 0.2)
     monkeypatch.setattr(hand_over, "REPEAT_S", 0.01)
+    monkeypatch.setattr(hand_over, "SILENCE_S", 0.05)
     stream = BrokenStream(7, answer)
     inbox = StepTelemetry(8)
     inbox.system, inbox.mode, inbox.armed = 1, GUIDED, True
     link = RealTime(stream, inbox, 1.0)
     deed = hand_over.HandOver(link, BRAKE, GUIDED)
     deed.run()
-    assert deed.is_done == done and len(stream.sent) >= 1 and (done or "does not answer" in deed.failure)
+    says = "it accepts mode 17, but no HEARTBEAT says" if deed.result == 0 else "does not answer"
+    assert deed.is_done == done and len(stream.sent) >= 1 and (done or says in deed.failure)
 
 
 def test_a_vehicle_that_is_not_ours_is_not_asked():

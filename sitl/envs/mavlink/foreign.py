@@ -277,6 +277,12 @@ class Foreign(Connection):
         self.inbox.hits += max(hits - self._hits, 0)
         self._scans, self._hits = scans, hits
 
+    def listen(self, us: int) -> None:
+        """Go on until so much time has gone by, its own and wall time [us]."""
+        end, goal = time.monotonic() + 1e-6 * us, self.time_us + us
+        while self.time_us < goal or time.monotonic() < end:
+            self.run(_SLICE_US)
+
     def wait_answer(self, done: Callable[[], bool]) -> bool:
         for _ in range(_ANSWER_US // _SLICE_US):
             self.run(_SLICE_US)

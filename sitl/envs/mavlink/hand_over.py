@@ -15,17 +15,21 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
 from sitl.client.commands import command_number
 from sitl.client.connection import ACCEPTED, Remote
-from sitl.client.endpoint import ACK, AUTOPILOT, HEARTBEAT, IN_PROGRESS
+from sitl.client.endpoint import ACK, ARMED, AUTOPILOT, HEARTBEAT, IN_PROGRESS
+from sitl.client.proof import REQUEST_MESSAGE
 
 from .preparation import CUSTOM_MODE_ENABLED
-from .telemetry import ARMED
 
 BOUND_S = 10.0
 """Wall time after which a vehicle that has not answered is given up [s]."""
 REFUSED_S = 2.0
 """The same of one that refuses [s]."""
 REPEAT_S = 0.25
-"""Wall time after which the command is sent again [s]."""
+"""Wall time after which the command, or the question for a HEARTBEAT, is sent again [s]."""
+SILENCE_S = 2.0
+"""A vehicle that has accepted it and sends no HEARTBEAT for so long is believed [s]."""
+AGAIN_S = 1.2
+"""Wall time after which one that has accepted it is asked again: it may have meant an earlier command [s]."""
 _WRITE_S = 1.0
 """Wall time that sending it may take: a full line must not hold up the rest [s]."""
 _OLD_S = 1.5
@@ -55,6 +59,8 @@ class HandOver:
         self.error: Exception | None = None
         """The last one that sending or listening raised."""
         self._began = time.monotonic()
+        self._accepted_s: float | None = None
+        """When it was accepted; None: it was not, or a HEARTBEAT since says otherwise."""
 
     def run(self) -> None:
         """Ask until the vehicle is in the mode, or is in another's hands, or does not answer. Raises no
@@ -67,20 +73,23 @@ class HandOver:
         self._listen(0.0)  # a pilot may have taken it since
         while not self.is_done:
             now = time.monotonic()
-            if now - self._began > (BOUND_S if self.result is None else REFUSED_S):
+            is_refused = self.result not in (None, ACCEPTED)
+            if now - self._began > (REFUSED_S if is_refused else BOUND_S):
                 return
-            self._send()
+            if self._accepted_s is None or now - self._accepted_s > AGAIN_S:
+                self._send(_SET_MODE, confirmation=min(self.sent, 255), param1=CUSTOM_MODE_ENABLED, param2=self._mode)
+                self.sent += 1
+            if self._accepted_s is not None:
+                self._send(REQUEST_MESSAGE, param1=HEARTBEAT.id)
             while not self.is_done and (left := now + REPEAT_S - time.monotonic()) > 0.0:
                 self._listen(left)
+                self._believe()
 
-    def _send(self) -> None:
+    def _send(self, number: int, **fields: float) -> None:
         try:
             link, endpoint = self._link, self._link.endpoint
-            payload = _LONG.payload(
-                target_system=link.inbox.system, target_component=AUTOPILOT, command=_SET_MODE,
-                confirmation=min(self.sent, 255), param1=CUSTOM_MODE_ENABLED, param2=self._mode,
-            )  # fmt: skip
-            self.sent += 1
+            target = {"target_system": link.inbox.system, "target_component": AUTOPILOT}
+            payload = _LONG.payload(command=number, **target, **fields)
             frame = encode_v2(_LONG, payload, endpoint.sequence & 0xFF, endpoint.system, endpoint.component)
             endpoint.sequence = (endpoint.sequence + 1) & 0xFF
             link.stream.write(frame)  # past what an interrupted step has left to be sent
@@ -102,16 +111,33 @@ class HandOver:
 
     def _hear(self, kind: Any, fields: Any) -> None:
         if kind is HEARTBEAT:
+            if not self._link.inbox.is_for_us(kind, fields):
+                return
             is_ours = bool(fields.base_mode & ARMED) and fields.custom_mode == self._guided
             is_news = self._knows or time.monotonic() - self._began > _OLD_S
             self.is_done = self.is_done or fields.custom_mode == self._mode or (is_news and not is_ours)
+            if not self.is_done:
+                self._accepted_s = None  # what was accepted was not this
         elif fields.command == _SET_MODE and self.sent and fields.result != IN_PROGRESS:
+            own = self._link.endpoint
+            target = fields.target_system, fields.target_component
+            if target not in ((own.system, own.component), (0, 0)):
+                return  # another station's
             self.result = int(fields.result)
-            self.is_done = self.is_done or self.result == ACCEPTED
+            if self.result == ACCEPTED and target != (0, 0) and self._accepted_s is None:
+                self._accepted_s = time.monotonic()
+                self._send(REQUEST_MESSAGE, param1=HEARTBEAT.id)
+
+    def _believe(self) -> None:
+        """One that sends no HEARTBEAT, but has accepted it."""
+        is_silent = self._accepted_s is not None and time.monotonic() - self._accepted_s > SILENCE_S
+        self.is_done = self.is_done or is_silent
 
     @property
     def failure(self) -> str:
         """What is known when the vehicle could not be brought into the mode."""
+        if self.result == ACCEPTED:
+            return f"it accepts mode {self._mode}, but no HEARTBEAT says in {BOUND_S:g} s that it is in it"
         if self.result is not None:
             return f"it refuses mode {self._mode} (MAV_RESULT {self.result})"
         why = f" ({self.error})" if self.error is not None else ""

@@ -287,8 +287,8 @@ def refusal(link: Connection) -> NotASimulatorError:
     mode = f"{'armed' if inbox.armed else 'disarmed'}, in mode {inbox.mode}" if inbox.mode >= 0 else "no HEARTBEAT yet"
     return NotASimulatorError(
         f"connection {link.name}: the vehicle (system {inbox.system}, {mode}) does not prove to be a simulator: "
-        f"{link.doubt}. It was only asked questions. A reset would disarm it by force and "
-        "reboot it, in the air, too: that is done to simulators only (sitl run, ArduPilot's SITL). For a vehicle that "
-        f'may be treated so, whatever it is: reset="{BY_FORCE}" when the environment is made. One that flies is taken '
-        f'over where it is with reset="{NONE}" or "{RETURN}"'
+        f"{link.doubt}. For this reset nothing was sent that disarms, reboots or moves it. It would be disarmed by "
+        "force and rebooted, in the air, too: that is done to simulators only (sitl run, ArduPilot's SITL). For a "
+        f'vehicle that may be treated so, whatever it is: reset="{BY_FORCE}" when the environment is made. One that '
+        f'flies is taken over where it is with reset="{NONE}" or "{RETURN}"'
     )

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
+from sitl.client.endpoint import ARMED as ARMED
 from sitl.client.endpoint import HEARTBEAT, TEXT, Inbox
 
 from .reports import LANDED, ON_GROUND, REPORTED, LandedState, note_report
@@ -26,8 +27,6 @@ PART = 58
 SCAN_NAME = b"LASER"
 HIT = b"SIM Hit obstacle"
 """How the text begins that tells of a touch."""
-ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED"""
 _part = struct.Struct("<QH10s").unpack_from
 _seven = struct.Struct("<I6f").unpack_from
 
@@ -92,7 +91,7 @@ class StepTelemetry(Inbox):
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
-        for kind, payload, _, system, component, _, _ in self._splitter.cut(data):
+        for kind, payload, _, system, component, _, _ in self._cut(data):
             if not self._is_of_vehicle(kind, system, component):
                 continue
             if kind is POSITION:
@@ -138,7 +137,7 @@ class StepTelemetry(Inbox):
 
     def _other(self, kind: MessageType, payload: bytes, system: int) -> None:
         fields = kind.decode(payload)
-        if not self._is_for_us(kind, fields):
+        if not self.is_for_us(kind, fields):
             return
         self._note(kind, fields, system)
         if kind is HEARTBEAT:

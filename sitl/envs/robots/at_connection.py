@@ -134,7 +134,7 @@ class SocketVehicles(Vehicles):
             if link.is_simulator:  # one that may be real stays so
                 link.prove()
         else:
-            if was_open or link.is_simulator:
+            if was_open:
                 link.prove()
             if not link.is_simulator and self.options.reset != BY_FORCE:
                 self.close()
