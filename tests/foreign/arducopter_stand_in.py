@@ -45,9 +45,7 @@ def main(name: str, words: list[str]) -> None:
     model, _, host = given.model.partition(":")
     assert model == "JSON"
     print(f"Starting {name}: JSON at {host}:{given.sim_port_out}", flush=True)
-    values: dict[str, float] = {}
-    for path in filter(None, given.defaults.split(",")):
-        values.update(files.load(path))
+    values = files.load_all([path for path in given.defaults.split(",") if path])
     lat, lon, alt, heading = (float(number) for number in given.home.split(","))
     bare = replace(vehicles.load(FRAMES[name]), parameters={})  # it knows no airframe but by its parameters
     simulation = Simulation(
