@@ -224,7 +224,7 @@ def test_a_copter_that_has_landed_flies_back_and_lands_again(flown):
     with pytest.raises(AgentError, match="the guard's floor is 1 m above the ground: --guard floor=-5"):
         deploy(land, "udpout:127.0.0.1:1")
     simulation = hovering()
-    with RealVehicle(simulation, step_us=4_000, waits=True) as vehicle:
+    with RealVehicle(simulation, step_us=2_500, waits=True) as vehicle:
         guard = {"late": 60.0, "floor": -5.0}
         done = deploy(land, f"udpout:127.0.0.1:{vehicle.port}", episodes=2, reset="return", guard=guard, wait=30.0)
     assert [flown.solved for flown in done.episodes] == [True, True]
