@@ -142,6 +142,26 @@ def test_a_landing_ends_on_the_ground_whatever_the_error_of_the_height(error):
         assert "put down" in [deed.what for deed in env.robot.watch.deeds]
 
 
+def test_a_vehicle_that_is_put_down_stops_on_the_spot():
+    simulation = hovering()
+    task, guard = Land(offset=0.0, pad=9.0), {"late": 60.0, "floor": -5.0}
+    with (
+        RealVehicle(simulation, hidden=False, waits=True) as vehicle,
+        contextlib.closing(environment(vehicle, task=task, guard=guard)) as env,
+    ):
+        env.reset(seed=1)
+        put_down = None
+        for _ in range(400):
+            sideways = np.array([0.0, 0.1, -0.25, 0.0], np.float32)
+            _, _, terminated, _, _ = env.step(sideways)
+            if put_down is None and any(deed.what == "put down" for deed in env.robot.watch.deeds):
+                put_down = position(simulation)
+            if terminated:
+                break
+        assert terminated and put_down is not None
+        assert math.dist(put_down[:2], position(simulation)[:2]) < 0.45  # level and sinking it would go on for 0.6 m
+
+
 def test_what_is_not_ready_is_waited_for_and_said():
     simulation = hovering()
     simulation.bridge.autopilot.set_mode(BRAKE)

@@ -46,6 +46,9 @@ _SINKING = 0.3
 """Speed at which a copter on the ground is to sink until it knows that it has landed [m/s]."""
 _SINKING_THRUST = 0.4
 """The same as the thrust of an attitude: 0.5 is no climb, 0 the greatest speed of sinking."""
+_FALLS_SHORT, _FALLS_SHORT_MS, _GETS_GOING_MS = 0.1, 500, 1000
+"""A vehicle that is to sink stands on the ground when it has not sunk so fast for so long, from the time on at which it
+must be sinking at the latest [m/s, ms, ms]."""
 _PAUSE_US, _PAUSES = 200_000, 5
 """Wall time from one such set-point to the next, much less than GUID_TIMEOUT at four times real time, too [us]; number
 of them in a second."""
@@ -82,6 +85,8 @@ class SocketVehicles(Vehicles):
         """How high that was above its home [m]."""
         self._heard_ms = -1000
         self._is_put_down = self._is_warned = False
+        self._sank_ms = 0
+        """When the vehicle that is put down was last seen to sink [ms]."""
         self._may_sink_level: bool | None = None
         """Whether ``sink_level`` does what it says, once that is known."""
 
@@ -218,10 +223,23 @@ class SocketVehicles(Vehicles):
         link = self.links[0]
         assert link is not None
         if not self._is_put_down and height < self.lets_down and self._may_sink_level:
-            self._is_put_down = True
+            self._is_put_down, self._sank_ms = True, link.inbox.time_ms + _GETS_GOING_MS
             if self.watch is not None:
                 self.watch.note(1e-3 * link.inbox.time_ms, "put down", f"at a height of {height:.2f} m")
         return self._is_put_down
+
+    def put_down(self, link: Connection) -> None:
+        """Ask for sinking on the spot, and from the ground on for ``sink_level``.
+
+        A level vehicle keeps the speed that it has, and the wind takes it along: it would drift off its pad.
+        """
+        inbox = link.inbox
+        if inbox.position[6] > _FALLS_SHORT:
+            self._sank_ms = max(self._sank_ms, inbox.time_ms)
+        if inbox.time_ms < self._sank_ms + _FALLS_SHORT_MS:
+            self._stop(link, sinking=_SINKING)
+        else:
+            self.sink_level(link)
 
     def sink_level(self, link: Connection) -> None:
         """Ask for no lean and for sinking, in GUIDED.

@@ -390,7 +390,7 @@ class AutopilotRobot:
             return False
         if not vehicles.puts_down(float(self.pose[index, 2] - self.world.floor_z)):
             return False
-        vehicles.sink_level(link)
+        vehicles.put_down(link)
         return True
 
     def true_reports(self) -> Floats:
