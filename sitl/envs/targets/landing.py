@@ -27,6 +27,13 @@ stands on it and goes on flying.
 """
 
 
+STANDS = 0.1
+"""A vehicle that runs elsewhere and sinks no faster than this near the ground stands on it [m/s].
+
+It reports its landing seconds later, and its estimate of its position moves on by decimetres meanwhile.
+"""
+
+
 class Land(MovingTask):
     """Land softly on a pad on the floor.
 
@@ -36,7 +43,8 @@ class Land(MovingTask):
 
     "goal" and "path" are exact vectors to the pad, and the landing is judged by the robot's true position. The true
     height of a vehicle in another process is unknown. There, if the pad does not move, the autopilot lands the vehicle
-    below 0.35 m, and the episode ends when the autopilot reports a landing (EXTENDED_SYS_STATE).
+    below 0.35 m, and the episode ends when the autopilot reports a landing (EXTENDED_SYS_STATE); it is judged by
+    where it stopped sinking.
 
     Args:
         offset: greatest distance of the random pad from the start, along each horizontal axis [m].
@@ -86,6 +94,8 @@ class Land(MovingTask):
         self._velocity = np.zeros((robot.count, 3))
         """Of each robot's pad at first [m/s]."""
         self._distance, self._sinking = np.zeros(robot.count), np.zeros(robot.count)
+        self._touched = np.zeros((robot.count, 3))
+        """Way from where it touched the ground to the pad; as long as it flies, from where it is [m]."""
 
     def _draw(self, index: int, rng: np.random.Generator) -> None:
         way, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
@@ -98,6 +108,7 @@ class Land(MovingTask):
         super().start(index, robot, rng)
         way = self.centre[index] - self._sensing.judged_state()[index, :3]
         self._distance[index], self._sinking[index] = np.sqrt((way * way).sum()), 0.0
+        self._touched[index] = way
 
     def along(self, time: Floats) -> Floats:
         """See ``MovingTask``: 10 s there, 10 s back."""
@@ -126,7 +137,9 @@ class Land(MovingTask):
         c, s = np.cos(state[:, 3]), np.sin(state[:, 3])
         east = np.stack([state[:, 4] * c - state[:, 5] * s, state[:, 4] * s + state[:, 5] * c], axis=1)
         slip = np.hypot(*(east - turned * self._velocity[:, :2]).T)
-        on = np.hypot(way[:, 0], way[:, 1]) < self.pad
+        flies = (state[:, 6] < -STANDS) | (height > LET_DOWN) | (not self._lets_down)
+        self._touched[flies] = way[flies]
+        on = np.hypot(self._touched[:, 0], self._touched[:, 1]) < self.pad
         self.success = down & on & (slip < SLOW) & (self._sinking < GENTLE)
         rewards[self.success] += self.success_reward
         rewards[down & ~self.success] += self.crash_reward
@@ -138,10 +151,10 @@ class Land(MovingTask):
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
-        mine = self._velocity[index].copy(), float(self._distance[index]), float(self._sinking[index])
-        return *super().memory(index), mine
+        numbers = float(self._distance[index]), float(self._sinking[index])
+        return *super().memory(index), (self._velocity[index].copy(), *numbers, self._touched[index].copy())
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
         super().recall(index, memory)
-        self._velocity[index], self._distance[index], self._sinking[index] = memory[5]
+        self._velocity[index], self._distance[index], self._sinking[index], self._touched[index] = memory[5]
