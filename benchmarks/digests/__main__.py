@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``python -m benchmarks.digests``: what a tree flies as digests, and whether two trees fly the same.
 
-``record`` and ``check`` do it with the digests that the repository keeps: whether this machine flies the same as others.
+``record`` and ``check`` do it with the digests that the repository keeps: does this machine fly the same as others?
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from . import flights as vehicles
 from . import company, kept, robots, tree
+from . import flights as vehicles
 from .compare import Comparison, compare
 from .leaves import leaves
 from .pilot import Pilot

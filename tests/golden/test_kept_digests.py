@@ -79,7 +79,7 @@ def test_one_bit_of_one_field_is_a_difference_and_a_new_field_of_the_record_is_n
     other[5] ^= 1
     changed = flight._replace(rows=flight.rows | {title: row._replace(steps=bytes(other), check_sum=1)})
     assert kept.difference(flight, changed) == "between 40 and 48 s: physics.body.pos"
-    assert kept.difference(flight, flight._replace(end=1.0)) == f"it ends at 1 s, not at {flight.end:g} s"
+    assert kept.difference(flight, flight._replace(end=1.0)) == f"it ends at 1 s, not at {flight.end:g}"
     assert kept.difference(flight, flight) == ""
     full = {"end": 1.0, "record": _tape("physics.body.pos"), "telemetry": _tape("STATUSTEXT")}
     more = {"end": 1.0, "record": _tape("physics.body.pos", "autopilot.new"), "telemetry": _tape("STATUSTEXT", "NEW")}

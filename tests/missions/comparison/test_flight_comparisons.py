@@ -28,7 +28,7 @@ def failed(comparison: Comparison) -> set[str]:
 def test_the_same_flight_is_the_same_to_the_last_digit(golden: Flight, tmp_path: Path) -> None:
     found = compare(golden, fly_square(tmp_path / "again.rec"))
     assert found.ok
-    assert found.tolerance.name == "same"
+    assert found.tolerance.name == "exact"
     assert found.first is None and found.first_trace is None
     assert found.headline == "flies like the golden flight, to the last digit of its track"
     assert found.differences["position"].max == 0.0

@@ -54,7 +54,8 @@ def test_without_a_base_it_is_the_same_run() -> None:
         ({"copter": 3}, r"\[copter\] is a table, not 3"),
         ({"texts": {"ignore": "abc"}}, "texts.ignore is a list of regular expressions, not 'abc'"),
         ({"texts": {"numbers": "no"}}, "texts.numbers is true or false, not 'no'"),
-        ({"base": "exact"}, "base 'exact' is none of same, alike"),
+        ({"base": "near"}, "base 'near' is none of exact, same, alike"),
+        ({"bits": 1}, "bits is true or false, not 1"),
         ({"align": "noon"}, "align 'noon' is none of"),
         ({"texts": {"ignore": ["("]}}, "texts.ignore is a list of regular expressions"),
         ({"rover": {"rover": {}}}, r"\[rover\]: 'rover' is not known"),
@@ -66,7 +67,7 @@ def test_errors_name_the_key(table: dict[str, object], words: str) -> None:
 
 
 def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ToleranceError, match=r"nowhere\.toml.*none of same, alike"):
+    with pytest.raises(ToleranceError, match=r"nowhere\.toml.*none of exact, same, alike"):
         load("nowhere.toml")
     path = tmp_path / "bad.toml"
     path.write_text("cross_track = ")
