@@ -101,7 +101,8 @@ class Comparison:
     def headline(self) -> str:
         """The verdict in one line."""
         if self.ok:
-            return "flies like the golden flight" + ("" if self.first_trace else ", to the last digit of its track")
+            exactly = "bit" if self.tolerance.bits else "digit of its track"
+            return "flies like the golden flight" + ("" if self.first_trace else f", to the last {exactly}")
         what = self.first.words if self.first else self.failed[0].words
         return f"does not fly like the golden flight: {what}"
 
@@ -261,9 +262,7 @@ def _first(
         if worst_figure is None:
             return None
         if worst_figure.name == "bits":
-            return Divergence(
-                worst_figure.at or 0.0, f"{worst_figure.words}, the track is the same as far as it is kept"
-            )
+            return Divergence(worst_figure.at or 0.0, f"{worst_figure.words}; the track that is kept is the same")
         value, limit_text = (words.number(x, worst_figure.unit) for x in (worst_figure.value, worst_figure.limit))
         text = f"{worst_figure.title} {value}, {limit_text} allowed"
         return Divergence(worst_figure.at or 0.0, f"{text} ({worst_figure.words})" if worst_figure.words else text)

@@ -67,7 +67,7 @@ def is_file(given: str | Path) -> bool:
 def load(given: str | Path | Mapping[str, Any], kind: str = DEFAULT) -> Tolerance:
     """A preset by its name, a distance, a TOML file, or a mapping of the same shape; for a kind of vehicle.
 
-    A distance with its unit, as "0.5 m" or "2 cm", limits position, cross-track and altitude; the rest is as in "alike".
+    A distance with its unit, "0.5 m" or "2 cm", limits position, cross-track and altitude; the rest is as in "alike".
     What a file does not say is as in its ``base``, "same" unless it says another.
 
     Raises:

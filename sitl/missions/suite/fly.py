@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
@@ -141,7 +141,7 @@ def _judged(
             return result(NO_GOLDEN, f"there is no {case.golden}: --update-golden writes it")
         _keep(path, case.golden)
         return result(WRITTEN, note)
-    flight = Flight(case.name, new.track, new.header, new.digests)
+    flight = replace(new, name=case.name)
     try:
         comparison = compare(_golden(case), flight, case.tolerance)
     except (RecordingError, LogError, AlignmentError) as error:  # nothing that this flight can be held against
