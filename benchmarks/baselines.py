@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``python -m benchmarks.baselines [NAME...] [--learn] [--faults]``: the figures of the shipped policies.
 
-All policies play episodes of the same seeds; a random policy plays them, too. On one machine they repeat to the last
-bit; another processor changes the last bits, and with them the end of an episode now and then. ``--faults`` adds
-episodes with faults, for copters. ``--learn`` trains the policies anew first, by their recipes. The figures go to
-docs/envs/baselines.json, which docs/baselines.md and the pages of environments show. Confidence intervals are of 95 %:
-of means by the normal distribution, of success rates by Wilson's formula.
+All policies play episodes of the same seeds; a random policy plays them, too. They repeat to the last bit, on every
+machine. ``--faults`` adds episodes with faults, for copters. ``--learn`` trains the policies anew first, by their
+recipes. The figures go to docs/envs/baselines.json, which docs/baselines.md and the pages of environments show.
+Confidence intervals are of 95 %: of means by the normal distribution, of success rates by Wilson's formula.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m benchmarks.digests``: what a tree flies as digests, and whether two trees fly the same."""
+"""``python -m benchmarks.digests``: what a tree flies as digests, and whether two trees fly the same.
+
+``record`` and ``check`` do it with the digests that the repository keeps: does this machine fly the same as others?
+"""
 
 from __future__ import annotations
 
@@ -16,8 +19,8 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from . import company, kept, robots, tree
 from . import flights as vehicles
-from . import robots, tree
 from .compare import Comparison, compare
 from .leaves import leaves
 from .pilot import Pilot
@@ -29,14 +32,19 @@ QUICK = (
     "native/*/world", "native/copter/guided-*", "native/*/by_dice-*-11", "native/rover/guided-erle_rover",
     "native/rover/guided-skid_rover", "native/rover/ACRO-erle_rover", "native/rover/on_ground-erle_rover",
     "native/rover/failsafe-rc-smart_rtl", "jsbsim/copter/guided", "pybullet/rover/guided", "turtlebot/maze",
-    "env/Gazebo*", "env/navigate-turtlebot-goal",
+    "env/Gazebo*", "env/navigate-turtlebot-goal", "native/*/faults", "fleet/erle_copter", "swarm/formation",
+    "policy/copter-gates", "policy/rover-parking", "env/CopterForest", "env/RoverLabyrinth",
 )  # fmt: skip
 """Patterns of the flights that are enough after each edit."""
 
 
+OTHER_ENGINES = ("jsbsim", "pybullet")
+"""Their flights are not kept: what they compute depends on the processor and on their libraries."""
+
+
 def flights() -> dict[str, Callable[[], Any]]:
     """Every flight by its name."""
-    return {**vehicles.flights(), **robots.flights()}
+    return {**vehicles.flights(), **robots.flights(), **company.flights()}
 
 
 def chosen(patterns: str | None, quick: bool) -> list[str]:
@@ -55,6 +63,11 @@ def chosen(patterns: str | None, quick: bool) -> list[str]:
     ]
 
 
+def is_kept(name: str) -> bool:
+    """Whether the repository keeps digests of a flight."""
+    return not any(engine in name for engine in OTHER_ENGINES)
+
+
 def fly(name: str) -> tuple[float, dict[str, Any]]:
     """Seconds of wall time, and the digests of one flight; with "error" when it cannot be flown."""
     start = time.perf_counter()
@@ -66,12 +79,41 @@ def fly(name: str) -> tuple[float, dict[str, Any]]:
     return time.perf_counter() - start, digests
 
 
-def write(path: Path, names: list[str], jobs: int) -> int:
-    """Fly, and write the digests; returns how many could not be flown."""
+def fly_all(names: list[str], jobs: int) -> dict[str, Any]:
+    """Fly; the digests of each flight."""
     flown: dict[str, Any] = {}
     with ProcessPoolExecutor(jobs, multiprocessing.get_context("fork")) as pool:
         for name, (seconds, flown[name]) in zip(names, pool.map(fly, names)):
             print(f"{seconds:6.2f} s  {name}  {flown[name].get('error', '')}", flush=True)
+    return flown
+
+
+def record(path: Path, names: list[str], jobs: int) -> int:
+    """Fly, and put the digests into the file that the repository keeps; returns how many could not be flown."""
+    flown = fly_all([name for name in names if is_kept(name)], jobs)
+    before = kept.load(path) if path.exists() else {}
+    there = {name: flight for name, flight in before.items() if name in flights()}
+    now = {name: kept.keep(digests) for name, digests in flown.items() if "error" not in digests}
+    kept.write(path, there | now)
+    changed = [name for name in now if before.get(name) != now[name]]
+    print(f"{path}: {len(there | now)} flights, {len(changed)} of them new or changed")
+    return len(flown) - len(now)
+
+
+def check(path: Path, names: list[str], jobs: int) -> list[str]:
+    """Fly; what differs from the digests that the repository keeps, in words."""
+    flown = fly_all([name for name in names if is_kept(name)], jobs)
+    found = [f"{name}: it cannot be flown: {each['error']}" for name, each in flown.items() if "error" in each]
+    now = {name: kept.keep(each) for name, each in flown.items() if "error" not in each}
+    found += kept.differences(kept.load(path), now)
+    print(*found, sep="\n")
+    print(f"{len(found)} of {len(flown)} flights differ" if found else f"same: {len(flown)} flights")
+    return found
+
+
+def write(path: Path, names: list[str], jobs: int) -> int:
+    """Fly, and write the digests; returns how many could not be flown."""
+    flown = fly_all(names, jobs)
     lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(digests)}" for name, digests in flown.items())
     path.write_text(f"{{{lines}}}\n")
     return sum("error" in digests for digests in flown.values())
@@ -143,7 +185,12 @@ def main(arguments: list[str] | None = None) -> int:
     comparing.add_argument("--renamed", type=Path, metavar="FILE", help="lines old=new: leaves or their parents")
     comparing.add_argument("--all", action="store_true", help="name every leaf that only one has")
     listing = commands.add_parser("list", help="names of the flights")
-    for each in (writing, listing):
+    recording = commands.add_parser("record", help="fly, and write the digests that the repository keeps")
+    checking = commands.add_parser("check", help="fly, and compare with the digests that the repository keeps")
+    for each in (recording, checking):
+        each.add_argument("--jobs", type=int, default=1, metavar="N", help="processes")
+        each.add_argument("--file", type=Path, default=None, help=f"default: {kept.FILE} of the tree")
+    for each in (writing, listing, recording, checking):
         each.add_argument("--only", metavar="NAMES", help="beginnings of names or patterns, separated by commas")
         each.add_argument("--quick", action="store_true", help="those that are enough after each edit")
     showing = commands.add_parser("show", help="print every leaf of the record at a time of a flight")
@@ -167,6 +214,13 @@ def main(arguments: list[str] | None = None) -> int:
         print(*names, sep="\n")
         return 0
     print(f"tree {tree.root()}: {len(names)} flights", file=sys.stderr)
+    if options.command in ("record", "check"):
+        path = options.file or tree.root() / kept.FILE
+        if options.command == "record":
+            return 1 if record(path, names, options.jobs) else 0
+        if not path.exists():
+            parser.error(f"there is no {path}; {kept.RENEW} makes it")
+        return 1 if check(path, names, options.jobs) else 0
     return 1 if write(options.file, names, options.jobs) else 0
 
 

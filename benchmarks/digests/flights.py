@@ -13,6 +13,8 @@ from . import tree
 from .pilot import ARM, DRAWN, MODES, START, TAKEOFF, Item, Pilot
 
 KEEP = 65535
+OVER_TERRAIN = (10, 11)
+"""Frames of items whose heights are above terrain."""
 POSITION, VELOCITY = 0xDF8, 0xDC7
 ALL = {
     "x": 8.0, "y": -4.0, "z": -12.0, "vx": 1.5, "vy": -0.7, "vz": -0.3, "afx": 0.6, "afy": -0.4, "yaw": 1.0,
@@ -202,6 +204,25 @@ def repair(pilot: Pilot) -> None:
     pilot.set_parameter("SIM_GPS1_ENABLE", 1)
 
 
+def faults(frame: str, kind: str) -> Pilot:
+    """Everything that can fail, one after the other, for two seconds each."""
+    pilot = Pilot(frame, kind, seed=10, world=PROGRAMMES[kind].world)
+    table = tree.locate("known", "sitl.vehicle.faults")(pilot.simulation.firmware.table)
+    pilot.set_out(1.5)
+    for unit, types in table.items():
+        for name, effect in types.items():
+            strength = "=0.9" if unit in ("motor", "servo") and name == "off" else ""
+            instance = ":1" if effect.instances > 1 else ""
+            try:
+                pilot.simulation.fail(f"{unit}{instance}/{name}{strength}@0..2")
+            except ValueError:  # it has no such thing
+                continue
+            pilot.set_mode("GUIDED")
+            pilot.stream(2.5, VELOCITY, 8, vx=0.2)
+    pilot.come_to_rest()
+    return pilot
+
+
 def stop_motors() -> Pilot:
     """Forced to disarm in the air: a crash."""
     pilot = Pilot("erle_copter", "copter", seed=6)
@@ -321,6 +342,7 @@ def mission(name: str, **options: Any) -> Pilot:
     if not has_home:
         lat, lon, alt, _ = pilot.simulation.home
         items[0] = Item(16, round(lat * 1e7), round(lon * 1e7), alt, frame=0)
+    pilot.knows_terrain = any(item.frame in OVER_TERRAIN for item in items)
     pilot.boot()
     pilot.fly_mission(items)
     return pilot
@@ -343,6 +365,7 @@ def flights() -> dict[str, Callable[[], Pilot]]:
         found |= {
             f"native/power_on/{kind}": partial(power_on, first, kind),
             f"native/log/{kind}": partial(logged, kind),
+            f"native/{kind}/faults": partial(faults, first, kind),
             f"native/{kind}/guided-truth": partial(guided, first, kind, estimator="truth"),
             f"native/{kind}/world": partial(in_world, kind),
             f"pybullet/{kind}/world": partial(in_world, kind, "pybullet"),

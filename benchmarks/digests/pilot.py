@@ -91,6 +91,8 @@ class Pilot:
         self.mav = mavlink.MAVLink(self, srcSystem=CLIENT, srcComponent=190)
         self.sticks: tuple[int, ...] = ()
         self.items: Sequence[Item] = ()
+        self.knows_terrain = False
+        """Whether it answers requests for heights of terrain: 0 m everywhere."""
         self._checkpoint_us = 0
         self._listen()
 
@@ -120,6 +122,8 @@ class Pilot:
         self.heard[name] = raw
         if name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
             self._send_item(self.last(name, "seq"))
+        if name == "TERRAIN_REQUEST" and self.knows_terrain:
+            self._send_terrain()
 
     def last(self, name: str, field: str) -> Any:
         """A field of the last message of a name; 0 before the first."""
@@ -170,6 +174,13 @@ class Pilot:
         fields = self.items[seq]._asdict()
         params = {f"param{k}": fields.pop(f"p{k}") for k in range(1, 5)}
         self.send("MISSION_ITEM_INT", seq=seq, **params, **fields)
+
+    def _send_terrain(self) -> None:
+        fields = {each: self.last("TERRAIN_REQUEST", each) for each in ("lat", "lon", "grid_spacing")}
+        mask = int(self.last("TERRAIN_REQUEST", "mask"))
+        for bit in range(56):
+            if mask >> bit & 1:
+                self.send("TERRAIN_DATA", gridbit=bit, data=[0] * 16, **fields)
 
     # ------------------------------------------------------------------ time
 

@@ -18,6 +18,11 @@ PAPER = (
     "GazeboCircuitTurtlebotLIDAR-v0", "GazeboCircuit2TurtlebotLIDAR-v0", "GazeboMazeTurtlebotLIDAR-v0",
     "GazeboRoundTurtlebotLIDAR-v0", "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0",
 )  # fmt: skip
+FLYING = (
+    "CopterHover", "CopterReachGoal", "CopterWaypoint", "CopterCourse", "CopterGates", "CopterRace", "CopterTrajectory",
+    "CopterFollow", "CopterLand", "CopterLandMoving", "CopterForest", "CopterRooms", "RoverReachGoal", "RoverWaypoint",
+    "RoverCourse", "RoverLabyrinth", "RoverSlalom", "RoverRace", "RoverParking",
+)  # fmt: skip
 COPTER = {"robot": "erle_copter", "world": "office_erlecopter", "observation": "scan+pose", "action": "continuous"}
 ROVER = {"robot": "erle_rover", "world": "maze_erlerover", "observation": "scan+pose", "action": "continuous"}
 NAVIGATES: dict[str, dict[str, Any]] = {
@@ -112,6 +117,7 @@ def flights() -> dict[str, Callable[[], Steps]]:
             f"env/navigate-{name}": partial(environment, "sitl/Navigate-v0", 200, **options)
             for name, options in NAVIGATES.items()
         },
+        **{f"env/{name}": partial(environment, f"sitl/{name}-v0", 100) for name in FLYING},
         "env/vector-turtlebot": partial(environment, PAPER[1], 200, 8),
         "env/vector-copter": partial(environment, PAPER[5], 100, 3),
     }

@@ -91,6 +91,24 @@ def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
 
 
+def laws_of(entry: Callable[..., Any]) -> list[types.FunctionType]:
+    """Every function that ``entry`` reaches, those of other units included."""
+    found: dict[int, types.FunctionType] = {}
+
+    def visit(function: types.FunctionType) -> None:
+        if id(function) in found:
+            return
+        found[id(function)] = function
+        named = [value for _, value in _referenced(function)]
+        named += [law for name in function.__code__.co_names for law in PROPERTIES.get(name, ())]
+        for value in named:
+            if isinstance(value, types.FunctionType):
+                visit(value)
+
+    visit(entry)  # type: ignore[arg-type]
+    return list(found.values())
+
+
 @cache  # every new simulation asks, and code does not change while a process runs
 def reached(entry: Callable[..., Any]) -> tuple[Unit, ...]:
     """The units that ``entry``, a unit itself, calls, directly or not: callees before callers, ``entry`` last."""

@@ -29,7 +29,7 @@ class Bytes(Protocol):
 
 
 def _memory(address: int, size: int) -> memoryview[int]:
-    return memoryview((c_uint8 * size).from_address(address)).cast("B")
+    return memoryview((c_uint8 * size).from_address(int(address))).cast("B")  # NumPy's integers, too
 
 
 def record_at(cls: type[R], address: int) -> R:

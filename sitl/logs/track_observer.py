@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from array import array
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -14,6 +15,10 @@ from ..autopilot.modes import shown
 from ..core.geodesy import offset_ne
 from .track import COLUMNS, LONGEST_S, STEP_US, Track
 
+BITS_US = 10_000_000
+"""Simulated time between two digests of a flight's bits [us]."""
+BITS_BYTES = 8
+"""Length of one."""
 NOWHERE = 1e6
 """Stands for what is no number: nothing else is as far away."""
 
@@ -59,6 +64,8 @@ class TrackObserver:
         self._events = _reader(simulation, "autopilot.events.count")
         self._rows = array("d")
         """Row after row: in a long flight, a fifth of the memory that tuples take."""
+        self._bits, self._hash = bytearray(), hashlib.blake2b(digest_size=BITS_BYTES)
+        self._bits_us = BITS_US
         self._modes: list[tuple[float, str]] = []
         self._items: list[tuple[float, int]] = []
         self._texts: list[tuple[float, int, str]] = []
@@ -95,7 +102,12 @@ class TrackObserver:
             self._find_origin()
         place = [x + shift for x, shift in zip(self._pos(), self._shift)]
         euler = self._vehicle.v.autopilot.estimate.euler
-        self._rows.extend((now * 1e-6, *place, *self._vel(), *euler, *self._energy()))
+        row = array("d", (now * 1e-6, *place, *self._vel(), *euler, *self._energy()))
+        self._rows.extend(row)
+        while now >= self._bits_us:
+            self._bits += self._hash.digest()
+            self._bits_us += BITS_US
+        self._hash.update(row.tobytes())
 
     def _rebooted(self) -> None:
         self._boot_us, self._seen, self._is_new = self._vehicle.before_boot_us, 0, True
@@ -172,6 +184,14 @@ class TrackObserver:
             list(self._armed),
         )
         return track.seen_from(home)
+
+    def bits(self) -> bytes:
+        """Digests of all samples to their last bit, up to each ten seconds and to the end: a section of a recording.
+
+        They say whether two flights are the same where a track, which is rounded, cannot, and since when they are not.
+        They do not depend on what else the vehicle's record holds, and so not on the version of the simulator.
+        """
+        return bytes(self._bits) + self._hash.digest()
 
     def to_bytes(self) -> bytes:
         """``track().to_bytes()``: a section of a recording (``recorder.sections["track"]``)."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib.metadata
+import inspect
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -12,8 +13,8 @@ from typing import Any
 
 from .. import __version__
 from ..bridge.services.faults import FaultService
-from ..core import compile as compiler
-from ..core.fingerprint import reached
+from ..core.compile import record_class
+from ..core.fingerprint import laws_of
 from ..physics.engines import NATIVE
 from ..simulation import Simulation
 from ..vehicle.kind import Kind
@@ -43,8 +44,22 @@ def sources() -> dict[str, str]:
 
 
 @cache
-def _compiled(entry: Any, path: str) -> str:
-    return _digest([compiler.unit_folder(unit, path).name.encode() for unit in reached(entry)])
+def _core(entry: Any, path: str) -> str:
+    """Digest of what other packages bring to the core: their laws, and with them the record as a whole.
+
+    Neither compilers nor processor nor the version of Python belong to it: they do not change a flight.
+    """
+    package = _ROOT.name + "."
+    foreign = [law for law in laws_of(entry) if not f"{law.__module__}.".startswith(package)]
+    texts = sorted(f"{law.__module__}.{law.__qualname__}\n{_source(law)}" for law in foreign)
+    return _digest([text.encode() for text in (record_class(path).layout(), *texts)])
+
+
+def _source(law: Any) -> str:
+    try:
+        return inspect.getsource(law)
+    except (OSError, TypeError):  # made by a program
+        return repr((law.__code__.co_names, law.__code__.co_varnames))
 
 
 def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
@@ -52,7 +67,7 @@ def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
     found = {
         "gym-sitl": __version__,
         "sources": sources(),
-        "compiled core": _compiled(kind.advance, kind.record_path),
+        "compiled core": _core(kind.advance, kind.record_path),
     }
     if physics != NATIVE:
         try:
@@ -90,7 +105,7 @@ def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[st
     if rooms:
         found.append(f"sources of {', '.join(rooms)}")
     if then["compiled core"] != now["compiled core"]:
-        found.append("another compiled core" + ("" if rooms else " (compilers or processor)"))
+        found.append("another compiled core" + ("" if rooms else " (modes or parameters of other packages)"))
     for name in sorted({*then, *now} - {"sources", "compiled core"}):
         if then.get(name) != now.get(name):
             found.append(f"{name} {then.get(name)} then, {now.get(name)} now")

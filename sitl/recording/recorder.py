@@ -92,7 +92,8 @@ class Recorder:
         self.is_closed = False
         if self.path is not None:
             self._writer = BlockWriter(self.path)
-            self.sections["track"] = TrackObserver(simulation).to_bytes
+            observer = TrackObserver(simulation)
+            self.sections |= {"track": observer.to_bytes, "bits": observer.bits}
             self._writer.write(HEADER, json.dumps(describe(simulation), sort_keys=True).encode())
         for link in board.links:
             self.link_added(link)

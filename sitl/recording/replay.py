@@ -39,7 +39,7 @@ class Replay:
     """Simulates a recorded vehicle again, with the recorded inputs at their recorded times.
 
     With the version that made the recording it sends the same bytes to every channel; with another version it flies as
-    that version does. ``differences`` lists what differs from the recording.
+    that version does. ``differences`` lists what differs from the recording, ``other_version`` says whether code does.
 
     Args:
         recording: the recording.
@@ -77,7 +77,9 @@ class Replay:
                 raise RecordingError(f"{self._at_entry(entry)} {_text(entry)}: it cannot be flown")
         self.simulation = _build(recording, frame, world, physics, core, progress)
         try:
-            self.differences = identity.differences(recording.header, identity.describe(self.simulation))
+            now = identity.describe(self.simulation)
+            self.differences = identity.differences(recording.header, now)
+            self.other_version = bool(identity.code_differences(recording.header["version"], now["version"]))
         except (KeyError, TypeError, AttributeError) as error:
             raise RecordingError(f"{_title(recording)}: what it was made of cannot be understood: {error!r}") from None
         """Differences from the conditions of the recording, in words."""

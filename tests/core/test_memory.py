@@ -47,6 +47,12 @@ def test_arrays_at_an_address(make: Callable[[], Callable[[int, int, int], int]]
     assert ints.tolist() == [7, 7, 7, 1 << 40]
 
 
+def test_an_address_may_be_a_number_of_numpys() -> None:
+    numbers = np.array([3, 4])
+    address = np.array([numbers.ctypes.data])[0]  # as a loop over rows of an array calculates it in plain Python
+    assert ints_at(address, 2).tolist() == [3, 4]
+
+
 class Inner(Record):
     number: int
     share: float

@@ -19,8 +19,9 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     parser.add_argument("new", type=Path, metavar="NEW", help="the flight to compare with it")
     parser.add_argument(
         "--tolerance",
-        metavar="NAME|FILE",
-        help="same, alike, or a .toml file (default: same if seed, vehicle and world are equal, else alike)",
+        metavar="NAME|DISTANCE|FILE",
+        help='exact, same, alike, a distance with its unit ("0.5 m"), or a .toml file (default, if seed, vehicle and '
+        "world are equal: exact on native physics, same on another engine; else alike)",
     )
     parser.add_argument("--report", type=Path, metavar="DIR", help="write report.html and junit.xml to this folder")
     parser.add_argument("--all", action="store_true", help="print every figure, not only those beyond their limits")

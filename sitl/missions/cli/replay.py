@@ -132,6 +132,11 @@ def verdict(flown: Replay, astray: list[str], exact: bool) -> int:
         print(f"changed since the recording: {text}")
     if astray:
         print("the flight differs: " + "; ".join(astray))
+        if flown.other_version:
+            print(
+                "another version of the simulator made the recording: the same version flies it again byte for byte on "
+                "every machine, another one may differ. How far, sitl mission compare says, with --rec of this replay"
+            )
         return 1 if exact or not flown.differences else 0
     whole = flown.is_over and flown.recording.has_digests
     print("the same flight" + (": all telemetry is the same, byte for byte" if whole else " as far as digests tell"))

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from sitl.logs.track_observer import BITS_US
+from sitl.physics.engines import NATIVE
 from sitl.recording import identity
 
 from . import words
@@ -21,6 +23,12 @@ from .tolerance import EVENTS, Tolerance, load
 
 _DECIDED = ("vehicle", "seed", "estimator", "physics", "home", "start")
 _EVENT_TITLES = {"items": "mission items", "modes": "modes", "texts": "texts"}
+
+
+OLD = (
+    "the golden flight is of a version whose last bits depended on the machine: it is compared within the limits of "
+    "'same'; record it anew to have it compared exactly"
+)
 
 
 @dataclass(frozen=True)
@@ -75,6 +83,9 @@ class Comparison:
     first_trace: Divergence | None
     """The first difference beyond rounding."""
     notes: list[str]
+    is_old: bool = False
+    """Golden keeps no digests of its bits: a version before they were the same everywhere made it. It is compared by
+    "same" where no tolerance is asked for."""
 
     @property
     def ok(self) -> bool:
@@ -90,9 +101,28 @@ class Comparison:
     def headline(self) -> str:
         """The verdict in one line."""
         if self.ok:
-            return "flies like the golden flight" + ("" if self.first_trace else ", to the last digit of its track")
+            exactly = "bit" if self.tolerance.bits else "digit of its track"
+            return "flies like the golden flight" + ("" if self.first_trace else f", to the last {exactly}")
         what = self.first.words if self.first else self.failed[0].words
         return f"does not fly like the golden flight: {what}"
+
+    @property
+    def other_version(self) -> str:
+        """That another version of the simulator made golden, and which parts are another; "": the same made both."""
+        if self.golden.header is None or self.new.header is None:
+            return ""
+        found = identity.code_differences(self.golden.header["version"], self.new.header["version"])
+        return f"another version of the simulator recorded the golden flight ({'; '.join(found)})" if found else ""
+
+    @property
+    def advice(self) -> str:
+        """What to know of golden before the verdict is believed, in one line; "": nothing."""
+        if not self.ok and self.other_version:
+            return (
+                f"{self.other_version}: versions may fly differently, CHANGELOG.md says when they do; if the new "
+                "flight is as it should be, record the golden flight anew"
+            )
+        return OLD if self.is_old else ""
 
 
 def compare(golden: Flight, new: Flight, tolerance: str | Path | Mapping[str, Any] | None = None) -> Comparison:
@@ -100,28 +130,32 @@ def compare(golden: Flight, new: Flight, tolerance: str | Path | Mapping[str, An
 
     Args:
         golden, new: flights.
-        tolerance: "same", "alike", a TOML file or a mapping of its shape (``tolerance.load``); None: "same" when both
-            are known to be of the same seed, vehicle and world, else "alike".
+        tolerance: "exact", "same", "alike", a distance with its unit ("0.5 m"), a TOML file or a mapping of its shape
+            (``tolerance.load``); None: ``default_tolerance``.
 
     Raises:
         ToleranceError, AlignmentError: there is nothing to compare them by.
     """
     limits = load(tolerance if tolerance is not None else default_tolerance(golden, new), golden.track.kind)
+    is_old = tolerance is None and limits.name == "same" and _is_exact(new) and not golden.bits
     both = pair(golden.track, new.track, limits.align, golden.coarse or new.coarse)
     differences = measure(both)
     events = compare_events(both, limits)
     figures = [figure for series in differences.series for figure in _of_series(both, series, differences, limits)]
     figures += _totals(both, limits)
     figures += [figure for kind in EVENTS for figure in _of_events(both, kind, events, limits)]
+    if limits.bits:
+        figures += _of_bits(golden, new)
     first = _first(both, differences, events, limits, figures)
     return Comparison(
         golden, new, both, limits, differences, events, figures, first, _trace(both, differences, events),
-        [*both.notes, *_notes(golden, new)],
+        [*both.notes, *_notes(golden, new)], is_old,
     )  # fmt: skip
 
 
 def default_tolerance(golden: Flight, new: Flight) -> str:
-    """The preset for two flights."""
+    """The preset for two flights: "exact" for two of the same seed, vehicle and world on native physics, "same" on
+    another engine, whose arithmetic depends on the processor, else "alike"."""
     if golden.header is None or new.header is None:
         return "alike"
     old, now = golden.header, new.header
@@ -129,7 +163,28 @@ def default_tolerance(golden: Flight, new: Flight) -> str:
     same = same and old["airframe"]["name"] == now["airframe"]["name"]
     names = {name for name in {*old["params"], *now["params"]} if name.startswith("SIM_")}
     same = same and all(old["params"].get(name) == now["params"].get(name) for name in names)
-    return "same" if same else "alike"
+    if not same:
+        return "alike"
+    return "exact" if golden.bits and _is_exact(new) else "same"
+
+
+def _is_exact(flight: Flight) -> bool:
+    """Whether a flight repeats to the last bit on every machine, and its bits are known."""
+    return flight.header is not None and flight.header["physics"] == NATIVE and bool(flight.bits)
+
+
+def _of_bits(golden: Flight, new: Flight) -> list[Figure]:
+    """How many digests of the flights differ: each is of all samples up to its time."""
+    if not (golden.bits and new.bits):
+        return []
+    size = max(len(golden.bits), len(new.bits))
+    pairs = zip(golden.bits + (b"",) * size, new.bits + (b"",) * size)
+    differing = [k for k, (a, b) in enumerate(pairs) if a != b]
+    text, at = "", None
+    if differing:
+        at, until = (k * BITS_US * 1e-6 for k in (differing[0], differing[0] + 1))
+        text = f"the last bits differ from some time between {at:.0f} and {until:.0f} s after power-on"
+    return [Figure("bits", "digests of all bits", float(len(differing)), "", 0.0, at, text)]
 
 
 def _of_series(both: Pair, series: Series, differences: Differences, limits: Tolerance) -> list[Figure]:
@@ -206,6 +261,8 @@ def _first(
         worst_figure = next((figure for figure in figures if not figure.ok), None)
         if worst_figure is None:
             return None
+        if worst_figure.name == "bits":
+            return Divergence(worst_figure.at or 0.0, f"{worst_figure.words}; the track that is kept is the same")
         value, limit_text = (words.number(x, worst_figure.unit) for x in (worst_figure.value, worst_figure.limit))
         text = f"{worst_figure.title} {value}, {limit_text} allowed"
         return Divergence(worst_figure.at or 0.0, f"{text} ({worst_figure.words})" if worst_figure.words else text)

@@ -13,7 +13,7 @@ from sitl.core.compile import Progress
 from sitl.logs import forms, track_bin, track_tlog
 from sitl.logs.tlog import LogError
 from sitl.logs.track import Track
-from sitl.logs.track_observer import TrackObserver
+from sitl.logs.track_observer import BITS_BYTES, TrackObserver
 from sitl.recording.recording import Recording
 from sitl.recording.recording import read as read_recording
 from sitl.recording.replay import Replay
@@ -22,6 +22,8 @@ from .alignment import MOVING, Matched, Pair, match
 
 SECTION = "track"
 """Name of a recording's section that holds its track."""
+BITS = "bits"
+"""Name of the section with digests of the track before it was rounded."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,8 @@ class Flight:
     """Description of the run (``sitl.recording.identity``); None: unknown."""
     digests: dict[str, Any] | None = None
     """Digests of the vehicle's final state and of its telemetry; None: unknown."""
+    bits: tuple[bytes, ...] = ()
+    """Digests of the flight to its last bit, up to every tenth second and up to its end; none: unknown."""
     coarse: bool = False
     """Times of modes and arming are known to a heartbeat (1 s) only."""
     notes: tuple[str, ...] = field(default=())
@@ -66,7 +70,7 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     digests = recording.end if recording.has_digests else None
     if SECTION in recording.sections:
         track = Track.from_bytes(recording.sections[SECTION])
-        return Flight(str(recording.path), track, recording.header, digests)
+        return Flight(str(recording.path), track, recording.header, digests, _bits(recording.sections.get(BITS, b"")))
     replay = Replay(recording, progress=progress)
     observer = TrackObserver(replay.simulation)
     try:
@@ -78,6 +82,10 @@ def of_recording(recording: Recording, progress: Progress | None = None) -> Flig
     notes += [f"changed since the recording: {text}" for text in replay.differences]
     notes += [f"the replay differs: {text}" for text in astray]
     return Flight(str(recording.path), track, recording.header, digests, notes=tuple(notes))
+
+
+def _bits(section: bytes) -> tuple[bytes, ...]:
+    return tuple(section[k : k + BITS_BYTES] for k in range(0, len(section), BITS_BYTES))
 
 
 Array = np.ndarray[Any, Any]

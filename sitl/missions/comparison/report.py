@@ -120,6 +120,8 @@ def lines(comparison: Comparison, everything: bool = False) -> list[str]:
             mark = " " if figure.ok else "!"
             value, limit = words.number(figure.value, figure.unit), words.number(figure.limit, figure.unit)
             found.append(f"  {mark} {figure.title:28} {value:>10}  allowed {limit:>9}  {figure.words}".rstrip())
+    if comparison.advice:
+        found.append(f"  {comparison.advice}")
     return found + [f"  note: {note}" for note in comparison.notes]
 
 

@@ -19,7 +19,9 @@ from sitl.vehicle.kinds import DEFAULT, KINDS
 SERIES = ("position", "cross_track", "altitude", "delay", "speed", "climb", "tilt", "heading")
 TOTALS = ("duration", "energy")
 EVENTS = ("items", "modes", "texts")
-PRESETS = ("same", "alike")
+PRESETS = ("exact", "same", "alike")
+_DISTANCE = re.compile(r"(\d+(?:\.\d+)?|\.\d+) ?(mm|cm|m)")
+_METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
 ALIGNMENTS = ("auto", "AUTO", "armed", "start")
 _KEYS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(SERIES, ("max", "rms")),
@@ -49,15 +51,23 @@ class Tolerance:
     """Status texts that match one of these are ignored."""
     numbers: bool
     """Whether numbers in status texts are compared."""
+    bits: bool = False
+    """Whether the flights must be the same to the last bit."""
 
     def limit(self, figure: str) -> float:
         """Limit of a figure such as "cross_track.max", in its unit; infinite: not judged."""
         return self.limits.get(figure, math.inf)
 
 
-def load(given: str | Path | Mapping[str, Any], kind: str = DEFAULT) -> Tolerance:
-    """A preset by its name, a TOML file, or a mapping of the same shape; for a kind of vehicle.
+def is_file(given: str | Path) -> bool:
+    """Whether a tolerance is the name of a file: neither a preset nor a distance."""
+    return not (isinstance(given, str) and (given in PRESETS or _DISTANCE.fullmatch(given)))
 
+
+def load(given: str | Path | Mapping[str, Any], kind: str = DEFAULT) -> Tolerance:
+    """A preset by its name, a distance, a TOML file, or a mapping of the same shape; for a kind of vehicle.
+
+    A distance with its unit, "0.5 m" or "2 cm", limits position, cross-track and altitude; the rest is as in "alike".
     What a file does not say is as in its ``base``, "same" unless it says another.
 
     Raises:
@@ -67,12 +77,18 @@ def load(given: str | Path | Mapping[str, Any], kind: str = DEFAULT) -> Toleranc
         return _build("tolerance", given, kind)
     if isinstance(given, str) and given in PRESETS:
         return _build(given, _preset(given), kind)
+    distance = _DISTANCE.fullmatch(given) if isinstance(given, str) else None
+    if distance:
+        limit = {"max": float(distance[1]) * _METRES[distance[2]], "rms": False}
+        names = ("position", "cross_track", "altitude")
+        return _build(str(given), {"base": "alike", **dict.fromkeys(names, limit)}, kind)
     file = Path(given)
     try:
         table = documents.toml(file.read_text())
     except OSError as error:
         raise ToleranceError(
-            f"tolerance {str(given)!r} cannot be read ({error.strerror or error}), and is none of {', '.join(PRESETS)}"
+            f"tolerance {str(given)!r} cannot be read ({error.strerror or error}), is none of {', '.join(PRESETS)}, "
+            "and no distance with its unit such as '0.5 m' or '2 cm'"
         ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ToleranceError(f"tolerance {str(given)!r} is no TOML: {error}") from None
@@ -92,10 +108,12 @@ def _build(title: str, table: Mapping[str, Any], kind: str) -> Tolerance:
         if not isinstance(table.get(other, {}), Mapping):
             raise ToleranceError(f"{title}: [{other}] is a table, not {table[other]!r}")
     for name, layer in (base, _preset(base)), (title, table):
-        _lay(found, layer, name, ("base", "align", *_KEYS, *KINDS))
+        _lay(found, layer, name, ("base", "align", "bits", *_KEYS, *KINDS))
         _lay(found, layer.get(kind, {}), f"{name}: [{kind}]", tuple(_KEYS))
     if found["align"] not in ALIGNMENTS:
         raise ToleranceError(f"{title}: align {found['align']!r} is none of {', '.join(ALIGNMENTS)}")
+    if not isinstance(found.get("bits", False), bool):
+        raise ToleranceError(f"{title}: bits is true or false, not {found['bits']!r}")
     limits = {}
     for name, keys in _KEYS.items():
         for key in keys:
@@ -111,7 +129,7 @@ def _build(title: str, table: Mapping[str, Any], kind: str) -> Tolerance:
         ignore = tuple(re.compile(pattern) for pattern in patterns)
     except (re.error, TypeError) as error:
         raise ToleranceError(f"{title}: texts.ignore is a list of regular expressions: {error}") from None
-    return Tolerance(title, found["align"], limits, ignore, numbers)
+    return Tolerance(title, found["align"], limits, ignore, numbers, found.get("bits", False))
 
 
 def _lay(found: dict[str, Any], layer: Mapping[str, Any], title: str, known: tuple[str, ...]) -> None:
@@ -126,7 +144,7 @@ def _lay(found: dict[str, Any], layer: Mapping[str, Any], title: str, known: tup
                 if key not in _KEYS[name]:
                     raise ToleranceError(f"{title}: {name}.{key} is not known; there is {', '.join(_KEYS[name])}")
                 found[f"{name}.{key}"] = value
-        elif name == "align":
+        elif name in ("align", "bits"):
             found[name] = entry
 
 

@@ -20,7 +20,7 @@ from sitl.physics.engines import NATIVE
 from sitl.vehicle.kinds import DEFAULT, KINDS
 
 from .. import library
-from ..comparison.tolerance import PRESETS
+from ..comparison.tolerance import is_file as is_tolerance_file
 from ..comparison.tolerance import load as load_tolerance
 from ..files import load
 from ..fly import LIMIT_S
@@ -52,7 +52,7 @@ _TYPES: dict[str, tuple[type | tuple[type, ...], str]] = {
     "seeds": (list, "a list of whole numbers"),
     "params": ((dict, str), "a table of parameters, which are numbers, or a file of parameters"),
     "physics": (str, "the name of an engine"),
-    "tolerance": ((str, dict), '"same", "alike", a file or a table'),
+    "tolerance": ((str, dict), '"exact", "same", "alike", a distance with its unit ("0.5 m"), a file or a table'),
     "time_limit": ((int, float), "a number of seconds above 0"),
     "name": (str, "a name of letters, digits and .+=,_-"),
     "missions": (list, "a list of patterns"),
@@ -156,7 +156,7 @@ def _outside(folder: Path, row: Mapping[str, Any]) -> list[str]:
     named = code_in_files.code_of_options(options)
     tolerance, file = row.get("tolerance", {}), row.get("file", "")
     is_file = isinstance(tolerance, str) and (not code_in_files.is_name(tolerance) or Path(tolerance).exists())
-    if is_file and tolerance not in PRESETS and not _lies_beside(folder, tolerance):
+    if is_file and is_tolerance_file(tolerance) and not _lies_beside(folder, tolerance):
         named.append(f"tolerance = {tolerance!r}")
     found = folder.glob(file) if file and not Path(file).is_absolute() else []
     if not all(code_in_files.lies_in(folder, path) for path in (file, *(path.absolute() for path in found))):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
@@ -23,12 +23,14 @@ from sitl.vehicle.kinds import KINDS
 
 from ..comparison import report
 from ..comparison.alignment import AlignmentError
-from ..comparison.compare import Comparison, compare
+from ..comparison.compare import OLD, Comparison, compare
 from ..comparison.flight import Flight, of_recording
 from ..files import for_vehicle, load
 from ..fly import Outcome, fly
 from .cases import Case, SuiteError
 
+UPDATE = "sitl mission suite {folder} --update-golden --only {name}"
+"""The command that records a golden flight anew."""
 OK, DIFFERS, NO_GOLDEN, FAILED = "ok", "DIFFERS", "NO GOLDEN", "ERROR"
 KEPT, WRITTEN, REPLACED = "kept", "written", "replaced"
 """What was done with golden, when it may be updated."""
@@ -139,7 +141,7 @@ def _judged(
             return result(NO_GOLDEN, f"there is no {case.golden}: --update-golden writes it")
         _keep(path, case.golden)
         return result(WRITTEN, note)
-    flight = Flight(case.name, new.track, new.header, new.digests)
+    flight = replace(new, name=case.name)
     try:
         comparison = compare(_golden(case), flight, case.tolerance)
     except (RecordingError, LogError, AlignmentError) as error:  # nothing that this flight can be held against
@@ -148,11 +150,15 @@ def _judged(
         _keep(path, case.golden)
         return result(REPLACED, f"golden was of no use: {error}")
     if update:
-        if comparison.first_trace is None and comparison.ok:
+        if comparison.first_trace is None and comparison.ok and not comparison.is_old:
             return result(KEPT, "", comparison)
         _keep(path, case.golden)
-        return result(REPLACED, comparison.headline, comparison)
-    return result(OK if comparison.ok else DIFFERS, "" if comparison.ok else comparison.headline, comparison)
+        return result(REPLACED, OLD if comparison.ok and comparison.is_old else comparison.headline, comparison)
+    words = [] if comparison.ok else [comparison.headline]
+    if comparison.advice:
+        folder = case.golden.parents[1]
+        words.append(f"{comparison.advice}: {UPDATE.format(folder=folder, name=case.name)}")
+    return result(OK if comparison.ok else DIFFERS, "\n    ".join(words), comparison)
 
 
 def _golden(case: Case) -> Flight:

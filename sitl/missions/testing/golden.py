@@ -30,6 +30,10 @@ class FlightChanged(UserWarning):
     """A flight is like golden within the limits of "same", and yet not the same."""
 
 
+class OldGolden(UserWarning):
+    """A golden flight is of a version whose last bits depended on the machine, and is not compared exactly."""
+
+
 @dataclass
 class GoldenStore:
     """What is known of goldens while a test runs."""
@@ -68,8 +72,9 @@ class Golden(Forking):
 
         Args:
             golden: a recording (.rec), or a .tlog or .bin, relative to the test's folder.
-            tolerance: "same", "alike", a .toml file relative to the test's folder, or a mapping of the same shape;
-                None: "same" if golden is of the same vehicle, world and seed, else "alike".
+            tolerance: "exact", "same", "alike", a distance with its unit ("0.5 m"), a .toml file relative to the test's
+                folder, or a mapping of the same shape; None: if golden is of the same vehicle, world and seed, "exact"
+                on native physics, "same" on another engine; else "alike".
 
         Raises:
             AssertionError: it is not, and where it left golden first; or there is no such golden. Only
@@ -114,7 +119,7 @@ class Golden(Forking):
                 f"golden flight {path} is already used by another flight of {before}; each flight needs its own"
             )
         store.checked.append(path)
-        if path.exists() and _track(path) == _track(new):
+        if path.exists() and _kept(path) == _kept(new):
             return
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -129,9 +134,9 @@ class Golden(Forking):
         """What is wrong, in lines; nothing when it flies like golden."""
         from ..comparison import flight, report
         from ..comparison.compare import compare
-        from ..comparison.tolerance import PRESETS
+        from ..comparison.tolerance import is_file
 
-        if isinstance(tolerance, Path) or (isinstance(tolerance, str) and tolerance not in PRESETS):
+        if isinstance(tolerance, str | Path) and is_file(tolerance):
             tolerance = self.golden.folder / tolerance
         found = compare(flight.read(path), flight.read(new), tolerance)
         if found.ok:
@@ -139,6 +144,8 @@ class Golden(Forking):
                 within = "within the limits of the golden flight, but no longer the same"
                 text = f"{path.name}: {within}: {found.first_trace.words}"
                 warnings.warn(FlightChanged(text), stacklevel=3)
+            if found.is_old:
+                warnings.warn(OldGolden(f"{path.name}: {found.advice}: {self.golden.how}"), stacklevel=3)
             return []
         lines = [f"golden flight {path}", *report.lines(found)]
         if self.golden.reports is not None:
@@ -146,11 +153,15 @@ class Golden(Forking):
         return lines
 
 
-def _track(path: Path) -> bytes | None:
-    """The track in a recording; None: there is none that can be read."""
+def _kept(path: Path) -> tuple[bytes | None, ...]:
+    """What is compared of a recording: its track and, on native physics, the digests of its bits; nothing: it cannot be
+    read."""
+    from sitl.physics.engines import NATIVE
     from sitl.recording.recording import read
 
     try:
-        return read(path).sections.get("track")
+        recording = read(path)
     except RecordingError:
-        return None
+        return ()
+    names = ("track", "bits") if recording.header["physics"] == NATIVE else ("track",)
+    return tuple(recording.sections.get(name) for name in names)

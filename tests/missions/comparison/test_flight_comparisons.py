@@ -11,6 +11,7 @@ import pytest
 from sitl.autopilot.mission.item import MissionItem
 from sitl.missions.comparison.compare import Comparison, compare, default_tolerance
 from sitl.missions.comparison.flight import Flight, of_recording, read
+from sitl.missions.comparison.report import lines as report_lines
 from sitl.recording.entries import EntryKind
 from sitl.recording.recording import read as read_recording
 from tests.missions.comparison.conftest import fly_square
@@ -28,10 +29,55 @@ def failed(comparison: Comparison) -> set[str]:
 def test_the_same_flight_is_the_same_to_the_last_digit(golden: Flight, tmp_path: Path) -> None:
     found = compare(golden, fly_square(tmp_path / "again.rec"))
     assert found.ok
-    assert found.tolerance.name == "same"
+    assert found.tolerance.name == "exact"
     assert found.first is None and found.first_trace is None
-    assert found.headline == "flies like the golden flight, to the last digit of its track"
+    assert found.headline == "flies like the golden flight, to the last bit"
     assert found.differences["position"].max == 0.0
+
+
+def with_header(flight: Flight, **changed: object) -> Flight:
+    assert flight.header is not None
+    return replace(flight, header={**flight.header, **changed})
+
+
+def test_one_bit_is_a_difference_and_a_tolerance_must_be_asked_for(golden: Flight) -> None:
+    assert len(golden.bits) > 5
+    other = replace(golden, bits=(*golden.bits[:3], *(b"another!" for _ in golden.bits[3:])))
+    found = compare(golden, other)
+    assert failed(found) == {"bits"}
+    words = "the last bits differ from some time between 30 and 40 s after power-on; the track that is kept is the same"
+    assert found.headline == f"does not fly like the golden flight: {words}"
+    assert compare(golden, other, "same").ok and compare(golden, other, "1 mm").ok
+    shorter = replace(golden, bits=golden.bits[:-1])
+    assert failed(compare(golden, shorter)) == {"bits"}
+
+
+def test_other_engines_have_their_tolerance(golden: Flight) -> None:
+    bullet = with_header(golden, physics="pybullet")
+    other = replace(bullet, bits=(b"another!",) * len(bullet.bits))
+    found = compare(bullet, other)
+    assert found.tolerance.name == "same" and found.ok and not found.advice
+
+
+def test_a_golden_flight_of_an_older_version_is_held_to_limits_and_says_so(golden: Flight) -> None:
+    found = compare(replace(golden, bits=()), golden)
+    assert found.tolerance.name == "same" and found.ok and found.is_old
+    assert "record it anew to have it compared exactly" in found.advice
+    assert found.advice in "\n".join(report_lines(found))
+    assert not compare(replace(golden, bits=()), golden, "same").advice
+
+
+def test_another_version_is_named_when_its_flight_differs(golden: Flight) -> None:
+    assert golden.header is not None
+    version = golden.header["version"]
+    older = {**version, "gym-sitl": "0.1.9", "sources": {**version["sources"], "physics": "0"}}
+    then = with_header(golden, version=older)
+    assert not compare(then, golden).advice, "the flight is the same: nothing to say"
+    found = compare(then, replace(golden, bits=(b"another!",)))
+    assert "another version of the simulator recorded the golden flight (sources of physics; gym-sitl 0.1.9 then" in (
+        found.advice
+    )
+    assert not compare(golden, replace(golden, bits=(b"another!",))).advice
 
 
 def test_one_percent_of_a_gain_is_seen_and_located(golden: Flight, tmp_path: Path) -> None:
@@ -116,7 +162,7 @@ def test_a_message_of_the_client_that_is_lost_is_seen_and_located(squares: Path,
 def test_numbers_in_texts_do_not_count_unless_asked(golden: Flight) -> None:
     other = [(t, severity, text.replace("ground at 0.", "ground at 1.")) for t, severity, text in golden.track.texts]
     new = replace(golden, track=replace(golden.track, texts=other))
-    assert compare(golden, new).ok
+    assert compare(golden, new, "same").ok
     assert not compare(golden, new, {"texts": {"numbers": True}}).ok
     ignored = {"texts": {"numbers": True, "ignore": ["^SIM "]}}
     assert compare(golden, new, ignored).ok

@@ -11,7 +11,7 @@ import pytest
 from sitl.missions.comparison.tolerance import PRESETS, ToleranceError, load
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", [name for name in PRESETS if name != "exact"])
 @pytest.mark.parametrize("kind", ["copter", "rover"])
 def test_presets_judge_the_way_of_both_vehicles(name: str, kind: str) -> None:
     tolerance = load(name, kind)
@@ -28,6 +28,31 @@ def test_a_file_says_only_what_is_otherwise(tmp_path: Path) -> None:
     assert copter.limit("cross_track.rms") == alike.limit("cross_track.rms")
     assert copter.limit("speed.max") == alike.limit("speed.max")
     assert rover.limit("speed.max") == math.inf
+
+
+@pytest.mark.parametrize("kind", ["copter", "rover"])
+def test_exactly_leaves_no_room(kind: str) -> None:
+    exact = load("exact", kind)
+    assert exact.bits and exact.numbers and not exact.ignore
+    assert {name for name, limit in exact.limits.items() if limit != 0.0} == {"delay.rms"}, "a delay has no RMS"
+    assert not load("same").bits and load({"base": "exact"}).bits and not load({"base": "exact", "bits": False}).bits
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"), [("0.5 m", 0.5), ("2 cm", 0.02), ("1mm", 0.001), (".5 m", 0.5), ("3 m", 3.0)]
+)
+def test_a_distance_is_a_tolerance(text: str, metres: float) -> None:
+    near, alike = load(text), load("alike")
+    for name in ("position", "cross_track", "altitude"):
+        assert near.limit(f"{name}.max") == pytest.approx(metres) and near.limit(f"{name}.rms") == math.inf
+    assert near.limit("heading.max") == alike.limit("heading.max") and near.limit("items.time") == 6.0
+    assert near.name == text and not near.bits
+
+
+@pytest.mark.parametrize("text", ["0.5", "5 ft", "-1 m", "m", "1 m 2", "nan m"])
+def test_what_is_no_distance_is_refused_with_what_is_one(text: str) -> None:
+    with pytest.raises(ToleranceError, match=r"no distance with its unit such as '0\.5 m' or '2 cm'"):
+        load(text)
 
 
 def test_the_tolerance_of_the_documentation_is_one(tmp_path: Path) -> None:
@@ -54,7 +79,8 @@ def test_without_a_base_it_is_the_same_run() -> None:
         ({"copter": 3}, r"\[copter\] is a table, not 3"),
         ({"texts": {"ignore": "abc"}}, "texts.ignore is a list of regular expressions, not 'abc'"),
         ({"texts": {"numbers": "no"}}, "texts.numbers is true or false, not 'no'"),
-        ({"base": "exact"}, "base 'exact' is none of same, alike"),
+        ({"base": "near"}, "base 'near' is none of exact, same, alike"),
+        ({"bits": 1}, "bits is true or false, not 1"),
         ({"align": "noon"}, "align 'noon' is none of"),
         ({"texts": {"ignore": ["("]}}, "texts.ignore is a list of regular expressions"),
         ({"rover": {"rover": {}}}, r"\[rover\]: 'rover' is not known"),
@@ -66,7 +92,7 @@ def test_errors_name_the_key(table: dict[str, object], words: str) -> None:
 
 
 def test_a_file_that_is_none_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ToleranceError, match=r"nowhere\.toml.*none of same, alike"):
+    with pytest.raises(ToleranceError, match=r"nowhere\.toml.*none of exact, same, alike"):
         load("nowhere.toml")
     path = tmp_path / "bad.toml"
     path.write_text("cross_track = ")

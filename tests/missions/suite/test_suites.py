@@ -17,6 +17,7 @@ from sitl.missions.suite.cases import SuiteError, find
 from sitl.missions.suite.fly import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN, fly_case
 from sitl.missions.suite.run import run
 from sitl.simulation import Simulation
+from tests.recording.older import without_bits
 
 
 @pytest.fixture
@@ -172,6 +173,18 @@ def test_goldens_are_written_only_when_asked_and_kept_when_alike(folder: Path) -
     assert fly_case(case, update=True).status == KEPT
     assert case.golden.read_bytes() == before
     assert list(case.golden.parent.iterdir()) == [case.golden]
+
+
+def test_a_golden_of_an_older_version_is_held_to_limits_and_says_how_it_is_made_anew(folder: Path) -> None:
+    case = find(folder)[0]
+    fly_case(case, update=True)
+    without_bits(case.golden)
+    result = fly_case(case)
+    assert result.status == OK
+    assert result.words.endswith(f"compared exactly: sitl mission suite {folder} --update-golden --only {case.name}")
+    assert fly_case(case, update=True).status == REPLACED
+    assert fly_case(case, update=True).status == KEPT
+    assert not fly_case(case).words
 
 
 def test_a_flight_that_differs_is_kept_with_its_report(folder: Path) -> None:

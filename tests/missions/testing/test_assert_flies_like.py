@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from sitl.missions.testing.factory import VehicleFactory
-from sitl.missions.testing.golden import FlightChanged, GoldenStore
+from sitl.missions.testing.golden import FlightChanged, GoldenStore, OldGolden
 from sitl.missions.testing.vehicle import Copter
 from sitl.recording.recording import read
+from tests.recording.older import without_bits
 
 
 def hop(vehicle: Copter, east: float = 5.0) -> Copter:
@@ -44,7 +45,23 @@ def test_what_changes_within_the_limits_is_told(make: VehicleFactory, golden: Pa
     with pytest.warns(
         FlightChanged, match=r"hop\.rec: within the limits of the golden flight, but no longer the same: .* after "
     ):
+        copter.assert_flies_like("golden/hop.rec", "same")
+    with pytest.raises(AssertionError, match="does not fly like the golden flight"):
         copter.assert_flies_like("golden/hop.rec")
+    copter.assert_flies_like("golden/hop.rec", "0.5 m")
+
+
+def test_an_old_golden_is_held_to_limits_with_a_warning_and_written_anew(
+    make: VehicleFactory, store: GoldenStore, golden: Path
+) -> None:
+    store.how = "pytest x --sitl-update-golden"
+    without_bits(golden)
+    copter = hop(make("copter"))
+    with pytest.warns(OldGolden, match=r"hop\.rec: .* record it anew .*: pytest x --sitl-update-golden"):
+        copter.assert_flies_like("golden/hop.rec")
+    store.update = True
+    copter.assert_flies_like("golden/hop.rec")
+    assert store.written == [golden] and "bits" in read(golden).sections
 
 
 def test_without_golden_it_says_how_to_make_one(make: VehicleFactory, store: GoldenStore, tmp_path: Path) -> None:
