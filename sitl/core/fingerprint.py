@@ -57,31 +57,51 @@ def _referenced(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
             yield name, value
 
 
+def items(
+    function: Any, code: Callable[[Any], str], constant: Callable[[Any], str] = repr
+) -> Iterator[str | tuple[str, Any]]:
+    """What a law is, in order: texts, (name, another function that it uses), and (name, a record class).
+
+    Args:
+        function: the law.
+        code: gives the text of a function's own code.
+        constant: gives the text of a number, a text, or a tuple of such.
+    """
+    inlined = " inlined" if function in INLINED else ""
+    yield f"def {function.__module__}.{function.__qualname__}{inlined} {code(function)}"
+    for name in function.__code__.co_names:
+        for law in PROPERTIES.get(name, ()):
+            yield "", law
+    for name, value in _referenced(function):
+        if isinstance(value, types.FunctionType):
+            yield name, value
+        elif isinstance(value, (bool, int, float, str, tuple)):
+            yield f"{name} = {constant(value)}"
+        elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector
+            yield f"{name} of {getattr(value, '_fields', ())}"
+        elif isinstance(value, type) and issubclass(value, Record):  # memory that the law looks at as this record
+            yield name, value
+        elif isinstance(value, np.ndarray):
+            yield f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}"
+
+
+def _bytecode(function: Any) -> str:
+    return _code(function.__code__, function.__doc__)
+
+
 def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> None:
     if id(function) in seen:
         return
     seen.add(id(function))
-    inlined = " inlined" if function in INLINED else ""
-    lines.append(
-        f"def {function.__module__}.{function.__qualname__}{inlined} {_code(function.__code__, function.__doc__)}"
-    )
-    for name in function.__code__.co_names:
-        for law in PROPERTIES.get(name, ()):
-            _walk(law, seen, units, lines)
-    for name, value in _referenced(function):
-        if isinstance(value, types.FunctionType):
-            if id(value) in units:
-                lines.append(f"unit {name}")
-            else:
-                _walk(value, seen, units, lines)
-        elif isinstance(value, (bool, int, float, str, tuple)):
-            lines.append(f"{name} = {value!r}")
-        elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector
-            lines.append(f"{name} of {getattr(value, '_fields', ())}")
-        elif isinstance(value, type) and issubclass(value, Record):  # memory that the law looks at as this record
-            lines.append(f"{name} of {value.layout()}")
-        elif isinstance(value, np.ndarray):
-            lines.append(f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}")
+    for item in items(function, _bytecode):
+        if isinstance(item, str):
+            lines.append(item)
+        elif isinstance(item[1], type):
+            lines.append(f"{item[0]} of {item[1].layout()}")
+        elif item[0] and id(item[1]) in units:
+            lines.append(f"unit {item[0]}")
+        else:
+            _walk(item[1], seen, units, lines)
 
 
 def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:

@@ -44,7 +44,7 @@ def sources() -> dict[str, str]:
 
 @cache
 def _compiled(entry: Any, path: str) -> str:
-    return _digest([compiler.unit_folder(unit, path).name.encode() for unit in reached(entry)])
+    return _digest([compiler.unit_identity(unit, path).encode() for unit in reached(entry)])
 
 
 def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
