@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What pyproject.toml cannot say: a wheel takes the pages of docs/ along, for ``sitl help``; and with ``SITL_WHEEL=x86_64``
-(or ``aarch64``) in the environment the machine code that ``sitl cache ship`` has made for that architecture."""
+"""What pyproject.toml cannot say: a wheel takes the pages of docs/ along, for ``sitl help``; with ``SITL_WHEEL=x86_64``
+(or ``aarch64``) in the environment also the machine code that ``sitl cache ship`` has made for that architecture."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ class BuildWithPages(build_py):
         if ARCHITECTURE:
             libraries = sorted(SHIPPED.glob(f"core-{ARCHITECTURE}*.so"))
             if not libraries:
-                raise SystemExit(f"SITL_WHEEL={ARCHITECTURE}: no {SHIPPED}/core-{ARCHITECTURE}*.so; sitl cache ship makes it")
+                raise SystemExit(
+                    f"SITL_WHEEL={ARCHITECTURE}: no {SHIPPED}/core-{ARCHITECTURE}*.so; sitl cache ship makes it"
+                )
             for library in libraries:
                 self._copy(library, "core", "shipped", "libraries", library.name)
 

@@ -17,12 +17,12 @@ from pathlib import Path
 from ..core import code_cache
 from ..core import compile as compiler
 from ..core.array_kernels import is_shipped, kernels_of, missing_kernels
+from ..core.shipped.library import library
 from ..run import runner
 from ..vehicle.kinds import KINDS
 from ..warp import CannotBuild
 from ..warp.build import compiler as c_compiler
 from . import plugins
-from ..core.shipped.library import library
 from .cache import KERNEL_MODULES, entries, shipped_library
 from .output import add_json_option, print_json
 

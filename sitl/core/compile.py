@@ -238,13 +238,13 @@ def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress |
     start = time.monotonic()
     with build_lock():
         entry_for = {unit: entry for entry in entries for unit in missing(entry, path)}
-        compile_tasks({f"{entry_for[unit].__module__}:{unit.name}": unit for unit in entry_for}, Order(path), progress, jobs)
+        compile_tasks(
+            {f"{entry_for[unit].__module__}:{unit.name}": unit for unit in entry_for}, Order(path), progress, jobs
+        )
     return time.monotonic() - start
 
 
-def compile_tasks(
-    tasks: Mapping[str, Unit], order: Order, progress: Progress | None = None, jobs: int = 0
-) -> None:
+def compile_tasks(tasks: Mapping[str, Unit], order: Order, progress: Progress | None = None, jobs: int = 0) -> None:
     """Compile what worker processes know as ``tasks``, side by side, while the caller holds the lock of the cache.
 
     Args:

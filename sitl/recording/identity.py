@@ -90,7 +90,7 @@ def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[st
     if rooms:
         found.append(f"sources of {', '.join(rooms)}")
     if then["compiled core"] != now["compiled core"]:
-        found.append("another compiled core" + ("" if rooms else " (compilers or processor)"))
+        found.append("another compiled core" + ("" if rooms else " (parts of other packages)"))
     for name in sorted({*then, *now} - {"sources", "compiled core"}):
         if then.get(name) != now.get(name):
             found.append(f"{name} {then.get(name)} then, {now.get(name)} now")

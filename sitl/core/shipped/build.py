@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Builds the libraries of machine code that wheels contain (``sitl cache ship``).
 
-Every unit and kernel becomes an object file for each target, side by side in worker processes; what has been made before
-of the same sources, by the same compiler, is used again. Then each target's are linked. The same sources and compilers
-give the same bytes.
+Every unit and kernel becomes an object file for each target, side by side in worker processes; what has been made
+before of the same sources, by the same compiler, is used again. Then each target's are linked. The same sources and
+compilers give the same bytes.
 """
 
 from __future__ import annotations

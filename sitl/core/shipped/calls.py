@@ -29,7 +29,9 @@ class Calls:
         self._names = law.__code__.co_varnames[: law.__code__.co_argcount]
         self._hints, self._result = hints_of(law)
         types = [
-            _TYPES[leaf] if leaf in _TYPES else ctypes.py_object for hint in self._hints for _, leaf in leaves(hint)
+            _TYPES.get(leaf, ctypes.py_object)  # type: ignore[arg-type]
+            for hint in self._hints
+            for _, leaf in leaves(hint)
         ]
         self._parts = 0 if self._result in (*NUMBERS, type(None)) else len(list(leaves(self._result)))
         if self._parts:

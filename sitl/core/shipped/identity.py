@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether sources are those that shipped code was made from.
 
-Another hash over all that a unit reaches than that of ``core/fingerprint.py``: it holds the text of functions instead of
-their bytecode, and no versions, so that it is the same under every Python and NumPy and on every machine.
+Another hash over all that a unit reaches than that of ``core/fingerprint.py``: it holds the text of functions instead
+of their bytecode, and no versions, so that it is the same under every Python and NumPy and on every machine.
 """
 
 from __future__ import annotations

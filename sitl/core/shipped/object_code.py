@@ -17,10 +17,10 @@ import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils, config
+from numba.core import config
 from numba.core.ccallback import CFunc
-from numba.core.compiler_lock import global_compiler_lock
 from numba.core.codegen import CPUCodeLibrary, _parse_refprune_flags
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.llvm_bindings import create_pass_builder
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
@@ -74,9 +74,7 @@ def machine_of(target: Target) -> Any:
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     found = llvm.Target.from_triple(target.triple)
-    return found.create_target_machine(
-        cpu=target.cpu, features="", opt=_OPTIMISE, reloc="pic", codemodel="default"
-    )
+    return found.create_target_machine(cpu=target.cpu, features="", opt=_OPTIMISE, reloc="pic", codemodel="default")
 
 
 def _optimise(module: Any, machine: Any, cost: str) -> None:
@@ -281,7 +279,9 @@ def rounding(target: Target) -> dict[str, bytes]:
 
 def made_with() -> str:
     """Versions of the compilers; other versions may make other bytes, and flights that are the same."""
-    return f"Numba {numba.__version__}, llvmlite {llvmlite.__version__}, LLVM {'.'.join(map(str, llvm.llvm_version_info))}"
+    return (
+        f"Numba {numba.__version__}, llvmlite {llvmlite.__version__}, LLVM {'.'.join(map(str, llvm.llvm_version_info))}"
+    )
 
 
 def write(path: str, name: str, objects: Objects) -> None:
