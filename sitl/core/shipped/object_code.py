@@ -252,11 +252,7 @@ _ROUNDING = """
         %small = fcmp olt double %size, 0x4330000000000000 ; 2^52: from there on, and if it is no number, x itself
         br i1 %small, label %round, label %same
       round:
-        %whole = fptosi double %x to i64
-        %towards = sitofp i64 %whole to double
-        %over = fcmp {beyond} double %towards, %x
-        %one = select i1 %over, double {step}, double 0.0
-        %right = fadd double %towards, %one
+        {steps}
         %signed = call double @llvm.copysign.f64(double %right, double %x)
         ret double %signed
       same:
@@ -265,15 +261,32 @@ _ROUNDING = """
     declare double @llvm.fabs.f64(double)
     declare double @llvm.copysign.f64(double, double)
 """
-_ROUNDED = {"floor": ("ogt", "-1.0"), "ceil": ("olt", "1.0"), "trunc": ("false", "0.0")}
-"""Name in C -> when the number without its fraction is the wrong one, and what is added then."""
+_CUT = """
+        %whole = fptosi double %x to i64
+        %towards = sitofp i64 %whole to double
+        %over = fcmp {beyond} double %towards, %x
+        %one = select i1 %over, double {step}, double 0.0
+        %right = fadd double %towards, %one
+"""
+_TO_EVEN = """
+        %big = call double @llvm.copysign.f64(double 0x4330000000000000, double %x)
+        %sum = fadd double %x, %big
+        %right = fsub double %sum, %big
+"""
+_ROUNDED = {
+    "floor": _CUT.format(beyond="ogt", step="-1.0"),
+    "ceil": _CUT.format(beyond="olt", step="1.0"),
+    "trunc": _CUT.format(beyond="false", step="0.0"),
+    "rint": _TO_EVEN,
+    "nearbyint": _TO_EVEN,
+}
+"""Name in C -> how it is calculated of a number below 2^52."""
 
 
 def rounding(target: Target) -> dict[str, bytes]:
     """Name -> object code of functions that LLVM calls where a processor has no instruction for it."""
     return {
-        name: _assembled(_ROUNDING.format(name=name, beyond=beyond, step=step), name, target)
-        for name, (beyond, step) in _ROUNDED.items()
+        name: _assembled(_ROUNDING.format(name=name, steps=steps), name, target) for name, steps in _ROUNDED.items()
     }
 
 
