@@ -8,7 +8,7 @@ import os
 import shutil
 from pathlib import Path
 
-from setuptools import setup
+from setuptools import Distribution, setup
 from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_py import build_py
 
@@ -46,15 +46,18 @@ class BuildWithPages(build_py):
         shutil.copyfile(file, target)
 
 
+class MaybeWithCode(Distribution):
+    """Goes where packages with machine code are installed, if it has some."""
+
+    def has_ext_modules(self) -> bool:
+        return bool(ARCHITECTURE)
+
+
 class WheelOfOneArchitecture(bdist_wheel):
     """Names the wheel after the architecture whose machine code it contains; any Python from 3.11 takes it."""
-
-    def finalize_options(self) -> None:
-        super().finalize_options()
-        self.root_is_pure = not ARCHITECTURE
 
     def get_tag(self) -> tuple[str, str, str]:
         return ("py3", "none", f"{TAG}_{ARCHITECTURE}") if ARCHITECTURE else super().get_tag()
 
 
-setup(cmdclass={"build_py": BuildWithPages, "bdist_wheel": WheelOfOneArchitecture})
+setup(distclass=MaybeWithCode, cmdclass={"build_py": BuildWithPages, "bdist_wheel": WheelOfOneArchitecture})
