@@ -13,7 +13,7 @@ import hashlib
 import types
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -85,6 +85,11 @@ def items(
             yield f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}"
 
 
+def is_record(value: Any) -> TypeGuard[type[Record]]:
+    """Whether what a law uses (``items``) is the class of a record, and no function."""
+    return isinstance(value, type)
+
+
 def _bytecode(function: Any) -> str:
     return _code(function.__code__, function.__doc__)
 
@@ -96,7 +101,7 @@ def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> N
     for item in items(function, _bytecode):
         if isinstance(item, str):
             lines.append(item)
-        elif isinstance(item[1], type):
+        elif is_record(item[1]):
             lines.append(f"{item[0]} of {item[1].layout()}")
         elif item[0] and id(item[1]) in units:
             lines.append(f"unit {item[0]}")

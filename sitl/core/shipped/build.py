@@ -14,12 +14,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..array_kernels import kernel_identity, kernels_of, unit_of
+from ..array_kernels import KERNELS, kernel_identity, kernels_of, unit_of
 from ..compile import Progress, compile_tasks, symbol, unit_identity
 from ..fingerprint import reached
 from ..kernels import Unit
 from ..worker import KERNELS_PATH, Order
-from .library import CONTENTS, SLOT, kernel_symbol, unit_key
+from .library import CONTENTS, SLOT, TABLE, call_symbol, kernel_symbol, unit_key
 from .objects import Objects
 from .targets import TARGETS, Target
 
@@ -89,10 +89,15 @@ def _link(made_of: Sequence[Piece], objects: Objects, target: Target, file: Path
     contents = {piece.key: piece.identity for piece in made_of}
     said = json.dumps({"made with": object_code.made_with(), "contents": contents}, indent=0).encode()
     more = {CONTENTS: object_code.constant(CONTENTS, said, target), **object_code.rounding(target)}
-    exported = [CONTENTS]
+    more[TABLE] = object_code.table_for_python(target)
+    exported = [CONTENTS, TABLE]
     for piece in made_of:
         exported.append(piece.symbol)
-        if piece.path != KERNELS_PATH:
+        if piece.path == KERNELS_PATH:
+            name = call_symbol(piece.symbol)
+            exported.append(name)
+            more[name] = object_code.call_from_python(KERNELS[piece.key], target)
+        else:
             exported.append(piece.symbol + SLOT)
             more[piece.symbol] = object_code.switch(piece.symbol, piece.unit.integers, target)
     files = [objects.file(piece.symbol, piece.identity, target) for piece in made_of]

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from .library import Library, kernel_symbol
 from .signature import NUMBERS, ArrayLeaf, hints_of, leaves, put_together
 
@@ -28,17 +30,20 @@ class Calls:
         self._name = name
         self._names = law.__code__.co_varnames[: law.__code__.co_argcount]
         self._hints, self._result = hints_of(law)
-        types = [
-            _TYPES.get(leaf, ctypes.py_object)  # type: ignore[arg-type]
-            for hint in self._hints
-            for _, leaf in leaves(hint)
-        ]
         self._parts = 0 if self._result in (*NUMBERS, type(None)) else len(list(leaves(self._result)))
-        if self._parts:
-            types.append(ctypes.c_void_p)
-        returned = _TYPES.get(self._result)
-        self._entry = library.function(kernel_symbol(name), types, returned, keep_lock=not lets_others_run)
+        symbol = kernel_symbol(name)
+        if lets_others_run and not self._parts:
+            types = [
+                _TYPES.get(leaf, ctypes.py_object)  # type: ignore[arg-type]
+                for hint in self._hints
+                for _, leaf in leaves(hint)
+            ]
+            self._entry = library.function(symbol, types, _TYPES.get(self._result))
+        else:
+            self._entry = library.method(symbol)
         self.checked, self.unchecked = self._function(True), self._function(False)
+        if not self._parts and all(len(list(leaves(hint))) == 1 for hint in self._hints):
+            self.unchecked = self._entry  # nothing to take apart
 
     def bind(self, *arguments: Any) -> Callable[..., Any]:
         """A function of the other arguments only, whose types are not looked at.
@@ -56,12 +61,13 @@ class Calls:
         return partial(self._entry, *flat)
 
     def _function(self, checked: bool) -> Callable[..., Any]:
-        space, made = self._space(), {}
+        space = self._space()
+        made: dict[str, Any] = {}
         if self._parts:
             whole = (f"r[{k}]" if leaf is float else f"{leaf.__name__}(r[{k}])" for k, leaf in self._result_leaves())
             found = put_together(self._result, whole, space)
-            space["Result"] = ctypes.c_double * self._parts
-            body = f"r = Result()\n    entry({{}}, r)\n    return {found}"
+            space["empty"] = np.empty
+            body = f"r = empty({self._parts})\n    entry({{}}, r)\n    r = r.tolist()\n    return {found}"
         else:
             body = "return entry({})"
         exec(self._source(self._names, self._hints, checked, body), space, made)
@@ -88,7 +94,7 @@ class Calls:
         tests = []
         for name, hint in zip(names, hints):
             for expression, leaf in leaves(hint, name):
-                parts.append(f"int({expression})" if leaf is int else expression)
+                parts.append(expression)
                 if isinstance(leaf, ArrayLeaf):
                     tests.append(f"array_{number}.takes({expression})")
                     number += 1

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
-from ..fingerprint import items
+from ..fingerprint import is_record, items
 from ..kernels import UNITS, Unit
 from ..numba_tuning import TRUST, law_options
 from ..records import Record
@@ -33,7 +33,7 @@ class _Law:
         for item in items(function, source_of, constant_text):
             if isinstance(item, str):
                 own.append(item)
-            elif isinstance(item[1], type):
+            elif is_record(item[1]):
                 self.records.append(item[1])
                 own.append(f"{item[0]} of {item[1].layout()}")
             elif item[0]:

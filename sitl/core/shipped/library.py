@@ -28,7 +28,29 @@ CONTENTS = "sitl_contents"
 """Symbol of what the library holds, as JSON: name -> identity."""
 SLOT = ".slot"
 """Ending of the symbol of a unit's slot: where calls of the unit go."""
-_OWN = ".own"
+TABLE = "sitl_python"
+"""Symbol of the table of addresses that entries of kernels need of Python."""
+PYTHON = (
+    "PyErr_BadArgument", "PyErr_Occurred", "PyObject_IsTrue", "PyFloat_AsDouble", "PyFloat_FromDouble",
+    "PyLong_AsLongLong", "PyLong_FromLongLong", "PyBool_FromLong", "Py_BuildValue", "empty format",
+)  # fmt: skip
+"""What is in the table: functions of Python's stable interface; and the text of a ``Py_BuildValue`` that gives None."""
+_OWN, _CALL = ".own", ".call"
+_METH_FASTCALL = 0x80
+"""Python's: arguments are handed over as an array."""
+
+
+class _MethodDef(ctypes.Structure):
+    """Python's ``PyMethodDef``."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p), ("address", ctypes.c_void_p), ("flags", ctypes.c_int), ("doc", ctypes.c_char_p),
+    )  # fmt: skip
+
+
+def call_symbol(symbol: str) -> str:
+    """Symbol of a kernel's entry that Python calls."""
+    return symbol + _CALL
 
 
 def own_symbol(symbol: str) -> str:
@@ -44,6 +66,11 @@ def kernel_symbol(name: str) -> str:
 def unit_key(name: str, path: str) -> str:
     """Name of a unit, for the record type at ``path``, in the contents."""
     return f"{name} {path}"
+
+
+_new_function = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(
+    ("PyCFunction_NewEx", ctypes.pythonapi)
+)
 
 
 class Library:
@@ -63,7 +90,12 @@ class Library:
         if not _is_whole(file):
             raise ValueError(f"{file} is not a whole library")
         self._code = ctypes.CDLL(str(file))
-        self._code_with_lock = ctypes.PyDLL(str(file))
+        self._methods: list[_MethodDef] = []  # Python does not copy them
+        self._format = ctypes.create_string_buffer(b"")
+        table = (ctypes.c_void_p * len(PYTHON)).in_dll(self._code, TABLE)
+        for k, name in enumerate(PYTHON[:-1]):
+            table[k] = ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value
+        table[len(PYTHON) - 1] = ctypes.addressof(self._format)
         said = json.loads(ctypes.string_at(ctypes.addressof(self._at(CONTENTS))))
         self.identities: dict[str, str] = said["contents"]
         self.made_with: str = said["made with"]
@@ -71,18 +103,24 @@ class Library:
     def _at(self, symbol: str) -> ctypes.c_char:
         return ctypes.c_char.in_dll(self._code, symbol)
 
-    def function(self, symbol: str, arguments: list[Any], result: Any = None, keep_lock: bool = False) -> Any:
-        """A function of the library as one of Python.
+    def function(self, symbol: str, arguments: list[Any], result: Any = None) -> Any:
+        """A function of the library as one of Python; other threads run while it does.
 
         Args:
             symbol: its name.
             arguments: ctypes' types of them.
             result: that of what it returns; None: nothing.
-            keep_lock: other threads of Python wait until it returns: quicker to call.
         """
-        found = (self._code_with_lock if keep_lock else self._code)[symbol]  # a new object each time
+        found = self._code[symbol]  # a new object each time
         found.argtypes, found.restype = arguments, result
         return found
+
+    def method(self, symbol: str) -> Any:
+        """A kernel as a function of Python that takes numbers and arrays; other threads wait until it returns."""
+        address = ctypes.addressof(self._at(call_symbol(symbol)))
+        definition = _MethodDef(symbol.encode(), address, _METH_FASTCALL, None)
+        self._methods.append(definition)
+        return _new_function(ctypes.addressof(definition), None, None)
 
     def redirect(self, symbol: str, address: int) -> None:
         """Let shipped code call what is at ``address`` instead of the unit ``symbol``."""

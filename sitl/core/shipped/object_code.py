@@ -31,14 +31,13 @@ from ..compile import ENTRY_OPTIONS, entry_of, make_jitable, symbol, unit_identi
 from ..kernels import UNITS, Unit
 from ..numba_tuning import COMMON, quick, trust_laws
 from ..worker import KERNELS_PATH
-from .library import SLOT, kernel_symbol, own_symbol
+from .library import PYTHON, SLOT, TABLE, call_symbol, kernel_symbol, own_symbol
 from .objects import Objects
-from .signature import NUMBERS, hints_of, leaves, put_together
+from .python_calls import entry_for_python
+from .signature import HEADER, NUMBERS, hints_of, leaves, put_together
 from .targets import Target
 
 _OPTIMISE = 3
-_HEADER = 16
-"""Bytes before an array's own fields: CPython's of every object, 64 bit. ``library.py`` looks whether it is so."""
 _NUMBERS = {float: types.float64, int: types.int64, bool: types.boolean}
 
 
@@ -96,7 +95,8 @@ def translate_unit(unit: Unit, path: str) -> Translated:
     """A unit for the record type at ``path``."""
     source, names, signature = entry_of(unit, path)
     name = symbol(unit, path)
-    return _translate(name, own_symbol(name), source, names, signature, ENTRY_OPTIONS)
+    made: Translated = _translate(name, own_symbol(name), source, names, signature, ENTRY_OPTIONS)
+    return made
 
 
 def translate_kernel(kernel: Kernel[..., Any]) -> Translated:
@@ -134,7 +134,8 @@ def translate_kernel(kernel: Kernel[..., Any]) -> Translated:
     source = f"def {ENTRY}({', '.join(given)}):\n    {body}\n"
     options = {**COMMON, "forceinline": True}
     name = kernel_symbol(kernel.name)
-    return _translate(name, name, source, names, returned(*kinds), options)
+    made: Translated = _translate(name, name, source, names, returned(*kinds), options)
+    return made
 
 
 def _array_kinds(hint: Any) -> Iterator[Any]:
@@ -161,7 +162,7 @@ def _array_of(kind: Any) -> Any:
     def array_of(typing_context, address):  # type: ignore[no-untyped-def]
         def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
             word = ir.IntType(64)
-            fields = builder.inttoptr(builder.add(args[0], word(_HEADER)), word.as_pointer())
+            fields = builder.inttoptr(builder.add(args[0], word(HEADER)), word.as_pointer())
 
             def numbers(field: int) -> list[Any]:
                 start = builder.inttoptr(builder.load(builder.gep(fields, [word(field)])), word.as_pointer())
@@ -187,7 +188,7 @@ def _translate(
 ) -> Translated:
     space = {"__name__": name, **names}
     exec(compile(source, f"<{name}>", "exec"), space)
-    made = CFunc(space[ENTRY], (signature.args, signature.return_type), {}, options)
+    made: Any = CFunc(space[ENTRY], (signature.args, signature.return_type), {}, options)
     with quick("no library"), _not_optimised(), trust_laws():
         result = made._compile_uncached()
         if not result.library._finalized:
@@ -225,6 +226,17 @@ def switch(unit_symbol: str, integers: int, target: Target) -> bytes:
             ret void
         }}"""
     return _assembled(text, unit_symbol, target)
+
+
+def call_from_python(kernel: Kernel[..., Any], target: Target) -> bytes:
+    """Object code of the entry of a kernel that Python calls."""
+    name = kernel_symbol(kernel.name)
+    return _assembled(entry_for_python(name, kernel.law), call_symbol(name), target)
+
+
+def table_for_python(target: Target) -> bytes:
+    """Object code of the table that such entries need."""
+    return _assembled(f"@{TABLE} = global [{len(PYTHON)} x i64] zeroinitializer", TABLE, target)
 
 
 def constant(name: str, content: bytes, target: Target) -> bytes:

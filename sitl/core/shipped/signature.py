@@ -16,6 +16,8 @@ from ..records import Record, Records
 from ..vectors import Value
 
 NUMBERS = (float, int, bool)
+HEADER = 16
+"""Bytes before an array's own fields: CPython's of every object, 64 bit. ``library.py`` looks whether it is so."""
 
 
 class ArrayLeaf(NamedTuple):
