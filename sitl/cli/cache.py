@@ -79,8 +79,8 @@ def cache(options: argparse.Namespace) -> int:
             for kind, unit, state in units()
         ]
         shipped = library()
-        file = None if shipped is None else str(shipped.file)
-        print_json({"folder": str(code_cache.cache_folder()), "library": file, "units": rows})
+        from_package = None if shipped is None else str(shipped.file)
+        print_json({"folder": str(code_cache.cache_folder()), "library": from_package, "units": rows})
     else:
         print(code_cache.cache_folder())
         print(shipped_library())

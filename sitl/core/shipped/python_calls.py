@@ -69,7 +69,6 @@ def entry_for_python(symbol: str, law: Any) -> str:
     elif result is bool:
         builder.ret(python("PyBool_FromLong", _WORD, builder.zext(found, _WORD)))
     else:
-        builder.ret(
-            python("Py_BuildValue", _WORD, builder.load(builder.gep(table, [_LONG(0), _LONG(len(PYTHON) - 1)])))
-        )
+        nothing = builder.load(builder.gep(table, [_LONG(0), _LONG(len(PYTHON) - 1)]))
+        builder.ret(python("Py_BuildValue", _WORD, nothing))
     return str(module)
