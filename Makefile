@@ -7,7 +7,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK = 1
 # Tests start hundreds of processes: without bytecode each of them would compile all sources again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test lint docs bench clean
+.PHONY: demo test lint docs wheels bench clean
 
 demo: $(VENV)/demo.stamp
 	$(BIN)/sitl demo copter
@@ -23,6 +23,13 @@ lint: $(VENV)/dev.stamp
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# Wheels with machine code (docs/packaging.md): the linker for all targets is that of ziglang.
+wheels: $(VENV)/dev.stamp
+	$(BIN)/pip install -q build ziglang
+	$(BIN)/sitl cache ship
+	SITL_WHEEL=x86_64 $(BIN)/python -m build --wheel
+	SITL_WHEEL=aarch64 $(BIN)/python -m build --wheel
 
 docs: $(VENV)/docs.stamp
 	$(BIN)/python -m sphinx -b html -E -n -W --keep-going -q docs build/docs

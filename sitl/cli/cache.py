@@ -5,11 +5,15 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core import code_cache
 from ..core import compile as compiler
-from ..core.array_kernels import KERNELS, build_kernels, missing_kernels
+from ..core.array_kernels import KERNELS, build_kernels, is_shipped, missing_kernels
+from ..core.shipped.build import Piece, build, pieces
+from ..core.shipped.library import library
+from ..core.shipped.targets import TARGETS
 from .output import add_json_option, print_json
 
 if TYPE_CHECKING:
@@ -40,12 +44,15 @@ KERNEL_MODULES = (
     "sitl.worlds.raycast",
 )
 """Modules that make kernels; loaded by name, because some are of packages above this one."""
+SHIPPED, READY, TO_BUILD = "shipped", "ready", "to build"
+"""Where the machine code of a unit is: it came with the package, was compiled here, or is not there yet."""
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("cache")
-    parser.add_argument("action", choices=("show", "clear", "build"))
+    parser.add_argument("action", choices=("show", "clear", "build", "ship"))
+    parser.add_argument("--folder", type=Path, default=Path("build/shipped"), help="with ship, where libraries go")
     add_json_option(parser, "with show, the folder and its units")
     parser.set_defaults(function=cache)
 
@@ -62,28 +69,55 @@ def cache(options: argparse.Namespace) -> int:
             took = sum(compiler.build(all_entries(kind), kind.record_path, progress) for kind in KINDS.values())
             took += build_kernels(KERNEL_MODULES, progress)
         print(f"built in {took:.1f} s")
+    elif options.action == "ship":
+        with CompileProgress(f"gym-sitl compiles its core for {', '.join(t.name for t in TARGETS)}") as progress:
+            for file in build(shipped_pieces(), options.folder, progress=progress):
+                print(f"{file}: {file.stat().st_size / 1e6:.1f} MB")
     elif options.json:
-        rows = [{"vehicle": kind, "unit": unit, "ready": ready} for kind, unit, ready in units()]
-        print_json({"folder": str(code_cache.cache_folder()), "units": rows})
+        rows = [
+            {"vehicle": kind, "unit": unit, "ready": state != TO_BUILD, "shipped": state == SHIPPED}
+            for kind, unit, state in units()
+        ]
+        shipped = library()
+        from_package = None if shipped is None else str(shipped.file)
+        print_json({"folder": str(code_cache.cache_folder()), "library": from_package, "units": rows})
     else:
         print(code_cache.cache_folder())
-        for kind, unit, ready in units():
-            print(f"  {'ready   ' if ready else 'to build'}  {kind}: {unit}")
+        print(shipped_library())
+        for kind, unit, state in units():
+            print(f"  {state:8}  {kind}: {unit}")
     return 0
 
 
-def units() -> Iterator[tuple[str, str, bool]]:
-    """(kind of vehicle, name, whether there is machine code) of each unit of the core, and of the kernels of fleets,
-    environments, worlds and agents, which are of "every kind"."""
+def shipped_pieces() -> list[Piece]:
+    """All units of the kinds of vehicle that come with the simulator, and all kernels."""
+    from ..vehicle.kinds import BUILT_IN, KINDS
+
+    return pieces({KINDS[name].record_path: all_entries(KINDS[name]) for name in BUILT_IN}, KERNEL_MODULES)
+
+
+def shipped_library() -> str:
+    """The library of machine code that came with the package, in words."""
+    shipped = library()
+    if shipped is not None:
+        return f"{shipped.file} ({shipped.target.name}, made with {shipped.made_with})"
+    return "no machine code came with this installation for this machine: all is compiled here"
+
+
+def units() -> Iterator[tuple[str, str, str]]:
+    """(Kind of vehicle, name, ``SHIPPED``, ``READY`` or ``TO_BUILD``) of each unit of the core, and of the kernels of
+    fleets, environments, worlds and agents, which are of "every kind"."""
     from ..vehicle.kinds import KINDS
 
     for kind in KINDS.values():
         absent = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
         for unit in dict.fromkeys(unit for entry in entries(kind) for unit in compiler.reached(entry)):
-            yield kind.name, unit.name, unit not in absent
+            from_package = compiler.is_shipped(unit, kind.record_path)
+            yield kind.name, unit.name, SHIPPED if from_package else TO_BUILD if unit in absent else READY
     absent_kernels = {task.partition(":")[2] for task in missing_kernels(KERNEL_MODULES)}
     for name in sorted(KERNELS):
-        yield "every kind", name, name not in absent_kernels
+        state = SHIPPED if is_shipped(KERNELS[name]) else TO_BUILD if name in absent_kernels else READY
+        yield "every kind", name, state
 
 
 def entries(kind: Kind) -> tuple[Callable[..., None], ...]:

@@ -16,13 +16,14 @@ from pathlib import Path
 
 from ..core import code_cache
 from ..core import compile as compiler
-from ..core.array_kernels import missing_kernels
+from ..core.array_kernels import is_shipped, kernels_of, missing_kernels
+from ..core.shipped.library import library
 from ..run import runner
 from ..vehicle.kinds import KINDS
 from ..warp import CannotBuild
 from ..warp.build import compiler as c_compiler
 from . import plugins
-from .cache import KERNEL_MODULES, entries
+from .cache import KERNEL_MODULES, entries, shipped_library
 from .output import add_json_option, print_json
 
 OLDEST = (3, 11)
@@ -156,13 +157,24 @@ def cache() -> Iterator[Finding]:
     size = sum(file.stat().st_size for file in Path(folder).rglob("*") if file.is_file()) // 1_000_000
     enough = free >= SCRATCH_MB
     yield Finding("cache", OK if enough else BROKEN, f"{folder}, {size} MB, {free} MB of disk free")
+    yield Finding("shipped code", OK if library() is not None else ABSENT, shipped_library())
     for kind in KINDS.values():
         units = {unit for entry in entries(kind) for unit in compiler.missing(entry, kind.record_path)}
-        state = f"not compiled ({len(units)} parts); the first start compiles it" if units else "compiled"
+        own = sum(
+            not compiler.is_shipped(unit, kind.record_path)
+            for unit in {unit for entry in entries(kind) for unit in compiler.reached(entry)}
+        )
+        state = f"not compiled ({len(units)} parts); the first start compiles it" if units else _origin(own)
         yield Finding(f"core of {kind.name}", ABSENT if units else OK, state, "sitl cache build" if units else "")
     kernels = len(missing_kernels(KERNEL_MODULES))
-    state = f"not compiled ({kernels} parts); the first uses compile them" if kernels else "compiled"
+    own = sum(not is_shipped(kernel) for kernel in kernels_of(KERNEL_MODULES).values())
+    state = f"not compiled ({kernels} parts); the first uses compile them" if kernels else _origin(own)
     yield Finding("environments", ABSENT if kernels else OK, state, "sitl cache build" if kernels else "")
+
+
+def _origin(compiled: int) -> str:
+    """In words, where machine code is from, of which ``compiled`` parts did not come with the package."""
+    return f"compiled here ({compiled} parts)" if compiled else "came with the package"
 
 
 def ports() -> Iterator[Finding]:

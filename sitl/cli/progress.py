@@ -16,11 +16,15 @@ class CompileProgress:
 
     It moves by the work that is done, and tells the time that is left at the speed so far. Where standard error is no
     terminal, lines appear instead.
+
+    Args:
+        first: the line that says what is compiled.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, first: str = FIRST_LINE) -> None:
+        self._first = first
         self._bar: tqdm[None] | None = None
-        self._lines = None if sys.stderr.isatty() else ProgressLines()
+        self._lines = None if sys.stderr.isatty() else ProgressLines(first=first)
 
     def __call__(self, unit: str, done: float, total: float) -> None:
         """Work ``done`` of ``total``; ``unit`` is the one that was begun or completed last."""
@@ -30,7 +34,7 @@ class CompileProgress:
         if self._bar is None or total != self._bar.total:  # another part of the core
             self.__exit__(None, None, None)
             if self._bar is None:
-                print(FIRST_LINE, file=sys.stderr)
+                print(self._first, file=sys.stderr)
             self._bar = tqdm(
                 total=total, leave=False, file=sys.stderr, ascii=True, smoothing=0.0,
                 bar_format="{percentage:3.0f}% |{bar:30}| {elapsed}, {remaining} left  {desc}",

@@ -11,7 +11,7 @@ from __future__ import annotations
 import importlib
 import time
 from collections.abc import Callable, Iterable, Iterator
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Annotated, Any, Generic, NamedTuple, ParamSpec, TypeVar, get_args, get_origin, get_type_hints
 
@@ -21,8 +21,12 @@ from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
 from .numba_tuning import COMMON
 from .records import FloatRows, Floats, IntRows, Ints, Records
+from .shipped import library as shipped
+from .shipped.calls import Calls
+from .shipped.identity import identity
+from .shipped.signature import described, records_of
 from .vectors import Value
-from .worker import KERNELS_PATH
+from .worker import KERNELS_PATH, Order
 
 KERNELS: dict[str, Kernel[..., Any]] = {}
 P = ParamSpec("P")
@@ -80,7 +84,10 @@ class Kernel(Generic[P, R]):
     def function(self) -> Callable[P, R]:
         """The compiled function itself, which is a little quicker to call."""
         if self._loaded is None:
-            self._loaded = self.law if jit_disabled() else _load(self)
+            if jit_disabled():
+                self._loaded = self.law
+            else:
+                self._loaded = _load(self) if self._shipped is None else self._shipped.checked
         return self._loaded
 
     def unchecked(self) -> Callable[P, R]:
@@ -88,7 +95,12 @@ class Kernel(Generic[P, R]):
         call."""
         if self._entry is None:
             function: Any = self.function()
-            self._entry = function if jit_disabled() else next(iter(function.overloads.values())).entry_point
+            if jit_disabled():
+                self._entry = function
+            elif self._shipped is not None:
+                self._entry = self._shipped.unchecked
+            else:
+                self._entry = next(iter(function.overloads.values())).entry_point
         assert self._entry is not None
         return self._entry
 
@@ -101,6 +113,8 @@ class Kernel(Generic[P, R]):
         """
         function: Any = self.function()
         if not jit_disabled():
+            if self._shipped is not None:
+                return self._shipped.bind(*arguments)
             from numba import typeof
 
             types, given = function.signatures[0], tuple(map(typeof, arguments))
@@ -108,6 +122,14 @@ class Kernel(Generic[P, R]):
                 raise TypeError(f"{self.name} takes {types}, not {given}")
         call: Any = self.unchecked()
         return partial(call, *arguments)
+
+    @cached_property
+    def _shipped(self) -> Calls | None:
+        """The machine code that came with the package; None: there is none of this source."""
+        library = shipped.library()
+        if library is None or not is_shipped(self):
+            return None
+        return Calls(library, self.name, self.law, self.lets_others_run)
 
 
 def _fits(given: Any, wanted: Any) -> bool:
@@ -123,10 +145,10 @@ def _signature(law: Callable[..., Any]) -> Any:
     """Numba's signature of a law's annotations."""
     hints = get_type_hints(law, include_extras=True)
     result = hints.pop("return")
-    return _type(result)(*map(_type, hints.values()))
+    return numba_type_of(result)(*map(numba_type_of, hints.values()))
 
 
-def _type(hint: Any) -> Any:
+def numba_type_of(hint: Any) -> Any:
     """Numba's type of an annotation."""
     from numba import types
 
@@ -145,7 +167,7 @@ def _type(hint: Any) -> Any:
     if issubclass(hint, Value):
         return TYPES[hint]
     return types.BaseTuple.from_types(
-        [_type(part) for part in get_type_hints(hint, include_extras=True).values()], hint
+        [numba_type_of(part) for part in get_type_hints(hint, include_extras=True).values()], hint
     )
 
 
@@ -161,22 +183,41 @@ def _layouts(types: Any) -> Iterator[str]:
 def _folder(kernel: Kernel[..., Any], signature: Any) -> Path:
     """Where the kernel's current machine code is or will be."""
     layouts = " ".join(_layouts(signature.args))
-    key = fingerprint(_unit(kernel), layouts, f"{toolchain()} {signature} {kernel.lets_others_run}")
+    key = fingerprint(unit_of(kernel), layouts, f"{toolchain()} {signature} {kernel.lets_others_run}")
     return cache_folder() / f"{kernel.name}-{key}"
 
 
-def _unit(kernel: Kernel[..., Any]) -> Unit:
+def unit_of(kernel: Kernel[..., Any]) -> Unit:
     return Unit(kernel.name, kernel.law, 0)
+
+
+def kernel_identity(kernel: Kernel[..., Any]) -> str:
+    """Hash of the kernel's sources; the same on every machine."""
+    return identity(unit_of(kernel), described(kernel.law), records_of(kernel.law))
+
+
+def is_shipped(kernel: Kernel[..., Any]) -> bool:
+    """Whether the machine code of the kernel's present source came with the package."""
+    return shipped.is_shipped(kernel.name, lambda: kernel_identity(kernel))
+
+
+def kernels_of(modules: Iterable[str]) -> dict[str, Kernel[..., Any]]:
+    """ "MODULE:NAME" -> a kernel that one of these modules makes."""
+    return {
+        f"{module}:{made.name}": made
+        for module in modules
+        for made in vars(importlib.import_module(module)).values()
+        if isinstance(made, Kernel)
+    }
 
 
 def missing_kernels(modules: Iterable[str]) -> dict[str, Kernel[..., Any]]:
     """ "MODULE:NAME" -> a kernel that one of these modules makes, and whose present source has no machine code."""
-    found: dict[str, Kernel[..., Any]] = {}
-    for module in modules:
-        for made in vars(importlib.import_module(module)).values():
-            if isinstance(made, Kernel) and not is_built(_folder(made, _signature(made.law))):
-                found[f"{module}:{made.name}"] = made
-    return found
+    return {
+        task: kernel
+        for task, kernel in kernels_of(modules).items()
+        if not is_shipped(kernel) and not is_built(_folder(kernel, _signature(kernel.law)))
+    }
 
 
 def build_kernels(modules: Iterable[str], progress: Progress | None = None) -> float:
@@ -189,8 +230,8 @@ def build_kernels(modules: Iterable[str], progress: Progress | None = None) -> f
     """
     start = time.monotonic()
     with build_lock():
-        units = {task: _unit(kernel) for task, kernel in missing_kernels(modules).items()}
-        compile_tasks(units, KERNELS_PATH, progress)
+        units = {task: unit_of(kernel) for task, kernel in missing_kernels(modules).items()}
+        compile_tasks(units, Order(KERNELS_PATH), progress)
     return time.monotonic() - start
 
 

@@ -56,12 +56,13 @@ class ProgressLines:
 
     Args:
         clock: wall time [s].
+        first: the first line.
     """
 
     EVERY_S = 15.0
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
+    def __init__(self, clock: Callable[[], float] = time.monotonic, first: str = FIRST_LINE) -> None:
+        self._clock, self._first = clock, first
         self._begun = self._said = -1.0
         self._total = 0.0
 
@@ -69,7 +70,7 @@ class ProgressLines:
         """Work ``done`` of ``total``; ``unit`` is the one that was begun or completed last."""
         now = self._clock()
         if self._begun < 0.0:
-            self._say(FIRST_LINE)
+            self._say(self._first)
         if total != self._total:  # another part of the core
             self._begun, self._said, self._total = now, now, total
         elif now - self._said >= self.EVERY_S:

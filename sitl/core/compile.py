@@ -9,6 +9,7 @@ all folders and only loads machine code.
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import importlib
 import os
 import platform
@@ -31,6 +32,10 @@ from .fingerprint import fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import TRUST, law_options, trust_laws
 from .records import Record
+from .shipped import library as shipped
+from .shipped.identity import identity
+from .shipped.objects import ENVIRONMENT as OBJECT_ENVIRONMENT
+from .worker import Order
 
 Progress = Callable[[str, float, float], None]
 """Called as ``progress(unit name, work done, work of all)``, several times a second, in estimated seconds of work."""
@@ -41,7 +46,8 @@ _START_S, _BYTES_A_SECOND = 1.0, 5000.0
 
 _fingerprints: dict[tuple[str, str], str] = {}
 """(Unit name, path of the record type) -> fingerprint: code does not change while a process runs."""
-_ENTRY_OPTIONS = {"error_model": "numpy", "forceinline": True}
+_identities: dict[tuple[str, str], str] = {}
+ENTRY_OPTIONS = {"error_model": "numpy", "forceinline": True}
 """Of a unit's entry: its body is compiled into the function with the C signature."""
 _SYMBOLS = "symbols name records by their classes"
 """Machine code made with symbols of another kind cannot be loaded beside it."""
@@ -50,7 +56,9 @@ _linked: set[str] = set()
 _records: dict[Any, str] = {}
 """Numba's record type -> its path."""
 _loaded: dict[tuple[str, str], Any] = {}
-"""(Unit name, path of the record type) -> Numba's CFunc."""
+"""(Unit name, path of the record type) -> the C function."""
+_addresses: dict[str, int] = {}
+"""Symbol -> address of shipped code that Numba's linker does not know yet."""
 
 
 def toolchain() -> str:
@@ -67,7 +75,7 @@ def toolchain() -> str:
     features = numba.config.CPU_FEATURES
     if features is None:
         features = llvmlite.binding.get_host_cpu_features().flatten()
-    options = f"{law_options()!r} {_ENTRY_OPTIONS!r}"
+    options = f"{law_options()!r} {ENTRY_OPTIONS!r}"
     return " ".join((*versions, platform.machine(), processor, features, options, _SYMBOLS))
 
 
@@ -92,9 +100,23 @@ def unit_folder(unit: Unit, path: str) -> Path:
     return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
 
 
+def unit_identity(unit: Unit, path: str) -> str:
+    """Hash of the sources of the unit for the record type at ``path``; the same on every machine."""
+    key = (unit.name, path)
+    if key not in _identities:
+        record = record_class(path)
+        _identities[key] = identity(unit, f"{record.layout()} {path} {unit.inline}", (record,))
+    return _identities[key]
+
+
+def is_shipped(unit: Unit, path: str) -> bool:
+    """Whether the machine code of the unit's present source came with the package."""
+    return shipped.is_shipped(shipped.unit_key(unit.name, path), lambda: unit_identity(unit, path))
+
+
 def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
     """Units of the core of ``entry`` that have no machine code for their present source."""
-    return [u for u in reached(entry) if not is_built(unit_folder(u, path))]
+    return [u for u in reached(entry) if not is_shipped(u, path) and not is_built(unit_folder(u, path))]
 
 
 def make_jitable(inline: bool = False) -> None:
@@ -157,14 +179,8 @@ def _wrapper_source(unit: Unit) -> str:
     )
 
 
-def load_unit(unit: Unit, path: str) -> Any:
-    """Compile the unit for the record type at ``path``, or load it from the cache.
-
-    Returns Numba's CFunc and registers its symbol.
-    """
-    if (unit.name, path) in _loaded:
-        return _loaded[unit.name, path]
-    import llvmlite.binding
+def entry_of(unit: Unit, path: str) -> tuple[str, dict[str, Any], Any]:
+    """The C entry of a unit for the record type at ``path``: its source, what that refers to, and Numba's signature."""
     import numba
     from numba import types
 
@@ -174,15 +190,43 @@ def load_unit(unit: Unit, path: str) -> Any:
     record = numba_type(record_class(path))
     if _records.setdefault(record, path) != path:
         raise BuildError(f"{path} and {_records[record]} are the same record type; one of them will do")
-    folder, name = unit_folder(unit, path), symbol(unit, path)
     signature = types.void(types.CPointer(record), types.int64, types.int64, *[types.int64] * unit.integers)
-    names = {"carray": numba.carray, "body": _body(unit)}
-    compile_entry = numba.cfunc(signature, cache=True, **_ENTRY_OPTIONS)
-    with trust_laws():
-        function = load_entry(folder, name, _wrapper_source(unit), names, compile_entry)
-    llvmlite.binding.add_symbol(name, function.address)
-    _loaded[unit.name, path] = function
+    return _wrapper_source(unit), {"carray": numba.carray, "body": _body(unit)}, signature
+
+
+def load_unit(unit: Unit, path: str) -> Any:
+    """The unit for the record type at ``path`` as a C function: shipped code, or from the cache, or compiled now.
+
+    Units that are compiled later can call it by its symbol.
+    """
+    key = (unit.name, path)
+    if key not in _loaded:
+        _loaded[key] = _load_shipped(unit, path) if is_shipped(unit, path) else _load_compiled(unit, path)
+    return _loaded[key]
+
+
+def _load_shipped(unit: Unit, path: str) -> Any:
+    library, name = shipped.library(), symbol(unit, path)
+    assert library is not None
+    function = library.function(name, [ctypes.c_void_p, *[ctypes.c_int64] * (2 + unit.integers)])
+    _addresses[name] = ctypes.cast(function, ctypes.c_void_p).value or 0
     return function
+
+
+def _load_compiled(unit: Unit, path: str) -> Any:
+    import llvmlite.binding
+    import numba
+
+    source, names, signature = entry_of(unit, path)
+    folder, name = unit_folder(unit, path), symbol(unit, path)
+    while _addresses:
+        llvmlite.binding.add_symbol(*_addresses.popitem())
+    compile_entry = numba.cfunc(signature, cache=True, **ENTRY_OPTIONS)
+    with trust_laws():
+        function = load_entry(folder, name, source, names, compile_entry)
+    llvmlite.binding.add_symbol(name, function.address)
+    shipped.redirect(shipped.unit_key(unit.name, path), name, function.address)
+    return function.ctypes
 
 
 def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress | None = None, jobs: int = 0) -> float:
@@ -193,17 +237,19 @@ def build(entries: Iterable[Callable[..., Any]], path: str, progress: Progress |
     """
     start = time.monotonic()
     with build_lock():
-        entry_of = {unit: entry for entry in entries for unit in missing(entry, path)}
-        compile_tasks({f"{entry_of[unit].__module__}:{unit.name}": unit for unit in entry_of}, path, progress, jobs)
+        entry_for = {unit: entry for entry in entries for unit in missing(entry, path)}
+        compile_tasks(
+            {f"{entry_for[unit].__module__}:{unit.name}": unit for unit in entry_for}, Order(path), progress, jobs
+        )
     return time.monotonic() - start
 
 
-def compile_tasks(tasks: Mapping[str, Unit], path: str, progress: Progress | None = None, jobs: int = 0) -> None:
+def compile_tasks(tasks: Mapping[str, Unit], order: Order, progress: Progress | None = None, jobs: int = 0) -> None:
     """Compile what worker processes know as ``tasks``, side by side, while the caller holds the lock of the cache.
 
     Args:
         tasks: "MODULE:NAME" -> what is compiled.
-        path: as the worker takes it (``worker.py``).
+        order: what workers make of it.
         progress: told of it; None: lines on standard error.
         jobs: processes; 0: one for each processor.
 
@@ -215,7 +261,7 @@ def compile_tasks(tasks: Mapping[str, Unit], path: str, progress: Progress | Non
     weights = {task: _weight(unit) for task, unit in tasks.items()}
     work = BuildWork({task.partition(":")[2]: weight for task, weight in weights.items()})
     longest_first = sorted(tasks, key=lambda task: -weights[task])
-    with _workers(path, jobs or min(len(tasks), os.cpu_count() or 1), longest_first) as process:
+    with _workers(order, jobs or min(len(tasks), os.cpu_count() or 1), longest_first) as process:
         _follow(process, work, progress or ProgressLines())
     drop_old_versions()
 
@@ -266,12 +312,14 @@ def _weight(unit: Unit) -> float:
 
 
 @contextlib.contextmanager
-def _workers(path: str, jobs: int, tasks: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+def _workers(order: Order, jobs: int, tasks: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
     """The process that compiles, ended with all that it has started when the context ends."""
-    command = [sys.executable, "-m", "sitl.core.worker", path, str(jobs), *tasks]
+    command = [sys.executable, "-m", "sitl.core.worker", *order.arguments(), str(jobs), *tasks]
     root = str(Path(__file__).resolve().parents[2])
     found = os.pathsep.join(p for p in (root, *sys.path) if p)  # modes of other packages are found, too
     environment = {**os.environ, "PYTHONPATH": found, "OPENBLAS_NUM_THREADS": "1"}
+    if order.objects is not None:
+        environment |= OBJECT_ENVIRONMENT
     process = subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
@@ -305,4 +353,4 @@ def load(entry: Callable[..., Any], path: str, progress: Progress | None = None)
     units = reached(entry)  # callees before callers, so that symbols exist when needed
     for unit in units:
         load_unit(unit, path)
-    return _loaded[units[-1].name, path].ctypes
+    return _loaded[units[-1].name, path]

@@ -31,8 +31,8 @@ def by_number(
             lines += [f"    if number == {number}:", f"        return law_{number}({arguments})"]
     lines.append(f"    return otherwise({arguments})")
     text = "\n".join(lines) + "\n"
-    file = f"<{name} by number of {otherwise.__module__}>"
-    linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)  # for Numba's messages
+    file = f"<{name} by number of {otherwise.__module__}: {', '.join(map(str, laws))}>"
+    linecache.cache[file] = (len(text), None, text.splitlines(keepends=True), file)  # for Numba, and shipped.identity
     exec(compile(text, file, "exec"), names)
     made: Callable[Concatenate[int, P], R] = law(names[name])
     return made

@@ -13,7 +13,7 @@ import hashlib
 import types
 from collections.abc import Callable, Iterator
 from functools import cache
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -57,31 +57,56 @@ def _referenced(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
             yield name, value
 
 
+def items(
+    function: Any, code: Callable[[Any], str], constant: Callable[[Any], str] = repr
+) -> Iterator[str | tuple[str, Any]]:
+    """What a law is, in order: texts, (name, another function that it uses), and (name, a record class).
+
+    Args:
+        function: the law.
+        code: gives the text of a function's own code.
+        constant: gives the text of a number, a text, or a tuple of such.
+    """
+    inlined = " inlined" if function in INLINED else ""
+    yield f"def {function.__module__}.{function.__qualname__}{inlined} {code(function)}"
+    for name in function.__code__.co_names:
+        for law in PROPERTIES.get(name, ()):
+            yield "", law
+    for name, value in _referenced(function):
+        if isinstance(value, types.FunctionType):
+            yield name, value
+        elif isinstance(value, (bool, int, float, str, tuple)):
+            yield f"{name} = {constant(value)}"
+        elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector
+            yield f"{name} of {getattr(value, '_fields', ())}"
+        elif isinstance(value, type) and issubclass(value, Record):  # memory that the law looks at as this record
+            yield name, value
+        elif isinstance(value, np.ndarray):
+            yield f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}"
+
+
+def is_record(value: Any) -> TypeGuard[type[Record]]:
+    """Whether what a law uses (``items``) is the class of a record, and no function."""
+    return isinstance(value, type)
+
+
+def _bytecode(function: Any) -> str:
+    return _code(function.__code__, function.__doc__)
+
+
 def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> None:
     if id(function) in seen:
         return
     seen.add(id(function))
-    inlined = " inlined" if function in INLINED else ""
-    lines.append(
-        f"def {function.__module__}.{function.__qualname__}{inlined} {_code(function.__code__, function.__doc__)}"
-    )
-    for name in function.__code__.co_names:
-        for law in PROPERTIES.get(name, ()):
-            _walk(law, seen, units, lines)
-    for name, value in _referenced(function):
-        if isinstance(value, types.FunctionType):
-            if id(value) in units:
-                lines.append(f"unit {name}")
-            else:
-                _walk(value, seen, units, lines)
-        elif isinstance(value, (bool, int, float, str, tuple)):
-            lines.append(f"{name} = {value!r}")
-        elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector
-            lines.append(f"{name} of {getattr(value, '_fields', ())}")
-        elif isinstance(value, type) and issubclass(value, Record):  # memory that the law looks at as this record
-            lines.append(f"{name} of {value.layout()}")
-        elif isinstance(value, np.ndarray):
-            lines.append(f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}")
+    for item in items(function, _bytecode):
+        if isinstance(item, str):
+            lines.append(item)
+        elif is_record(item[1]):
+            lines.append(f"{item[0]} of {item[1].layout()}")
+        elif item[0] and id(item[1]) in units:
+            lines.append(f"unit {item[0]}")
+        else:
+            _walk(item[1], seen, units, lines)
 
 
 def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:
@@ -89,24 +114,6 @@ def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:
     lines: list[str] = [toolchain, layout]
     _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
-
-
-def laws_of(entry: Callable[..., Any]) -> list[types.FunctionType]:
-    """Every function that ``entry`` reaches, those of other units included."""
-    found: dict[int, types.FunctionType] = {}
-
-    def visit(function: types.FunctionType) -> None:
-        if id(function) in found:
-            return
-        found[id(function)] = function
-        named = [value for _, value in _referenced(function)]
-        named += [law for name in function.__code__.co_names for law in PROPERTIES.get(name, ())]
-        for value in named:
-            if isinstance(value, types.FunctionType):
-                visit(value)
-
-    visit(entry)  # type: ignore[arg-type]
-    return list(found.values())
 
 
 @cache  # every new simulation asks, and code does not change while a process runs

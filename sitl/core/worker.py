@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.core.worker RECORD JOBS MODULE:UNIT ...``: compile units side by side (started by ``build``).
+"""``python -m sitl.core.worker [--objects=TARGETS:FOLDER] RECORD JOBS MODULE:UNIT ...``: compile units side by side
+(started by ``compile_tasks``), for this machine into the cache, or for other machines as object files.
 
 The units' modules and Numba are loaded once; each unit is compiled by a copy of this process, because what is compiled
 in one process is compiled in one way. With ``kernels`` for RECORD, they are kernels on arrays (``array_kernels.py``).
@@ -16,16 +17,39 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from .shipped.objects import Objects
 
 FORKS = sys.platform == "linux"
 """Copies of a process that has loaded Numba work there."""
 
 KERNELS_PATH = "kernels"
 """In place of the path of a record type: what is compiled are kernels."""
+OBJECTS_OPTION = "--objects="
 
 
-def compile_one(path: str, name: str) -> None:
-    """Compile a unit, whose module is loaded, for the record type at ``path``; or a kernel."""
+class Order(NamedTuple):
+    """What a worker makes of what it compiles."""
+
+    path: str
+    """Of the record type, or ``KERNELS_PATH``."""
+    objects: Objects | None = None
+    """The object files to make; None: what this machine loads."""
+
+    def arguments(self) -> list[str]:
+        """Of the command line."""
+        return [*([] if self.objects is None else [f"{OBJECTS_OPTION}{self.objects}"]), self.path]
+
+
+def compile_one(order: Order, name: str) -> None:
+    """Compile a unit, or a kernel, whose module is loaded."""
+    path = order.path
+    if order.objects is not None:
+        from .shipped.object_code import write
+
+        write(path, name, order.objects)
+        return
     if path == KERNELS_PATH:
         from .array_kernels import KERNELS
 
@@ -52,7 +76,7 @@ def complain(error: BaseException) -> None:
         traceback.print_exception(error)
 
 
-def fork(path: str, name: str) -> int:
+def fork(order: Order, name: str) -> int:
     """Start a copy of this process that compiles a unit, and return its id."""
     with warnings.catch_warnings():  # libraries have threads that wait, and hold no lock
         warnings.simplefilter("ignore", DeprecationWarning)
@@ -61,7 +85,7 @@ def fork(path: str, name: str) -> int:
         return pid
     code = 1
     try:
-        compile_one(path, name)
+        compile_one(order, name)
         code = 0
     except BaseException as error:
         complain(error)
@@ -70,12 +94,12 @@ def fork(path: str, name: str) -> int:
         os._exit(code)
 
 
-def spawn(path: str, task: str) -> int:
+def spawn(order: Order, task: str) -> int:
     """Start a process of its own for a unit, and return its id."""
-    return subprocess.Popen([sys.executable, "-m", "sitl.core.worker", path, "0", task]).pid
+    return subprocess.Popen([sys.executable, "-m", "sitl.core.worker", *order.arguments(), "0", task]).pid
 
 
-def compile_all(path: str, jobs: int, tasks: Sequence[str]) -> int:
+def compile_all(order: Order, jobs: int, tasks: Sequence[str]) -> int:
     """Compile them side by side, in this order; returns 1 after the first that fails."""
     start: Callable[[str], int]
     if FORKS:
@@ -84,9 +108,9 @@ def compile_all(path: str, jobs: int, tasks: Sequence[str]) -> int:
         for task in tasks:
             importlib.import_module(task.partition(":")[0])
         numba.core.registry.cpu_target.target_context.refresh()
-        start = lambda task: fork(path, task.partition(":")[2])  # noqa: E731
+        start = lambda task: fork(order, task.partition(":")[2])  # noqa: E731
     else:
-        start = lambda task: spawn(path, task)  # noqa: E731
+        start = lambda task: spawn(order, task)  # noqa: E731
     waiting, running = list(tasks), dict[int, str]()
     while waiting or running:
         while waiting and len(running) < jobs:
@@ -103,17 +127,20 @@ def compile_all(path: str, jobs: int, tasks: Sequence[str]) -> int:
 
 def main() -> int:
     """Compile the units of the command line."""
-    path, jobs, *tasks = sys.argv[1:]
+    words = sys.argv[1:]
+    objects = Objects.from_text(words.pop(0).removeprefix(OBJECTS_OPTION)) if words[0].startswith("--") else None
+    path, jobs, *tasks = words
+    order = Order(path, objects)
     if jobs == "0":
         module, _, name = tasks[0].partition(":")
         importlib.import_module(module)
         try:
-            compile_one(path, name)
+            compile_one(order, name)
         except Exception as error:
             complain(error)
             return 1
         return 0
-    return compile_all(path, int(jobs), tasks)
+    return compile_all(order, int(jobs), tasks)
 
 
 if __name__ == "__main__":

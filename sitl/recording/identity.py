@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib.metadata
-import inspect
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -13,8 +12,8 @@ from typing import Any
 
 from .. import __version__
 from ..bridge.services.faults import FaultService
-from ..core.compile import record_class
-from ..core.fingerprint import laws_of
+from ..core import compile as compiler
+from ..core.fingerprint import reached
 from ..physics.engines import NATIVE
 from ..simulation import Simulation
 from ..vehicle.kind import Kind
@@ -44,22 +43,10 @@ def sources() -> dict[str, str]:
 
 
 @cache
-def _core(entry: Any, path: str) -> str:
-    """Digest of what other packages bring to the core: their laws, and with them the record as a whole.
-
-    Neither compilers nor processor nor the version of Python belong to it: they do not change a flight.
-    """
-    package = _ROOT.name + "."
-    foreign = [law for law in laws_of(entry) if not f"{law.__module__}.".startswith(package)]
-    texts = sorted(f"{law.__module__}.{law.__qualname__}\n{_source(law)}" for law in foreign)
-    return _digest([text.encode() for text in (record_class(path).layout(), *texts)])
-
-
-def _source(law: Any) -> str:
-    try:
-        return inspect.getsource(law)
-    except (OSError, TypeError):  # made by a program
-        return repr((law.__code__.co_names, law.__code__.co_varnames))
+def _compiled(entry: Any, path: str) -> str:
+    """Digest of the core's units, as they are written: neither compilers nor processor nor the version of Python belong
+    to it, since they do not change a flight."""
+    return _digest([compiler.unit_identity(unit, path).encode() for unit in reached(entry)])
 
 
 def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
@@ -67,7 +54,7 @@ def version(kind: Kind, physics: str = NATIVE) -> dict[str, Any]:
     found = {
         "gym-sitl": __version__,
         "sources": sources(),
-        "compiled core": _core(kind.advance, kind.record_path),
+        "compiled core": _compiled(kind.advance, kind.record_path),
     }
     if physics != NATIVE:
         try:

@@ -320,7 +320,7 @@ def test_cache_lists_all_that_a_run_compiles(
 ) -> None:
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
     assert main(["cache", "show"]) == 0
-    lines = capsys.readouterr().out.splitlines()[1:]
+    lines = capsys.readouterr().out.splitlines()[2:]
     assert all(line.startswith("  to build  ") for line in lines)
     units = [line.removeprefix("  to build  ") for line in lines]
     assert len(set(units)) == len(units)

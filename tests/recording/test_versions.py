@@ -9,34 +9,29 @@ from typing import Any
 import pytest
 
 from sitl.core import compile as compiler
-from sitl.core.fingerprint import laws_of
 from sitl.missions.cli.replay import verdict
 from sitl.recording import identity
 from sitl.vehicle.copter import COPTER
 from sitl.vehicle.rover import ROVER
 
 
-def law_of_mine(v: float) -> float:
-    return v
-
-
 @pytest.mark.parametrize("kind", [COPTER, ROVER], ids=lambda kind: kind.name)
 def test_processor_and_compilers_are_no_part_of_it(kind: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     before = identity.version(kind)
-    identity._core.cache_clear()
+    identity._compiled.cache_clear()
     monkeypatch.setattr(compiler, "toolchain", lambda: "another Python, Numba and processor")
     monkeypatch.setattr(compiler, "_fingerprints", {})
     assert identity.version(kind) == before
 
 
-def test_laws_of_other_packages_are_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_changed_laws_are_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     before = identity.version(COPTER)
-    laws = laws_of(COPTER.advance)
-    assert len(laws) > 500 and all(law.__module__.startswith("sitl.") for law in laws)
-    identity._core.cache_clear()
-    monkeypatch.setattr(identity, "laws_of", lambda entry: [*laws, law_of_mine])
+    identity._compiled.cache_clear()
+    was = compiler.unit_identity
+    changed = "autopilot.copter.control.update.update"
+    monkeypatch.setattr(compiler, "unit_identity", lambda u, path: was(u, path) + ("x" if u.name == changed else ""))
     after = identity.version(COPTER)
-    identity._core.cache_clear()
+    identity._compiled.cache_clear()
     assert identity.code_differences(before, after) == ["another compiled core (modes or parameters of other packages)"]
 
 
