@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from numbers import Real
 from typing import Any
 
+from .core.elementary import atan2, cos, sin
 from .core.vectors import Vec2, Vec3
 from .errors import OptionError, did_you_mean
 from .vehicle.kind import Kind
@@ -121,9 +121,9 @@ class Move:
         q = body.q
         heading = self.heading
         if heading is None:
-            heading = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+            heading = atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
         north, east, down = self.velocity
-        across = east * math.cos(heading) - north * math.sin(heading)
+        across = east * cos(heading) - north * sin(heading)
         if kind.flies or abs(across) > 1e-6 or down != 0.0:
             allowed = "its motors are off" if kind.flies else "it drives along its nose only"
             raise OptionError(f"velocity = {self.velocity!r}: vehicle {vehicle} is on the ground; {allowed}")

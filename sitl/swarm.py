@@ -23,6 +23,7 @@ from .bridge.services.parameters import ParameterService
 from .core import rng
 from .core.compile import Progress
 from .core.constants import TICK_US
+from .core.elementary import cos, hypot, sin
 from .core.record_reader import RecordReader, locate
 from .core.vectors import Vec3
 from .errors import OptionError
@@ -71,7 +72,7 @@ def grid(count: int, spacing: float, origin: Pose) -> list[Pose]:
     """
     x, y, z, yaw = origin
     columns = math.ceil(math.sqrt(count))
-    c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
+    c, s = cos(math.radians(yaw)), sin(math.radians(yaw))
     poses = []
     for k in range(count):
         back, right = spacing * (k // columns), spacing * (k % columns)
@@ -379,7 +380,7 @@ def _check_apart(scenarios: Sequence[Scenario]) -> None:
         reach = float(along.max()) + float(airframe.value("contact_radius"))
         north, east, _ = around.position
         for j, (other_north, other_east, other_reach) in enumerate(placed):
-            away = math.hypot(north - other_north, east - other_east)
+            away = hypot(north - other_north, east - other_east)
             if away < reach + other_reach:
                 raise OptionError(
                     f"start of vehicle {k} at x {around.start[0]:g}, y {around.start[1]:g} m: it is {away:.2f} m from "

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from sitl.core.sums import lengths
 from sitl.envs.mavlink.guard import Deed, Guard
 from sitl.envs.rewards import Floats
 from sitl.envs.targets.landing import Land
@@ -210,4 +211,4 @@ def _off(points: Floats, way: Floats) -> float:
     a, legs = way[:-1], np.diff(way, axis=0)
     along = ((points[:, None] - a) * legs).sum(2) / np.maximum((legs * legs).sum(1), 1e-12)
     nearest = a + np.clip(along, 0.0, 1.0)[..., None] * legs
-    return float(np.sqrt(((points[:, None] - nearest) ** 2).sum(2)).min(1).mean())
+    return float(lengths(points[:, None] - nearest).min(1).mean())

@@ -12,6 +12,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from sitl.core.elementary import atan2
 from sitl.errors import SitlError
 
 from . import algorithms, environments
@@ -45,7 +46,7 @@ class LapCounter:
 
     def take(self, x: float, y: float) -> None:
         """Add the next position of the path [m], less than half a turn from the last."""
-        angle = math.atan2(y - self._centre[1], x - self._centre[0])
+        angle = atan2(y - self._centre[1], x - self._centre[0])
         if self._angle is not None:
             self.turned += math.remainder(self._angle - angle, 2.0 * math.pi)
         self._angle = angle

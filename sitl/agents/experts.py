@@ -20,6 +20,8 @@ import numpy.typing as npt
 from sitl.client import Client
 from sitl.client.errors import ClientError
 from sitl.core import code_in_files
+from sitl.core.elementary import cos, sin
+from sitl.core.sums import products
 from sitl.envs.actions import POSITION, VELOCITY, Discrete
 from sitl.envs.navigate import Navigate
 from sitl.envs.robots.autopilot import AutopilotRobot
@@ -73,7 +75,7 @@ class _Autopilot(Expert):
         [m]. Of tasks that are judged by where the vehicle really is, this is beside the place."""
         x, y, z, yaw = self._robot.pose[0]
         forward, left, up = self._task.ways(1)[0, 0]
-        c, s = math.cos(yaw), math.sin(yaw)
+        c, s = cos(yaw), sin(yaw)
         return np.array([x + forward * c - left * s, y + forward * s + left * c, z + up])
 
 
@@ -105,10 +107,10 @@ class Guided(_Autopilot):
         if not gates:
             return place
         yaw = gates[int(self._task.at[0]) % len(gates)].yaw
-        through = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+        through = np.array([cos(yaw), sin(yaw), 0.0])
         way = place - self._robot.pose[0, :3]
-        before = float(way @ through)
-        beside = math.sqrt(max(float(way @ way) - before * before, 0.0))
+        before = float(products(way, through))
+        beside = math.sqrt(max(float(products(way, way)) - before * before, 0.0))
         return place + (BEHIND_M if beside < 0.3 * before else -BEHIND_M) * through
 
 
@@ -166,7 +168,7 @@ class Auto(_Autopilot):
         found = []
         for k, place in enumerate(places):
             yaw = gates[k % len(gates)].yaw
-            through = BEHIND_M * np.array([math.cos(yaw), math.sin(yaw), 0.0])
+            through = BEHIND_M * np.array([cos(yaw), sin(yaw), 0.0])
             found += [place - through, place + through]
         return found
 
@@ -177,7 +179,7 @@ class Auto(_Autopilot):
         self._k += 1
         velocity = flight[then, 4:8]
         x, y = velocity[:2] + GAIN * (at[:2] - here[:2])
-        c, s = math.cos(here[3]), math.sin(here[3])
+        c, s = cos(here[3]), sin(here[3])
         turn = velocity[3] + GAIN * math.remainder(at[3] - here[3], math.tau)
         up = velocity[2] + GAIN * (at[2] - here[2])
         return self._shown.action_for(np.array([x * c + y * s, y * c - x * s, up, turn]))

@@ -14,6 +14,9 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
+from sitl.core.elementary import atan2, cos, hypot, sin
+from sitl.core.sums import lengths, products, separation
 from sitl.envs.actions import VELOCITY, Discrete
 from sitl.envs.arena import REACH
 from sitl.envs.navigate import Navigate
@@ -112,27 +115,27 @@ class Pilot(Expert):
         if isinstance(task, MovingTask):
             velocity = TRACKING_GAIN * way + (ways[2] - ways[1]) / AHEAD_S
             if isinstance(task, Land):
-                is_over = math.hypot(way[0], way[1]) < 0.7 * task.pad
+                is_over = hypot(way[0], way[1]) < 0.7 * task.pad
                 velocity[2] = -SINK if is_over or -way[2] > LOW else 0.0
             return np.append(velocity, 0.0)
         fast = FAST
         if getattr(task, "gates", ()):
             way = self._turned(self._through() - self._here()[:3])
-        elif self._plans is not None and math.hypot(way[0], way[1]) > LOOK:
+        elif self._plans is not None and hypot(way[0], way[1]) > LOOK:
             here = self._here()
             there = here[:2] + self._unturned(way)[:2]
             way, fast = self._turned(np.append(self._ahead(here[:2], [there], LOOK) - here[:2], way[2])), AMONG
         velocity = GAIN * way
-        return np.append(velocity * min(1.0, fast / max(float(np.linalg.norm(velocity)), 1e-9)), 0.0)
+        return np.append(velocity * min(1.0, fast / max(float(lengths(velocity)), 1e-9)), 0.0)
 
     def _through(self) -> Floats:
         """A place behind the present gate, or before it as long as the vehicle is too far beside: x, y, z [m]."""
         here, k = self._here()[:3], int(self._task.at[0])
         yaw = self._task.gates[k % len(self._task.gates)].yaw
-        place, along = here + self._unturned(self._task.ways(1)[0, 0]), np.array([math.cos(yaw), math.sin(yaw), 0.0])
+        place, along = here + self._unturned(self._task.ways(1)[0, 0]), np.array([cos(yaw), sin(yaw), 0.0])
         way = place - here
-        before = float(way @ along)
-        beside = math.sqrt(max(float(way @ way) - before * before, 0.0))
+        before = float(products(way, along))
+        beside = math.sqrt(max(float(products(way, way)) - before * before, 0.0))
         out: Floats = place + (BEHIND if beside < 0.3 * before else -BEHIND) * along
         return out
 
@@ -144,17 +147,17 @@ class Pilot(Expert):
         there = here[:2] + self._unturned(way)[:2]
         ahead = self._ahead(here[:2], self._stations(there), LOOK_DRIVING)
         forward, left, _ = self._turned(np.append(ahead - here[:2], 0.0))
-        bearing, away, left_over = math.atan2(left, forward), math.hypot(forward, left), math.hypot(way[0], way[1])
+        bearing, away, left_over = atan2(left, forward), hypot(forward, left), hypot(way[0], way[1])
         speed = 1.2 if abs(bearing) < 0.6 else 0.8
         if isinstance(task, Park | Hold):
             if left_over < 0.5 * task.radius:
                 return np.zeros(4)
             speed = min(speed, 0.5 * left_over)
-        within = 2.0 * CIRCLE * abs(math.sin(bearing)) - away
+        within = 2.0 * CIRCLE * abs(sin(bearing)) - away
         self._backs = within > (-1.0 if self._backs else -0.2) and abs(bearing) > (0.3 if self._backs else 0.6)
         if self._backs:
             return np.array([-0.8, 0.0, 0.0, math.copysign(0.4, bearing)])
-        turn = 2.0 * speed * math.sin(bearing) / max(away, 0.5)
+        turn = 2.0 * speed * sin(bearing) / max(away, 0.5)
         if abs(bearing) > 0.5 * math.pi:
             turn = math.copysign(0.6, bearing)
         return np.array([speed, 0.0, 0.0, turn])
@@ -164,14 +167,14 @@ class Pilot(Expert):
         task, gates = self._task, getattr(self._task, "gates", ())
         if isinstance(task, Park):
             yaw = float(task.headings[0])
-            return [there - APPROACH * np.array([math.cos(yaw), math.sin(yaw)]), there]
+            return [there - APPROACH * np.array([cos(yaw), sin(yaw)]), there]
         if not gates:
             return [there]
         found = []
         for k in range(int(task.at[0]), min(int(task.at[0]) + 2, task.per_robot)):
             place = there if k == int(task.at[0]) else task.places[0, k, :2]
             yaw = gates[k % len(gates)].yaw
-            along = np.array([math.cos(yaw), math.sin(yaw)])
+            along = np.array([cos(yaw), sin(yaw)])
             found += [place - BEHIND * along, place + BEHIND * along]
         return found
 
@@ -188,7 +191,7 @@ class Pilot(Expert):
         k = int(self._task.at[0])
         self._since += 1
         if self._of == k and len(self._way):
-            away = np.sqrt(((self._way - here) ** 2).sum(axis=1))
+            away = lengths(self._way - here)
             self._at += int(away[self._at : self._at + 40].argmin())
             is_astray = away[self._at] > ASTRAY
             is_over = self._at >= len(self._way) - 2 and len(stations) > 1  # and the gate has not been passed
@@ -205,19 +208,19 @@ class Pilot(Expert):
     def _beyond(self, here: Floats, look: float) -> Floats:
         out: Floats = self._way[-1]
         for place in self._way[self._at :]:
-            if math.dist(place, here) >= look:
+            if separation(place.tolist(), here.tolist()) >= look:
                 return np.asarray(place)
         return out
 
     def _turned(self, way: Floats) -> Floats:
         """x, y, z of the world as forward, left, up."""
         yaw = float(self._here()[3])
-        c, s = math.cos(yaw), math.sin(yaw)
+        c, s = cos(yaw), sin(yaw)
         return np.array([way[0] * c + way[1] * s, way[1] * c - way[0] * s, way[2]])
 
     def _unturned(self, way: Floats) -> Floats:
         yaw = float(self._here()[3])
-        c, s = math.cos(yaw), math.sin(yaw)
+        c, s = cos(yaw), sin(yaw)
         return np.array([way[0] * c - way[1] * s, way[0] * s + way[1] * c, way[2]])
 
     # ------------------------------------------------------------------ without places
@@ -229,7 +232,7 @@ class Pilot(Expert):
         half = max(ROOMY * robot.crash_range, 1.2 * robot.volume.radius) + 0.1
         tried = np.linspace(-1.6, 1.6, 33)
         turned = angles - tried[:, None]
-        forward, aside = scan * np.cos(turned), np.abs(scan * np.sin(turned))
+        forward, aside = scan * arrays.cos(turned), np.abs(scan * arrays.sin(turned))
         room = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
         side = [scan[(way * angles > CONE) & (way * angles < SIDE)].min(initial=SIGHT) for way in (1.0, -1.0)]
         centred = (min(side[0], 2.0 * half) - min(side[1], 2.0 * half)) * tried

@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from sitl.core.algebra import ZERO2
 from sitl.core.array_kernels import Kernel, Table
+from sitl.core.elementary import hypot
 from sitl.core.kernels import law
+from sitl.core.sums import separation
 from sitl.core.vectors import Vec2
 from sitl.envs.robots.robot import Robot
 from sitl.worlds.contact import Volume, nearest_of
@@ -24,7 +26,7 @@ LEAST = 0.05
 """Room that a way leaves at least [m]."""
 CROWDED = 4.0
 """A metre close to solids counts as so many more, one with enough room as one."""
-_NEAR = [(i, j, math.hypot(i, j)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+_NEAR = [(i, j, hypot(i, j)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
 @law
@@ -78,7 +80,7 @@ class Ways:
         at = np.clip(((place - self._low) / self._cell).astype(int), 0, np.array(self._free.shape) - 1)
         if not self._free[tuple(at)]:
             cells = np.argwhere(self._free)
-            at = cells[((cells - at) ** 2).sum(axis=1).argmin()]
+            at = cells[np.square(cells - at).sum(axis=1).argmin()]
         return int(at[0]), int(at[1])
 
     def way(self, here: Floats, there: Floats) -> Floats:
@@ -86,7 +88,7 @@ class Ways:
         start, goal = self._cell_of(here), self._cell_of(there)
         free, costs, rows, columns = self._free, self._costs, *self._free.shape
         best, before = {start: 0.0}, {start: start}
-        todo = [(math.dist(start, goal), start)]
+        todo = [(separation(start, goal), start)]
         while todo:
             _, cell = heapq.heappop(todo)
             if cell == goal:
@@ -99,7 +101,7 @@ class Ways:
                 cost = so_far + length * float(costs[near])
                 if cost < best.get(near, math.inf):
                     best[near], before[near] = cost, cell
-                    heapq.heappush(todo, (cost + math.dist(near, goal), near))
+                    heapq.heappush(todo, (cost + separation(near, goal), near))
         if goal not in before:
             return np.array([here, there])
         cells = [goal]

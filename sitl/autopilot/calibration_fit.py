@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.constants import GRAVITY
+from ..core.sums import least_squares, lengths, matrix_product, products
 
 Samples = np.ndarray[Any, Any]
 """One sample a row."""
@@ -42,9 +43,9 @@ class AccelerometerFit(NamedTuple):
 def sphere(samples: Samples) -> tuple[Samples, float]:
     """Centre and radius of the sphere nearest to samples (algebraic least squares)."""
     rows = np.column_stack((2.0 * samples, np.ones(len(samples))))
-    found = np.linalg.lstsq(rows, (samples * samples).sum(axis=1), rcond=None)[0]
+    found = least_squares(rows, (samples * samples).sum(axis=1))
     centre = found[:3]
-    return centre, float(np.sqrt(max(found[3] + centre @ centre, 0.0)))
+    return centre, float(np.sqrt(max(found[3] + products(centre, centre), 0.0)))
 
 
 def fit_compass(samples: Samples, strength: float | None) -> CompassFit:
@@ -77,12 +78,12 @@ def _gauss_newton(samples: Samples, start: Samples, length: float) -> tuple[Samp
     """Offset, diagonal and (where ``start`` has them) other elements that make samples ``length`` long; the error."""
     p = start
     for _ in range(_ROUNDS):
-        moved, bent, lengths = _bent(samples, p)
-        along = bent / lengths[:, None]
-        columns = [along @ _matrix(p), along * moved]
+        moved, bent, reached = _bent(samples, p)
+        along = bent / reached[:, None]
+        columns = [matrix_product(along, _matrix(p)), along * moved]
         if len(p) > 6:
             columns.append(np.column_stack([along[:, i] * moved[:, j] + along[:, j] * moved[:, i] for i, j in _PAIRS]))
-        step = np.linalg.lstsq(np.hstack(columns), length - lengths, rcond=None)[0]
+        step = least_squares(np.hstack(columns), length - reached)
         p = p + step
         if np.abs(step).max() < 1e-9 * length:
             break
@@ -99,5 +100,5 @@ def _matrix(p: Samples) -> Samples:
 
 def _bent(samples: Samples, p: Samples) -> tuple[Samples, Samples, Samples]:
     moved = samples + p[:3]
-    bent = moved @ _matrix(p)
-    return moved, bent, np.maximum(np.linalg.norm(bent, axis=1), 1e-6)
+    bent = matrix_product(moved, _matrix(p))
+    return moved, bent, np.maximum(lengths(bent), 1e-6)

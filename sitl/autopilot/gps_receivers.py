@@ -6,10 +6,10 @@ What a user sees of it is told in https://ardupilot.org/copter/docs/common-gps-b
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from ..core.border import GpsReading, Sensors
+from ..core.elementary import hypot
 from ..core.geodesy import offset_ne
 from ..core.kernels import law
 from ..core.records import Record
@@ -113,7 +113,7 @@ def distance(sensors: Sensors) -> float:
     """Between the last fixes of both [m]."""
     one, other = fix_of(0, sensors), fix_of(1, sensors)
     ne = offset_ne(one.gps_lat, one.gps_lon, other.gps_lat, other.gps_lon)
-    return math.hypot(math.hypot(ne.x, ne.y), 0.001 * (other.gps_alt - one.gps_alt))
+    return hypot(hypot(ne.x, ne.y), 0.001 * (other.gps_alt - one.gps_alt))
 
 
 @law

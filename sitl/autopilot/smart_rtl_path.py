@@ -9,10 +9,10 @@ metres from the EKF origin; a rover's are all at 0 down.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from ..core.algebra import dot, finite_vector
+from ..core.elementary import hypot
 from ..core.kernels import law
 from ..core.scalars import constrain
 from ..core.vectors import Vec3
@@ -65,7 +65,7 @@ def capacity(params: SmartRtl) -> int:
 @law
 def length(v: Vec3) -> float:
     """Of a vector [m]."""
-    return math.hypot(math.hypot(v.x, v.y), v.z)
+    return hypot(hypot(v.x, v.y), v.z)
 
 
 @law

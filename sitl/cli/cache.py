@@ -20,10 +20,13 @@ if TYPE_CHECKING:
     from ..vehicle.kind import Kind
 
 KERNEL_MODULES = (
+    "sitl.agents.deep.layers",
+    "sitl.agents.deep.narrow",
     "sitl.agents.tabular.compiled_loop",
     "sitl.agents.tabular.exploration",
     "sitl.agents.tabular.learn",
     "sitl.agents.ways",
+    "sitl.core.elementary_kernels",
     "sitl.envs.free_ways",
     "sitl.envs.mavlink.compiled",
     "sitl.envs.observations",

@@ -105,7 +105,7 @@ def system() -> Iterator[Finding]:
     good = sys.version_info >= OLDEST
     wanted = "" if good else f"; {'.'.join(map(str, OLDEST))} or newer is needed"
     yield Finding("python", OK if good else BROKEN, f"{platform.python_version()} on {platform.platform()}{wanted}")
-    for name in ("gym-sitl", "numpy", "numba", "gymnasium", "pymavlink", "ruckig"):
+    for name in ("gym-sitl", "numpy", "numba", "gymnasium", "pymavlink"):
         try:
             yield Finding(name, OK, metadata.version(name))
         except metadata.PackageNotFoundError:

@@ -142,7 +142,7 @@ class Telemetry:
     def groundspeed(self) -> float:
         """[m/s]"""
         north, east, _ = self.velocity
-        return float((north * north + east * east) ** 0.5)
+        return math.sqrt(north * north + east * east)
 
     @property
     def climb_rate(self) -> float:

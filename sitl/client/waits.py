@@ -7,6 +7,8 @@ import math
 import re
 from collections.abc import Callable
 
+from sitl.core.sums import separation
+
 from ..bridge.dialect import message
 from ..errors import OptionError
 from .session import Session
@@ -153,10 +155,10 @@ class Waits(Session):
         """Until it is as far [m], along the ground, from where it is now, at most ``timeout`` [simulated s]."""
         start = self.position
         self.wait(
-            lambda t: math.dist(t.position[:2], start[:2]) >= metres,
+            lambda t: separation(t.position[:2], start[:2]) >= metres,
             timeout,
             f"a distance of {metres:g} m from {start.north:.1f} m north, {start.east:.1f} m east",
-            lambda: f"{math.dist(self.position[:2], start[:2]):.2f} m",
+            lambda: f"{separation(self.position[:2], start[:2]):.2f} m",
         )
 
     def wait_location(
@@ -179,7 +181,7 @@ class Waits(Session):
             raise OptionError(f"accuracy = {accuracy:g} m; it must be 0 or more")
 
         def away() -> float:
-            return math.dist(self.position[:2], (north, east))
+            return separation(self.position[:2], (north, east))
 
         def off() -> float:
             return abs(self.telemetry.altitude - altitude) if altitude is not None else 0.0

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from .elementary import asin, atan2, sincos
 from .kernels import inlined, law
 from .records import Floats
 from .scalars import constrain
@@ -110,10 +111,17 @@ def norm2(v: Vec2) -> float:
     return math.sqrt(v.x * v.x + v.y * v.y)
 
 
+@law
+def direction(angle: float) -> Vec2:
+    """Unit vector ``angle`` [rad] from north towards east."""
+    sine, cosine = sincos(angle)
+    return Vec2(cosine, sine)
+
+
 @inlined
 def turned(v: Vec2, angle: float) -> Vec2:
     """``v`` turned by ``angle`` [rad] from north towards east."""
-    c, s = math.cos(angle), math.sin(angle)
+    s, c = sincos(angle)
     return Vec2(v.x * c - v.y * s, v.x * s + v.y * c)
 
 
@@ -183,16 +191,24 @@ def quat_from_rotation_vector(r: Vec3) -> Quat:
     angle = norm(r)
     if angle < 1e-9:
         return normalise(Quat(1.0, 0.5 * r.x, 0.5 * r.y, 0.5 * r.z))
-    s = math.sin(0.5 * angle) / angle
-    return Quat(math.cos(0.5 * angle), s * r.x, s * r.y, s * r.z)
+    sine, cosine = sincos(0.5 * angle)
+    s = sine / angle
+    return Quat(cosine, s * r.x, s * r.y, s * r.z)
+
+
+@law
+def quat_about_down(angle: float) -> Quat:
+    """Rotation by ``angle`` [rad] about down, from north towards east."""
+    sine, cosine = sincos(0.5 * angle)
+    return Quat(cosine, 0.0, 0.0, sine)
 
 
 @law
 def quat_from_euler(e: Euler) -> Quat:
     """Rotation of Euler angles [rad]."""
-    cr, sr = math.cos(0.5 * e.roll), math.sin(0.5 * e.roll)
-    cp, sp = math.cos(0.5 * e.pitch), math.sin(0.5 * e.pitch)
-    cy, sy = math.cos(0.5 * e.yaw), math.sin(0.5 * e.yaw)
+    sr, cr = sincos(0.5 * e.roll)
+    sp, cp = sincos(0.5 * e.pitch)
+    sy, cy = sincos(0.5 * e.yaw)
     return Quat(
         cr * cp * cy + sr * sp * sy,
         sr * cp * cy - cr * sp * sy,
@@ -216,14 +232,14 @@ def tilt_of(q: Quat) -> Euler:
         s = 1.0
     elif s < -1.0:
         s = -1.0
-    roll = math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
-    return Euler(roll, math.asin(s), 0.0)
+    roll = atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
+    return Euler(roll, asin(s), 0.0)
 
 
 @law
 def yaw_of(q: Quat) -> float:
     """Yaw [rad] of a rotation, the third of its Euler angles."""
-    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+    return atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
 
 
 class Matrix3(NamedTuple):

@@ -104,6 +104,11 @@ class Kernel(Generic[P, R]):
         assert self._entry is not None
         return self._entry
 
+    @property
+    def is_loaded(self) -> bool:
+        """Whether a call runs at once: nothing is compiled or loaded first."""
+        return self._entry is not None
+
     def bind(self, *arguments: Any) -> Callable[..., R]:
         """The compiled function with its first arguments, which stay in place: their types are looked at once, so that
         a call is quick. The types of arguments that a call adds are not looked at.

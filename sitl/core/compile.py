@@ -57,6 +57,8 @@ _records: dict[Any, str] = {}
 """Numba's record type -> its path."""
 _loaded: dict[tuple[str, str], Any] = {}
 """(Unit name, path of the record type) -> the C function."""
+_compiled: dict[tuple[str, str], Any] = {}
+"""The same -> Numba's function, of those that were not shipped: it holds the machine code."""
 _addresses: dict[str, int] = {}
 """Symbol -> address of shipped code that Numba's linker does not know yet."""
 
@@ -127,6 +129,10 @@ def make_jitable(inline: bool = False) -> None:
             its own.
     """
     from numba.extending import register_jitable
+
+    from . import numba_constant_tables, numba_float_bits  # noqa: F401  the latter is known when it is imported
+
+    numba_constant_tables.make_known()
 
     for function in LAWS:
         if id(function) not in _jitable:
@@ -226,6 +232,7 @@ def _load_compiled(unit: Unit, path: str) -> Any:
         function = load_entry(folder, name, source, names, compile_entry)
     llvmlite.binding.add_symbol(name, function.address)
     shipped.redirect(shipped.unit_key(unit.name, path), name, function.address)
+    _compiled[unit.name, path] = function
     return function.ctypes
 
 

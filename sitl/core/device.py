@@ -3,7 +3,7 @@
 
 No GPU is needed to compile: Numba translates laws to NVVM's language, NVVM makes PTX of it, and ``ptxas`` machine code.
 All of them come with the extra ``cuda``. Products and sums are not fused to one rounding, so that arithmetic and square
-roots have the bits of the CPU; functions as the sine are NVIDIA's own and may differ in the last bits.
+roots have the bits of the CPU, and so have the sine and its like, which are made of these (``elementary``).
 """
 
 from __future__ import annotations

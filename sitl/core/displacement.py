@@ -7,10 +7,10 @@ vehicle would have been had it moved so all the time.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
-from .algebra import horizontal, multiply, norm2, row_vector, set_row_vector
+from .algebra import direction, dot2, horizontal, multiply, norm2, quat_about_down, row_vector, set_row_vector
+from .elementary import sincos
 from .kernels import law
 from .records import Floats
 from .scalars import wrap_pi
@@ -36,9 +36,8 @@ class Displacement(NamedTuple):
 @law
 def displacement(angle: float, shift: Vec3, velocity: Vec3) -> Displacement:
     """Of an angle [rad], a shift [m] and a velocity [m/s]."""
-    half = 0.5 * angle
-    turn = Quat(math.cos(half), 0.0, 0.0, math.sin(half))
-    return Displacement(angle, math.cos(angle), math.sin(angle), turn, shift, velocity)
+    sine, cosine = sincos(angle)
+    return Displacement(angle, cosine, sine, quat_about_down(angle), shift, velocity)
 
 
 @law
@@ -110,7 +109,7 @@ def move_past(d: Displacement, places: Floats, k: int, age: float) -> None:
 @law
 def speed_along(d: Displacement, heading: float) -> float:
     """What the added velocity is along a nose of this heading [rad] after the turn [m/s]."""
-    return d.velocity.x * math.cos(heading) + d.velocity.y * math.sin(heading)
+    return dot2(horizontal(d.velocity), direction(heading))
 
 
 @law

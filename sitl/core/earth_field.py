@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from .elementary import atan2, exp, log, sincos
 from .kernels import law
 from .vectors import Vec3
 
@@ -54,10 +55,11 @@ def field_ned(lat_deg: float, lon_deg: float) -> Vec3:
     lat = math.radians(min(max(lat_deg, -89.999), 89.999))
     lon = math.radians(lon_deg)
     # geodetic to geocentric: colatitude theta, radius r, and the tilt psi between the two verticals
-    normal = _WGS84_A / math.sqrt(1.0 - _WGS84_E2 * math.sin(lat) * math.sin(lat))
-    across, along = normal * math.cos(lat), normal * (1.0 - _WGS84_E2) * math.sin(lat)
+    sin_lat, cos_lat = sincos(lat)
+    normal = _WGS84_A / math.sqrt(1.0 - _WGS84_E2 * sin_lat * sin_lat)
+    across, along = normal * cos_lat, normal * (1.0 - _WGS84_E2) * sin_lat
     r = math.sqrt(across * across + along * along)
-    psi = lat - math.atan2(along, across)
+    psi = lat - atan2(along, across)
     c, s = along / r, across / r  # cosine and sine of theta
     radial, south, east = 0.0, 0.0, 0.0
     pmm, dmm = 1.0, 0.0  # P(m, m) and its derivative by theta
@@ -65,7 +67,7 @@ def field_ned(lat_deg: float, lon_deg: float) -> Vec3:
         if m > 0:
             k = 1.0 if m == 1 else math.sqrt((2.0 * m - 1.0) / (2.0 * m))
             pmm, dmm = k * s * pmm, k * (c * pmm + s * dmm)
-        cos_m, sin_m = math.cos(m * lon), math.sin(m * lon)
+        sin_m, cos_m = sincos(m * lon)
         p1, d1 = pmm, dmm
         p2, d2 = 0.0, 0.0
         for n in range(m, DEGREE + 1):
@@ -76,13 +78,14 @@ def field_ned(lat_deg: float, lon_deg: float) -> Vec3:
                 p2, d2, p1, d1 = p1, d1, p0, d0
             if n > 0:
                 g, h = float(_G[n - 1, m]), float(_H[n - 1, m])
-                scale = _GAUSS_PER_NT * math.exp((n + 2.0) * math.log(_RADIUS / r))
+                scale = _GAUSS_PER_NT * exp((n + 2.0) * log(_RADIUS / r))
                 radial += scale * (n + 1.0) * (g * cos_m + h * sin_m) * p1
                 south -= scale * (g * cos_m + h * sin_m) * d1
                 east += scale * m * (g * sin_m - h * cos_m) * p1 / s
     north_c, down_c = -south, -radial  # geocentric
+    sin_psi, cos_psi = sincos(psi)
     return Vec3(
-        north_c * math.cos(psi) + down_c * math.sin(psi),
+        north_c * cos_psi + down_c * sin_psi,
         east,
-        down_c * math.cos(psi) - north_c * math.sin(psi),
+        down_c * cos_psi - north_c * sin_psi,
     )

@@ -69,6 +69,9 @@ def items(
     """
     inlined = " inlined" if function in INLINED else ""
     yield f"def {function.__module__}.{function.__qualname__}{inlined} {code(function)}"
+    for cell in function.__closure__ or ():  # a table that the function looks up
+        if isinstance(cell.cell_contents, (bool, int, float, str, tuple)):
+            yield f"closes over {constant(cell.cell_contents)}"
     for name in function.__code__.co_names:
         for law in PROPERTIES.get(name, ()):
             yield "", law

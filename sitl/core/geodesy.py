@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from .elementary import cos
 from .kernels import law
 from .scalars import sign
 from .vectors import Vec2
@@ -29,7 +30,7 @@ class Place(NamedTuple):
 @law
 def longitude_scale(lat_e7: float) -> float:
     """Cosine of a latitude [degE7], at least 0.01."""
-    return max(math.cos(lat_e7 * _RAD_PER_DEGE7), 0.01)
+    return max(cos(lat_e7 * _RAD_PER_DEGE7), 0.01)
 
 
 @law

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from .elementary import log
 from .kernels import law
 from .records import Ints, Record, array
 from .vectors import Vec3
@@ -63,7 +64,7 @@ def normal(rng: Rng) -> float:
         r2 = u * u + w * w
         if 0.0 < r2 < 1.0:
             break
-    scale = math.sqrt(-2.0 * math.log(r2) / r2)
+    scale = math.sqrt(-2.0 * log(r2) / r2)
     rng.spare = w * scale
     rng.has_spare = True
     return u * scale

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from .kernels import inlined, law
+from .kernels import inlined
 
 PI = math.pi
 TWO_PI = 2.0 * math.pi
@@ -33,39 +33,6 @@ def finite(value: float) -> bool:
 def is_same(a: float, b: float) -> bool:
     """Whether two floats are equal in sign, too: 0.0 and -0.0 are not; NaN equals nothing."""
     return a == b and (a != 0.0 or math.copysign(1.0, a) == math.copysign(1.0, b))
-
-
-@inlined
-def high_half(value: float) -> float:
-    """The upper 26 bits of a number's 53 (Veltkamp): products of halves are exact."""
-    scaled = 134217729.0 * value  # 2^27 + 1
-    return scaled - (scaled - value)
-
-
-@inlined
-def square_error(value: float, square: float) -> float:
-    """What rounding took from ``square`` = value * value (Dekker)."""
-    high = high_half(value)
-    low = value - high
-    return ((high * high - square) + 2.0 * high * low) + low * low
-
-
-@law
-def hypotenuse(x: float, y: float) -> float:
-    """Length of (x, y), rounded once.
-
-    ``math.hypot`` is the C library's in the core and Python's own elsewhere, which differ in the last bit of some
-    results. Nothing is scaled: the squares must not overflow.
-    """
-    xx, yy = x * x, y * y
-    length = math.sqrt(xx + yy)
-    if not 0.0 < length < math.inf:
-        return length
-    square = length * length
-    rest = ((xx - square) + yy if xx > yy else (yy - square) + xx) + (
-        square_error(x, xx) + square_error(y, yy) - square_error(length, square)
-    )
-    return length + rest / (2.0 * length)
 
 
 @inlined

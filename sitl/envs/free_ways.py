@@ -8,6 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import IntLine, IntTable, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
 
@@ -182,7 +183,7 @@ def _nearest(free: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], Floats
             there = slice(max(-down, 0), rows + min(-down, 0)), slice(max(-right, 0), columns + min(-right, 0))
             offered = nearest[there]
             a, b = np.divmod(offered, columns)
-            far = np.where(offered < 0, np.inf, np.hypot(i[here] - a, j[here] - b))
+            far = np.where(offered < 0, np.inf, arrays.hypot(i[here] - a, j[here] - b))
             better = far < distance[here]
             if better.any():
                 nearest[here][better], distance[here][better] = offered[better], far[better]

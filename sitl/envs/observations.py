@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import gymnasium as gym
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import IntTable, Kernel, NarrowTable
 from sitl.core.kernels import law
 
@@ -162,9 +163,9 @@ class WithGoal:
         """See ``Observation``."""
         pose, other = robot.pose, self.other.observe(robot)
         way = self._task.goals - pose[:, :2]
-        bearing = np.arctan2(way[:, 1], way[:, 0]) - pose[:, 3]
-        bearing = np.arctan2(np.sin(bearing), np.cos(bearing))
-        goal = np.stack([np.hypot(way[:, 0], way[:, 1]), bearing], axis=1).astype(np.float32)
+        bearing = arrays.atan2(way[:, 1], way[:, 0]) - pose[:, 3]
+        bearing = arrays.atan2(arrays.sin(bearing), arrays.cos(bearing))
+        goal = np.stack([arrays.hypot(way[:, 0], way[:, 1]), bearing], axis=1).astype(np.float32)
         return {**(other if isinstance(other, dict) else {"scan": other}), "goal": goal}
 
 

@@ -10,6 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
+
 from .actions import Discrete, Normalised
 from .observations import Digits
 from .options import EnvOptionError, unknown
@@ -96,7 +98,7 @@ class Heading:
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
         yaw = self._robot.pose[:, 3]
-        out[:, 0], out[:, 1] = np.cos(yaw), np.sin(yaw)
+        out[:, 0], out[:, 1] = arrays.cos(yaw), arrays.sin(yaw)
 
 
 class Told:
@@ -271,7 +273,7 @@ class GoalHeading:
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
         turns = self._task.turns()
-        out[:, 0], out[:, 1] = np.cos(turns), np.sin(turns)
+        out[:, 0], out[:, 1] = arrays.cos(turns), arrays.sin(turns)
 
 
 PARTS: dict[str, Callable[[], Part]] = {

@@ -17,11 +17,14 @@ import numpy.typing as npt
 from sitl.core.algebra import multiply, quat_from_euler, rotate
 from sitl.core.array_kernels import Kernel, Line, Table
 from sitl.core.kernels import law
+from sitl.core.sums import products
 from sitl.core.vectors import Euler, Vec3
 from sitl.worlds.camera import DISC, Photographer
 from sitl.worlds.camera import Camera as Optics
 from sitl.worlds.shapes import to_heading, to_ned
 
+from ..core.elementary import sincos, tan
+from .noise import standard_normal
 from .options import EnvOptionError
 from .past import Film, Past, Remembering
 from .robots.robot import Floats, Robot
@@ -47,8 +50,9 @@ def write_places(states: Table, ahead: float, mount: Line, out: Table) -> None:
         north, east, down = to_ned(states[i, 0], states[i, 1], states[i, 2])
         q = quat_from_euler(Euler(states[i, 8], states[i, 9], heading))
         at = rotate(q, Vec3(mount[0], mount[1], mount[2]))
-        out[i, 0] = north - ahead * math.cos(heading) + at.x
-        out[i, 1] = east - ahead * math.sin(heading) + at.y
+        sine, cosine = sincos(heading)
+        out[i, 0] = north - ahead * cosine + at.x
+        out[i, 1] = east - ahead * sine + at.y
         out[i, 2] = down + at.z
         turned = multiply(q, tilt)
         out[i, 3], out[i, 4], out[i, 5], out[i, 6] = turned.w, turned.x, turned.y, turned.z
@@ -95,7 +99,7 @@ class Picture:
                 raise self._refused(f"{what} = {value!r}; it must be {low:g} .. {high:g} {unit}")
         if at is not None and (len(at) != 3 or not np.all(np.isfinite(at))):
             raise self._refused(f"at = {at!r}; it must be forward, left, up: three finite numbers [m]")
-        self._optics = Optics(width, height, math.tan(0.5 * math.radians(field_of_view)), float(reach))
+        self._optics = Optics(width, height, tan(0.5 * math.radians(field_of_view)), float(reach))
         self._at, self._pitch, self._rate, self._latency, self._noise = at, math.radians(pitch), rate, latency, noise
         self.remembers: tuple[Remembering, ...] = (self,)
 
@@ -166,7 +170,7 @@ class Picture:
         out = self._take(np.ascontiguousarray(seen[:, :PLACE]), seen[:, PLACE:].reshape(len(seen), -1, DISC))
         if self._noise > 0.0:
             for i, rng in enumerate(self._past.generators()):
-                out[i] = self._spoilt(out[i] + self._noise * rng.standard_normal(out[i].shape, np.float32))
+                out[i] = self._spoilt(out[i] + self._noise * standard_normal(rng, out[i].shape, np.float32))
         return out
 
     def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
@@ -213,7 +217,7 @@ class Camera(Picture):
         if not self._grey:
             return colours
         shares = np.array([77, 150, 29], np.uint32)  # of 256: luma of ITU-R BT.601
-        luma: npt.NDArray[Any] = ((colours @ shares) >> 8).astype(np.uint8)[..., None]
+        luma: npt.NDArray[Any] = (products(colours, shares) >> 8).astype(np.uint8)[..., None]
         return luma
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:

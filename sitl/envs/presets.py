@@ -7,6 +7,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from sitl.core.elementary import cos, sin
+
 from . import paper
 from .actions import VELOCITY, Continuous, Normalised
 from .boxes import GoalConditioned
@@ -66,7 +68,7 @@ ROVER_MOVES = {
 }
 """Velocities: forward, left, up [m/s], turn [rad/s]."""
 TRACK = [
-    Gate(10.0 + 8.0 * math.cos(angle), 12.0 * math.sin(angle), 2.5 + math.sin(2.0 * angle), angle + math.pi / 2)
+    Gate(10.0 + 8.0 * cos(angle), 12.0 * sin(angle), 2.5 + sin(2.0 * angle), angle + math.pi / 2)
     for angle in (math.radians(-120.0 + 60.0 * k) for k in range(6))
 ]
 """An oval of six gates, counter-clockwise."""

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from .noise import standard_normal
 from .options import EnvOptionError
 from .parts import Narrow, Part, Surroundings, part_of
 from .past import Film, Past
@@ -82,7 +83,9 @@ class Sensed:
         self._draw(index, seed)
 
     def _draw(self, index: int, seed: int) -> None:
-        self._biases[index] = self._bias * np.random.default_rng((seed, 1 << 40)).standard_normal(self._biases.shape[1])
+        self._biases[index] = self._bias * standard_normal(
+            np.random.default_rng((seed, 1 << 40)), self._biases.shape[1]
+        )
 
     def begin(self, which: npt.NDArray[np.bool_] | None) -> None:
         """See ``past.Remembering``."""
@@ -108,7 +111,7 @@ class Sensed:
         seen = self._past.seen() + self._biases
         if self._noise.any():
             for i, rng in enumerate(self._past.generators()):
-                seen[i] += self._noise * rng.standard_normal(seen.shape[1])
+                seen[i] += self._noise * standard_normal(rng, seen.shape[1])
         for column in self._wraps.tolist():
             seen[:, column] = np.remainder(seen[:, column] + math.pi, math.tau) - math.pi
         out[:] = seen

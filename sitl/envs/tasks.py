@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import Flags, IntColumn, Kernel, NarrowTable
 from sitl.core.kernels import law
 
@@ -165,14 +166,14 @@ class ReachGoal(Task):
         place = robot.pose[index, :2]
         for _ in range(_DRAWS if self._cells else 1):
             self.goals[index] = self._cells.draw(rng) if self._cells else self.goal
-            self._distance[index] = np.hypot(*(place - self.goals[index]))  # as in ``judge``, to the last bit
+            self._distance[index] = arrays.hypot(*(place - self.goals[index]))  # as in ``judge``, to the last bit
             if self._distance[index] > self.radius:
                 break
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """See ``Task``."""
         super().judge(step, rewards, terminated)
-        distance = np.hypot(*(step.pose[:, :2] - self.goals).T)
+        distance = arrays.hypot(*(step.pose[:, :2] - self.goals).T)
         alive = ~terminated
         gain = self.progress * (self._distance - distance)
         rewards[alive] += gain[alive]

@@ -10,6 +10,7 @@ from typing import Any
 from ..bridge.ardupilot_json import motion
 from ..core.algebra import euler_of
 from ..core.constants import TICK_US
+from ..core.elementary import atan2, hypot
 from ..plants.plant import SimulatedVehicle
 
 CLOCK_LEAD = 1e-9
@@ -87,4 +88,4 @@ class BodyLines:
         """Apparent wind: direction that it comes from, clockwise from the nose [rad], and speed [m/s]."""
         body = self._v.physics.body
         north, east = body.vel.x - wind[0], body.vel.y - wind[1]
-        return math.remainder(math.atan2(east, north) - euler_of(body.q).yaw, 2.0 * math.pi), math.hypot(north, east)
+        return math.remainder(atan2(east, north) - euler_of(body.q).yaw, 2.0 * math.pi), hypot(north, east)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
+
 from .recording import COLUMNS
 
 X, Y, Z, VX, VY = (COLUMNS.index(c) for c in ("x", "y", "z", "vx", "vy"))
@@ -54,12 +56,12 @@ def path_rms(ours: np.ndarray, theirs: np.ndarray, from_start: bool = False) -> 
 
 def with_distance(rows: np.ndarray, x: float, y: float) -> np.ndarray:
     """(time [s], horizontal distance to a point [m]) of rows."""
-    return np.column_stack((rows[:, 0], np.hypot(rows[:, X] - x, rows[:, Y] - y)))
+    return np.column_stack((rows[:, 0], arrays.hypot(rows[:, X] - x, rows[:, Y] - y)))
 
 
 def speeds(rows: np.ndarray) -> np.ndarray:
     """Horizontal speeds [m/s] of rows."""
-    return np.asarray(np.hypot(rows[:, VX], rows[:, VY]))
+    return np.asarray(arrays.hypot(rows[:, VX], rows[:, VY]))
 
 
 def stopped(rows: np.ndarray, level: float = 0.1) -> float:

@@ -12,6 +12,7 @@ from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.navigation.state import COMPLETE
 from sitl.client import Text
 from sitl.client.session import STEP_US
+from sitl.core.elementary import hypot
 from sitl.core.geodesy import offset_ne
 from sitl.errors import OptionError
 from sitl.simulation import Simulation
@@ -96,7 +97,7 @@ def checked(mission: Mission, simulation: Simulation) -> Mission:
     lat, lon, _, _ = simulation.home
     for seq, item in enumerate(mission.items):
         if seq and COMMANDS[item.command].has_place and not item.no_place and ":" not in simulation.physics:
-            away = math.hypot(*offset_ne(lat * 1e7, lon * 1e7, item.x, item.y))
+            away = hypot(*offset_ne(lat * 1e7, lon * 1e7, item.x, item.y))
             if away > FARTHEST:
                 raise MissionRefused(
                     f"mission item {seq}: {away / 1000:.0f} km from home ({lat}, {lon}); it is within "
@@ -203,7 +204,7 @@ class _Flight:
 
         def stands() -> bool:
             vel = self.simulation.v.autopilot.estimate.vel
-            stood[0] = stood[0] + 1 if math.hypot(float(vel[0]), float(vel[1])) < STANDS else 0
+            stood[0] = stood[0] + 1 if hypot(float(vel[0]), float(vel[1])) < STANDS else 0
             return stood[0] * STEP_US >= STANDING_S * 1e6
 
         self.station.passes(stands, STOPPING_S)

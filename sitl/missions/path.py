@@ -13,6 +13,8 @@ from sitl.autopilot.copter.navigation.state import CopterNav
 from sitl.autopilot.mission import item as commands
 from sitl.autopilot.mission.place import down, point
 from sitl.core.algebra import dot
+from sitl.core.elementary import hypot
+from sitl.core.sums import separation
 from sitl.core.vectors import Vec3
 from sitl.simulation import Simulation
 
@@ -59,9 +61,9 @@ class PathWatch:
         ap = self._simulation.v.autopilot
         here = self._in_plane(ap.estimate.pos)
         if self._last is not None:
-            self.distance += math.dist(self._last, here)
+            self.distance += separation(self._last, here)
         self._last = here
-        self.top_speed = max(self.top_speed, math.hypot(ap.estimate.vel.x, ap.estimate.vel.y))
+        self.top_speed = max(self.top_speed, hypot(ap.estimate.vel.x, ap.estimate.vel.y))
         self.top_height = max(self.top_height, ap.home.pos.z - here.z)
         seq = ap.modes.nav.command_seq
         if seq != self._seq:
@@ -105,4 +107,4 @@ def _distance(p: Vec3, a: Vec3, b: Vec3) -> float:
     along = b - a
     square = dot(along, along)
     fraction = 0.0 if square == 0.0 else dot(along, p - a) / square
-    return math.dist(p, a + along * min(max(fraction, 0.0), 1.0))
+    return separation(p, a + along * min(max(fraction, 0.0), 1.0))

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from sitl.core import elementary_arrays as arrays
 from sitl.simulation import Simulation
 
 from .figures import VX, Figure, X, Y, crossing, path_rms, speeds, stopped, with_distance
@@ -100,7 +99,7 @@ def drive_figures(ours: Recording, theirs: Recording) -> list[Figure]:
     add("HOLD: speed at its begin", "m/s", "HOLD", 6, lambda r: float(speeds(r)[0]))
     for speed in (0.5, 0.1):
         add(f"HOLD: below {speed} m/s", "s", "HOLD", 6, lambda r, v=speed: stopped(r, v))
-    add("HOLD: covered", "m", "HOLD", 6, lambda r: float(np.hypot(r[-1, X] - r[0, X], r[-1, Y] - r[0, Y])))
+    add("HOLD: covered", "m", "HOLD", 6, lambda r: float(arrays.hypot(r[-1, X] - r[0, X], r[-1, Y] - r[0, Y])))
     add("RTL: peak speed", "m/s", "RTL", 25, lambda r: float(speeds(r).max()))
     add("RTL: within 3 m of home", "s", "RTL", 25, lambda r: crossing(with_distance(r, 0.0, 0.0), 1, 3.0))
     compare_text("RTL: says that it is there", "RTL", "Reached destination")

@@ -19,6 +19,7 @@ from ..bridge.ardupilot_json.motion import Motion
 from ..core import rng
 from ..core.algebra import multiply, rotate
 from ..core.constants import TICK_US
+from ..core.elementary import cos, sin
 from ..core.record_reader import locate
 from ..core.vectors import Quat, Vec3
 from ..physics.carried import Carried, carried
@@ -204,8 +205,8 @@ class JsonPlant(Plant):
         _BODY.pack_into(self._memory, self._body_at, *motion.position, *motion.velocity, *q, *motion.gyro)
         gx, gy, gz = motion.gyro
         half = 0.5 * TICK_S * math.sqrt(gx * gx + gy * gy + gz * gz)
-        k = -0.5 * TICK_S * (math.sin(half) / half if half > 1e-9 else 1.0)
-        m.q = multiply(q, Quat(math.cos(half), k * gx, k * gy, k * gz))
+        k = -0.5 * TICK_S * (sin(half) / half if half > 1e-9 else 1.0)
+        m.q = multiply(q, Quat(cos(half), k * gx, k * gy, k * gz))
         acc = rotate(unit(m.q + q), Vec3(*motion.accel))
         m.vel = Vec3(*motion.velocity) - TICK_S * Vec3(acc.x, acc.y, acc.z + GRAVITY)
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core.elementary import cos, sin
+
 from ..errors import OptionError
 from ..scenario import StartPose
 from ..vehicles import Airframe
@@ -46,7 +48,7 @@ class Surroundings:
         """At power-on [rad]."""
         along = float(airframe.value("base_along"))
         north, east, _ = to_ned(x, y, z)
-        self.position = (north - along * math.cos(self.heading), east - along * math.sin(self.heading), 0.0)
+        self.position = (north - along * cos(self.heading), east - along * sin(self.heading), 0.0)
         """Of the body's origin at power-on, NED from the world's origin on the floor [m]."""
         self._check_free(airframe)
 
@@ -64,8 +66,8 @@ class Surroundings:
         top, bottom = float(airframe.value("contact_top")), float(airframe.value("contact_bottom"))
         radius = float(airframe.value("contact_radius"))
         for along in np.asarray(airframe.value("contact_along"), float)[: int(airframe.value("contact_discs") or 1)]:
-            north = self.position[0] + along * math.cos(self.heading)
-            east = self.position[1] + along * math.sin(self.heading)
+            north = self.position[0] + along * cos(self.heading)
+            east = self.position[1] + along * sin(self.heading)
             at = contact.clearance(self.world.geometry, north, east, -self.floor - top, bottom - self.floor, radius)
             if at.distance < -INSIDE:
                 name = self.world.solids[at.solid].name or f"number {at.solid}"

@@ -14,6 +14,7 @@ from ..autopilot.rover.parameters import Simulated
 from ..autopilot.rover.state import Autopilot
 from ..core.algebra import euler_of
 from ..core.displacement import Displacement, speed_along
+from ..core.elementary import tan
 from ..core.kernels import law, unit
 from ..core.memory import record_at
 from ..core.records import Floats
@@ -133,7 +134,7 @@ def slow_servo(servo: SteeringServo, delay: int, hz: float) -> None:
     servo.delay, servo.is_filtered = delay, hz > 0.0
     servo.is_slow = delay > 0 or servo.is_filtered
     if servo.is_filtered:
-        k = math.tan(math.pi * hz * TICK_S)
+        k = tan(math.pi * hz * TICK_S)
         norm = 1.0 / (1.0 + math.sqrt(2.0) * k + k * k)
         servo.gain = k * k * norm
         servo.a1, servo.a2 = 2.0 * (k * k - 1.0) * norm, (1.0 - math.sqrt(2.0) * k + k * k) * norm

@@ -8,9 +8,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ..autopilot.params.simulation import DELIVERED, Receiver, SecondBarometer, Simulated, axes
-from ..core.algebra import ZERO, conjugate, quat_from_euler
+from ..core.algebra import ZERO, conjugate, cross, dot, quat_from_euler
 from ..core.border import BAROS_DIFFER, ONE_BARO, Sensors
 from ..core.constants import TICK_US
+from ..core.elementary import pow
 from ..core.memory import words_of
 from ..core.rng import next_u32
 from ..core.vectors import Euler, Vec3
@@ -56,13 +57,16 @@ def acts_on_the_world(parameter: str) -> bool:
 
 def _bend(iron: Iron, diagonal: Vec3, others: Vec3) -> None:
     """Soft iron that a matrix of this diagonal and these elements xy, xz, yz makes up for."""
-    matrix = np.array(
-        ((diagonal.x, others.x, others.y), (others.x, diagonal.y, others.z), (others.y, others.z, diagonal.z))
+    a, b, c = (
+        Vec3(diagonal.x, others.x, others.y),
+        Vec3(others.x, diagonal.y, others.z),
+        Vec3(others.y, others.z, diagonal.z),
     )
-    iron.is_soft = any(diagonal) and bool(abs(np.linalg.det(matrix)) > SINGULAR)
+    of_a, of_b, of_c = cross(b, c), cross(c, a), cross(a, b)  # rows of the inverse, which is symmetric, too
+    determinant = dot(a, of_a)
+    iron.is_soft = any(diagonal) and abs(determinant) > SINGULAR
     if iron.is_soft:
-        x, y, z = np.linalg.inv(matrix).tolist()
-        iron.x, iron.y, iron.z = Vec3(*x), Vec3(*y), Vec3(*z)
+        iron.x, iron.y, iron.z = of_a / determinant, of_b / determinant, of_c / determinant
 
 
 def _look_down(v: Vehicle) -> None:
@@ -87,7 +91,7 @@ def _spoil_gps(receiver: GpsReceiver, gps: Receiver, is_looked_for: bool) -> Non
     fault.lat, fault.lon = round(1e7 * gps.GLTCH.X), round(1e7 * gps.GLTCH.Y)
     fault.alt, fault.noise, fault.drift = gps.GLTCH.Z + gps.ALT_OFS, gps.NOISE, gps.DRFTALT
     fault.vel = axes(gps.VERR)
-    fault.loss = 1.0 - (1.0 - 0.01 * gps.BYTELOS) ** FIX_BYTES
+    fault.loss = 1.0 - pow(1.0 - 0.01 * gps.BYTELOS, float(FIX_BYTES))
     fault.is_on = fault.delay >= 0 or fault.satellites >= 0 or any(
         (fault.lat, fault.lon, fault.alt, fault.noise, fault.drift, *fault.vel, fault.loss)
     )  # fmt: skip

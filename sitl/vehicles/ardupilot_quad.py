@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ..core.constants import GRAVITY
+from ..core.elementary import cos, sin, tan
 from . import sensor_sets
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
 from .figures.copter import THRUST_MOMENTUM
@@ -35,8 +36,8 @@ OUTFLOW_MAX = OUTFLOW_HOVER / math.sqrt(HOVER_THRUST)
 
 def drag_area() -> float:
     """Drag coefficient times area [m^2]: what momentum drag leaves of the drag at the reference speed."""
-    total = WEIGHT * math.tan(REFERENCE_LEAN)
-    lean = math.cos(REFERENCE_LEAN)
+    total = WEIGHT * tan(REFERENCE_LEAN)
+    lean = cos(REFERENCE_LEAN)
     thrust = WEIGHT / lean
     flow = math.sqrt(thrust * REFERENCE_DENSITY * DISC_AREA)
     momentum = lean * MOMENTUM_DRAG * lean * REFERENCE_SPEED * flow
@@ -62,9 +63,9 @@ def multicopter(
         figures={
             "mass": MASS,
             "inertia": (  # [kg m^2] discs of half the arm
-                0.25 * MASS * (0.5 * ARM) ** 2,
-                0.25 * MASS * (0.5 * ARM) ** 2,
-                0.5 * MASS * (0.5 * ARM) ** 2,
+                0.25 * MASS * (0.5 * ARM) * (0.5 * ARM),
+                0.25 * MASS * (0.5 * ARM) * (0.5 * ARM),
+                0.5 * MASS * (0.5 * ARM) * (0.5 * ARM),
             ),
             "drag_area": (drag_area(), drag_area(), drag_area()),  # [m^2]
             "angular_damping": math.radians(400.0) / 120.0,  # [1/s] 0.058; the recorded yaw turns agree
@@ -109,7 +110,7 @@ def multicopter(
 
 
 def _rotor(angle: float, direction: float) -> Rotor:
-    forward, right = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    forward, right = cos(math.radians(angle)), sin(math.radians(angle))
     return Rotor(round(ARM * forward, 12) + 0.0, round(ARM * right, 12) + 0.0, 0.0, direction)
 
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from ..core.algebra import conjugate, rotate
 from ..core.array_kernels import ByteLine, IntLine, Kernel, Line, NarrowLine, Table
+from ..core.elementary import cos, sin
 from ..core.kernels import inlined, law
 from ..core.vectors import Quat, Vec2, Vec3
 from .geometry import (
@@ -343,4 +344,4 @@ def _mark(marking: Marking) -> tuple[float, ...]:
     north, east, _ = to_ned(*marking.centre, 0.0)
     heading = to_heading(marking.yaw)
     length, width = (0.5 * side for side in marking.size)
-    return north, east, math.cos(heading), math.sin(heading), length, width, marking.radius, *COLOURS[marking.colour]
+    return north, east, cos(heading), sin(heading), length, width, marking.radius, *COLOURS[marking.colour]

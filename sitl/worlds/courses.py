@@ -11,6 +11,8 @@ import math
 
 import numpy as np
 
+from sitl.core.elementary import atan2, cos, sin
+
 from .making import made, wall
 from .shapes import Box, Cylinder, Marking, Solid, Start
 from .world import World
@@ -47,15 +49,15 @@ def track(seed: int = 0, difficulty: float = 0.5, size: float = 30.0, scale: flo
 
     def middle(angle: float) -> tuple[float, float, float]:
         """x, y [m] and heading [rad] of the middle of the track."""
-        r = mean * (1.0 + a * math.cos(2.0 * angle + first) + b * math.cos(3.0 * angle + second))
-        slope = -mean * (2.0 * a * math.sin(2.0 * angle + first) + 3.0 * b * math.sin(3.0 * angle + second))
-        heading = angle + math.atan2(r, slope)
-        return r * math.cos(angle), r * math.sin(angle), heading
+        r = mean * (1.0 + a * cos(2.0 * angle + first) + b * cos(3.0 * angle + second))
+        slope = -mean * (2.0 * a * sin(2.0 * angle + first) + 3.0 * b * sin(3.0 * angle + second))
+        heading = angle + atan2(r, slope)
+        return r * cos(angle), r * sin(angle), heading
 
     turns = [middle(math.tau * k / _SIDES) for k in range(_SIDES)]
     solids: list[Solid] = []
     for side, name in ((1.0, "inner"), (-1.0, "outer")):
-        edge = [(x - side * half * math.sin(h), y + side * half * math.cos(h)) for x, y, h in turns]
+        edge = [(x - side * half * sin(h), y + side * half * cos(h)) for x, y, h in turns]
         solids += [wall(p, q, f"{name} wall {k}") for k, (p, q) in enumerate(zip(edge, edge[1:] + edge[:1]), 1)]
     gates = [gate(*middle(math.tau * k / _GATES), 2.0 * half, k) for k in range(1, _GATES + 1)]
     x, y, heading = middle(0.0)

@@ -6,10 +6,11 @@ A text names one: ``"forest"``, ``"labyrinth:seed=7,difficulty=0.8"``. The same 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
+
+from sitl.core.elementary import hypot, pow
 
 from . import courses
 from .making import KEYS, made, wall
@@ -32,13 +33,13 @@ def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0, scale: fl
         scale: gaps, doors and corridors are so many times as wide, for robots that need more room.
     """
     rng = np.random.default_rng([1, seed])
-    wanted = round(size * size / (60.0 * (8.0 / 60.0) ** difficulty) / scale**2)
+    wanted = round(size * size / (60.0 * pow(8.0 / 60.0, difficulty)) / (scale * scale))
     trees: list[tuple[float, float, float]] = []
     for _ in range(20 * wanted):
         x, y = rng.uniform(-0.5 * size, 0.5 * size, 2).tolist()
         radius = float(rng.uniform(0.12, 0.2 + 0.2 * difficulty))
-        is_free = math.hypot(x, y) > 3.0 * scale + radius
-        if is_free and all(math.hypot(x - a, y - b) > 1.2 * scale + radius + r for a, b, r in trees):
+        is_free = hypot(x, y) > 3.0 * scale + radius
+        if is_free and all(hypot(x - a, y - b) > 1.2 * scale + radius + r for a, b, r in trees):
             trees.append((x, y, radius))
         if len(trees) == wanted:
             break

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.array_kernels import IntLine, Line, Table
+from ..core.elementary import cos, sin
 from .shapes import Box, Cylinder, Solid, to_heading, to_ned
 
 Floats = npt.NDArray[np.float64]
@@ -114,7 +115,7 @@ def _row(solid: Solid) -> list[float]:
     assert isinstance(solid, Box)
     heading = to_heading(solid.yaw)
     half_length, half_width = 0.5 * solid.size[0], 0.5 * solid.size[1]
-    return [north, east, math.cos(heading), math.sin(heading), half_length, half_width, 0.0, top, bottom]
+    return [north, east, cos(heading), sin(heading), half_length, half_width, 0.0, top, bottom]
 
 
 def _extents(rows: Floats) -> tuple[Floats, Floats]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core import documents
+from ..core.elementary import atan2, cos, hypot, sin
 from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
 from .tables import COLOURS, SINGLE, TABLES, Key, is_number, written
 from .world import World
@@ -172,8 +173,8 @@ def _segments(tables: dict[str, list[_Row]]) -> Iterator[Solid]:
         if not low < high:
             raise row.fault("z", "must be the height of the underside and then that of the top, above it")
         centre = (0.5 * (x1 + x2), 0.5 * (y1 + y2), 0.5 * (low + high))
-        size = (math.hypot(x2 - x1, y2 - y1), row.get("thickness", 0.01), high - low)
-        yield Box(centre, size, math.atan2(y2 - y1, x2 - x1), row.get("name", ""), row.get("colour", "grey"))
+        size = (hypot(x2 - x1, y2 - y1), row.get("thickness", 0.01), high - low)
+        yield Box(centre, size, atan2(y2 - y1, x2 - x1), row.get("name", ""), row.get("colour", "grey"))
 
 
 def _starts(tables: dict[str, list[_Row]]) -> Iterator[Start]:
@@ -214,6 +215,6 @@ def _covers(solid: Solid, x: float, y: float) -> bool:
     """Whether the point lies in the solid's footprint."""
     dx, dy = x - solid.centre[0], y - solid.centre[1]
     if isinstance(solid, Cylinder):
-        return math.hypot(dx, dy) <= solid.radius
-    c, s = math.cos(solid.yaw), math.sin(solid.yaw)
+        return hypot(dx, dy) <= solid.radius
+    c, s = cos(solid.yaw), sin(solid.yaw)
     return abs(c * dx + s * dy) <= 0.5 * solid.size[0] and abs(c * dy - s * dx) <= 0.5 * solid.size[1]

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+
+from sitl.core.elementary import atan2, hypot
 
 from .shapes import Box, Marking, Solid, Start
 from .world import World
@@ -43,5 +44,5 @@ def made(
 
 def wall(a: tuple[float, float], b: tuple[float, float], name: str) -> Box:
     """An upright wall of 3 m from one point to another."""
-    length, yaw = math.hypot(b[0] - a[0], b[1] - a[1]), math.atan2(b[1] - a[1], b[0] - a[0])
+    length, yaw = hypot(b[0] - a[0], b[1] - a[1]), atan2(b[1] - a[1], b[0] - a[0])
     return Box((0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 1.5), (length + WALL, WALL, 3.0), yaw, name)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.sums import lengths, products
 from .shapes import Array
 from .world import World
 
@@ -33,7 +34,7 @@ def outline(world: World, height: float) -> Array:
         others = [(other, k < number) for k, other in enumerate(polygons) if k != number]
         for start, end in zip(polygon, np.roll(polygon, -1, axis=0)):
             way = end - start
-            shortest = _SEAM / np.hypot(*way)
+            shortest = _SEAM / lengths(way)
             kept += [
                 (*(start + a * way), *(start + b * way)) for a, b in _outside(start, way, others) if b - a > shortest
             ]
@@ -54,8 +55,8 @@ def _inside(start: Array, way: Array, polygon: Array, owner: bool) -> tuple[floa
     """From where to where an edge lies inside of a convex polygon, from 0 to 1; nowhere when the first is greater."""
     low, high = 0.0, 1.0
     for corner, following in zip(polygon, np.roll(polygon, -1, axis=0)):
-        side = (following - corner) / np.hypot(*(following - corner))
-        along = side @ way / np.hypot(*way)
+        side = (following - corner) / lengths(following - corner)
+        along = products(side, way) / lengths(way)
         grown = 0.0
         if abs(along) > _PARALLEL:  # back to back neither is outside; face on face one of them is
             grown = _SEAM if along < 0.0 or owner else -_SEAM

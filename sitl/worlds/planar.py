@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.array_kernels import Kernel, Line
+from ..core.elementary import cos, sin
 from ..core.kernels import law
 from ..core.vectors import Vec2, Vec3
 from .geometry import Floats
@@ -108,7 +109,7 @@ def angles(count: int, field_of_view: float) -> Floats:
 def rays(count: int, field_of_view: float) -> Floats:
     """Unit vectors on the body (FRD: three rows, forward, right, down) at those angles; shape (3, count)."""
     at = [float(a) for a in angles(count, field_of_view)]
-    return np.array([[math.cos(a) for a in at], [-math.sin(a) for a in at], [0.0] * count])
+    return np.array([[cos(a) for a in at], [-sin(a) for a in at], [0.0] * count])
 
 
 @law

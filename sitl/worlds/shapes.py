@@ -17,6 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..core import elementary_arrays as arrays
+from ..core.elementary import cos, sin
 from ..core.kernels import law
 from ..errors import SitlError
 
@@ -150,15 +152,15 @@ class Marking:
 
 def rectangle(x: float, y: float, length: float, width: float, yaw: float) -> Array:
     """Corners of a rectangle about (x, y), counter-clockwise, shape (4, 2) [m]; yaw [rad]."""
-    along = 0.5 * length * np.array([math.cos(yaw), math.sin(yaw)])
-    across = 0.5 * width * np.array([-math.sin(yaw), math.cos(yaw)])
+    along = 0.5 * length * np.array([cos(yaw), sin(yaw)])
+    across = 0.5 * width * np.array([-sin(yaw), cos(yaw)])
     return np.array([-along - across, along - across, along + across, -along + across]) + (x, y)
 
 
 def circle(x: float, y: float, radius: float, corners: int = CIRCLE_CORNERS) -> Array:
     """Corners of a regular polygon on the circle about (x, y), counter-clockwise, shape (corners, 2) [m]."""
     angles = np.arange(corners) * (2.0 * math.pi / corners)
-    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1) + (x, y)
+    return radius * np.stack([arrays.cos(angles), arrays.sin(angles)], axis=1) + (x, y)
 
 
 @law

@@ -6,6 +6,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from sitl.core.elementary import (
+    acos,
+    asin,
+    atan,
+    atan2,
+    cbrt,
+    cos,
+    exp,
+    expm1,
+    hypot,
+    log,
+    log1p,
+    pow,
+    sin,
+    sincos,
+    tan,
+    tanh,
+)
 from sitl.core.vectors import Vec3
 from sitl.physics.native.turtlebot.state import TICK_US, Turtlebot
 from sitl.physics.native.turtlebot.step import commanded
@@ -21,6 +39,21 @@ def roll(fleet: Sequence[Turtlebot], index: int, ticks: int) -> None:
         speeds = commanded(v.figures, v.command, v.time_us)
         v.command.forward = 0.999 * v.command.forward + 0.01 * speeds.left
         v.command.turn = math.sqrt(v.command.turn * v.command.turn + 0.1 * speeds.right) + (WAY * 2.0).y
+        v.time_us += TICK_US
+
+
+def turn(fleet: Sequence[Turtlebot], index: int, ticks: int) -> None:
+    """All elementary functions, of numbers in (0, 1) and beyond."""
+    v = fleet[index]
+    scale = 1.0
+    for _ in range(ticks):
+        scale *= 1e3  # far angles, in the end
+        x, y = v.command.forward, v.command.turn
+        sine, cosine = sincos(x * 1e3)
+        circular = sin(x) * cos(y) + tan(x) + asin(x) - acos(x) + atan(y) + atan2(x, y) + sine * cosine
+        others = exp(x) + log(x) + pow(x, y) + hypot(x, y) + cbrt(x) + expm1(y) + log1p(x) + tanh(y)
+        v.command.turn = circular + others
+        v.command.forward = abs(sin(circular * others * scale)) + 1e-9
         v.time_us += TICK_US
 
 

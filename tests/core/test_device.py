@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -24,7 +25,7 @@ from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
 from tests.core import device_units
 from tests.core.device_on_cpu import OnCpu
-from tests.core.device_units import RECORD, Turtlebot, fleet_of, roll
+from tests.core.device_units import RECORD, Turtlebot, fleet_of, roll, turn
 from tests.core.fake_cuda import FakeDriver
 
 ROOT = Path(__file__).parents[2]
@@ -33,10 +34,10 @@ needs_cuda = pytest.mark.skipif(
 )
 
 
-def in_python(fleet, ticks):
+def in_python(fleet, ticks, unit=roll):
     views = [Turtlebot.of(fleet, k) for k in range(len(fleet))]
     for index in range(len(fleet)):
-        roll(views, index, ticks)
+        unit(views, index, ticks)
     return fleet
 
 
@@ -45,6 +46,15 @@ def test_a_unit_has_the_same_bits():
     fleet = fleet_of(3)
     OnCpu(*device.modules_of(roll, RECORD))(fleet, 20)
     assert fleet.tobytes() == in_python(fleet_of(3), 20).tobytes() != fleet_of(3).tobytes()
+
+
+@needs_cuda
+def test_elementary_functions_have_the_same_bits_and_are_nobody_elses():
+    fleet = fleet_of(3)
+    OnCpu(*device.modules_of(turn, RECORD))(fleet, 30)
+    assert fleet.tobytes() == in_python(fleet_of(3), 30, turn).tobytes() != fleet_of(3).tobytes()
+    text = device.ptx_of(turn, RECORD).text
+    assert "fma.rn" not in text and not re.search(r"__nv_|\.approx", text)
 
 
 @needs_cuda

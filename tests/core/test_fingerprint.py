@@ -8,6 +8,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from sitl.core.constant_tables import constant_table
+from sitl.core.fingerprint import _walk
+
 SHOW = """
 import sys
 from sitl.core.fingerprint import _code
@@ -25,6 +28,15 @@ def test_code_within_code_and_sets_are_written_alike_in_every_process() -> None:
         texts.add(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
     assert len(texts) == 1
     assert "2.5" in texts.pop()
+
+
+def test_the_numbers_of_a_table_count() -> None:
+    def looks_up(*numbers: float) -> list[str]:
+        lines: list[str] = []
+        _walk(constant_table(*numbers), set(), set(), lines)
+        return lines
+
+    assert looks_up(1.0, 2.0) == looks_up(1.0, 2.0) != looks_up(1.0, 2.5)
 
 
 def test_every_kernel_has_one_fingerprint_in_all_processes() -> None:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +10,11 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
+from sitl.core.elementary import log1p
+
 from ..errors import AgentError
+from .narrow import log1p_of_all, tanh_of_all
 
 Rows = npt.NDArray[np.float32]
 GOALS = ("achieved_goal", "desired_goal")
@@ -69,9 +72,9 @@ class Features:
         if isinstance(space, gym.spaces.Box) and len(space.shape) == 1 and bool(np.any(space.low < 0.0)):
             return _either_sign
         if isinstance(space, gym.spaces.Box) and len(space.shape) == 1 and bool(np.all(np.isfinite(space.high))):
-            scale = np.float32(1.0 / math.log1p(float(space.high.max())))
+            scale = np.float32(1.0 / log1p(float(space.high.max())))
             sectors = self._sectors
-            return lambda scan: np.log1p(nearest(np.asarray(scan, np.float32), sectors)) * scale
+            return lambda scan: _log1p(nearest(np.asarray(scan, np.float32), sectors)) * scale
         raise AgentError(
             f"observation {name!r} = {space} cannot be learnt from; rows of numbers, scans, digits, goals and poses can"
         )
@@ -98,7 +101,15 @@ def nearest(scans: Rows, sectors: int) -> Rows:
 
 def _either_sign(numbers: Any) -> Rows:
     rows = np.asarray(numbers, np.float32)
-    out: Rows = np.sign(rows) * np.log1p(np.abs(rows))
+    out: Rows = np.sign(rows) * _log1p(np.abs(rows))
+    return out
+
+
+def _log1p(rows: Rows) -> Rows:
+    """log(1 + x) of numbers from 0 on."""
+    rows = np.ascontiguousarray(rows)
+    out = np.empty_like(rows)
+    log1p_of_all.unchecked()(rows.reshape(-1), out.reshape(-1))
     return out
 
 
@@ -109,12 +120,14 @@ def goals_of(features: Any) -> npt.NDArray[np.float64]:
 
 def _goal(goals: Any) -> Rows:
     rows = np.asarray(goals, np.float32)
-    return np.stack([np.tanh(rows[:, 0] / _NEAR), np.cos(rows[:, 1]), np.sin(rows[:, 1])], axis=1)
+    near = np.empty(len(rows), np.float32)
+    tanh_of_all.unchecked()(rows[:, 0] / np.float32(_NEAR), near)
+    return np.stack([near, arrays.cos(rows[:, 1]), arrays.sin(rows[:, 1])], axis=1)
 
 
 def _pose(poses: Any) -> Rows:
     rows = np.asarray(poses, np.float32)
-    turned = np.stack([np.cos(rows[:, 3]), np.sin(rows[:, 3])], axis=1)
+    turned = np.stack([arrays.cos(rows[:, 3]), arrays.sin(rows[:, 3])], axis=1)
     return np.concatenate([rows[:, :3] / np.float32(_NEAR), turned], axis=1)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from sitl.core.algebra import euler_of
+from sitl.core.elementary import cos, sin
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.errors import MissingExtra, OptionError, VehicleError
@@ -49,13 +50,13 @@ def lidar_distance(robot: Any) -> float:
         x, y, z, yaw = robot.pose[0].tolist()
         figures = robot.robots.views[0].figures
         ahead = float(figures.lidar_ahead)  # type: ignore[attr-defined]
-        place = (x + ahead * math.cos(yaw), y + ahead * math.sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
+        place = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
         north, east, down = to_ned(*place)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
         v = robot.view(0)
         body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
         heading = euler_of(body.q).yaw
-        c, s = math.cos(heading), math.sin(heading)
+        c, s = cos(heading), sin(heading)
         north, east, down = body.pos
         north, east = north + forward * c - right * s, east + forward * s + right * c
         down += below - robot.world.floor_z
@@ -173,7 +174,7 @@ def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendPr
         tuple(played.reward for played in found),
         tuple(played.crashed for played in found),
         tuple(false_alarms),
-        sum(played.simulated_s for played in found),
+        math.fsum(played.simulated_s for played in found),
         trial.change is not None and is_covered(options, home_options(config), config.env_options.get("randomise")),
     )
 

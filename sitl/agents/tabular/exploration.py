@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from sitl.core.array_kernels import IntLine, IntTable, Kernel, Table
+from sitl.core.elementary import pow
 from sitl.core.kernels import law
 from sitl.core.records import Floats, Ints, Record
 from sitl.core.rng import Rng, uniform
@@ -43,7 +44,7 @@ class LearnerState(Record):
 
 def epsilon_in(episode: int, start: float, decay: float, floor: float) -> float:
     """Probability of exploring in an episode, the first being 0: ``start * decay ** episode``, not below the floor."""
-    return max(start * decay**episode, min(floor, start))
+    return max(start * pow(decay, float(episode)), min(floor, start))
 
 
 @law

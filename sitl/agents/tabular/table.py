@@ -106,7 +106,7 @@ class Table:
     def arrays(self) -> dict[str, npt.NDArray[Any]]:
         """Arrays for a file: the states met, sorted, with their values and visits."""
         rows = np.flatnonzero(self.keys != EMPTY)
-        rows = rows[np.argsort(self.keys[rows])]
+        rows = rows[np.argsort(self.keys[rows], kind="stable")]
         return {"radix": self.radix, "keys": self.keys[rows], "values": self.values[rows], "visits": self.visits[rows]}
 
     @classmethod

@@ -14,7 +14,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...core.algebra import cross2, dot, dot2, horizontal, norm, norm2, with_down
+from ...core.algebra import cross2, direction, dot, dot2, horizontal, norm, norm2, with_down
+from ...core.elementary import atan2, sincos
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_pi
 from ...core.vectors import Vec2, Vec3
@@ -154,8 +155,8 @@ def margin_of(ap: Autopilot, a: Vec3, b: Vec3, ruler: Ruler, time_us: int) -> fl
 @law
 def ahead(start: Vec3, bearing: float, slope: float, distance: float) -> Vec3:
     """The place in a direction; ``slope``: up positive [rad]."""
-    level = math.cos(slope) * distance
-    return start + Vec3(math.cos(bearing) * level, math.sin(bearing) * level, -math.sin(slope) * distance)
+    rise, level = sincos(slope)
+    return start + with_down(direction(bearing) * (level * distance), -rise * distance)
 
 
 @law
@@ -171,12 +172,12 @@ def clear_side(ap: Autopilot, ruler: Ruler, start: Vec3, time_us: int) -> int:
     """From the end of the first look: 0 the way to the destination is free, 1 or 2 one beside it; -1 none."""
     way = ruler.destination - start
     level = norm2(horizontal(way))
-    bearing = math.atan2(way.y, way.x)
+    bearing = atan2(way.y, way.x)
     distance = constrain(ruler.second, PAST, max(norm(way) if ruler.upright else level, PAST))
     for k in range(3):
         side = float(k if k < 2 else -1)
         if ruler.upright:
-            end = ahead(start, bearing, math.atan2(-way.z, level) + side * SLOPE_TURN, distance)
+            end = ahead(start, bearing, atan2(-way.z, level) + side * SLOPE_TURN, distance)
         else:
             end = ahead(start, bearing + side * TURN, 0.0, distance)
         if margin_of(ap, start, end, ruler, time_us) > ap.params.OA.MARGIN_MAX:
@@ -249,9 +250,9 @@ def plan(ap: Autopilot, origin: Vec3, destination: Vec3, upright: bool, time_us:
     reach = max(oa.BR.LOOKAHEAD, 1.0)
     detour.lookahead = constrain(detour.lookahead, 0.5 * reach, reach)
     distance = norm2(horizontal(way))
-    course = math.atan2(est.vel.y, est.vel.x) if norm2(horizontal(est.vel)) > SLOW else est.yaw
+    course = atan2(est.vel.y, est.vel.x) if norm2(horizontal(est.vel)) > SLOW else est.yaw
     ruler = Ruler(
-        est.pos, destination, math.atan2(way.y, way.x), distance, min(detour.lookahead, distance + PAST),
+        est.pos, destination, atan2(way.y, way.x), distance, min(detour.lookahead, distance + PAST),
         detour.lookahead, course, upright, oa.TYPE != 1.0,
     )  # fmt: skip
     found = look(ap, ruler, time_us)

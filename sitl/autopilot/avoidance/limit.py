@@ -7,9 +7,7 @@ ALT_HOLD; their climb rate in all modes in which the throttle stick is one; rove
 
 from __future__ import annotations
 
-import math
-
-from ...core.algebra import dot2, horizontal
+from ...core.algebra import direction, dot2, horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from ..fence.checks import active
@@ -89,5 +87,5 @@ def limit_velocity(ap: Autopilot, time_us: int, vel: Vec2, b: Braking) -> Vec2:
 def limit_speed(ap: Autopilot, time_us: int, speed: float, b: Braking) -> float:
     """A speed along the nose [m/s], backwards negative, that keeps away from obstacles and fences."""
     yaw = ap.estimate.yaw
-    nose = Vec2(math.cos(yaw), math.sin(yaw))
+    nose = direction(yaw)
     return dot2(limit_velocity(ap, time_us, nose * speed, b), nose)

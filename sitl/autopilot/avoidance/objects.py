@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 
-from ...core.algebra import dot, norm, rotate
+from ...core.algebra import direction, dot, norm, rotate, with_down
 from ...core.border import LIDAR_SAMPLES, Sensors
+from ...core.elementary import tan
 from ...core.kernels import law
 from ...core.scalars import finite
 from ...core.vectors import Vec3
@@ -47,7 +48,7 @@ def forget(objects: Objects) -> None:
 @law
 def note(objects: Objects, at: Vec3, away: float, pos: Vec3, time_us: int, p: ObjectDatabase) -> None:
     """Something was seen at a place, ``away`` from the vehicle at ``pos``, NED [m]."""
-    radius = max(p.RADIUS_MIN, away * math.tan(math.radians(0.5 * p.BEAM_WIDTH)))
+    radius = max(p.RADIUS_MIN, away * tan(math.radians(0.5 * p.BEAM_WIDTH)))
     chosen, farthest = -1, away
     for k in range(min(int(p.SIZE), OBJECTS)):
         if not is_known(objects, k, time_us):
@@ -84,7 +85,7 @@ def note_reading(ap: Autopilot, angle: float, distance: float, time_us: int) -> 
         return
     at = mounted(angle, p)
     if not (is_ignored(at, p) or is_ground(seen, at, distance)):
-        way = rotate(estimate.q, Vec3(math.cos(at) * distance, math.sin(at) * distance, 0.0))
+        way = rotate(estimate.q, with_down(direction(at) * distance, 0.0))
         note(ap.objects, estimate.pos + way, distance, estimate.pos, time_us, db)
 
 

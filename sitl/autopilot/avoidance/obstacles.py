@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from ...core.algebra import norm2, turned
+from ...core.elementary import sincos
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from ..params.avoidance import Avoid
@@ -65,7 +65,8 @@ def push(proximity: Proximity, distance_max: float, time_us: int) -> Push:
     for k in range(SECTORS):
         if sees(proximity, k, time_us) and proximity.distance[k] < distance_max:
             share = 1.0 - proximity.distance[k] / distance_max
-            roll, pitch = -math.sin(proximity.angle[k]) * share, math.cos(proximity.angle[k]) * share
+            sine, cosine = sincos(proximity.angle[k])
+            roll, pitch = -sine * share, cosine * share
             right, left = max(right, roll), min(left, roll)
             back, forth = max(back, pitch), min(forth, pitch)
     return Push(right + left, back + forth)

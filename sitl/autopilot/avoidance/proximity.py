@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ...core.algebra import dot2
+from ...core.algebra import direction, dot2
 from ...core.border import LIDAR_SAMPLES, Sensors
 from ...core.kernels import law
 from ...core.records import Floats, Ints, Record, array
@@ -102,7 +102,7 @@ def is_ground(proximity: Proximity, angle: float, distance: float) -> bool:
     """Whether a reading [m] at an angle [rad] is left out as one of the ground."""
     if not proximity.has_height:
         return False
-    down = dot2(proximity.tilt, Vec2(math.cos(angle), math.sin(angle))) * distance
+    down = dot2(proximity.tilt, direction(angle)) * distance
     return proximity.height - down < GROUND
 
 

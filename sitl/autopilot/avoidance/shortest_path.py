@@ -14,6 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core import elementary_arrays as arrays
+from ...core.elementary import cos
+from ...core.sums import lengths
 from ...core.vectors import Vec2
 from ..fence.shapes import is_inclusion
 from ..fence.state import CIRCLE_IN, CIRCLE_OUT, FenceState
@@ -68,7 +71,7 @@ class Map:
         for corners, stays_in in self._polygons:
             room[_inside(points, corners) != stays_in] = -1.0
         for circle in self._circles:
-            away = np.hypot(*(points - circle.centre).T)
+            away = arrays.hypot(*(points - circle.centre).T)
             room = np.minimum(room, circle.radius - away if circle.stays_in else away - circle.radius)
         return room
 
@@ -96,8 +99,8 @@ class Map:
     def _ring(centre: Points, radius: float, count: int) -> Points:
         """Places around a circle whose connecting lines stay out of it."""
         angle = 2.0 * math.pi * np.arange(count) / count
-        out = (radius + SLACK) / math.cos(math.pi / count)
-        found: Points = centre + out * np.column_stack((np.cos(angle), np.sin(angle)))
+        out = (radius + SLACK) / cos(math.pi / count)
+        found: Points = centre + out * np.column_stack((arrays.cos(angle), arrays.sin(angle)))
         return found
 
 
@@ -110,7 +113,7 @@ def find_path(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[
         return None
     places = np.concatenate((ends, area.turning_places()))
     rooms = np.minimum(np.concatenate((room, np.full(len(places) - 2, margin))), margin)
-    left = np.hypot(*(places - places[1]).T)
+    left = arrays.hypot(*(places - places[1]).T)
     length = np.full(len(places), math.inf)
     before = np.zeros(len(places), int)
     done = np.zeros(len(places), bool)
@@ -123,7 +126,7 @@ def find_path(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[
         if done[k]:
             continue
         done[k] = True
-        step = length[k] + np.hypot(*(places - places[k]).T)
+        step = length[k] + arrays.hypot(*(places - places[k]).T)
         open_ = np.flatnonzero(~done & (step < length))
         open_ = open_[area.sees(places[k], places[open_], np.minimum(rooms[k], rooms[open_]))]
         length[open_], before[open_] = step[open_], k
@@ -145,7 +148,7 @@ def _distance(points: Points, a: Points, b: Points) -> NDArray[np.float64]:
     way = b - a
     square = np.sum(way * way, axis=-1)
     share = np.clip(np.sum((points - a) * way, axis=-1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    away: NDArray[np.float64] = np.linalg.norm(points - a - way * share[..., None], axis=-1)
+    away: NDArray[np.float64] = lengths(points - a - way * share[..., None])
     return away
 
 

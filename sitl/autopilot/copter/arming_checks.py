@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ...core.elementary import cos
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from .. import radio, radio_checks
@@ -71,7 +72,7 @@ _ALL_STICKS = 1 << ROLL | 1 << PITCH | 1 << THROTTLE | 1 << YAW
 @law
 def lean_check(cos_lean: float, lean_max: float) -> int:
     """A vehicle must stand upright: lean at most ``lean_max`` [rad]."""
-    return 0 if cos_lean >= math.cos(lean_max) else LEANING
+    return 0 if cos_lean >= cos(lean_max) else LEANING
 
 
 @law

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ...core.elementary import sin, sincos
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from ..avoidance import limit, obstacles
@@ -28,7 +29,8 @@ def show_ground(seen: Proximity, estimate: Estimate, height: float, p: Parameter
     seen.has_height = p.PRX.IGN_GND == 1.0 and height >= 0.0
     seen.height = height if height >= p.PRX.ALT_MIN else 0.0
     lean = estimate.euler
-    seen.tilt = Vec2(-math.sin(lean.pitch), math.cos(lean.pitch) * math.sin(lean.roll))
+    sine, cosine = sincos(lean.pitch)
+    seen.tilt = Vec2(-sine, cosine * sin(lean.roll))
 
 
 @law

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import dot
+from ...core.elementary import cos
 from ...core.kernels import inlined
 from ...core.vectors import Vec3
 from ..arming_checks import BY_CRASH
@@ -24,7 +25,7 @@ from .state import Vehicle
 TRIGGER_TICKS = 800
 """2 s."""
 ANGLE_ERROR_MAX = math.radians(30.0)
-COS_LEAN_MIN = math.cos(math.radians(15.0))
+COS_LEAN_MIN = cos(math.radians(15.0))
 ACCEL_MAX = 3.0  # [m/s^2]
 SPEED_MAX = 10.0  # [m/s]
 STILL_TICKS = 2000

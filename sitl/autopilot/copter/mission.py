@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ...core.elementary import cos, hypot, sin
 from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
@@ -280,10 +281,10 @@ def _circle(ap: Autopilot, time_us: int, item: MissionItem, here: Vec3) -> None:
     radius = item.p3 if item.p3 != 0.0 else 0.01 * ap.params.CIRCLE.RADIUS
     radius = min(max(radius, -WIDEST), WIDEST)
     n, e = ap.estimate.pos.x - centre.x, ap.estimate.pos.y - centre.y
-    away = math.hypot(n, e)
+    away = hypot(n, e)
     if away < 0.01:  # from the centre straight back, so that it looks ahead
         yaw = ap.estimate.yaw + math.pi
-        n, e, away = math.cos(yaw), math.sin(yaw), 1.0
+        n, e, away = cos(yaw), sin(yaw), 1.0
         distance = abs(radius)
     else:
         distance = abs(away - abs(radius))

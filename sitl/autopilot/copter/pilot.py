@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import norm2
+from ...core.elementary import atan, cos, tan
 from ...core.kernels import inlined, law
 from ...core.scalars import constrain, is_same
 from ...core.vectors import Vec2
@@ -111,10 +112,10 @@ def lean_of_sticks(roll: float, pitch: float, angle_max: float, limit: float) ->
 
     Sticks are horizontal thrusts (tangents), so that the tilt of a diagonal stick is limited as a vector.
     """
-    thrust = Vec2(-math.tan(angle_max * pitch), math.tan(angle_max * roll))  # forward, right
-    thrust = limit_stick(thrust, math.tan(min(limit, angle_max)))
-    pitch = -math.atan(thrust.x)
-    return Lean(math.atan(math.cos(pitch) * thrust.y), pitch)
+    thrust = Vec2(-tan(angle_max * pitch), tan(angle_max * roll))  # forward, right
+    thrust = limit_stick(thrust, tan(min(limit, angle_max)))
+    pitch = -atan(thrust.x)
+    return Lean(atan(cos(pitch) * thrust.y), pitch)
 
 
 @inlined

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import horizontal, with_down
+from ...core.elementary import exp, log
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..params.estimator import Ekf3
@@ -29,7 +30,7 @@ _EXPONENT = 0.190263  # R L / g
 @law
 def standard_altitude(pressure: float) -> float:
     """Altitude [m] in the ISA standard atmosphere (ISO 2533) of a pressure [hPa]."""
-    return _TEMPERATURE_BY_LAPSE * (1.0 - math.exp(_EXPONENT * math.log(pressure / 1013.25)))
+    return _TEMPERATURE_BY_LAPSE * (1.0 - exp(_EXPONENT * log(pressure / 1013.25)))
 
 
 @law

@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import Matrix3, apply, cross, rotation_matrix, scaled
+from ...core.elementary import sincos
 from ...core.kernels import inlined, law
 from ...core.records import Floats
 from ...core.vectors import Vec3
@@ -123,7 +124,7 @@ def turn_frame(P: Floats, angle: float) -> None:
 
     What ties them to the biases is known in the body frame.
     """
-    c, s = math.cos(angle), math.sin(angle)
+    s, c = sincos(angle)
     for n in range(THETA, BG, 3):
         e = n + 1
         for j in range(N):

@@ -22,6 +22,7 @@ from ...core.algebra import (
     rotation_matrix,
 )
 from ...core.earth_field import field_ned
+from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.scalars import wrap_pi
 from ...core.vectors import Vec3
@@ -79,7 +80,7 @@ def learn_field(ekf: Ekf, estimate: Estimate, lat_e7: int, lon_e7: int) -> None:
     """Take the earth's field at a place [degE7]; yaw turns by the declination that was missing until now."""
     ekf.earth_field = field_ned(1e-7 * lat_e7, 1e-7 * lon_e7)
     before = ekf.declination
-    ekf.declination = math.atan2(ekf.earth_field.y, ekf.earth_field.x)
+    ekf.declination = atan2(ekf.earth_field.y, ekf.earth_field.x)
     ekf.field_known = True
     if ekf.yaw_aligned and not ekf.without_compass:
         turn(ekf, estimate, ekf.declination - before)
@@ -140,7 +141,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     h2 = expected.x * expected.x + expected.y * expected.y
     mag, yaw = noise.MAG * params.MAG_M_NSE, noise.YAW * params.YAW_M_NSE
     variance = mag * mag / (count * h2) + yaw * yaw
-    residual = wrap_pi(ekf.declination - math.atan2(e, n))
+    residual = wrap_pi(ekf.declination - atan2(e, n))
     if not ekf.yaw_aligned:
         ekf.yaw_aligned = True
         events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))

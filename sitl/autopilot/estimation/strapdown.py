@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import cross, multiply, quat_from_rotation_vector, quat_norm_squared, rotate
+from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.vectors import Euler, Quat, Vec3
 from .state import Ekf
@@ -79,4 +80,4 @@ def advance(ekf: Ekf, dt: float) -> None:
 @law
 def tilt_from_acc(acc: Vec3) -> Euler:
     """Roll and pitch [rad] of a body at rest from its specific force [m/s^2]; yaw 0."""
-    return Euler(math.atan2(-acc.y, -acc.z), math.atan2(acc.x, math.sqrt(acc.y * acc.y + acc.z * acc.z)), 0.0)
+    return Euler(atan2(-acc.y, -acc.z), atan2(acc.x, math.sqrt(acc.y * acc.y + acc.z * acc.z)), 0.0)

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import cross, multiply, normalise, quat_from_rotation_vector, rotate, rotate_inverse, yaw_of
+from ...core.elementary import atan2, exp, sincos
 from ...core.kernels import law
 from ...core.records import FloatRows, Floats, Ints, Record, Records, array, repeat
 from ...core.scalars import wrap_pi
@@ -134,7 +135,8 @@ def start_model(m: YawModel, k: int, vel: Vec2) -> None:
 @law
 def predict(m: YawModel, change: Vec2, dt: float) -> None:
     """Velocity and covariance after a change of velocity in the levelled frame [m/s] within ``dt`` [s]."""
-    c, s, P = math.cos(m.yaw), math.sin(m.yaw), m.P
+    s, c = sincos(m.yaw)
+    P = m.P
     dv = Vec2(c * change.x - s * change.y, s * change.x + c * change.y)
     m.vel += dv
     a, b = -dv.y, dv.x  # by how much yaw turns the change
@@ -179,7 +181,7 @@ def correct(m: YawModel, vel: Vec2) -> float:
     P[1, 2] -= row0.y * g0.z + row1.y * g1.z
     P[2, 2] -= row0.z * g0.z + row1.z * g1.z
     mirror(P)
-    return math.exp(-0.5 * (y.x * fx + y.y * fy)) / (2.0 * math.pi * math.sqrt(det))
+    return exp(-0.5 * (y.x * fx + y.y * fy)) / (2.0 * math.pi * math.sqrt(det))
 
 
 @law
@@ -188,9 +190,10 @@ def combine(bank: YawBank) -> None:
     north = east = 0.0
     for k in range(MODELS):
         m = bank.models[k]
-        north += m.weight * math.cos(m.yaw)
-        east += m.weight * math.sin(m.yaw)
-    bank.yaw = math.atan2(east, north)
+        sine, cosine = sincos(m.yaw)
+        north += m.weight * cosine
+        east += m.weight * sine
+    bank.yaw = atan2(east, north)
     bank.variance = 0.0
     for k in range(MODELS):
         m = bank.models[k]

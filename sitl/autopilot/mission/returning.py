@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterator
 
 from ...core.algebra import dot, norm
+from ...core.elementary import hypot
 from ...core.vectors import Vec3
 from ..navigation.state import JUMPS, LANDING, RETURN_PATH
 from ..state import Autopilot
@@ -45,7 +46,7 @@ def nearest_landing(mission: Mission, ap: Autopilot) -> int:
         if item.no_place:
             item = mission.items[jumps.next_nav(mission, k + 1, {}, JUMPS)]
         place = point(ap, item, here)
-        return math.hypot(place.x - here.x, place.y - here.y)
+        return hypot(place.x - here.x, place.y - here.y)
 
     return min(marks(mission, DO_LAND_START), key=away, default=0)
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plans legs: time-optimal travel along a straight line within speed, acceleration, jerk and snap limits.
 
-Ruckig (L. Berscheid, T. Kroeger: "Jerk-limited Real-time Trajectory Generation with Arbitrary Target States",
-RSS 2021) gives the timing of the constant-jerk phases. A leg that starts and ends at rest is then made
+The timing of the constant-jerk phases is time-optimal (``phases.py``). A leg that starts and ends at rest is then made
 snap-limited: each jerk pulse keeps its duration and its area but rises and falls linearly over ``rise``
 seconds. All pulses of such a leg are alike, so the distance and the speeds at their ends do not change.
 """
@@ -13,24 +12,24 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-import ruckig
-
+from ...core.elementary import hypot
 from ...core.vectors import Vec3
 from ...errors import SitlError
+from .phases import SHORTEST_PHASE, Phase, State, change_speed, from_motion, from_rest_to_rest, speed_at_rest
 from .state import SEGMENTS, Leg
 
 SHORTEST = 1e-4
 """A leg shorter than this [m] has no length."""
 MIN_LIMIT = 0.01
 """Floor of the speed [m/s], acceleration [m/s^2] and jerk [m/s^3] that parameters can limit a leg to."""
+ASTRAY = 1e6
+"""A leg under way that can be brought within its limits only so far beyond its end [m] is not planned."""
 MAX_RISE = 100.0
 """Ceiling of the time in which jerk rises [s], whatever parameters say."""
 
 
 _HALVINGS = 12
 _NO_ACCELERATION = 1e-9
-_CRUISE = 3
-"""Ruckig's phase without jerk and acceleration, of seven."""
 
 
 class LegError(SitlError, ValueError):
@@ -101,17 +100,20 @@ def pulse_duration(length: float, limits: Limits) -> float:
             high *= 2.0
         for _ in range(80):
             middle = 0.5 * (low + high)
+            if middle in (low, high):
+                break
             low, high = (middle, high) if reached(middle) < wanted else (low, middle)
         return high
 
     def speed(d: float) -> float:
         return pulse_acceleration(d, limits) * d
 
-    return min(
-        solve(lambda d: pulse_acceleration(d, limits), limits.acceleration),
-        solve(speed, limits.speed),
-        solve(lambda d: 2.0 * speed(d) * d, length),
-    )
+    duration = solve(lambda d: pulse_acceleration(d, limits), limits.acceleration)
+    if speed(duration) >= limits.speed:  # else that takes longer
+        duration = solve(speed, limits.speed)
+    if 2.0 * speed(duration) * duration >= length:
+        duration = solve(lambda d: 2.0 * speed(d) * d, length)
+    return duration
 
 
 def speed_within(length: float, limits: Limits) -> float:
@@ -139,125 +141,90 @@ def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: fl
     """Profile over ``length`` [m] from speed ``v0`` and acceleration ``a0`` to speed ``v1``.
 
     Raises:
-        LegError: a number is not finite, a limit not positive, or the length negative.
+        LegError: a number is not finite, a limit not positive, the length negative, the speed at the end above the
+            limit, or the motion at the start is far outside of the limits.
     """
     for name, value in (*zip(("speed", "acceleration", "jerk"), limits, strict=False),):
         if not (math.isfinite(value) and value > 0.0):
             raise LegError(f"leg: {name} limit {value} must be a positive number")
     if not math.isfinite(length + v0 + a0 + v1 + limits.rise) or length < 0.0 or limits.rise < 0.0:
         raise LegError(f"leg: length {length}, rise {limits.rise} must be 0 or more and speeds {v0}, {v1} finite")
+    if v1 > limits.speed:
+        raise LegError(f"leg: end speed {v1} must be within the limit {limits.speed}")
     if abs(a0) < _NO_ACCELERATION:
-        a0 = 0.0  # a number next to nothing spoils ruckig's phases
-    at_rest = v0 == 0.0 and a0 == 0.0 and v1 == 0.0
-    if at_rest and length < SHORTEST:
-        return Profile((Segment(0.0, length, 0.0, 0.0, 0.0, 0.0),), 0.0, 0.0, 0.0)
+        a0 = 0.0  # next to nothing: a leg from rest is one
+    if v0 == 0.0 and a0 == 0.0 and v1 == 0.0:
+        if length < SHORTEST:
+            return Profile((Segment(0.0, length, 0.0, 0.0, 0.0, 0.0),), 0.0, 0.0, 0.0)
+        pulse = pulse_duration(length, limits)
+        phases = from_rest_to_rest(length, limits.speed, pulse_acceleration(pulse, limits), pulse)
+        if limits.rise > 0.0:
+            phases = [piece for phase in phases for piece in _soften(phase, min(limits.rise, 0.5 * pulse))]
+        return _profile(phases, length, v0, a0, v1)
     pulse = pulse_duration(max(length, SHORTEST), limits)
-    jerk = pulse_acceleration(pulse, limits) / pulse
-    if not at_rest:
-        top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
-        jerk = pulse_acceleration(top, limits) / top
-    phases = _hasty_phases(length, limits, jerk, v0, a0, v1) or _phases(length, limits, jerk, v0, a0, v1)
-    if at_rest and limits.rise > 0.0:
-        phases = [piece for phase in phases for piece in _soften(*phase, pulse, min(limits.rise, 0.5 * pulse))]
-    return _profile(phases, length, v0, a0, v1)
+    top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
+    within = limits._replace(jerk=pulse_acceleration(top, limits) / top)
+    start = State(0.0, v0, a0)
+    phases = _hasty_phases(length, within, start, v1) or _phases(length, within, start, v1)
+    profile = _profile(phases, length, v0, a0, v1)
+    farthest = max(abs(segment.p) for segment in profile.segments)
+    if farthest > length + ASTRAY:
+        raise LegError(f"leg: from {v0} m/s and {a0} m/s^2 it would lead {farthest / 1e3:.0f} km away within {limits}")
+    return profile
 
 
-def _hasty_phases(
-    length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
-) -> list[tuple[float, float, float]]:
+def _phases(length: float, limits: Limits, start: State, v1: float) -> list[Phase]:
+    return from_motion(length, start, v1, limits.speed, limits.acceleration, limits.jerk)
+
+
+def _hasty_phases(length: float, limits: Limits, start: State, v1: float) -> list[Phase]:
     """Phases of a leg begun too fast, empty when it is not.
 
     Where the room is too short for slowing down to the limit and stopping after, it slows down as far as it
     can: bringing the speed below the limit first would mean to stop early or to fly backwards.
     """
-    peak = v0 + 0.5 * a0 * abs(a0) / jerk
+    peak = speed_at_rest(start.v, start.a, limits.jerk)
     if peak <= limits.speed:
         return []
-    phases = _slowing_phases(length, limits, jerk, v0, a0, v1)
+    phases = _slowing_phases(length, limits, start, v1)
     low, high = limits.speed, peak
     for _ in range(0 if phases else _HALVINGS):
         middle = 0.5 * (low + high)
-        slowed = _slowing_phases(length, limits._replace(speed=middle), jerk, v0, a0, v1)
+        slowed = _slowing_phases(length, limits._replace(speed=middle), start, v1)
         low, high = (low, middle) if slowed else (middle, high)
         phases = slowed or phases
-    return phases or _phases(length, limits._replace(speed=1.001 * peak), jerk, v0, a0, v1)
+    return phases or _phases(length, limits._replace(speed=1.001 * peak), start, v1)
 
 
-def _slowing_phases(
-    length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
-) -> list[tuple[float, float, float]]:
+def _slowing_phases(length: float, limits: Limits, start: State, v1: float) -> list[Phase]:
     """Phases to the speed limit without dipping below it, then as from there; empty without room enough."""
-    wanted = ruckig.InputParameter(1)
-    wanted.control_interface = ruckig.ControlInterface.Velocity
-    wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [0.0], [v0], [a0]
-    wanted.target_velocity, wanted.target_acceleration = [limits.speed], [0.0]
-    wanted.max_acceleration, wanted.max_jerk = [limits.acceleration], [jerk]
-    trajectory = ruckig.Trajectory(1)
-    ruckig.Ruckig(1).calculate(wanted, trajectory)
-    profile = trajectory.profiles[0][0]
-    room = length - trajectory.at_time(trajectory.duration)[0][0]
-    if room < 0.5 * limits.speed * (limits.speed / limits.acceleration + limits.acceleration / jerk) + 1.0:
+    slowing = change_speed(start.v, start.a, limits.speed, limits.acceleration, limits.jerk)
+    room = length - start.after_all(slowing).p
+    if room < 0.5 * limits.speed * (limits.speed / limits.acceleration + limits.acceleration / limits.jerk) + 1.0:
         return []
-    pieces = [*zip(profile.brake.t, profile.brake.j, strict=False), *zip(profile.t, profile.j, strict=False)]
-    slowing = [(t, j, 0.0) for t, j in pieces if t > 1e-9]
-    return slowing + _phases(room, limits, jerk, limits.speed, 0.0, v1)
+    return slowing + _phases(room, limits, State(0.0, limits.speed, 0.0), v1)
 
 
-def _phases(
-    length: float, limits: Limits, jerk: float, v0: float, a0: float, v1: float
-) -> list[tuple[float, float, float]]:
-    """Ruckig's phases as (duration, jerk, snap).
-
-    Ruckig loses precision on very long legs: they are planned shorter and cruise for the rest.
-    """
-    top = max(limits.speed, abs(v0) + a0 * a0 / jerk, abs(v1))
-    enough = 4.0 * (top * top / limits.acceleration + top * limits.acceleration / jerk) + 1.0
-    planned = min(length, enough)
-    wanted = ruckig.InputParameter(1)
-    wanted.current_position, wanted.current_velocity, wanted.current_acceleration = [0.0], [v0], [a0]
-    wanted.target_position, wanted.target_velocity, wanted.target_acceleration = [planned], [v1], [0.0]
-    wanted.max_velocity, wanted.max_acceleration = [limits.speed], [limits.acceleration]
-    wanted.max_jerk = [jerk]
-    trajectory = ruckig.Trajectory(1)
-    try:
-        result = ruckig.Ruckig(1).calculate(wanted, trajectory)
-    except ruckig.RuckigError as error:
-        raise LegError(f"leg: ruckig fails over {planned} m from {v0} to {v1} m/s: {error}") from None
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise LegError(f"leg: no profile over {planned} m from {v0} to {v1} m/s within {limits}: {result}")
-    profile = trajectory.profiles[0][0]
-    times = list(profile.t)
-    times[_CRUISE] += (length - planned) / limits.speed
-    pieces = [*zip(profile.brake.t, profile.brake.j, strict=False), *zip(times, profile.j, strict=False)]
-    return [(t, j, 0.0) for t, j in pieces if t > 1e-9]
-
-
-def _soften(duration: float, jerk: float, _snap: float, pulse: float, rise: float) -> list[tuple[float, float, float]]:
-    """A constant-jerk phase as one or two pulses of rise, hold and fall, with the same duration and area.
-
-    Where a leg turns from accelerating to braking without cruise, ruckig's phase is two pulses long.
-    """
+def _soften(phase: Phase, rise: float) -> list[Phase]:
+    """A constant-jerk pulse as rise, hold and fall, with the same duration and area."""
+    duration, jerk, _ = phase
     if jerk == 0.0:
-        return [(duration, 0.0, 0.0)]
-    count = max(round(duration / pulse), 1)
-    each = duration / count
-    peak = jerk * each / (each - rise)
-    pieces = [(rise, 0.0, peak / rise), (each - 2.0 * rise, peak, 0.0), (rise, peak, -peak / rise)]
-    return [piece for piece in pieces if piece[0] > 1e-9] * count
+        return [phase]
+    peak = jerk * duration / (duration - rise)
+    pieces = [Phase(rise, 0.0, peak / rise), Phase(duration - 2.0 * rise, peak), Phase(rise, peak, -peak / rise)]
+    return [piece for piece in pieces if piece.duration > SHORTEST_PHASE]
 
 
-def _profile(phases: Sequence[tuple[float, float, float]], length: float, v0: float, a0: float, v1: float) -> Profile:
+def _profile(phases: Sequence[Phase], length: float, v0: float, a0: float, v1: float) -> Profile:
     """Integrates phases to segments and finds where the start's acceleration ends and the final
     deceleration begins.
     """
     segments: list[Segment] = []
-    t, p, v, a = 0.0, 0.0, v0, a0
-    for h, j, s in phases:
-        segments.append(Segment(t, p, v, a, j, s))
-        t += h
-        p += h * (v + h * (a / 2.0 + h * (j / 6.0 + h * s / 24.0)))
-        v += h * (a + h * (j / 2.0 + h * s / 6.0))
-        a += h * (j + h * s / 2.0)
+    t, state = 0.0, State(0.0, v0, a0)
+    for phase in phases:
+        segments.append(Segment(t, *state, phase.jerk, phase.snap))
+        t += phase.duration
+        state = state.after(phase)
     ends = [s.t for s in segments[1:]] + [t]
     turn_out = t
     for k in range(len(segments) - 1, -1, -1):  # backwards over the deceleration to the end
@@ -279,7 +246,7 @@ def _profile(phases: Sequence[tuple[float, float, float]], length: float, v0: fl
 
 def axis_limits(direction: Vec3, horizontal: float, up: float, down: float) -> float:
     """Greatest length of a vector along ``direction`` (unit vector NED) within a horizontal and two vertical limits."""
-    ne = math.hypot(direction.x, direction.y)
+    ne = hypot(direction.x, direction.y)
     d = abs(direction.z)
     vertical = up if direction.z < 0.0 else down
     return min(horizontal / ne if ne > 1e-9 else math.inf, vertical / d if d > 1e-9 else math.inf)

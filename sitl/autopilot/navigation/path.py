@@ -11,9 +11,8 @@ slower than both legs are, and within an acceleration (https://ardupilot.org/cop
 
 from __future__ import annotations
 
-import math
-
 from ...core.algebra import dot, dot2, horizontal, norm
+from ...core.elementary import atan2, hypot
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..control.shaping import Motion
@@ -107,13 +106,13 @@ def watch_detour(nav: Nav, areas: int, events: Events, time_us: int) -> None:
 @law
 def distance(nav: Nav, pos: Vec3) -> float:
     """Horizontal distance from ``pos`` to the destination, both NED [m]."""
-    return math.hypot(nav.target.x - pos.x, nav.target.y - pos.y)
+    return hypot(nav.target.x - pos.x, nav.target.y - pos.y)
 
 
 @law
 def bearing(nav: Nav, pos: Vec3) -> float:
     """Bearing from ``pos``, NED [m], to the destination [rad]."""
-    return math.atan2(nav.target.y - pos.y, nav.target.x - pos.x)
+    return atan2(nav.target.y - pos.y, nav.target.x - pos.x)
 
 
 @law

@@ -8,6 +8,7 @@ from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
+from ...core.sums import separation
 from ...core.vectors import Vec3
 from ..avoidance.shortest_path import find_path
 from ..events import NO_WAY, WAY_LAID, emit
@@ -58,7 +59,7 @@ class Planner(ABC, Generic[A]):
         Raises:
             LegError: the target is not finite.
         """
-        length = math.dist(origin, target)
+        length = separation(origin, target)
         if length < SHORTEST or (not all(map(math.isfinite, origin)) and all(map(math.isfinite, target))):
             write(leg, plan(0.0, Limits(1.0, 1.0, 1.0)), target, ZERO, 0.0)
             return
@@ -148,7 +149,7 @@ class Planner(ABC, Generic[A]):
         origin, continues = self.origin_of_next(ap, time_us)
         planned = continues and nav.current.fast and nav.next.segments > 0
         nav.joined = False
-        if planned and math.dist(end(nav.next), target) < 1e-3:
+        if planned and separation(end(nav.next), target) < 1e-3:
             nav.previous = nav.current
             nav.current = nav.next
             nav.current.fast = False
@@ -175,7 +176,7 @@ class Planner(ABC, Generic[A]):
             target = vector_at(nav.detour.places, 3 * nav.detour.left - 3)
         clear(nav.next)
         nav.current.fast = False
-        if target is None or math.dist(end(nav.current), target) < SHORTEST or nav.current.length < SHORTEST:
+        if target is None or separation(end(nav.current), target) < SHORTEST or nav.current.length < SHORTEST:
             return
         if not self.may_join(ap, end(nav.current), target):
             return

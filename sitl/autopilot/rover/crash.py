@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from ...core.elementary import hypot
 from ...core.kernels import law
 from ...core.vectors import Euler
 from ..arming_checks import BY_CRASH
@@ -40,7 +41,7 @@ def is_leaning(euler: Euler, angle_max: float) -> bool:
 @law
 def is_blocked(estimate: Estimate, throttle: float) -> bool:
     """Whether the motors push with ``throttle`` and nothing moves."""
-    speed = math.hypot(estimate.vel.x, estimate.vel.y)
+    speed = hypot(estimate.vel.x, estimate.vel.y)
     if speed >= MOTION_MIN or abs(estimate.rates.z) >= MOTION_MIN:
         return False
     return abs(throttle) >= THROTTLE_MIN

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_2pi
 from ..radio import ROLL, THROTTLE, centred, receive, stick_channel, stick_position
@@ -145,7 +146,7 @@ def pointed(pilot: PilotState, steer_type: int, speed_max: float) -> HeadingAndS
     if steer_type == TWO_PADDLES:
         steering, throttle = 0.5 * (steering - throttle), 0.5 * (steering + throttle)
     pushed = min(math.sqrt(steering * steering + throttle * throttle), 1.0)
-    return HeadingAndSpeed(wrap_2pi(math.atan2(steering, throttle)), pushed * speed_max)
+    return HeadingAndSpeed(wrap_2pi(atan2(steering, throttle)), pushed * speed_max)
 
 
 @law

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
+from ...core.elementary import hypot
 from ...core.geodesy import add_offset, offset_ne
 
 SIDE = 4
@@ -78,7 +79,7 @@ def around(lat: float, lon: float, spacing: float) -> Iterator[Block]:
 def between(lat: float, lon: float, end_lat: float, end_lon: float, spacing: float) -> Iterator[Block]:
     """The blocks on the way from one place to another [degE7]."""
     way = offset_ne(lat, lon, end_lat, end_lon)
-    steps = max(math.ceil(math.hypot(way.x, way.y) / (0.5 * STRIDE_N * spacing)), 1)
+    steps = max(math.ceil(hypot(way.x, way.y) / (0.5 * STRIDE_N * spacing)), 1)
     for k in range(1, steps + 1):
         yield block_of(*add_offset(lat, lon, way.x * k / steps, way.y * k / steps), spacing)
 

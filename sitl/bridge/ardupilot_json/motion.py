@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.algebra import quat_from_euler
+from ...core.sums import lengths
 from ...core.vectors import Euler
 from ...errors import SitlError
 
@@ -172,7 +173,7 @@ def _attitude(fields: dict[str, Any]) -> tuple[float, ...]:
     """The quaternion, which counts if both are told, or the one of the Euler angles [rad]."""
     if "quaternion" in fields:
         q = _vector(fields, "quaternion", 4, 2.0)
-        length = math.sqrt(sum(part * part for part in q))
+        length = float(lengths(q))
         if not 0.5 <= length <= 2.0:
             raise MotionError(f"quaternion {list(q)} has length {length:.3g}, not 1")
         return q if abs(length - 1.0) < 1e-12 else tuple(part / length for part in q)

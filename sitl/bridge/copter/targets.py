@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import math
-
 from ...autopilot.copter.modes.auto import AUTO, is_guided
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
 from ...autopilot.copter.navigation.waypoint import from_origin
+from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.kernels import law
 from ...core.records import Floats
@@ -42,8 +41,8 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     else:
         to = v.autopilot.home.pos
     if modes.number in _FLY_TO_A_PLACE:
-        m.target_bearing = int16(math.atan2(to.y - pos.y, to.x - pos.x) * DEG)
-        m.wp_dist = uint16(math.hypot(to.x - pos.x, to.y - pos.y))
+        m.target_bearing = int16(atan2(to.y - pos.y, to.x - pos.x) * DEG)
+        m.wp_dist = uint16(hypot(to.x - pos.x, to.y - pos.y))
     m.nav_roll = euler.roll * DEG
     m.nav_pitch = euler.pitch * DEG
     m.nav_bearing = int16(euler.yaw * DEG)

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
 
+from ...core.elementary import atan2, hypot
 from ...core.record_reader import RecordReader
 from ..dialect import MessageType, message
 from ..telemetry.units import DEG, int16, uint16
@@ -37,8 +37,8 @@ class GpsWriter:
         count, t, fix, lat, lon, alt, eph, epv, vn, ve, vd, satellites = self._read()
         if count == 0:
             return []
-        course = uint16(math.atan2(ve, vn) * DEG * 100.0 % 36000.0)
-        speeds = uint16(math.hypot(vn, ve)), int16(vn), int16(ve), int16(vd), course
+        course = uint16(atan2(ve, vn) * DEG * 100.0 % 36000.0)
+        speeds = uint16(hypot(vn, ve)), int16(vn), int16(ve), int16(vd), course
         return [GPS_KIND.pack(t, lat, lon, alt, uint16(eph), uint16(epv), *speeds, fix & 0xFF, satellites & 0xFF, 0, 0)]
 
 

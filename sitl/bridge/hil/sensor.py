@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from ...core.constants import TICK_US
+from ...core.elementary import pow
 from ...core.record_reader import RecordReader, locate
 from ..dialect import message
 from .protocol import BARO_UPDATED, IMU_UPDATED, LATEST_US, MAG_UPDATED, RefusedError, culprit, within
@@ -37,7 +38,7 @@ Values = tuple[Any, ...]
 
 def pressure_altitude(pressure: float) -> float:
     """Height [m] in the standard atmosphere of a static pressure [hPa]."""
-    return float(44330.77 * (1.0 - (max(pressure, 0.0) / 1013.25) ** 0.1902632))
+    return float(44330.77 * (1.0 - pow(max(pressure, 0.0) / 1013.25, 0.1902632)))
 
 
 class SensorWriter:

@@ -8,10 +8,10 @@ MAVLink has no message for them. ``time_usec`` is the tick in which it happened.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from ...core.record_reader import RecordReader
+from ...core.sums import lengths
 from ...physics.carried import Carried
 from ..dialect import message
 from ..telemetry.units import uint16
@@ -25,7 +25,7 @@ NOWHERE = Carried((1.0, 0.0, 0.0, 0.0), (0.0,) * 3, 0, 0, 0, (0,) * 3, (0,) * 3)
 
 def truth_payload(time_us: int, truth: Carried) -> bytes:
     """The message; air speed is the speed over the ground, as without wind."""
-    speed = uint16(math.hypot(*truth.velocity))
+    speed = uint16(lengths(truth.velocity))
     place = truth.lat, truth.lon, truth.alt
     return TRUTH_KIND.pack(
         time_us, *truth.attitude, *truth.rates, *place, *truth.velocity, speed, speed, *truth.acceleration

@@ -9,6 +9,8 @@ import struct
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from sitl.core.elementary import log1p
+
 from ...core import rng
 from ..frame import CHECKSUM, HEADER_V1, HEADER_V2, MARK_V1, MARK_V2, SIGNATURE, SIGNED
 from ..wire.port import NEVER
@@ -136,7 +138,7 @@ class FaultyWay:
         bits, at = bytearray(frame), -1
         while True:
             if probability < 1.0:
-                at += int(min(math.log1p(-rng.uniform(self._rng)) / math.log1p(-probability), 1e9))
+                at += int(min(log1p(-rng.uniform(self._rng)) / log1p(-probability), 1e9))
             at += 1
             if at >= 8 * len(bits):
                 return bytes(bits)

@@ -10,7 +10,6 @@ number that is not finite stops the vehicle.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, cast
 
 from ...autopilot.events import SETPOINT_IGNORED, emit
@@ -23,8 +22,9 @@ from ...autopilot.rover.modes.guided_setpoints import (
     stop,
 )
 from ...core.algebra import euler_of, horizontal
+from ...core.elementary import atan2, hypot
 from ...core.kernels import law
-from ...core.scalars import constrain, finite, hypotenuse
+from ...core.scalars import constrain, finite
 from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
 from ..places import local_place
@@ -102,7 +102,7 @@ def follow(v: Rover, target: Target, backward: bool, message: int) -> None:
         heading = target.yaw + v.autopilot.estimate.yaw if target.relative_yaw else target.yaw
         set_heading_and_speed(modes, v.time_us, heading, -speed if target.use_vel and backward else speed)
     elif target.use_vel:
-        set_heading_and_speed(modes, v.time_us, math.atan2(target.vel.y, target.vel.x), speed)
+        set_heading_and_speed(modes, v.time_us, atan2(target.vel.y, target.vel.x), speed)
 
 
 @law
@@ -115,7 +115,7 @@ def is_finite(target: Target) -> bool:
 @law
 def speed_of(v: Rover, vel: Vec3) -> float:
     """Speed [m/s] of a velocity, within WP_SPEED."""
-    speed, fastest = hypotenuse(vel.x, vel.y), full_speed(v)
+    speed, fastest = hypot(vel.x, vel.y), full_speed(v)
     return fastest if speed > fastest else speed
 
 

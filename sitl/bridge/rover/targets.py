@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-import math
-
 from ...autopilot.rover.modes.guided import GUIDED, HEADING_AND_SPEED
 from ...autopilot.rover.modes.mode import END_OF_PATH, NO_PLACE, PLACE_TO_STAY
 from ...autopilot.rover.modes.table import destination, is_autonomous
+from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.kernels import law
 from ...vehicle.rover import Rover
@@ -34,9 +33,9 @@ def nav_controller_output(m: NavControllerOutput, v: Rover) -> bool:
     to = destination(modes.number, modes)
     if to.kind != NO_PLACE:
         steered_to = to.place if to.kind == PLACE_TO_STAY else v.autopilot.control.position.pos_target
-        m.wp_dist = uint16(math.hypot(to.place.x - pos.x, to.place.y - pos.y))
-        m.target_bearing = int16(math.atan2(to.place.y - pos.y, to.place.x - pos.x) * DEG)
-        m.nav_bearing = int16(math.atan2(steered_to.y - pos.y, steered_to.x - pos.x) * DEG)
+        m.wp_dist = uint16(hypot(to.place.x - pos.x, to.place.y - pos.y))
+        m.target_bearing = int16(atan2(to.place.y - pos.y, to.place.x - pos.x) * DEG)
+        m.nav_bearing = int16(atan2(steered_to.y - pos.y, steered_to.x - pos.x) * DEG)
     elif modes.number == GUIDED and modes.guided.submode == HEADING_AND_SPEED and modes.guided.has_target:
         m.nav_bearing = int16(modes.guided.heading * DEG)
     if to.kind == END_OF_PATH:

@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from sitl.core.elementary import hypot
+
 from ...autopilot import camera, relays
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
@@ -226,5 +228,5 @@ class CameraService(Service):
             x, y = float(estimate.pos.x), float(estimate.pos.y)
             if place is None:
                 self._state = self._state._replace(place=(x, y))
-            elif math.hypot(x - place[0], y - place[1]) >= distance:
+            elif hypot(x - place[0], y - place[1]) >= distance:
                 self.take_picture()

@@ -17,8 +17,9 @@ import numpy as np
 from ...autopilot.calibration_fit import CompassFit, fit_compass, sphere
 from ...autopilot.params.simulation import DELIVERED
 from ...autopilot.sensor_calibration import COMPASS_DONE, COMPASS_RUNNING
-from ...core.algebra import quat_from_euler, rotate_inverse
+from ...core.algebra import norm, quat_from_euler, rotate_inverse
 from ...core.earth_field import field_ned
+from ...core.sums import lengths, matrix_product
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
 from ..wire.port import NEVER
@@ -45,10 +46,10 @@ def _sections() -> np.ndarray[Any, Any]:
     points = np.array([np.roll(p, k) for p in corners for k in range(3)])
     faces = [
         np.array(face) for face in itertools.combinations(points, 3)
-        if all(np.linalg.norm(a - b) < 2.1 for a, b in itertools.combinations(face, 2))
+        if all(lengths(a - b) < 2.1 for a, b in itertools.combinations(face, 2))
     ]  # fmt: skip
     found = [sub for face in faces for sub in (face.sum(axis=0), *(face.sum(axis=0) + 3.0 * corner for corner in face))]
-    return np.array([section / np.linalg.norm(section) for section in found])
+    return np.array([section / lengths(section) for section in found])
 
 
 SECTIONS = _sections()
@@ -177,7 +178,7 @@ class CompassCalibrationService(Service):
         """With the sample of now, and fitted when there are enough."""
         sample = self._shown(k)
         if state.samples:
-            apart = np.linalg.norm(np.array(state.samples) - sample, axis=1).min()
+            apart = lengths(np.array(state.samples) - sample).min()
             if apart < SPACING * (self._strength() or 500.0):
                 return state
         samples = (*state.samples, tuple(sample.tolist()))
@@ -204,7 +205,7 @@ class CompassCalibrationService(Service):
         estimate = self.bridge.vehicle.v.autopilot.estimate
         if not estimate.origin_set:
             return None
-        return 1e3 * math.hypot(*field_ned(1e-7 * estimate.origin_lat, 1e-7 * estimate.origin_lon))
+        return 1e3 * norm(field_ned(1e-7 * estimate.origin_lat, 1e-7 * estimate.origin_lon))
 
     def _shown(self, k: int) -> np.ndarray[Any, Any]:
         """What a compass shows without any correction [mGauss]."""
@@ -265,6 +266,6 @@ class CompassCalibrationService(Service):
         covered = np.zeros(len(SECTIONS), dtype=bool)
         if len(state.samples) >= FIRST_SAMPLES:
             samples = np.array(state.samples)
-            covered[np.argmax((samples - sphere(samples)[0]) @ SECTIONS.T, axis=1)] = True
+            covered[np.argmax(matrix_product(samples - sphere(samples)[0], SECTIONS.T), axis=1)] = True
         packed: list[int] = np.packbits(covered, bitorder="little").tolist()
         return packed

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-import math
-
 from ...autopilot.events import LANDING_TARGET_DID, emit
 from ...autopilot.landing_target.measurement import take
 from ...autopilot.landing_target.state import LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
+from ...core.elementary import tan
 from ...core.kernels import law
 from ...core.scalars import PI, finite
 from ...core.vectors import Vec3
@@ -50,6 +49,6 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
     if m.position_valid == 0:
         if not (abs(m.angle_x) < _SIDEWAYS and abs(m.angle_y) < _SIDEWAYS):
             return
-        line = Vec3(-math.tan(m.angle_y), math.tan(m.angle_x), 1.0)
+        line = Vec3(-tan(m.angle_y), tan(m.angle_x), 1.0)
     if finite(line.x + line.y + line.z + m.distance):
         take(t, line, SENSOR if m.frame == BODY_FRD else LEVEL_SENSOR, m.distance, v.time_us)

@@ -16,6 +16,7 @@ from ...autopilot.aux_switch import HIGH
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
 from ...core.algebra import conjugate, euler_of, multiply, quat_from_euler
+from ...core.elementary import atan2, hypot
 from ...core.scalars import wrap_pi
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
@@ -264,8 +265,8 @@ class MountService(PayloadService):
         elif state.mode in (PLACE, HOME):
             to = self._target()
             if to is not None:
-                pitch = math.atan2(-to.z, math.hypot(to.x, to.y))
-                self._state = state._replace(roll=0.0, pitch=pitch, yaw=math.atan2(to.y, to.x))
+                pitch = atan2(-to.z, hypot(to.x, to.y))
+                self._state = state._replace(roll=0.0, pitch=pitch, yaw=atan2(to.y, to.x))
 
     def _target(self) -> Vec3 | None:
         """From the vehicle to what it points at, NED [m]."""

@@ -22,13 +22,14 @@ from ...autopilot.avoidance.proximity import (
     note_reading,
     sector_of,
 )
+from ...core.elementary import atan2, hypot, tan
 from ...core.kernels import law
 from ...core.scalars import finite
 from ...vehicle.record import Vehicle
 from ..telemetry.ranging import BODY_FRD, DistanceSensor, ObstacleDistance
 from ..wire.message import Message
 
-LEVEL = math.tan(math.radians(15.0))
+LEVEL = tan(math.radians(15.0))
 """Sectors reach so far up and down."""
 
 
@@ -85,8 +86,8 @@ def distance(m: DistanceSensor, v: Vehicle, sender: int) -> None:
 def obstacle_3d(m: ObstacleDistance3d, v: Vehicle, sender: int) -> None:
     """OBSTACLE_DISTANCE_3D: an obstacle's place on the body; what is far above or below is left out."""
     seen = v.autopilot.proximity
-    away = math.hypot(m.x, m.y)
+    away = hypot(m.x, m.y)
     is_known = finite(away) and finite(m.min_distance) and finite(m.max_distance)
     if is_known and seen.kind == MAVLINK and m.frame == BODY_FRD and abs(m.z) < away * LEVEL:
         begin_scan(seen, m.min_distance, m.max_distance, v.autopilot.params.PRX1)
-        note_one(v, seen, math.atan2(m.y, m.x), away)
+        note_one(v, seen, atan2(m.y, m.x), away)

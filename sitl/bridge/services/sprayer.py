@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
+
+from sitl.core.elementary import hypot
 
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
@@ -65,7 +66,7 @@ class SprayerService(PayloadService):
     def service(self, now_us: int) -> None:
         self.due_us = now_us + EVERY_US
         vel = self.bridge.vehicle.v.autopilot.estimate.vel
-        speed = TEST_SPEED if self._state.is_test else math.hypot(vel.x, vel.y)
+        speed = TEST_SPEED if self._state.is_test else hypot(vel.x, vel.y)
         self._decide(now_us, speed)
         self._drive(speed)
 

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from ...autopilot.estimation.status import POS_HORIZ_REL
 from ...autopilot.state import Estimate
 from ...core.border import GpsReading
+from ...core.elementary import atan2, hypot
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
@@ -120,7 +120,7 @@ class VfrHud(Message, name="VFR_HUD"):
 def vfr_hud(m: VfrHud, v: Vehicle, throttle: float) -> bool:
     """VFR_HUD of a firmware whose throttle is -1 .. 1."""
     estimate = v.autopilot.estimate
-    m.airspeed = m.groundspeed = math.hypot(estimate.vel.x, estimate.vel.y)
+    m.airspeed = m.groundspeed = hypot(estimate.vel.x, estimate.vel.y)
     m.alt = global_position(v).alt
     m.climb = -estimate.vel.z
     m.heading = heading_cdeg(estimate.yaw) // 100
@@ -216,8 +216,8 @@ def fill_fix(m: GpsRawInt | Gps2Raw, s: GpsReading) -> None:
     m.lat = s.gps_lat
     m.lon = s.gps_lon
     m.alt = m.alt_ellipsoid = s.gps_alt
-    m.vel = uint16(math.hypot(vel.x, vel.y))
-    m.cog = uint16(math.atan2(vel.y, vel.x) * DEG * 100.0 % 36000.0)
+    m.vel = uint16(hypot(vel.x, vel.y))
+    m.cog = uint16(atan2(vel.y, vel.x) * DEG * 100.0 % 36000.0)
     m.fix_type = s.gps_fix & 0xFF
     m.satellites_visible = min(max(s.gps_satellites, 0), 255)
     m.eph = m.epv = UNKNOWN

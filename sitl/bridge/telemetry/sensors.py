@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import math
-
 from ...autopilot.vibration import vibration_levels
 from ...core.algebra import euler_of
 from ...core.border import BAROS_DIFFER, ONE_BARO
 from ...core.constants import GRAVITY
+from ...core.elementary import pow
 from ...core.kernels import law
 from ...core.vectors import Quat
 from ...physics.carried import MILLIG, Carried, carried
@@ -120,7 +119,7 @@ def highres_imu(m: HighresImu, v: Vehicle) -> bool:
     m.ymag = mag.y
     m.zmag = mag.z
     m.abs_pressure = pressure
-    m.pressure_alt = 44330.77 * (1.0 - math.pow(pressure / 1013.25, 0.1902632)) if pressure >= 0.0 else 0.0
+    m.pressure_alt = 44330.77 * (1.0 - pow(pressure / 1013.25, 0.1902632)) if pressure >= 0.0 else 0.0
     m.temperature = s.temperature
     m.fields_updated = ALL_BUT_DIFFERENTIAL_PRESSURE
     return True

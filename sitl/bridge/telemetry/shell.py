@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from hashlib import sha1
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ from ... import __version__
 from ...autopilot import relays
 from ...autopilot.gps_receivers import has_fix
 from ...autopilot.modes import shown
+from ...core.elementary import hypot
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
@@ -77,7 +77,7 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
         altitude=int16(here.alt),
         target_altitude=int16(ap.home.alt),
         heading=heading_cdeg(ap.estimate.yaw) // 200,
-        groundspeed=min(uint16(5.0 * math.hypot(velocity.x, velocity.y)), 255),
+        groundspeed=min(uint16(5.0 * hypot(velocity.x, velocity.y)), 255),
         climb_rate=min(max(int16(-10.0 * velocity.z), -128), 127),
         temperature_air=min(max(round(v.sensors.temperature), -127), 127),
         battery=percent(ap.battery.remaining_pct),

@@ -20,8 +20,7 @@ from ..code_cache import BuildError
 from .object_code import stub
 from .targets import Target
 
-_MATHEMATICS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "hypot", "fmod", "sincos")
-SYSTEM = {"libm.so.6": _MATHEMATICS, "libc.so.6": ("memcpy", "memmove", "memset", "memcmp", "bcmp")}
+SYSTEM = {"libm.so.6": ("fmod",), "libc.so.6": ("memcpy", "memmove", "memset", "memcmp", "bcmp")}
 """System library -> what machine code may call of it."""
 _OPTIONS = (
     "-shared", "--build-id=none", "--hash-style=gnu", "-Bsymbolic", "--strip-all", "--no-as-needed",

@@ -6,7 +6,6 @@ The bytes are those that ``setpoints`` and ``telemetry`` of this package make an
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +25,7 @@ from sitl.core.records import Floats, Ints, Record, Records, array
 from sitl.core.vectors import Euler, Vec3
 from sitl.worlds.shapes import from_heading, from_ned, to_heading, to_ned
 
+from ...core.elementary import sincos
 from ..robots.truth import STATE
 from .reports import REPORTED, read_report, show_report
 from .setpoints import (
@@ -441,7 +441,7 @@ def show_robots(
         i = rows[k]
         end = ends[i]
         p, v, heading = end.position, end.velocity, end.euler.yaw
-        c, s = math.cos(heading), math.sin(heading)
+        s, c = sincos(heading)
         x, y, z = from_ned(places[i, 0] + p.x + base_along * c, places[i, 1] + p.y + base_along * s, places[i, 2] + p.z)
         state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
         state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c

@@ -22,6 +22,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sitl.core.elementary import cos, hypot, sin
+from sitl.core.sums import lengths, products
+
 from ..actions import ACCELERATION, ATTITUDE, POSITION, VELOCITY, Setpoint
 from ..options import EnvOptionError
 
@@ -130,7 +133,7 @@ class Watch:
             return f"the agent is late: {now - before:.2f} s since its last step"
         if not all(map(math.isfinite, row)):
             return f"a set-point is no number: {list(row)}"
-        away = math.hypot(pose[0] - self._centre[0], pose[1] - self._centre[1])
+        away = hypot(pose[0] - self._centre[0], pose[1] - self._centre[1])
         if away > self.guard.radius + BEYOND:
             return f"outside of the fence: {away:.1f} m away"
         if self._flies and not self.guard.floor - BEYOND < pose[2] < self.guard.ceiling + BEYOND:
@@ -162,15 +165,15 @@ class Watch:
 
     def _velocity(self, row: list[float], pose: Sequence[float]) -> list[float]:
         guard, yaw = self.guard, pose[3]
-        size = math.hypot(row[0], row[1])
+        size = hypot(row[0], row[1])
         share = min(1.0, guard.speed / size) if size > 0.0 else 1.0
-        c, s = math.cos(yaw), math.sin(yaw)
+        c, s = cos(yaw), sin(yaw)
         v = np.array([row[0] * c - row[1] * s, row[0] * s + row[1] * c]) * share
         way = np.array(pose[:2]) - self._centre[:2]
-        distance = float(np.hypot(*way))
+        distance = float(lengths(way))
         if distance > 0.0:
             outward = way / distance
-            v = v - max(float(v @ outward) - _speed_within(guard.radius - distance), 0.0) * outward
+            v = v - max(float(products(v, outward)) - _speed_within(guard.radius - distance), 0.0) * outward
         up = min(max(row[2], -guard.climb), guard.climb)
         if self._flies:
             up = min(max(up, -_speed_within(pose[2] - guard.floor)), _speed_within(guard.ceiling - pose[2]))
@@ -178,7 +181,7 @@ class Watch:
 
     def _position(self, row: list[float], pose: Sequence[float]) -> list[float]:
         guard, way = self.guard, np.array(row[:2]) - self._centre[:2]
-        share = min(1.0, guard.radius / max(float(np.hypot(*way)), 1e-9))
+        share = min(1.0, guard.radius / max(float(lengths(way)), 1e-9))
         x, y = (self._centre[:2] + share * way).tolist()
         return [x, y, min(max(row[2], guard.floor), guard.ceiling) if self._flies else row[2], *row[3:]]
 
@@ -231,7 +234,7 @@ def say(text: str) -> None:
 
 def _speed_within(room: float) -> float:
     """Greatest speed [m/s] towards a fence that is so far away [m]; outside of it one that leads back."""
-    return BRAKING * (math.sqrt(AHEAD_S**2 + 2.0 * room / BRAKING) - AHEAD_S) if room > 0.0 else room
+    return BRAKING * (math.sqrt(AHEAD_S * AHEAD_S + 2.0 * room / BRAKING) - AHEAD_S) if room > 0.0 else room
 
 
 def guard_of(option: Any, is_simulator: bool) -> Guard | None:

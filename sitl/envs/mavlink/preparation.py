@@ -13,6 +13,7 @@ from typing import Any
 
 from sitl.client.connection import TRIES, Connection
 from sitl.client.endpoint import ACCEPTED
+from sitl.core.sums import lengths
 from sitl.errors import NotASimulatorError, NotReadyError
 
 from .reports import LANDED
@@ -196,7 +197,7 @@ def join(link: Connection, guided: int, flies: bool, seconds: float) -> None:
     link.command("REQUEST_MESSAGE", ORIGIN.id)
 
     def missing() -> str:
-        speed = math.sqrt(sum(v * v for v in inbox.position[4:7]))
+        speed = float(lengths(inbox.position[4:7]))
         if math.isnan(inbox.position[1]) or inbox.origin is None:
             return "it has no position"
         if not inbox.armed:

@@ -16,6 +16,7 @@ from sitl.bridge.services.setpoints import (
 )
 from sitl.client.connection import Connection
 from sitl.client.endpoint import ACCEPTED
+from sitl.core.elementary import cos, sin
 from sitl.errors import NotReadyError
 
 from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, check_reports, set_intervals, until
@@ -38,7 +39,7 @@ def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     PX4 takes them in the local frame on all its versions, in the body's on some.
     """
     forward, left, up, turn = row
-    c, s = math.cos(inbox.attitude[3]), math.sin(inbox.attitude[3])
+    c, s = cos(inbox.attitude[3]), sin(inbox.attitude[3])
     motion = {"vx": forward * c + left * s, "vy": forward * s - left * c, "vz": -up, "yaw_rate": -turn}
     return LOCAL, LOCAL.payload(
         target_system=inbox.system, target_component=1, coordinate_frame=LOCAL_NED, type_mask=_VELOCITY_AND_TURN,

@@ -16,6 +16,7 @@ from sitl.bridge.telemetry.sensors import MILLIG_PER_ACC, ScaledImu
 from sitl.bridge.telemetry.status import SysStatus
 from sitl.bridge.wire.message import Message
 from sitl.core.array_kernels import Line, Table
+from sitl.core.elementary import sincos
 from sitl.core.kernels import law
 from sitl.core.memory import record_at
 
@@ -68,8 +69,9 @@ def read_battery(told: Line, m: SysStatus) -> None:
 def read_wind(told: Line, m: Wind) -> None:
     """WIND: where it comes from [deg], its speed [m/s]."""
     angle = math.radians(m.direction)
-    told[WIND] = -m.speed * math.cos(angle)
-    told[WIND + 1] = -m.speed * math.sin(angle)
+    sine, cosine = sincos(angle)
+    told[WIND] = -m.speed * cosine
+    told[WIND + 1] = -m.speed * sine
 
 
 @law
@@ -104,7 +106,7 @@ def show_report(told: Line, heading: float, reports: Table, i: int) -> None:
     """Write what a vehicle of this heading [rad] has told into row ``i``, the wind along its heading."""
     for k in range(REPORTED):
         reports[i, k] = told[k]
-    c, s = math.cos(heading), math.sin(heading)
+    s, c = sincos(heading)
     reports[i, WIND] = told[WIND] * c + told[WIND + 1] * s
     reports[i, WIND + 1] = told[WIND] * s - told[WIND + 1] * c
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import time
 from typing import ClassVar
 
@@ -13,6 +12,7 @@ from gymnasium import logger
 from sitl.client.connection import Connection, Lockstep, Remote, connect
 from sitl.client.endpoint import ACCEPTED, AUTOPILOT
 from sitl.core.algebra import quat_from_euler
+from sitl.core.sums import separation
 from sitl.core.vectors import Euler
 from sitl.errors import NotReadyError, OptionError
 from sitl.vehicle.kinds import KINDS
@@ -266,7 +266,7 @@ class SocketVehicles(Vehicles):
             fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
             link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
             link.pause(1_000_000)
-            away = math.dist(inbox.position[1:4], place)
+            away = separation(inbox.position[1:4], place)
             if away < NEAR or not inbox.armed or inbox.mode != self.setup.kind.guided:
                 return
         raise NotReadyError(f"{link.name}: the vehicle is still {away:.1f} m away from where the first episode began")

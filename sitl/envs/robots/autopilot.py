@@ -20,6 +20,7 @@ import numpy.typing as npt
 from sitl import vehicles, worlds
 from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
+from sitl.core.elementary import cos, sin
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import PX4, Choice, choose
 from sitl.move import Move
@@ -347,7 +348,7 @@ class AutopilotRobot:
         inbox = link.inbox
         _, n, e, d, vn, ve, vd = inbox.position
         heading = inbox.attitude[3]
-        c, s = math.cos(heading), math.sin(heading)
+        c, s = cos(heading), sin(heading)
         origin = now.origin
         x, y, z = from_ned(origin[0] + n + self._base_along * c, origin[1] + e + self._base_along * s, origin[2] + d)
         self.state[index] = (

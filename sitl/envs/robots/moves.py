@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sitl.core.elementary import cos, sin
 from sitl.errors import OptionError
 from sitl.move import WIND, Move
 from sitl.plants.surroundings import start_pose
@@ -66,8 +67,8 @@ class Prepared:
         north, east, _ = to_ned(*pose[:3])
         heading = math.remainder(to_heading(pose[3]), math.tau)
         return Move(
-            north - along * math.cos(heading),
-            east - along * math.sin(heading),
+            north - along * cos(heading),
+            east - along * sin(heading),
             heading=heading,
             wind=wind,
             figures=changed,

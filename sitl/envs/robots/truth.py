@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 from sitl.core.algebra import euler_of
 from sitl.core.array_kernels import Kernel, Layout, Table
+from sitl.core.elementary import sincos
 from sitl.core.kernels import law
 from sitl.core.records import FloatRows, Floats
 from sitl.core.vectors import Quat
@@ -39,7 +39,7 @@ def write_truth(pos: FieldTable, vel: FieldTable, q: FieldTable, rates: FieldTab
     """
     for i in range(out.shape[0]):
         angles = euler_of(Quat(q[i, 0], q[i, 1], q[i, 2], q[i, 3]))
-        c, s = math.cos(angles.yaw), math.sin(angles.yaw)
+        s, c = sincos(angles.yaw)
         x, y, z = from_ned(pos[i, 0] + ahead * c, pos[i, 1] + ahead * s, pos[i, 2])
         out[i, 0], out[i, 1], out[i, 2], out[i, 3] = x, y, z, from_heading(angles.yaw)
         out[i, 4], out[i, 5] = vel[i, 0] * c + vel[i, 1] * s, vel[i, 0] * s - vel[i, 1] * c
@@ -75,7 +75,7 @@ def write_true_reports(
     """
     for i in range(out.shape[0]):
         yaw = euler_of(Quat(q[i, 0], q[i, 1], q[i, 2], q[i, 3])).yaw
-        c, s = math.cos(yaw), math.sin(yaw)
+        s, c = sincos(yaw)
         out[i, 0], out[i, 1], out[i, 2] = force[i, 0], 0.0 - force[i, 1], 0.0 - force[i, 2]
         out[i, 3], out[i, 4], out[i, 5] = voltage[i], current[i], charge[i]
         out[i, 6], out[i, 7] = wind[i, 0] * c + wind[i, 1] * s, wind[i, 0] * s - wind[i, 1] * c

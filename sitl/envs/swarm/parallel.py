@@ -17,6 +17,8 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.error import InvalidAction, ResetNeeded
 
+from sitl.core.elementary import cos
+
 from ...client.endpoint import Endpoint
 from ...client.session import RATES_HZ
 from ...client.swarm import clients_of
@@ -256,7 +258,7 @@ class SwarmEnv(ParallelEnv):
             for name, m in endpoint.receive():
                 if name == TELEMETRY:
                     north = (m.lat * 1e-7 - lat0) * metres
-                    east = (m.lon * 1e-7 - lon0) * metres * math.cos(math.radians(lat0))
+                    east = (m.lon * 1e-7 - lon0) * metres * cos(math.radians(lat0))
                     self._told[k] = north, east, alt0 - m.alt * 1e-3, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01
                 elif name == SCAN_MESSAGE:
                     self._sight.hear(k, m)

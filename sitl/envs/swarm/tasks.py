@@ -9,6 +9,10 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
+from sitl.core.elementary import cos, sin
+from sitl.core.sums import lengths
+
 Floats = npt.NDArray[np.float64]
 HEIGHT = 5.0
 """At which copters begin [m]."""
@@ -55,7 +59,7 @@ class Task(Protocol):
 
 def distances(scene: Scene) -> Floats:
     """From each to its goal [m], shape (n,)."""
-    found: Floats = np.linalg.norm(scene.places - scene.goals, axis=1)
+    found: Floats = lengths(scene.places - scene.goals)
     return found
 
 
@@ -82,7 +86,7 @@ class _Task:
         Each distance is to the place of its time. So an episode pays what the distance has become less from its
         beginning to its end, however the place moves: to chase it earns nothing.
         """
-        nearer: Floats = np.linalg.norm(scene.before - scene.goals_before, axis=1) - distances(scene)
+        nearer: Floats = lengths(scene.before - scene.goals_before) - distances(scene)
         return nearer + 0.1 * self.is_success(scene)
 
     def is_success(self, scene: Scene) -> npt.NDArray[np.bool_]:
@@ -113,8 +117,8 @@ class Formation(_Task):
     def goals(self, places: Floats, time: float) -> Floats:
         """See ``Task``."""
         angles = self._first + self.TURN * time + math.tau * np.arange(len(places)) / len(places)
-        along = self.SPEED * time * np.array((math.cos(self._way), math.sin(self._way), 0.0))
-        ring = np.stack((np.cos(angles), np.sin(angles), np.zeros(len(places))), axis=1)
+        along = self.SPEED * time * np.array((cos(self._way), sin(self._way), 0.0))
+        ring = np.stack((arrays.cos(angles), arrays.sin(angles), np.zeros(len(places))), axis=1)
         found: Floats = self._middle + along + self._radius * ring
         return found
 
@@ -148,11 +152,11 @@ class Pursuit(_Task):
     def goals(self, places: Floats, time: float) -> Floats:
         """The pursued one for the others; for it, a place 20 m away in a direction that was drawn."""
         found: Floats = np.repeat(places[-1:], len(places), axis=0)
-        found[-1] += 20.0 * np.array((math.cos(self._way), math.sin(self._way), 0.0))
+        found[-1] += 20.0 * np.array((cos(self._way), sin(self._way), 0.0))
         return found
 
     def _gap(self, places: Floats) -> float:
-        return float(np.linalg.norm(places[:-1] - places[-1], axis=1).min())
+        return float(lengths(places[:-1] - places[-1]).min())
 
     def rewards(self, scene: Scene) -> Floats:
         """What the least distance has become less [m], and 10 for the catch; the opposite for the last one."""
@@ -183,14 +187,14 @@ class Escort(_Task):
     def begin(self, places: Floats, rng: np.random.Generator) -> None:
         """See ``Task``."""
         away, way = rng.uniform(8.0, 15.0), rng.uniform(-math.pi, math.pi)
-        self._to = places[-1] + away * np.array((math.cos(way), math.sin(way), 0.0))
+        self._to = places[-1] + away * np.array((cos(way), sin(way), 0.0))
 
     def goals(self, places: Floats, time: float) -> Floats:
         """See ``Task``."""
         n = len(places) - 1
         angles = math.tau * np.arange(n) / n
         found: Floats = np.empty_like(places)
-        found[:-1] = places[-1] + self.RADIUS * np.stack((np.cos(angles), np.sin(angles), np.zeros(n)), axis=1)
+        found[:-1] = places[-1] + self.RADIUS * np.stack((arrays.cos(angles), arrays.sin(angles), np.zeros(n)), axis=1)
         found[:-1, 2] = -self.ABOVE
         found[-1] = self._to
         return found

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -12,7 +11,9 @@ import numpy.typing as npt
 
 from sitl.core.array_kernels import Flags, IntLine, Kernel, Table
 from sitl.core.kernels import law
+from sitl.core.sums import lengths
 
+from ...core.elementary import sincos
 from ..arena import flies
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
@@ -47,7 +48,7 @@ def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Fl
     """
     for i in range(at.shape[0]):
         row = at[i] % gates.shape[0]
-        c, s = math.cos(gates[row, 3]), math.sin(gates[row, 3])
+        s, c = sincos(gates[row, 3])
         x, y = before[i, 0] - gates[row, 0], before[i, 1] - gates[row, 1]
         u, v = now[i, 0] - gates[row, 0], now[i, 1] - gates[row, 1]
         a, b = x * c + y * s, u * c + v * s
@@ -158,9 +159,7 @@ class Gates(PlacesTask):
         targets = self.targets
         self._now[:] = self._sensing.judged_state()[:, :3]
         _cross(self._before, self._now, self._gates, self.at, self._passed)
-        nearer = np.sqrt(((targets - self._before) ** 2).sum(axis=1)) - np.sqrt(
-            ((targets - self._now) ** 2).sum(axis=1)
-        )
+        nearer = lengths(targets - self._before) - lengths(targets - self._now)
         gain, gates, time = self.progress * nearer, self.gate_reward * self._passed, self.each_second * step.seconds
         rewards += gain + gates + time
         step.note(progress=gain, gates=gates, time=time)

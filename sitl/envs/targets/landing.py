@@ -9,6 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
+from sitl.core.elementary import cos, sin
+
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
@@ -101,7 +104,7 @@ class Land(MovingTask):
         way, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
         self.centre[index, :2] += way
         self.centre[index, 2] = self._robot.world.floor_z
-        self._velocity[index, :2] = self.speed * math.cos(heading), self.speed * math.sin(heading)
+        self._velocity[index, :2] = self.speed * cos(heading), self.speed * sin(heading)
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
@@ -134,12 +137,12 @@ class Land(MovingTask):
         touches = (height < DOWN) & (not self._lets_down)
         down = (touches | self._landing.has_landed()) & ~terminated
         turned = np.where(time % 20.0 < 10.0, 1.0, -1.0)[:, None]
-        c, s = np.cos(state[:, 3]), np.sin(state[:, 3])
+        c, s = arrays.cos(state[:, 3]), arrays.sin(state[:, 3])
         east = np.stack([state[:, 4] * c - state[:, 5] * s, state[:, 4] * s + state[:, 5] * c], axis=1)
-        slip = np.hypot(*(east - turned * self._velocity[:, :2]).T)
+        slip = arrays.hypot(*(east - turned * self._velocity[:, :2]).T)
         flies = (state[:, 6] < -STANDS) | (height > LET_DOWN) | (not self._lets_down)
         self._touched[flies] = way[flies]
-        on = np.hypot(self._touched[:, 0], self._touched[:, 1]) < self.pad
+        on = arrays.hypot(self._touched[:, 0], self._touched[:, 1]) < self.pad
         self.success = down & on & (slip < SLOW) & (self._sinking < GENTLE)
         rewards[self.success] += self.success_reward
         rewards[down & ~self.success] += self.crash_reward

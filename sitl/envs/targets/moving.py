@@ -11,6 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core import elementary_arrays as arrays
+
+from ..noise import dirichlet
 from ..options import EnvOptionError, unknown
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
@@ -81,7 +84,7 @@ class MovingTask(PlacesTask):
     def ways_from(self, pose: Floats, count: int) -> Floats:
         """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
         way = self.along(self._robot.time[:, None] + AHEAD_S * np.arange(count)) - pose[:, None, :3]
-        c, s = np.cos(pose[:, 3])[:, None], np.sin(pose[:, 3])[:, None]
+        c, s = arrays.cos(pose[:, 3])[:, None], arrays.sin(pose[:, 3])[:, None]
         return np.stack([way[..., 0] * c + way[..., 1] * s, way[..., 1] * c - way[..., 0] * s, way[..., 2]], axis=2)
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
@@ -130,15 +133,15 @@ class Curve(NamedTuple):
 
 
 def _eight(phase: Floats) -> tuple[Floats, Floats, Floats]:
-    return np.sin(phase), np.sin(phase) * np.cos(phase), np.zeros_like(phase)
+    return arrays.sin(phase), arrays.sin(phase) * arrays.cos(phase), np.zeros_like(phase)
 
 
 def _circle(phase: Floats) -> tuple[Floats, Floats, Floats]:
-    return np.sin(phase), 1.0 - np.cos(phase), np.zeros_like(phase)
+    return arrays.sin(phase), 1.0 - arrays.cos(phase), np.zeros_like(phase)
 
 
 def _helix(phase: Floats) -> tuple[Floats, Floats, Floats]:
-    return np.sin(phase), 1.0 - np.cos(phase), 0.5 * (1.0 - np.cos(phase / 3.0))
+    return arrays.sin(phase), 1.0 - arrays.cos(phase), 0.5 * (1.0 - arrays.cos(phase / 3.0))
 
 
 CURVES = {"eight": Curve(_eight, 6.097), "circle": Curve(_circle, math.tau), "helix": Curve(_helix, math.tau)}
@@ -186,7 +189,7 @@ class Trajectory(MovingTask):
         """See ``MovingTask``."""
         rate, yaw = self._drawn[:, :1], self._drawn[:, 1:]
         ahead, left, up = CURVES[self.curve].points(rate * time)
-        c, s = np.cos(yaw), np.sin(yaw)
+        c, s = arrays.cos(yaw), arrays.sin(yaw)
         up = up if self.flies else 0.0 * up
         return self.centre[:, None] + self.size * np.stack([ahead * c - left * s, ahead * s + left * c, up], axis=2)
 
@@ -225,18 +228,18 @@ class Follow(MovingTask):
         """Amplitude [m], rate [rad/s] and phase [rad] of each robot's waves along x, y, z."""
 
     def _draw(self, index: int, rng: np.random.Generator) -> None:
-        shares = rng.dirichlet(np.ones(self.waves), 3)
+        shares = dirichlet(rng, 3, self.waves)
         reach = np.array([0.5 * self.size, 0.5 * self.size, 0.5 * self.height if self.flies else 0.0])
         amplitudes = shares * reach[:, None]
         rates = rng.uniform(0.3, 1.0, (3, self.waves))
-        fastest = math.sqrt(float(((amplitudes * rates).sum(axis=1)[:2] ** 2).sum()))
+        fastest = math.sqrt(float(np.square((amplitudes * rates).sum(axis=1)[:2]).sum()))
         rates *= self.speed / fastest
         self._waves[index] = np.stack([amplitudes, rates, rng.uniform(0.0, math.tau, (3, self.waves))], axis=2)
 
     def along(self, time: Floats) -> Floats:
         """See ``MovingTask``."""
         amplitude, rate, phase = np.moveaxis(self._waves, 3, 0)
-        now = np.sin(rate[:, None] * time[:, :, None, None] + phase[:, None]) - np.sin(phase)[:, None]
+        now = arrays.sin(rate[:, None] * time[:, :, None, None] + phase[:, None]) - arrays.sin(phase)[:, None]
         out: Floats = self.centre[:, None] + (amplitude[:, None] * now).sum(axis=3)
         return out
 

@@ -101,7 +101,7 @@ class Park(PlacesTask):
         way = self.places[:, 0, :2] - pose[:, :2]
         distance = np.sqrt((way * way).sum(axis=1))
         error = np.abs(self._turns_from(pose))
-        counts = 1.0 / (1.0 + (distance / _NEAR) ** 2)
+        counts = 1.0 / (1.0 + np.square(distance / _NEAR))
         return distance, error, self.progress * distance + self.turn_progress * error * counts
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:

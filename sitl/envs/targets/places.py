@@ -13,6 +13,7 @@ import numpy.typing as npt
 from sitl.core.array_kernels import IntLine, Kernel, Table
 from sitl.core.kernels import law
 
+from ...core.elementary import sincos
 from ..arena import REACH, Arena, arena_of, flies
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
@@ -35,7 +36,7 @@ def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, out: Tab
         out: forward, left, up [m] of each robot's heading, shape (count, 3 * k).
     """
     for i in range(out.shape[0]):
-        c, s = math.cos(pose[i, 3]), math.sin(pose[i, 3])
+        s, c = sincos(pose[i, 3])
         for k in range(out.shape[1] // 3):
             row = i * per_robot + min(at[i] + k, per_robot - 1)
             x, y = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1]

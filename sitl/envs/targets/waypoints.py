@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy.typing as npt
 
 from sitl.core.array_kernels import Flags, IntLine, Kernel, Line, Table
 from sitl.core.kernels import law
+from sitl.core.sums import lengths
 
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
@@ -38,7 +40,7 @@ def pass_places(
     for i in range(at.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
         x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
-        now = (x * x + y * y + z * z) ** 0.5
+        now = math.sqrt(x * x + y * y + z * z)
         gain[i] = distance[i] - now
         passed[i] = now < radius and at[i] < per_robot
         distance[i] = now
@@ -47,7 +49,7 @@ def pass_places(
             if at[i] < per_robot:
                 row += 1
                 x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
-                distance[i] = (x * x + y * y + z * z) ** 0.5
+                distance[i] = math.sqrt(x * x + y * y + z * z)
 
 
 _pass = Kernel(pass_places)
@@ -113,14 +115,14 @@ class Waypoints(PlacesTask):
         here = robot.pose[index, :3]
         self.places[index] = self._drawn(here, rng) if self._fixed is None else self._fixed
         self.at[index], self.success[index] = 0, False
-        self._distance[index] = np.sqrt(((self.axes * (self.places[index, 0] - here)) ** 2).sum())
+        self._distance[index] = lengths(self.axes * (self.places[index, 0] - here))
 
     def _drawn(self, here: Floats, rng: np.random.Generator) -> Floats:
         out = np.empty((self._count, 3))
         for k in range(self._count):
             for _ in range(100):
                 out[k] = self.arena.draw(rng) if self._cells is None else (*self._cells.draw(rng), here[2])
-                if ((out[k] - here) ** 2).sum() >= self.apart * self.apart:
+                if np.square(out[k] - here).sum() >= self.apart * self.apart:
                     break
             here = out[k]
         return out

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...core import elementary_arrays as arrays
 from ...core.algebra import euler_of
 from ...core.array_kernels import Kernel, Table
 from ...core.border import BAROS_DIFFER
@@ -65,7 +66,7 @@ def total(a: str, b: str) -> Column:
 
 def length(*paths: str) -> Column:
     """Euclidean length of a vector."""
-    return lambda s: np.sqrt(sum(s(path) ** 2 for path in paths))
+    return lambda s: np.sqrt(sum(np.square(s(path)) for path in paths))
 
 
 def root(path: str) -> Column:
@@ -78,7 +79,7 @@ def _latitude(lat0: Array, north: Array) -> Array:
 
 
 def _longitude(lat0: Array, lon0: Array, lat: Array, east: Array) -> Array:
-    scale = np.maximum(np.cos(np.radians(0.5e-7 * (lat0 + lat))), 0.01)
+    scale = np.maximum(arrays.cos(np.radians(0.5e-7 * (lat0 + lat))), 0.01)
     lon = lon0 + east / (METRES_PER_DEGE7 * scale)
     return np.mod(lon + 1.8e9, 3.6e9) - 1.8e9
 
@@ -107,7 +108,7 @@ def roll(path: str) -> Column:
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
-        return np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)) * DEG
+        return arrays.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)) * DEG
 
     return column
 
@@ -117,7 +118,7 @@ def pitch(path: str) -> Column:
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
-        return np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)) * DEG
+        return arrays.asin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)) * DEG
 
     return column
 
@@ -127,7 +128,7 @@ def yaw(path: str) -> Column:
 
     def column(s: Any) -> Array:
         w, x, y, z = _quaternion(s, path)
-        return np.mod(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) * DEG, 360.0)
+        return np.mod(arrays.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) * DEG, 360.0)
 
     return column
 
@@ -139,7 +140,7 @@ def gps_seconds(receiver: str) -> Column:
 
 def course(receiver: str) -> Column:
     """Course over ground of a GPS receiver, 0 .. 360 [deg]."""
-    return lambda s: np.mod(np.arctan2(s(receiver + "gps_vel[1]"), s(receiver + "gps_vel[0]")) * DEG, 360.0)
+    return lambda s: np.mod(arrays.atan2(s(receiver + "gps_vel[1]"), s(receiver + "gps_vel[0]")) * DEG, 360.0)
 
 
 def is_used(receiver: int) -> Column:
@@ -149,7 +150,7 @@ def is_used(receiver: int) -> Column:
 
 def pressure_altitude(path: str) -> Column:
     """Pressure altitude in the standard atmosphere [m] of a pressure [hPa]."""
-    return lambda s: 44330.77 * (1.0 - np.power(np.maximum(s(path), 0.0) / 1013.25, 0.1902632))
+    return lambda s: 44330.77 * (1.0 - arrays.pow(np.maximum(s(path), 0.0) / 1013.25, 0.1902632))
 
 
 def baro_altitude(path: str) -> Column:

@@ -9,6 +9,7 @@ from typing import Any
 from ...autopilot import events
 from ...autopilot.fence.state import CIRCLE_IN, CIRCLE_OUT, STAY_IN, STAY_OUT
 from ...core.algebra import vector_at
+from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.vectors import Vec3
 from .system_id import Row
@@ -72,8 +73,8 @@ def _ruler(v: Any, margin: float, how: int) -> tuple[float, ...]:
     nav, here, home = ap.modes.nav, ap.estimate.pos, ap.home.pos.z
     upright = getattr(ap.params.OA, "BR_TYPE", 1.0) == 2.0  # a copter's
     target = nav.detour.bent_target
-    towards = math.atan2(nav.target.y - here.y, nav.target.x - here.x)
-    slope = _bearing(math.atan2(here.z - target.z, math.hypot(target.x - here.x, target.y - here.y))) if upright else 0
+    towards = atan2(nav.target.y - here.y, nav.target.x - here.x)
+    slope = _bearing(atan2(here.z - target.z, hypot(target.x - here.x, target.y - here.y))) if upright else 0
     numbers = (2 if upright else 1, how & 1, _bearing(towards), _bearing(ap.estimate.yaw), slope, how >> 1, margin)
     places = (*_degrees(v, nav.target), home - nav.target.z, *_degrees(v, target), home - target.z)
     return (*numbers, *places)

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
+
 from ...autopilot.rover.modes import auto, guided
 from ...autopilot.rover.modes.circle import CIRCLE
 from ...autopilot.rover.modes.dock import DOCK
@@ -90,12 +92,12 @@ def _to_target(s: Any) -> tuple[Array, Array]:
 
 
 def _distance(s: Any) -> Array:
-    return np.hypot(*_to_target(s))
+    return arrays.hypot(*_to_target(s))
 
 
 def _bearing(s: Any) -> Array:
     north, east = _to_target(s)
-    return np.mod(np.arctan2(east, north) * DEG, 360.0)
+    return np.mod(arrays.atan2(east, north) * DEG, 360.0)
 
 
 def _heading(s: Any) -> Array:

@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
 from sitl.core.geodesy import offset_ne
+from sitl.core.sums import lengths
 from sitl.errors import OptionError
 from sitl.logs.track import NAMES, Track, is_angle, sampled
 
@@ -79,7 +81,7 @@ def pair(
     golden, new = golden.quantised(), new.quantised()
     notes = []
     north, east = offset_ne(golden.home[0] * 1e7, golden.home[1] * 1e7, new.home[0] * 1e7, new.home[1] * 1e7)
-    away = float(np.hypot(north, east))
+    away = float(arrays.hypot(north, east))
     if away <= ELSEWHERE:
         new = new.seen_from((golden.home[0], golden.home[1], new.home[2]))  # heights stay above each one's home
     else:
@@ -99,7 +101,7 @@ def _with_aligned_clocks(found: Pair, golden: Track, new: Track) -> Pair:
     """The pair with clocks shifted by the new flight's median delay along the way, when that is at most a
     heartbeat's."""
     matched = match(found.new, found.golden)
-    moving = matched.of(np.linalg.norm(found.golden.data[:, 4:7], axis=1)) > MOVING
+    moving = matched.of(lengths(found.golden.data[:, 4:7])) > MOVING
     late = float(np.median(matched.delay[moving])) if moving.any() else 0.0
     if not STEP / 2.0 < abs(late) <= HEARTBEAT:
         return found
@@ -250,5 +252,5 @@ def _refined(f: Array, o: Array, tf: Array, to: Array, nearest: Array) -> Matche
         index = np.where(better, nearest + step * fraction * (end != nearest), index)
     rows = np.arange(len(o))
     place = np.stack([np.interp(index, rows, o[:, k]) for k in range(2)], axis=1)
-    cross = np.hypot(*(f[:, :2] - place).T)
+    cross = arrays.hypot(*(f[:, :2] - place).T)
     return Matched(index, cross, tf - np.interp(index, rows, to))

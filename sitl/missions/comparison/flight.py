@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
 from sitl.core.compile import Progress
+from sitl.core.sums import lengths
 from sitl.logs import forms, track_bin, track_tlog
 from sitl.logs.tlog import LogError
 from sitl.logs.track import Track
@@ -163,21 +165,21 @@ def measure(pair: Pair) -> Differences:
     way = np.stack([of(name) for name in ("north", "east", "down")], axis=1)
     aside = place - way
     flat = aside * (1.0, 1.0, 0.0)
-    speed = np.hypot(golden["vn"], golden["ve"])
-    fast = np.sqrt(matched.of(speed * speed + golden["vd"] ** 2))
+    speed = arrays.hypot(golden["vn"], golden["ve"])
+    fast = np.sqrt(matched.of(speed * speed + np.square(golden["vd"])))
     then = np.stack([of(name) for name in ("vn", "ve", "vd")], axis=1)
-    ahead = (new.data[:, 4:7] * then).sum(axis=1) / np.maximum(np.linalg.norm(then, axis=1), 1e-9)
+    ahead = (new.data[:, 4:7] * then).sum(axis=1) / np.maximum(lengths(then), 1e-9)
     # where ways come close (a climb's end and the leg that follows) the nearer one may be another part of golden's
     delay = np.where(np.minimum(fast, ahead) > MOVING, matched.delay, np.nan)
-    tilt = np.hypot(*(new[name] - of(name) for name in ("roll", "pitch")))
+    tilt = arrays.hypot(*(new[name] - of(name) for name in ("roll", "pitch")))
     yaw = np.interp(matched.index, np.arange(len(golden)), np.unwrap(golden["yaw"]))
     heading = (new["yaw"] - yaw + np.pi) % (2.0 * np.pi) - np.pi
     found = (
-        Series("position", "position at the same time", "m", 0.0175, t, np.linalg.norm(drift, axis=1), drift),
+        Series("position", "position at the same time", "m", 0.0175, t, lengths(drift), drift),
         Series("cross_track", "cross-track", "m", 0.015, t, matched.cross, flat),
         Series("altitude", "altitude", "m", 0.0101, t, -aside[:, 2]),
         Series("delay", "delay along the way", "s", 0.05, t, delay),
-        Series("speed", "ground speed", "m/s", 0.015, t, np.hypot(new["vn"], new["ve"]) - matched.of(speed)),
+        Series("speed", "ground speed", "m/s", 0.015, t, arrays.hypot(new["vn"], new["ve"]) - matched.of(speed)),
         Series("climb", "climb rate", "m/s", 0.0101, t, of("vd") - new["vd"]),
         Series("tilt", "roll and pitch", "deg", 0.15, t, np.degrees(tilt)),
         Series("heading", "heading", "deg", 0.101, t, np.degrees(heading)),

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+from sitl.core.sums import lengths
+
 from .alignment import START_NAMES, Pair
 from .events import ADDED, MISSING, Event
 from .flight import Series
@@ -24,7 +26,7 @@ def when(pair: Pair, t: float) -> str:
 
 def direction(gap: np.ndarray) -> str:
     """ "0.80 m east", "0.51 m south and 0.43 m above": the parts that matter of a NED vector [m]."""
-    size = float(np.linalg.norm(gap))
+    size = float(lengths(gap))
     parts = [
         f"{abs(value):.2f} m {names[0 if value > 0 else 1]}"
         for value, names in zip(gap, _NED, strict=True)

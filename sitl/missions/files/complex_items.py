@@ -11,6 +11,8 @@ import math
 
 from sitl.autopilot.mission.item import GLOBAL, NAV_WAYPOINT, RELATIVE, TERRAIN, MissionItem
 from sitl.autopilot.mission.validate import HIGHEST, MAX_ITEMS
+from sitl.core.elementary import cos, sin
+from sitl.core.sums import separation
 
 from .document import make
 from .json_reader import Node
@@ -32,7 +34,7 @@ def across_polygon(polygon: list[Point], spacing: float, heading: float) -> list
     They lie ``spacing`` [m] apart and evenly in the width of the polygon. Of a polygon with bays a line runs from its
     first edge to its last.
     """
-    forward = (math.cos(heading), math.sin(heading))
+    forward = (cos(heading), sin(heading))
     right = (-forward[1], forward[0])
     side = [p[0] * right[0] + p[1] * right[1] for p in polygon]
     ahead = [p[0] * forward[0] + p[1] * forward[1] for p in polygon]
@@ -137,7 +139,7 @@ def _survey(entry: Node) -> list[MissionItem]:
     alternate = entry.get("flyAlternateTransects", False).flag
     path: list[Point] = []
     for turn in (0.0, math.pi / 2.0) if style.get("Refly90Degrees", False).flag else (0.0,):
-        _limit(entry, max(math.dist(a, b) for a in polygon for b in polygon) / spacing)
+        _limit(entry, max(separation(a, b) for a in polygon for b in polygon) / spacing)
         lines = across_polygon(polygon, spacing, heading + turn)
         path += there_and_back(lines, start, turnaround, alternate)
     if not path:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from sitl.core.elementary import hypot
 from sitl.core.geodesy import add_offset, offset_ne
 
 Place = tuple[float, float]
@@ -33,7 +34,7 @@ class Plane:
 def along(a: Point, b: Point) -> Point:
     """Unit vector from ``a`` to ``b``; zero when they are the same."""
     north, east = b[0] - a[0], b[1] - a[1]
-    length = math.hypot(north, east)
+    length = hypot(north, east)
     return (north / length, east / length) if length > 0.0 else (0.0, 0.0)
 
 
@@ -53,7 +54,7 @@ def shifted(line: list[Point], distance: float, closed: bool = False) -> list[Po
         out = along(p, after) if after is not None else into
         right_in, right_out = (-into[1], into[0]), (-out[1], out[0])
         north, east = right_in[0] + right_out[0], right_in[1] + right_out[1]
-        half = math.hypot(north, east) / 2.0  # cosine of half the turn
+        half = hypot(north, east) / 2.0  # cosine of half the turn
         reach = distance / max(half, 1.0 / 3.0)
         moved_points.append(moved(p, along((0.0, 0.0), (north, east)), reach))
     return moved_points
@@ -61,4 +62,6 @@ def shifted(line: list[Point], distance: float, closed: bool = False) -> list[Po
 
 def area(polygon: list[Point]) -> float:
     """Area [m^2]; positive when its corners go round clockwise, seen from above."""
-    return 0.5 * sum(polygon[k - 1][0] * polygon[k][1] - polygon[k][0] * polygon[k - 1][1] for k in range(len(polygon)))
+    return 0.5 * math.fsum(
+        polygon[k - 1][0] * polygon[k][1] - polygon[k][0] * polygon[k - 1][1] for k in range(len(polygon))
+    )

@@ -19,6 +19,7 @@ from sitl.autopilot.mission.item import (
     MissionItem,
 )
 from sitl.autopilot.mission.mission import Mission, MissionError
+from sitl.core.sums import separation
 
 from .document import MissionFile, MissionFileError
 from .plane import Plane
@@ -71,7 +72,7 @@ def _curve(items: tuple[MissionItem, ...], seq: int, plane: Plane) -> list[Point
     start = _neighbour(items, seq, -1, plane)
     if start is None:  # its first place: straight there
         return [end]
-    chord = math.dist(start, end)
+    chord = separation(start, end)
     before, after = _start_direction(items, seq, plane), _end_direction(items, seq, start, plane)
     away = tuple(chord * x for x in before or _unit(start, end))
     into = tuple(chord * x for x in after or _unit(start, end))
@@ -120,12 +121,12 @@ def _point(item: MissionItem, plane: Plane) -> Point:
 
 
 def _unit(a: Point, b: Point) -> Point:
-    length = math.dist(a, b)
+    length = separation(a, b)
     return tuple((y - x) / length for x, y in zip(a, b)) if length > 0.0 else (0.0, 0.0, 0.0)  # type: ignore[return-value]
 
 
 def _hermite(a: Point, away: tuple[float, ...], b: Point, into: tuple[float, ...], u: float) -> Point:
     """Point at ``u`` (0 .. 1) of the curve from a to b with these directions at its ends."""
-    h1, h2 = (1.0 + 2.0 * u) * (1.0 - u) ** 2, u * (1.0 - u) ** 2
+    h1, h2 = (1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u), u * (1.0 - u) * (1.0 - u)
     h3, h4 = u * u * (3.0 - 2.0 * u), u * u * (u - 1.0)
     return tuple(h1 * p + h2 * q + h3 * r + h4 * s for p, q, r, s in zip(a, away, b, into))  # type: ignore[return-value]

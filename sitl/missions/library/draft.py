@@ -9,6 +9,7 @@ from typing import Any
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
+from sitl.core.elementary import cos, sin
 from sitl.core.geodesy import add_offset
 from sitl.physics.native.power_on import DEFAULT_HOME
 from sitl.vehicle.kinds import KINDS
@@ -151,7 +152,7 @@ def survey(corners: list[Place], angle: float, style: dict[str, Any], entry: int
 def circle(centre: Place, radius: float, count: int, start_deg: float = 0.0) -> list[Place]:
     """Positions on a circle, clockwise from a direction; north, east of home [m]."""
     turns = [math.radians(start_deg + 360.0 * k / count) for k in range(count)]
-    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in turns]
+    return [(centre[0] + radius * cos(a), centre[1] + radius * sin(a)) for a in turns]
 
 
 __all__ = ["Draft", "FenceCircle", "FencePolygon", "RallyPoint", "circle", "degrees", "survey", "transects"]

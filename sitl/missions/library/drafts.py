@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from sitl.autopilot.mission import item as c
+from sitl.core.elementary import cos, sin
 
 from .draft import Draft, FenceCircle, FencePolygon, RallyPoint, circle, degrees, survey, transects
 
@@ -89,11 +90,12 @@ def copter_drafts() -> dict[str, Draft]:
         .to((24, 12, 10), (16, 12, 6), frame=c.TERRAIN).to((0, 12, 4)).land(),
         "spiral": copter("Two turns of a spiral that climbs from 5 m to 20 m and widens to 15 m")
         .take_off(5).pace(4.0)
-        .to(*[((5 + 10 * k / 20) * math.cos(math.radians(36 * k)), (5 + 10 * k / 20) * math.sin(math.radians(36 * k)),
+        .to(*[((5 + 10 * k / 20) * cos(math.radians(36 * k)), (5 + 10 * k / 20) * sin(math.radians(36 * k)),
                5 + 15 * k / 20) for k in range(21)])
         .home(),
         "slalom": copter("Six gates left and right of a straight line, at 5 m/s")
-        .take_off(5).pace(5.0).to(*[(8 * (k + 1), 6 * (-1) ** k) for k in range(6)], z=5.0).to((56, 0), z=5.0).land(),
+        .take_off(5).pace(5.0)
+        .to(*[(8 * (k + 1), 6 - 12 * (k % 2)) for k in range(6)], z=5.0).to((56, 0), z=5.0).land(),
         "fence_and_rally": copter("A square within a circle and a polygon, with a keep-out circle and a rally point")
         .take_off(UP).to((15, 0), (15, 15), (0, 15), z=UP).home()
         .fence(
@@ -136,7 +138,7 @@ def rover_drafts() -> dict[str, Draft]:
         "square_small": rover("A square of 4 m in the real robot's dimensions", frame="erle_rover_small")
         .to((4, 0), (4, 4), (0, 4), (0, 0)),
         "slalom": rover("Round five gates left and right of a straight line")
-        .to(*[(10 * (k + 1), 4 * (-1) ** k) for k in range(5)], (60, 0)),
+        .to(*[(10 * (k + 1), 4 - 8 * (k % 2)) for k in range(5)], (60, 0)),
         "figure_eight": rover("Two circles of eight waypoints each, one to the left and one to the right")
         .to(*circle((0, 8), 8, 8, 270)[1:], *[(n, -e) for n, e in circle((0, 8), 8, 8, 270)]),
         "reverse": rover("Forwards, 10 m backwards, forwards again")

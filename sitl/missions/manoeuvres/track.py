@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
+from sitl.core.elementary import hypot
+
 Column = np.ndarray[Any, Any]
 
 _COLUMNS = {name: k for k, name in enumerate(("x", "y", "z", "vx", "vy", "vz", "roll", "pitch", "yaw", "p", "q", "r"))}
@@ -51,22 +54,22 @@ class Track:
     @property
     def speed(self) -> Column:
         """Along the ground [m/s]."""
-        return np.asarray(np.hypot(self.vx, self.vy))
+        return np.asarray(arrays.hypot(self.vx, self.vy))
 
     @property
     def lean(self) -> Column:
         """Angle between thrust and the vertical [deg]."""
         roll, pitch = np.radians(self.roll), np.radians(self.pitch)
-        return np.asarray(np.degrees(np.arccos(np.clip(np.cos(roll) * np.cos(pitch), -1.0, 1.0))))
+        return np.asarray(np.degrees(arrays.acos(np.clip(arrays.cos(roll) * arrays.cos(pitch), -1.0, 1.0))))
 
     def distance(self, north: float, east: float) -> Column:
         """To a point, along the ground [m]."""
-        return np.asarray(np.hypot(self.x - north, self.y - east))
+        return np.asarray(arrays.hypot(self.x - north, self.y - east))
 
     @property
     def covered(self) -> float:
         """Along the ground, from start to end in a straight line [m]."""
-        return float(math.hypot(self.x[-1] - self.x[0], self.y[-1] - self.y[0]))
+        return float(hypot(self.x[-1] - self.x[0], self.y[-1] - self.y[0]))
 
     def crossing(self, column: Column, level: float) -> float:
         """Time of a column's first crossing of a level [s]; NaN when it never does."""

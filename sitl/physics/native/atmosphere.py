@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ...core.elementary import pow
 from ...core.kernels import law
 from .records import Air
 
@@ -28,7 +29,7 @@ def temperature(altitude: float) -> float:
 @law
 def pressure(altitude: float) -> float:
     """Static pressure [Pa] at an altitude above mean sea level [m]."""
-    return SEA_LEVEL_PRESSURE * math.pow(temperature(altitude) / SEA_LEVEL_TEMPERATURE, EXPONENT)
+    return SEA_LEVEL_PRESSURE * pow(temperature(altitude) / SEA_LEVEL_TEMPERATURE, EXPONENT)
 
 
 @law

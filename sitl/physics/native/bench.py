@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import ZERO, conjugate, multiply, norm, normalise, quat_from_euler, rotate_inverse
+from ...core.elementary import atan2, cos, sin
 from ...core.kernels import law
 from ...core.records import Ints
 from ...core.vectors import Euler, Quat, Vec3
@@ -43,7 +44,7 @@ def _way(q: Quat, wanted: Quat) -> Vec3:
     sine = norm(axis)
     if sine < 1e-9:
         return ZERO
-    return (2.0 * math.atan2(sine, sign * turn.w) / sine) * axis
+    return (2.0 * atan2(sine, sign * turn.w) / sine) * axis
 
 
 @law
@@ -58,7 +59,7 @@ def wanted_rates(q: Quat, pulses: Ints, time_us: int) -> Vec3:
     axis, rate = Vec3(first - 1500.0, second - 1500.0, third - 1500.0), TURN_RATE
     if switch < AXIS:
         t = 1e-6 * time_us
-        axis = Vec3(math.sin(0.5 * t), math.cos(0.37 * t), math.sin(0.23 * t + 1.0))
+        axis = Vec3(sin(0.5 * t), cos(0.37 * t), sin(0.23 * t + 1.0))
     else:
         rate = 2.0 * math.pi * (switch - AXIS) / (HIGHEST - AXIS)
     size = norm(axis)

@@ -7,9 +7,8 @@ velocity, so that an inertial filter sees no error of the integration.
 
 from __future__ import annotations
 
-import math
-
 from ...core.algebra import ZERO, conjugate, multiply, norm, rotate_inverse
+from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.vectors import Quat, Vec3
 from .body import GRAVITY, unit
@@ -35,7 +34,7 @@ def mean_rates(before: Quat, after: Quat) -> Vec3:
     sine = norm(axis)
     k = 2.0 * _PER_S
     if sine > 1e-6:
-        k = 2.0 * math.atan2(sine, turn.w) / sine * _PER_S
+        k = 2.0 * atan2(sine, turn.w) / sine * _PER_S
     return k * axis
 
 

@@ -16,6 +16,7 @@ import math
 
 from ...core.algebra import dot, rotate_inverse
 from ...core.array_kernels import Table
+from ...core.elementary import exp, hypot
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
 from ...vehicles.figures.body import Outline
@@ -39,7 +40,7 @@ _FRICTION = 0.8
 """Of rubber feet."""
 _AHEAD = 0.5
 """A new list is asked for this far before the old one ends [m]: more than any vehicle moves in a tick."""
-_RELEASE = 1.0 - math.exp(-TICK_S / 0.02)
+_RELEASE = 1.0 - exp(-TICK_S / 0.02)
 """Share of an impact that shows in a tick: body and bumper give way for some 0.02 s, as a copter's legs do. All of it
 in one tick would be beyond what an accelerometer can show."""
 
@@ -187,7 +188,7 @@ def report_hit(o: Obstacles, speed: float, time_us: int) -> None:
 @law
 def ask(o: Obstacles, body: Body, half: float, radius: float) -> None:
     """Ask for a new list when the vehicle, of this half length and radius [m], comes to the end of the old one."""
-    away = math.hypot(body.pos.x - o.north, body.pos.y - o.east)
+    away = hypot(body.pos.x - o.north, body.pos.y - o.east)
     left = o.complete - away - half - radius - _AHEAD
     if left <= 0.0:
         o.wanted = True

@@ -9,6 +9,7 @@ from ...core import rng as random
 from ...core.algebra import ZERO
 from ...core.border import Sensors
 from ...core.earth_field import field_ned
+from ...core.elementary import cos, sin
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...vehicles import Airframe, apply
@@ -48,7 +49,7 @@ def place(p: Physics, home: Home) -> None:
     p.place.field = Vec3(*field_ned(lat, lon))
     b, half = p.body, 0.5 * math.radians(heading)
     b.pos = b.vel = b.rates = b.rates_mean = b.acc_ned = ZERO
-    b.q = Quat(math.cos(half), 0.0, 0.0, math.sin(half))
+    b.q = Quat(cos(half), 0.0, 0.0, sin(half))
     b.specific_force = Vec3(0.0, 0.0, -GRAVITY)
 
 

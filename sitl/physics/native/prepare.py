@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ...core.elementary import exp
 from ...core.kernels import law
 from ...vehicles.figures.body import Figures
 from .records import Derived
@@ -33,7 +34,7 @@ def decay(time_constant: float, dt: float) -> float:
     """What is left of a first-order error after ``dt`` [s]; nothing without a time constant [s]."""
     if time_constant <= 0.0:
         return 0.0
-    return math.exp(-dt / time_constant)
+    return exp(-dt / time_constant)
 
 
 @law
@@ -50,7 +51,7 @@ def walk_step(random_walk: float, correlation_time: float, dt: float) -> Step:
     """
     if correlation_time <= 0.0:
         return Step(1.0, random_walk * math.sqrt(dt))
-    left = math.exp(-dt / correlation_time)
+    left = exp(-dt / correlation_time)
     return Step(left, random_walk * math.sqrt(0.5 * correlation_time * (1.0 - left * left)))
 
 

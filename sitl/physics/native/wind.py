@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import ZERO
+from ...core.elementary import sincos
 from ...core.kernels import law
 from ...core.rng import Rng, normal_vector
 from ...core.vectors import Vec3
@@ -21,7 +22,8 @@ PERIOD_S = TICK_S * PERIOD_TICKS
 def target(speed: float, direction: float) -> Vec3:
     """Steady wind NED [m/s] of a speed [m/s] and the direction that it comes from [deg]."""
     angle = direction * (math.pi / 180.0)
-    return Vec3(-speed * math.cos(angle), -speed * math.sin(angle), 0.0)
+    sine, cosine = sincos(angle)
+    return Vec3(-speed * cosine, -speed * sine, 0.0)
 
 
 SQUARE_ROOT, EVEN, LINEAR = 0, 1, 2
@@ -37,8 +39,9 @@ def shaped(w: Wind, height: float) -> Vec3:
     elif w.profile == LINEAR:
         speed = max(speed + (height - w.full_height) * w.gain, 0.0)
     angle = w.elevation * (math.pi / 180.0)
-    along = target(speed * math.cos(angle), w.direction)
-    return Vec3(along.x, along.y, -speed * math.sin(angle))
+    sine, cosine = sincos(angle)
+    along = target(speed * cosine, w.direction)
+    return Vec3(along.x, along.y, -speed * sine)
 
 
 @law

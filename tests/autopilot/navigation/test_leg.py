@@ -158,3 +158,24 @@ def test_slowing_down_never_turns_back(speed: float, acceleration: float, limit:
         assert v > -1e-6
         assert p < length + 1e-6
     assert evaluate(leg, float(leg.duration)) == (length, 0.0, 0.0)
+
+
+def test_a_leg_that_slows_down_from_above_its_limit_goes_on_forwards() -> None:
+    """The limit was lowered twice: its deceleration brings it below the limit already, and is not made greater."""
+    within = Limits(7.0, 4.0, 0.7, 0.2)
+    profile = plan(300.0, within, 9.3, -3.0, 3.5)
+    leg = record(profile, 300.0)
+    lowest = min(evaluate(leg, float(t)).vel for t in np.linspace(0.0, profile.duration, 200))
+    assert lowest == pytest.approx(9.3 - 0.5 * 3.0 * 3.0 / profile.segments[0].j, abs=0.01)
+    assert len(profile.segments) == 6  # no braking before the deceleration is taken away
+
+
+def test_an_end_speed_above_the_limit_is_refused() -> None:
+    with pytest.raises(LegError, match=r"leg: end speed 3\.5 must be within the limit 3\.0"):
+        plan(50.0, DEFAULT._replace(speed=3.0), 0.0, 0.0, 3.5)
+
+
+def test_a_motion_far_outside_of_the_limits_is_refused() -> None:
+    """To take 3.6 m/s^2 away by 0.01 m/s^3 would lead to the other side of the earth first."""
+    with pytest.raises(LegError, match=r"it would lead 10[0-9]+ km away"):
+        plan(300.0, Limits(2.0, 0.01, 0.01), 1.34, 3.59)

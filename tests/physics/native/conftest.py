@@ -84,7 +84,7 @@ class Rig:
     def compiled(self) -> Any:
         """The compiled step, ``(address, count, index)``."""
         name = self._step.__module__.removeprefix("sitl.") + ".step"
-        return compiler.load_unit(UNITS[name], f"{__name__}.{self._record.__name__}").ctypes
+        return compiler.load_unit(UNITS[name], f"{__name__}.{self._record.__name__}")
 
     def command(self, *controls: float) -> None:
         """Actuator controls: of each rotor or of all, of a rover steering and throttle (or left and right)."""

@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ....core.algebra import multiply, norm
+from ....core.algebra import multiply, norm, quat_about_down
+from ....core.elementary import atan2, sincos
 from ....core.kernels import inlined, law
 from ....core.scalars import constrain
 from ....core.vectors import Euler, Quat, Vec3
@@ -26,7 +27,7 @@ def angle_per_half_sine(s: float, c: float) -> float:
     s2 = s * s
     if s2 < 0.01:
         return 2.0 + s2 * (1.0 / 3.0 + s2 * (0.15 + s2 * (5.0 / 56.0)))
-    return 2.0 * math.atan2(s, c) / s
+    return 2.0 * atan2(s, c) / s
 
 
 @inlined
@@ -58,7 +59,7 @@ def thrust_quaternion(thrust: Vec3, heading: float) -> Quat:
     # Half-way quaternion between up (0, 0, -1) and the vector: (1 + cos, axis * sin), to be normalised.
     w = 1.0 - u.z
     m = math.sqrt(w * w + u.x * u.x + u.y * u.y)
-    turn = Quat(math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading))
+    turn = quat_about_down(heading)
     if m < 1e-6:
         return multiply(Quat(0.0, 1.0, 0.0, 0.0), turn)
     return multiply(Quat(w / m, u.y / m, -u.x / m, 0.0), turn)
@@ -67,7 +68,8 @@ def thrust_quaternion(thrust: Vec3, heading: float) -> Quat:
 @law
 def body_rates(euler: Euler, rates: Euler) -> Vec3:
     """Body rates [rad/s] at Euler angles that change with ``rates`` [rad/s]."""
-    sr, cr, sp, cp = math.sin(euler.roll), math.cos(euler.roll), math.sin(euler.pitch), math.cos(euler.pitch)
+    sr, cr = sincos(euler.roll)
+    sp, cp = sincos(euler.pitch)
     return Vec3(
         rates.roll - sp * rates.yaw,
         cr * rates.pitch + sr * cp * rates.yaw,
@@ -78,7 +80,8 @@ def body_rates(euler: Euler, rates: Euler) -> Vec3:
 @law
 def euler_rates(euler: Euler, rates: Vec3) -> Euler:
     """Rates of the Euler angles [rad/s] at body rates; within 1 degree of vertical they are those of 1 degree off."""
-    sr, cr, sp, cp = math.sin(euler.roll), math.cos(euler.roll), math.sin(euler.pitch), math.cos(euler.pitch)
+    sr, cr = sincos(euler.roll)
+    sp, cp = sincos(euler.pitch)
     cp = max(cp, 0.0175)
     yaw_rate = (sr * rates.y + cr * rates.z) / cp
     return Euler(rates.x + sp * yaw_rate, cr * rates.y - sr * rates.z, yaw_rate)
@@ -89,8 +92,10 @@ def euler_accel_limits(euler: Euler, limit: Vec3) -> Euler:
     """Accelerations of the Euler angles [rad/s^2] that keep the body's below ``limit``; 0 in one switches it off."""
     if limit.x <= 0.0 or limit.y <= 0.0 or limit.z <= 0.0:
         return Euler(limit.x, limit.y, limit.z)
-    sr, cr = constrain(abs(math.sin(euler.roll)), 0.1, 1.0), constrain(abs(math.cos(euler.roll)), 0.1, 1.0)
-    sp, cp = constrain(abs(math.sin(euler.pitch)), 0.1, 1.0), constrain(abs(math.cos(euler.pitch)), 0.1, 1.0)
+    sr, cr = sincos(euler.roll)
+    sp, cp = sincos(euler.pitch)
+    sr, cr = constrain(abs(sr), 0.1, 1.0), constrain(abs(cr), 0.1, 1.0)
+    sp, cp = constrain(abs(sp), 0.1, 1.0), constrain(abs(cp), 0.1, 1.0)
     return Euler(
         limit.x,
         min(limit.y / cr, limit.z / sr),

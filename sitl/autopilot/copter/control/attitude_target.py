@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ....core.algebra import conjugate, dot, multiply, quat_norm_squared, rotate
+from ....core.algebra import conjugate, dot, multiply, quat_about_down, quat_norm_squared, rotate
 from ....core.kernels import inlined
 from ....core.scalars import constrain, finite
 from ....core.vectors import Quat, Vec3
@@ -124,7 +124,7 @@ def attitude_control(q: Quat, target: Quat, target_rate: Vec3, body_rates: Vec3,
         if abs(error.z) > yaw_max:
             yaw_limited = True
             error = Vec3(error.x, error.y, constrain(error.z, -yaw_max, yaw_max))
-            turn = Quat(math.cos(0.5 * error.z), 0.0, 0.0, math.sin(0.5 * error.z))
+            turn = quat_about_down(error.z)
             error_q = multiply(split.thrust_turn, turn)
             target = multiply(q, error_q)
 

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from sitl.core.elementary import atan2, cos, sin
+
 from ..parameters import Parameters
 from .state import MOTORS_MAX, MotorsState
 from .state import QUAD as MOTORS_OF_QUAD
@@ -40,7 +42,7 @@ Frame = tuple[Motor, ...]
 
 def _ring(angles: tuple[float, ...], turns: str, yaw: tuple[float, ...] = ()) -> Frame:
     """Motors on a circle at angles clockwise from the front [deg]; turns: + counter-clockwise, - clockwise."""
-    points = tuple((math.cos(math.radians(angle)), math.sin(math.radians(angle))) for angle in angles)
+    points = tuple((cos(math.radians(angle)), sin(math.radians(angle))) for angle in angles)
     return _places(points, turns, yaw)
 
 
@@ -111,7 +113,7 @@ def order(p: Parameters) -> tuple[int, ...]:
     frame = frame_of(int(p.FRAME.CLASS), int(p.FRAME.TYPE)) or ()
     if frame is _Y6_PLAIN:
         return _Y6_PLAIN_ORDER
-    angles = [round(math.degrees(math.atan2(m.right, m.forward)), 6) % 360.0 for m in frame]
+    angles = [round(math.degrees(atan2(m.right, m.forward)), 6) % 360.0 for m in frame]
     return tuple(sorted(range(len(frame)), key=angles.__getitem__))
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import horizontal, limit_length, norm2, turned
+from ....core.elementary import cos, tan
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2, Vec3
@@ -54,7 +55,7 @@ def lean_max_ne(p: Parameters) -> float:
 @law
 def renew_accel_limit(control: Control, p: Parameters) -> float:
     """Acceleration [m/s^2] that the permitted lean gives; kept in the record."""
-    limit = GRAVITY * math.tan(min(lean_limit(control.attitude), lean_max_ne(p)))
+    limit = GRAVITY * tan(min(lean_limit(control.attitude), lean_max_ne(p)))
     control.pos_ne.accel_limit = limit
     return limit
 
@@ -76,8 +77,8 @@ def is_active_ne(control: Control) -> bool:
 @law
 def lean_accel(roll: float, pitch: float, yaw: float) -> Vec2:
     """Horizontal acceleration (north, east) [m/s^2] of level flight at a lean [rad]."""
-    forward = -GRAVITY * math.tan(constrain(pitch, -1.4, 1.4))
-    right = GRAVITY * math.tan(constrain(roll, -1.4, 1.4)) / math.cos(constrain(pitch, -1.4, 1.4))
+    forward = -GRAVITY * tan(constrain(pitch, -1.4, 1.4))
+    right = GRAVITY * tan(constrain(roll, -1.4, 1.4)) / cos(constrain(pitch, -1.4, 1.4))
     return turned(Vec2(forward, right), yaw)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.elementary import acos
 from ....core.kernels import inlined, law
 from ....core.scalars import constrain, finite
 from ..parameters import Parameters
@@ -61,7 +62,7 @@ def update_lean_max(attitude: AttitudeState, throttle: float, thrust_max: float,
     if thrust_max <= 0.0:
         attitude.lean_max = 0.0
         return
-    lean = math.acos(constrain(throttle / (_LEAN_THROTTLE * thrust_max), 0.0, 1.0))
+    lean = acos(constrain(throttle / (_LEAN_THROTTLE * thrust_max), 0.0, 1.0))
     dt = LEAN_TICKS * DT
     attitude.lean_max += dt / (dt + time_constant) * (lean - attitude.lean_max)
 

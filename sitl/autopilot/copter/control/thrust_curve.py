@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.elementary import exp, log
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ...control.pid import lowpass_gain
@@ -28,7 +29,7 @@ _DENSITY_EXPONENT = 4.2559
 @law
 def air_density_ratio(altitude: float) -> float:
     """Density relative to sea level of the standard atmosphere at an altitude above it [m], below 11 km."""
-    return math.exp(_DENSITY_EXPONENT * math.log(1.0 - _LAPSE * constrain(altitude, -1000.0, 11000.0)))
+    return exp(_DENSITY_EXPONENT * log(1.0 - _LAPSE * constrain(altitude, -1000.0, 11000.0)))
 
 
 @law

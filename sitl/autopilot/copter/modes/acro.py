@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Euler, Vec2, Vec3
@@ -75,7 +76,7 @@ def trained_rates(rates: Vec3, sticks: PilotState, lean: Euler, p: Parameters) -
         pitch += limiting_rate(lean.pitch, angle_max, fastest, accel.y)
         return rates + body_rates(lean, Euler(roll, pitch, 0.0))
     stick = max(abs(sticks.roll), max(abs(sticks.pitch), abs(sticks.yaw)))
-    share = constrain(1.0 - stick, 0.0, 1.0) * math.cos(lean.pitch)
+    share = constrain(1.0 - stick, 0.0, 1.0) * cos(lean.pitch)
     return rates + body_rates(lean, Euler(roll, pitch, 0.0)) * share
 
 

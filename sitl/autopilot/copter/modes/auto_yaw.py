@@ -10,6 +10,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import cross2, dot2, horizontal
+from ....core.elementary import atan2
 from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI, constrain, wrap_pi
 from ....core.vectors import Vec2, Vec3
@@ -158,7 +159,7 @@ def look_along(yaw: AutoYaw, vel: Vec2, acc: Vec2, speed_max: float) -> float:
     speed2 = dot2(vel, vel)
     speed_min = 0.05 * speed_max
     if speed2 > speed_min * speed_min and speed2 > 1e-6:
-        yaw.yaw = math.atan2(vel.y, vel.x)
+        yaw.yaw = atan2(vel.y, vel.x)
         return cross2(vel, acc) / speed2
     return 0.0
 
@@ -172,12 +173,12 @@ def advance(yaw: AutoYaw, path: PositionState, est: Estimate, dt: float) -> Head
     if yaw.mode == ROI:
         away = horizontal(yaw.roi - est.pos)
         if dot2(away, away) > 0.01:
-            yaw.yaw = math.atan2(away.y, away.x)
+            yaw.yaw = atan2(away.y, away.x)
         return Heading(yaw.yaw, 0.0, True)
     if yaw.mode == LOOK_AHEAD:
         vel = horizontal(est.vel)
         if dot2(vel, vel) > _COURSE_SPEED * _COURSE_SPEED:
-            yaw.look_ahead = math.atan2(vel.y, vel.x)
+            yaw.look_ahead = atan2(vel.y, vel.x)
         return Heading(yaw.look_ahead, 0.0, True)
     if yaw.mode == LOOK_AT_NEXT_WP:
         rate = look_along(yaw, path.vel_desired, path.accel_desired, path.speed_max)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import horizontal, norm2, quat_from_euler, rotate
+from ....core.elementary import atan2, sincos
 from ....core.kernels import law
 from ....core.scalars import PI, constrain, wrap_pi
 from ....core.vectors import Euler, Vec3
@@ -233,10 +234,10 @@ def hold(v: Vehicle) -> attitude.Lean:
     if not t.holds_place or distance < _HOLD_NEAR:
         return attitude.Lean(0.0, 0.0)
     if distance >= _TURN_FAR:
-        heading = math.atan2(away.y, away.x) + (0.5 * PI if t.axis == PITCH else 0.0)
+        heading = atan2(away.y, away.x) + (0.5 * PI if t.axis == PITCH else 0.0)
         t.heading = wrap_pi(heading + (PI if abs(wrap_pi(heading - t.heading)) > _TURN_BACK else 0.0))
     size = _HOLD_LEAN * min(distance / _HOLD_DISTANCE, 1.0) / distance
-    c, s = math.cos(est.yaw), math.sin(est.yaw)
+    s, c = sincos(est.yaw)
     return attitude.Lean(size * (away.x * s - away.y * c), size * (away.x * c + away.y * s))
 
 

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import math
-
+from ....core.elementary import hypot
 from ....core.kernels import law
 from ...modes import ACCEPTED
 from ..control import altitude, altitude_start, attitude, position, position_start
@@ -26,7 +25,7 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     control, est, p = ap.control, ap.estimate, ap.params
     vel = est.vel
-    position_start.set_max_speed_accel_ne(control.pos_ne, p, max(math.hypot(vel.x, vel.y), 0.1), DECELERATION)
+    position_start.set_max_speed_accel_ne(control.pos_ne, p, max(hypot(vel.x, vel.y), 0.1), DECELERATION)
     position_start.init_ne(control, est, p)
     down, up = max(SPEED_D, vel.z), max(SPEED_D, -vel.z)
     altitude_start.set_max_speed_accel_d(control.pos_d, p.PSC, down, up, DECELERATION)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.elementary import atan2, sincos
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec3
@@ -54,7 +55,8 @@ def start(v: Vehicle) -> int:
     state.may_turn_back = False
     stop = control.pos_ne.pos_desired
     ahead = 0.0 if (int(p.CIRCLE.OPTIONS) & _AROUND_HERE) != 0 else state.radius
-    n, e = stop.x + ahead * math.cos(est.yaw), stop.y + ahead * math.sin(est.yaw)
+    east, north = sincos(est.yaw)
+    n, e = stop.x + ahead * north, stop.y + ahead * east
     nav.circle_centre = Vec3(n, e, est.pos.z)
     circle.start(nav, Vec3(stop.x, stop.y, est.pos.z), est.yaw)
     apply(nav, state, p)
@@ -92,7 +94,7 @@ def steer(state: CircleState, sticks: PilotState, top_rate: float, speed: float)
 @law
 def heading(nav: CopterNav, pos: Vec3, faces_travel: bool) -> float:
     """Where the nose points [rad] at ``pos`` (NED [m]): to the centre, or along the circle."""
-    inward = math.atan2(nav.circle_centre.y - pos.y, nav.circle_centre.x - pos.x)
+    inward = atan2(nav.circle_centre.y - pos.y, nav.circle_centre.x - pos.x)
     if not faces_travel:
         return inward
     return wrap_pi(inward - (0.5 * math.pi if nav.circle_top_rate >= 0.0 else -0.5 * math.pi))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.elementary import sincos
 from ....core.kernels import law
 from ....core.scalars import constrain
 from .. import pilot
@@ -86,7 +87,7 @@ def run(v: Vehicle) -> None:
         wanted = 0.0
     limit = math.radians(p.ANGLE_MAX * 0.01)
     stick = pilot.lean_angles(sticks, limit, min(limit, lean_limit(control.attitude)))
-    c, s = math.cos(est.yaw), math.sin(est.yaw)
+    s, c = sincos(est.yaw)
     forward, right = est.vel.x * c + est.vel.y * s, est.vel.y * c - est.vel.x * s
     rate = turn_rate(stick.roll, forward, math.radians(p.ACRO.Y_RATE))
     lean = Lean(slip_lean(state, sticks.yaw, right), braking_lean(state, stick.pitch, forward))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import euler_of, quat_from_euler
+from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Euler, Quat, Vec3
@@ -80,8 +81,8 @@ def start(v: Vehicle) -> int:
 def turned(flip: FlipState, q: Quat) -> float:
     """Angle [rad] of the thrust about the axis of the flip, -pi .. pi, positive in its direction."""
     up = 1.0 - 2.0 * (q.x * q.x + q.y * q.y)
-    roll = math.atan2(2.0 * (q.w * q.x + q.y * q.z), up)
-    pitch = math.atan2(2.0 * (q.w * q.y - q.x * q.z), up)
+    roll = atan2(2.0 * (q.w * q.x + q.y * q.z), up)
+    pitch = atan2(2.0 * (q.w * q.y - q.x * q.z), up)
     return flip.roll * roll + flip.pitch * pitch
 
 

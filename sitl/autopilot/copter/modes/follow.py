@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import math
-
 from ....core.algebra import horizontal, norm2
+from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import follow as lead_motion
@@ -46,7 +45,7 @@ def look(yaw: AutoYaw, lead: FollowState, pos: Vec3, behaviour: int) -> None:
     if behaviour == _AS_LEAD:
         auto_yaw.follow_angle(yaw, lead.heading, lead.heading_rate)
     elif behaviour in (_FACE_LEAD, _ALONG) and norm2(way) > 1.0:
-        auto_yaw.follow_angle(yaw, math.atan2(way.y, way.x), 0.0)
+        auto_yaw.follow_angle(yaw, atan2(way.y, way.x), 0.0)
 
 
 @law

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import ZERO2
+from ....core.elementary import hypot, tan
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Euler, Vec2
@@ -66,7 +67,7 @@ def limits(p: Parameters) -> Limits:
     """LOIT_*."""
     return Limits(
         max(p.LOIT.SPEED * 0.01, _SPEED_MIN),
-        GRAVITY * math.tan(angle_max(p)),
+        GRAVITY * tan(angle_max(p)),
         0.5 * p.PSC.VELXY.P,
         p.LOIT.BRK_ACCEL * 0.01,
         p.LOIT.BRK_JERK * 0.01,
@@ -123,7 +124,7 @@ def advance_path(loiter: LoiterState, path: Motion2, limits: Limits, braking: bo
     """The desired motion (NE) one tick later, with drag, and with the brake when the sticks are centred."""
     vel = path.vel + loiter.predicted_acc * DT
     acc = loiter.acc
-    speed = math.hypot(vel.x, vel.y)
+    speed = hypot(vel.x, vel.y)
     if speed > 1e-9:
         drag = limits.accel_full * speed / limits.speed_max
         brake = 0.0

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import ZERO2, horizontal, norm2
+from ....core.elementary import atan, cos, sincos
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
@@ -123,9 +124,9 @@ def start(v: Vehicle) -> int:
 @law
 def wind_lean(wind: Vec2, yaw: float) -> Lean:
     """Lean [rad] at heading ``yaw`` [rad] whose acceleration is ``wind`` (NE [m/s^2])."""
-    c, s = math.cos(yaw), math.sin(yaw)
-    pitch = -math.atan((wind.x * c + wind.y * s) / GRAVITY)
-    return Lean(math.atan(math.cos(pitch) * (wind.y * c - wind.x * s) / GRAVITY), pitch)
+    s, c = sincos(yaw)
+    pitch = -atan((wind.x * c + wind.y * s) / GRAVITY)
+    return Lean(atan(cos(pitch) * (wind.y * c - wind.x * s) / GRAVITY), pitch)
 
 
 @law
@@ -174,7 +175,7 @@ def fly(v: Vehicle) -> None:
         state.roll.since_us = v.time_us
         state.pitch.since_us = v.time_us
     if not state.holding:
-        c, s = math.cos(est.yaw), math.sin(est.yaw)
+        s, c = sincos(est.yaw)
         forward, right = est.vel.x * c + est.vel.y * s, est.vel.y * c - est.vel.x * s
         advance_axis(state.roll, stick.roll, -right, v.time_us, p.PHLD)
         advance_axis(state.pitch, stick.pitch, forward, v.time_us, p.PHLD)

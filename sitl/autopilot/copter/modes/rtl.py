@@ -5,9 +5,8 @@ RTL_ALT_FINAL).
 
 from __future__ import annotations
 
-import math
-
 from ....core.algebra import ZERO2, horizontal, with_down
+from ....core.elementary import hypot
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import rally
@@ -95,7 +94,7 @@ def plan_heights(rtl: RtlState, home: Vec3, target: Vec3, pos: Vec3, p: Rtl) -> 
     """
     away = target - pos
     rtl.home = horizontal(target)
-    rtl.return_d = home.z - return_height(home.z - pos.z, home.z - target.z, math.hypot(away.x, away.y), p)
+    rtl.return_d = home.z - return_height(home.z - pos.z, home.z - target.z, hypot(away.x, away.y), p)
     rtl.descent_d = home.z - p.ALT_FINAL * 0.01
 
 
@@ -108,7 +107,7 @@ def plan_over_ground(v: Vehicle, target: Vec3) -> None:
         emit(ap.events, v.time_us, TERRAIN_DID, float(RTL_WITHOUT), 0.0)
     elif not is_flat(v):
         terrain.begin(ap.modes.nav, ground_now)
-        height, distance = ground_now.d - ap.estimate.pos.z, math.hypot(away.x, away.y)
+        height, distance = ground_now.d - ap.estimate.pos.z, hypot(away.x, away.y)
         ap.modes.rtl.return_d = -return_height(height, ap.home.pos.z - target.z, distance, ap.params.RTL)
 
 

@@ -10,9 +10,8 @@ Source: https://ardupilot.org/copter/docs/simpleandsuper-simple-modes.html
 
 from __future__ import annotations
 
-import math
-
 from ....core.algebra import horizontal, norm2, turned
+from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...aux_switch import has_function
@@ -64,7 +63,7 @@ def look_from_home(simple: SimpleState, pos: Vec3, home: Vec3) -> None:
     """Away from home is forwards in SUPER_SIMPLE; both NED [m]."""
     away = horizontal(pos) - horizontal(home)
     if norm2(away) > HOME_RADIUS:
-        simple.heading_from_home = math.atan2(away.y, away.x)
+        simple.heading_from_home = atan2(away.y, away.x)
 
 
 @law

@@ -13,6 +13,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import turned
+from ....core.elementary import acos, cos, exp, log, sin
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
@@ -108,8 +109,8 @@ def loudness(c: Chirp, t: float) -> float:
     if t <= 0.0 or left < 0.0:
         return 0.0
     if t <= c.fade_in:
-        return 0.5 - 0.5 * math.cos(math.pi * t / c.fade_in)
-    return 0.5 - 0.5 * math.cos(math.pi * left / c.fade_out) if left < c.fade_out else 1.0
+        return 0.5 - 0.5 * cos(math.pi * t / c.fade_in)
+    return 0.5 - 0.5 * cos(math.pi * left / c.fade_out) if left < c.fade_out else 1.0
 
 
 @law
@@ -117,13 +118,13 @@ def frequency(c: Chirp, t: float) -> float:
     """[rad/s] at time ``t`` [s]: it rises exponentially."""
     if t <= c.constant:
         return c.first
-    return c.first * math.exp(math.log(c.last / c.first) * min((t - c.constant) / (c.length - c.constant), 1.0))
+    return c.first * exp(log(c.last / c.first) * min((t - c.constant) / (c.length - c.constant), 1.0))
 
 
 @law
 def phase(c: Chirp, t: float) -> float:
     """Of the sine at time ``t`` [rad]: the integral of the frequency, zero where the sweep begins."""
-    growth = math.log(c.last / c.first)
+    growth = log(c.last / c.first)
     if t <= c.constant or growth == 0.0:
         return c.first * (t - c.constant)
     return (frequency(c, t) - c.first) * (c.length - c.constant) / growth
@@ -132,7 +133,7 @@ def phase(c: Chirp, t: float) -> float:
 @law
 def value(c: Chirp, t: float) -> float:
     """The chirp at time ``t`` [s]."""
-    return loudness(c, t) * c.magnitude * math.sin(phase(c, t))
+    return loudness(c, t) * c.magnitude * sin(phase(c, t))
 
 
 @law
@@ -190,7 +191,7 @@ def sample(v: Vehicle) -> float:
         return 0.0
     state.time += DT
     state.frequency = frequency(chirp, state.time - DELAY)
-    lean, lean_max = math.degrees(math.acos(min(ap.control.attitude.cos_lean, 1.0))), ap.params.ANGLE_MAX * 0.01
+    lean, lean_max = math.degrees(acos(min(ap.control.attitude.cos_lean, 1.0))), ap.params.ANGLE_MAX * 0.01
     if ap.arming.landed:
         stop(v, LANDED, 0.0)
     elif lean > lean_max:

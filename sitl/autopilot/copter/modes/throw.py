@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import norm2, rotate
+from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
@@ -59,7 +60,7 @@ _VERTICAL_SPEED = 0.5  # [m/s]
 _FALLING = 0.25  # less than this of gravity is felt
 _CONFIRM_US = 500_000
 _CONFIRM_SPEED = 2.5  # lost upwards within that time [m/s]
-_UPRIGHT = math.cos(math.radians(30.0))
+_UPRIGHT = cos(math.radians(30.0))
 _NEAR = 0.5  # [m]
 _HALF_THROTTLE = 0.5
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import dot2, norm2, with_down
+from ....core.algebra import direction, dot2, norm2, with_down
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
@@ -75,7 +75,7 @@ def place_beside(state: ZigZagState, here: Vec2, heading: float, distance: float
     """``distance`` [m] from ``here``, at right angles to A .. B, on the side that a heading [rad] points to."""
     along = state.b - state.a
     side = Vec2(-along.y, along.x) * (distance / norm2(along))
-    if side.x * math.cos(heading) + side.y * math.sin(heading) < 0.0:
+    if dot2(side, direction(heading)) < 0.0:
         return here - side
     return here + side
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import ZERO, ZERO2, horizontal
+from ....core.elementary import atan2, hypot, sincos
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec3
@@ -28,8 +29,8 @@ ANGULAR_ACCEL_MIN = math.radians(2.0)
 def start(nav: CopterNav, pos: Vec3, yaw: float) -> None:
     """Start circling from ``pos`` (NED [m]), heading ``yaw`` [rad], around ``nav.circle_centre``."""
     away = pos - nav.circle_centre
-    if math.hypot(away.x, away.y) > 0.05:
-        nav.circle_angle = math.atan2(away.y, away.x)
+    if hypot(away.x, away.y) > 0.05:
+        nav.circle_angle = atan2(away.y, away.x)
     else:
         nav.circle_angle = yaw - math.pi  # at the centre: back out, looking ahead
     nav.circle_total = 0.0
@@ -73,8 +74,8 @@ def advance(nav: CopterNav) -> float:
     elif nav.circle_angle < -math.pi:
         nav.circle_angle += 2.0 * math.pi
     radius = abs(nav.circle_radius)
-    n = radius * math.cos(nav.circle_angle)
-    e = radius * math.sin(nav.circle_angle)
+    sine, cosine = sincos(nav.circle_angle)
+    n, e = radius * cosine, radius * sine
     centre = nav.circle_centre
     nav.pos = Vec3(centre.x + n, centre.y + e, centre.z)
     nav.vel = ZERO

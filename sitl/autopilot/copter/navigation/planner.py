@@ -7,6 +7,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import ZERO, dot, norm, with_down
+from ....core.sums import separation
 from ....core.vectors import Vec3
 from ...navigation.leg import SHORTEST, Limits, axis_limits, bounded, plan, speed_within, write
 from ...navigation.planner import Planner, end
@@ -223,7 +224,7 @@ class CopterPlanner(Planner[Autopilot]):
 
     def entry_speed(self, ap: Autopilot, corner: Vec3, leaving: Vec3, following: Following) -> float:
         """Greatest speed [m/s] at ``corner``, in the direction ``leaving``, with which what follows can be flown."""
-        if following.place is None or norm(leaving) == 0.0 or math.dist(following.place, corner) < SHORTEST:
+        if following.place is None or norm(leaving) == 0.0 or separation(following.place, corner) < SHORTEST:
             return 0.0
         if following.is_spline:
             curve = Spline()

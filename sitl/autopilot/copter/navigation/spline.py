@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import ZERO, dot, norm
+from ....core.elementary import hypot
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec3
@@ -57,7 +58,7 @@ def direction(s: Spline, u: float) -> Vec3:
 @law
 def along_axes(unit: Vec3, horizontal: float, up: float, down: float) -> float:
     """Greatest length of a vector along ``unit`` (NED) within a horizontal and two vertical limits."""
-    ne = math.hypot(unit.x, unit.y)
+    ne = hypot(unit.x, unit.y)
     vertical = up if unit.z < 0.0 else down
     if ne < 1e-9:
         return vertical

@@ -7,6 +7,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import ZERO, dot, norm
+from ....core.sums import separation
 from ....core.vectors import Vec3
 from .spline import along_axes, bend, direction, place, slope
 from .state import SPLINE_PARTS, Spline
@@ -27,7 +28,7 @@ class SplineLimits(NamedTuple):
 
 def lay(s: Spline, origin: Vec3, end: Vec3, leaving: Vec3, entering: Vec3) -> None:
     """The curve from ``origin`` to ``end`` (NED [m]) with these slopes at its two ends [m]; zero: from or to rest."""
-    chord = math.dist(origin, end)
+    chord = separation(origin, end)
     slopes = norm(leaving) + norm(entering)
     scale = min(1.0, _LONGEST * chord / slopes) if slopes > 0.0 else 0.0
     leaving, entering = leaving * scale, entering * scale
@@ -46,8 +47,8 @@ def set_limits(s: Spline, limits: SplineLimits, end_speed: float) -> None:
     for k in range(SPLINE_PARTS - 1, -1, -1):
         unit = direction(s, marks[k])
         accel = along_axes(unit, limits.accel_ne, limits.accel_d, limits.accel_d)
-        way = math.dist(place(s, marks[k]), place(s, marks[k + 1]))
-        allowed[k] = min(allowed[k], math.sqrt(allowed[k + 1] ** 2 + 2.0 * accel * way))
+        way = separation(place(s, marks[k]), place(s, marks[k + 1]))
+        allowed[k] = min(allowed[k], math.sqrt(allowed[k + 1] * allowed[k + 1] + 2.0 * accel * way))
     s.allowed[:] = allowed
 
 

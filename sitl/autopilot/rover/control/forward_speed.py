@@ -7,10 +7,9 @@ heading; the wheel encoders' mean (ArduPilot feeds those to its filter instead).
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
-from ....core.algebra import dot2, horizontal, norm2
+from ....core.algebra import direction, dot2, horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import finite
 from ....core.vectors import Quat, Vec2, Vec3
@@ -64,7 +63,7 @@ def signed_ground_speed(vel: Vec2, nose: Vec2) -> float:
 def estimate_forward_speed(s: SpeedState, estimate: Estimate, sensors: Sensors) -> ForwardSpeed:
     """Speed along the nose from the first source that knows it."""
     heading = estimate.yaw
-    nose = Vec2(math.cos(heading), math.sin(heading))
+    nose = direction(heading)
     known, speed = s.wheel_ok, s.wheel
     if estimate.status_flags & VELOCITY_HORIZ != 0:
         known, speed = True, dot2(horizontal(estimate.vel), nose)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import ZERO2, cross2, dot2, finite2, horizontal, limit_length, norm2
+from ....core.algebra import ZERO2, cross2, direction, dot2, finite2, horizontal, limit_length, norm2
 from ....core.kernels import law
 from ....core.vectors import Vec2
 from ...control.pid import Gains, basic_gains, lowpass_gain
@@ -182,7 +182,7 @@ def lateral_or_aside(c: PositionState, along: float, size: float, lateral: float
 def drive_towards(control: Control, heading: float, params: Parameters) -> None:
     """From the wanted velocity and acceleration to the outputs of a vehicle with its nose at ``heading`` [rad]."""
     c = control.position
-    nose = Vec2(math.cos(heading), math.sin(heading))
+    nose = direction(heading)
     along = dot2(c.vel_target, nose)
     size = norm2(c.vel_target)
     slowest = math.sqrt(0.5 * lat_accel_max(params.ATC) * turn_radius(params))

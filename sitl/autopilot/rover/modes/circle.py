@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ....core.algebra import horizontal, norm2
+from ....core.algebra import direction, horizontal, norm2
+from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
@@ -136,16 +137,13 @@ def angle_from(centre: Vec2, estimate: Estimate) -> float:
     away = horizontal(estimate.pos) - centre
     if away.x == 0.0 and away.y == 0.0:
         return estimate.yaw
-    return math.atan2(away.y, away.x)
+    return atan2(away.y, away.x)
 
 
 @law
 def edge(circle: CircleState) -> Vec2:
     """The point of the edge at ``angle`` [m]."""
-    return Vec2(
-        circle.centre.x + circle.radius * math.cos(circle.angle),
-        circle.centre.y + circle.radius * math.sin(circle.angle),
-    )
+    return circle.centre + direction(circle.angle) * circle.radius
 
 
 @law
@@ -167,7 +165,7 @@ def advance(circle: CircleState, accel_max: float, estimate: Estimate) -> Motion
     else:
         circle.angle = angle_from(circle.centre, estimate)
     circle.target = edge(circle)
-    out = Vec2(math.cos(circle.angle), math.sin(circle.angle))
+    out = direction(circle.angle)
     along = Vec2(-out.y * circle.direction, out.x * circle.direction)
     size = circle.target_speed
     return Motion2(circle.target, size * along, change / DT * along - size * size / circle.radius * out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from ....core.algebra import dot2, horizontal, norm2, turned
+from ....core.algebra import direction, dot2, horizontal, norm2, turned
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
@@ -85,7 +85,7 @@ def lead_in(away: Vec2, distance: float, p: Parameters) -> Vec2:
     if p.DOCK.HDG_CORR_EN == 0.0 or distance < LAST_PART:
         return Vec2(0.0, 0.0)
     heading = math.radians(p.DOCK.DIR)
-    line = Vec2(math.cos(heading), math.sin(heading))
+    line = direction(heading)
     return p.DOCK.HDG_CORR_WT * abs(dot2(away, line)) * line
 
 

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import math
-
 from ....core.algebra import horizontal, norm2
+from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.vectors import Vec2
 from ... import follow as lead_motion
@@ -54,7 +53,7 @@ def run(v: Vehicle) -> None:
     if wanted.x == 0.0 and wanted.y == 0.0:
         speed.stop(control, ap.arming.armed, p)
         return
-    drive.turn_to(control, ap.estimate, ap.modes.pilot, math.atan2(wanted.y, wanted.x), p)
+    drive.turn_to(control, ap.estimate, ap.modes.pilot, atan2(wanted.y, wanted.x), p)
     drive.at_speed(v, pilot.nudged(ap.modes.pilot, norm2(wanted), p))
 
 

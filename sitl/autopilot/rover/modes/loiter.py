@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import horizontal, norm2
+from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
@@ -46,7 +47,7 @@ def aim(loiter: LoiterState, pos: Vec2, yaw: float, params: Parameters) -> None:
     p = params.LOIT
     wanted = min((loiter.distance - p.RADIUS) * p.SPEED_GAIN, params.WP.SPEED)
     way = loiter.place - pos
-    heading = math.atan2(way.y, way.x)
+    heading = atan2(way.y, way.x)
     error = wrap_pi(heading - yaw)
     behind = abs(error) > 0.5 * math.pi
     if p.TYPE == BACKWARDS or (behind and p.TYPE == EITHER_WAY):

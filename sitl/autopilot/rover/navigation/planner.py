@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import with_down
+from ....core.elementary import atan2
 from ....core.vectors import Vec3
 from ...navigation.leg import Limits
 from ...navigation.planner import Planner
@@ -37,8 +38,8 @@ class RoverPlanner(Planner[Autopilot]):
     def may_join(self, ap: Autopilot, corner: Vec3, target: Vec3) -> bool:
         """Not when it would turn on the spot there."""
         drive = ap.modes.nav.drive
-        before = math.atan2(corner.y - drive.origin.y, corner.x - drive.origin.x)
-        after = math.atan2(target.y - corner.y, target.x - corner.x)
+        before = atan2(corner.y - drive.origin.y, corner.x - drive.origin.x)
+        after = atan2(target.y - corner.y, target.x - corner.x)
         drive.pivot_next = pivot.would_turn(after - before, ap.params)
         return not drive.pivot_next
 

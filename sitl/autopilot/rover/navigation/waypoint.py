@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import cross2, dot2, horizontal, norm2, with_down
+from ....core.elementary import atan2, hypot
 from ....core.kernels import law
 from ....core.scalars import finite, wrap_pi
 from ....core.vectors import Vec2, Vec3
@@ -188,7 +189,7 @@ def reached(nav: RoverNav) -> bool:
 def heading_to_destination(nav: RoverNav, pos: Vec3) -> float:
     """Heading that takes a vehicle at ``pos`` [m] to the destination [rad], nose or tail first."""
     goal = nav.detour.bent_target if nav.detour.bend == BENT else nav.target
-    towards = math.atan2(goal.y - pos.y, goal.x - pos.x)
+    towards = atan2(goal.y - pos.y, goal.x - pos.x)
     return wrap_pi(towards + math.pi) if nav.drive.reversed else towards
 
 
@@ -308,7 +309,7 @@ def crosstrack(origin: Vec2, target: Vec2, pos: Vec2) -> float:
     From the point when they are one.
     """
     line = target - origin
-    length = math.hypot(line.x, line.y)
+    length = hypot(line.x, line.y)
     if length < 1e-6:
-        return math.hypot(target.x - pos.x, target.y - pos.y)
+        return hypot(target.x - pos.x, target.y - pos.y)
     return cross2(pos - origin, line) / length

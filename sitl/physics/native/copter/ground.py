@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import ZERO, multiply, normalise, rotate, rotate_inverse
+from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Quat, Vec3
 from ....vehicles.figures.copter import Legs
@@ -41,7 +42,7 @@ def touch(body: Body, ground: Ground, ground_d: float, legs: Legs, time_us: int)
         ground.hit_time_us = time_us
     ground.impulse += vel.z
     body.pos, body.vel, body.rates = Vec3(pos.x, pos.y, ground_d), Vec3(vel.x, vel.y, 0.0), ZERO
-    if upright(body.q) < math.cos(legs.tip_angle):
+    if upright(body.q) < cos(legs.tip_angle):
         ground.state = GROUND_LYING
     else:
         ground.state = GROUND_STANDING

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.border import Sensors
+from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
@@ -36,7 +37,7 @@ def turn(rotors: Rotors, figures: Figures) -> float:
         for h in range(HARMONICS):
             if int(rotors.harmonics) >> h & 1:
                 n = h + 1.0
-                total += (math.cos(n * before) - math.cos(n * (before + angle))) / (n * angle)
+                total += (cos(n * before) - cos(n * (before + angle))) / (n * angle)
     return total
 
 

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import math
-
+from ....core.elementary import sin
 from ....core.kernels import law
 from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Figures
 from ..body import GRAVITY
@@ -56,7 +55,7 @@ def prepare(a: Figures, d: Derived) -> None:
     if a.steering_model == STEERING_FRONT_WHEELS:
         d.inverse_wheelbase = 1.0 / a.wheelbase
     elif a.steering_model == STEERING_TURNING_CIRCLE:
-        d.circle_scale = 2.0 / (a.turning_diameter * math.sin(a.steering_angle))
+        d.circle_scale = 2.0 / (a.turning_diameter * sin(a.steering_angle))
     else:
         d.inverse_track = 1.0 / (a.track * a.track_slip)
     d.bend, d.bend_angle = 0.0, 0.0  # straight on, whatever the figures

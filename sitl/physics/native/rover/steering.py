@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ....core.elementary import sin, tan
 from ....core.kernels import law
 from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, Figures
 from .state import SERVO_RING, Derived, SteeringServo
@@ -39,8 +40,8 @@ def followed(servo: SteeringServo, command: float) -> float:
 def curvature(angle: float, figures: Figures, derived: Derived) -> float:
     """1 / radius [1/m] of the driven axle's path that the front wheels' angle [rad] asks for, right positive."""
     if figures.steering_model == STEERING_FRONT_WHEELS:
-        return math.tan(angle) * derived.inverse_wheelbase
-    return math.sin(angle) * derived.circle_scale
+        return tan(angle) * derived.inverse_wheelbase
+    return sin(angle) * derived.circle_scale
 
 
 @law

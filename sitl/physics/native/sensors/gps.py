@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ....core.algebra import by_component
 from ....core.border import GpsReading, Sensors
+from ....core.elementary import sin
 from ....core.geodesy import add_offset
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector, uniform
@@ -109,7 +110,7 @@ def spoil(fix: Fix, fault: GpsFault, time: float) -> None:
     """Add what is wrong to a fix taken ``time`` [s] after power-on."""
     fix.lat += fault.lat
     fix.lon += fault.lon
-    wave = fault.noise * math.sin(FAST_WAVE * time) + fault.drift * math.sin(SLOW_WAVE * time)
+    wave = fault.noise * sin(FAST_WAVE * time) + fault.drift * sin(SLOW_WAVE * time)
     fix.alt += _nearest(1000.0 * (fault.alt + wave))
     vel = fault.vel
     fix.vel += Vec3(_nearest(100.0 * vel.x), _nearest(100.0 * vel.y), _nearest(100.0 * vel.z))

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from ....core.algebra import by_component
 from ....core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER, Sensors
+from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Vec3
@@ -44,7 +45,7 @@ def wave(hz: float, time: float) -> float:
     if hz <= 0.0:
         return 0.0
     rate = _TURN * hz
-    return (math.cos(rate * (time - TICK_S)) - math.cos(rate * time)) / (rate * TICK_S)
+    return (cos(rate * (time - TICK_S)) - cos(rate * time)) / (rate * TICK_S)
 
 
 @law

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from ....core.array_kernels import Line, NarrowLine, Table
+from ....core.elementary import sincos
 from ....core.kernels import law
 from ....core.rng import Rng, normal
 from ....core.vectors import Vec3
@@ -35,7 +35,7 @@ def scan(b: Body, f: Figures, solids: Solids, beams: Beams, readings: NarrowLine
     ``readings``: shape (readings,) [m], from right to left; inf: nothing within the range.
     """
     directions = beams.directions
-    c, s = math.cos(b.heading), math.sin(b.heading)
+    s, c = sincos(b.heading)
     for k in range(beams.ranges.shape[0]):
         x, y = beams.rays[0, k], beams.rays[1, k]
         directions[0, k], directions[1, k], directions[2, k] = c * x - s * y, s * x + c * y, 0.0

@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 from ....core.array_kernels import Table
+from ....core.elementary import sincos
 from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI
 from ....core.vectors import Vec2
@@ -69,7 +70,8 @@ def move(b: Body, f: Figures, wheels: WheelSpeeds, solids: Table) -> None:
     if speed != 0.0:
         middle = heading - 0.5 * turned
         travel = speed * TICK_S
-        n, e = b.north + travel * math.cos(middle), b.east + travel * math.sin(middle)
+        sine, cosine = sincos(middle)
+        n, e = b.north + travel * cosine, b.east + travel * sine
         free = b.clearance - abs(travel)
         if free < 0.0:
             free = free_distance(f, b.down, solids, Vec2(n, e))

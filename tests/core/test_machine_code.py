@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The machine code of units and kernels takes the source's arithmetic: nothing is fused or reordered on any processor.
+
+With one rounding for a product and a sum, or with sums in another order, the last bits of a flight would be those of a
+processor. LLVM does neither unless an instruction allows it, and Numba allows it only where a user says ``fastmath``.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numba
+import pytest
+from numba import float64
+
+from sitl.cli.cache import all_entries
+from sitl.core import compile as compiler
+from sitl.core.array_kernels import KERNELS, Kernel, Line, _folder, _signature
+from sitl.core.code_cache import is_built
+from sitl.core.kernels import jit_disabled, law
+from sitl.core.numba_tuning import law_options
+from sitl.vehicle.kinds import KINDS
+from tests.core.machine_code import PROCESSORS, assembly, declared, freedoms, fused, referred
+
+EXACT = {
+    "fabs", "copysign", "floor", "ceil", "trunc", "rint", "fmod", "is.fpclass", "masked.load", "masked.store",
+    "masked.gather", "masked.scatter", "sqrt", "sqrtf",
+}  # fmt: skip
+"""Functions whose result is prescribed to the last bit."""
+MEMORY = {"memset", "memcpy", "memmove", "bzero"}
+OURS = re.compile(r"sitl_|_Z|\.?numba|NRT_|_?Py|__.*_chk$")
+"""Other units, Numba's own, and Python's: kernels take their arguments from it and report errors to it."""
+QUICK = (
+    "autopilot.copter.control.update.update",
+    "autopilot.estimation.update.run_second",
+    "autopilot.estimation.update.step_bank",
+    "autopilot.rover.control.update.update",
+    "physics.native.copter.step.step",
+    "physics.native.ranging.measure",
+    "vehicle.copter.advance",
+)
+"""Units whose machine code is looked at in seconds."""
+SLOW = (
+    "autopilot.copter.modes.update.update",
+    "autopilot.estimation.update.step",
+    "autopilot.rover.modes.update.update",
+    "bridge.copter.core.hear",
+    "bridge.copter.core.tell",
+    "physics.native.rover.step.step",
+    "vehicle.copter.move",
+)
+pytestmark = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+
+
+def ir_of(library: Any) -> str:
+    """LLVM's optimised code of a library of Numba's, compiled now or loaded from the cache."""
+    return str(library._get_module_for_linking())
+
+
+@pytest.fixture(scope="module")
+def units() -> dict[tuple[str, str], Any]:
+    """(Name, path of the record type) -> Numba's library, of all units of both kinds."""
+    for kind in KINDS.values():
+        for entry in all_entries(kind):
+            compiler.load(entry, kind.record_path)
+    return {key: function._library for key, function in compiler._compiled.items() if key[1].startswith("sitl.")}
+
+
+def kernels() -> Iterator[tuple[str, Any]]:
+    """Those that are built: none is compiled for a look at it."""
+    for name, kernel in list(KERNELS.items()):
+        if name.startswith("toy") or not is_built(_folder(kernel, _signature(kernel.law))):
+            continue
+        function: Any = kernel.function()
+        for overload in function.overloads.values():
+            yield name, overload.library
+
+
+def unknown(names: set[str]) -> set[str]:
+    """Of functions that are called, those that no list has."""
+    return {name for name in names - EXACT - MEMORY if not OURS.match(name)}
+
+
+def test_no_unit_allows_other_arithmetic(units: dict[tuple[str, str], Any]) -> None:
+    assert len(units) >= 50
+    loose = {key: found for key, library in units.items() if (found := freedoms(ir_of(library)))}
+    assert not loose
+
+
+def test_units_call_what_is_listed(units: dict[tuple[str, str], Any]) -> None:
+    called = {key: declared(ir_of(library)) for key, library in units.items()}
+    assert not {key: names for key, found in called.items() if (names := unknown(found))}
+
+
+def test_no_kernel_allows_other_arithmetic_or_calls_what_is_not_listed() -> None:
+    for name, library in kernels():
+        ir = ir_of(library)
+        assert (name, freedoms(ir), unknown(declared(ir))) == (name, [], set())
+
+
+@pytest.mark.parametrize("processor", PROCESSORS)
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW)])
+def test_machine_code_fuses_nothing(units: dict[tuple[str, str], Any], name: str, processor: str) -> None:
+    """As this processor's optimiser leaves the unit, and the other one's after it."""
+    code = assembly(ir_of(next(library for (unit, _), library in units.items() if unit == name)), processor)
+    assert len(re.findall(r"^\s+v?f?mul(?:sd|pd)?\s", code, re.MULTILINE)) > 20, "there is something to fuse"
+    assert fused(code) == []
+    assert unknown(referred(code, processor)) == set()
+
+
+def dot(a: Any, b: Any) -> float:
+    """A sum of products over arrays: what loops are reordered and fused in."""
+    total = 0.0
+    for k in range(a.shape[0]):
+        total += a[k] * b[k]
+    return total
+
+
+def turned(x: float, y: float, angle: float) -> float:
+    """A product and a sum without a loop, and functions of a library."""
+    return x * math.cos(angle) - y * (angle % 3.0) + x ** (angle + 1.0)
+
+
+def compiled(function: Callable[..., float], *kinds: Any, **options: Any) -> str:
+    """LLVM's code of a function that is compiled as laws are."""
+    made: Any = numba.njit([float64(*kinds)], **law_options(), **options)(function)
+    return ir_of(next(iter(made.overloads.values())).library)
+
+
+@pytest.mark.parametrize("processor", PROCESSORS)
+@pytest.mark.parametrize(("function", "kinds"), [(dot, (float64[::1],) * 2), (turned, (float64,) * 3)])
+def test_laws_compile_to_the_source_s_arithmetic(
+    function: Callable[..., float], kinds: tuple[Any, ...], processor: str
+) -> None:
+    ir = compiled(function, *kinds)
+    assert freedoms(ir) == [] and fused(assembly(ir, processor)) == []
+
+
+@pytest.mark.parametrize("processor", PROCESSORS)
+@pytest.mark.parametrize("fastmath", [True, {"contract"}])
+@pytest.mark.parametrize(("function", "kinds"), [(dot, (float64[::1],) * 2), (turned, (float64,) * 3)])
+def test_the_look_sees_what_is_fused(
+    function: Callable[..., float], kinds: tuple[Any, ...], fastmath: Any, processor: str
+) -> None:
+    """The same functions, where the compiler may do as it likes."""
+    ir = compiled(function, *kinds, fastmath=fastmath)
+    assert freedoms(ir) and fused(assembly(ir, processor))
+
+
+@pytest.mark.parametrize("processor", PROCESSORS)
+def test_the_look_sees_what_is_called(processor: str) -> None:
+    ir = compiled(turned, float64, float64, float64)
+    assert {"cos", "pow"} <= declared(ir)
+    assert {"cos", "fmod", "pow"} <= referred(assembly(ir, processor), processor)
+
+
+@law
+def weighed(a: Line, b: Line) -> float:
+    """The same sum as a kernel."""
+    total = 0.0
+    for k in range(a.shape[0]):
+        total += a[k] * b[k]
+    return total
+
+
+def test_kernels_are_compiled_without_freedoms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One made here, however few are in the cache."""
+    monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
+    kernel = Kernel(weighed)
+    del KERNELS[kernel.name]
+    function: Any = kernel.function()
+    ir = ir_of(next(iter(function.overloads.values())).library)
+    assert "fmul" in ir and freedoms(ir) == []
+    assert all(fused(assembly(ir, each)) == [] for each in PROCESSORS)
