@@ -12,7 +12,6 @@ import numpy.typing as npt
 from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import IntLine, IntTable, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
-
 from sitl.worlds import World
 
 from .robots.robot import Floats, Robot, world_of

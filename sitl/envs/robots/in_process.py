@@ -90,7 +90,9 @@ class InProcessVehicles(Vehicles):
     def enter(self, index: int, world: World) -> None:
         """See ``Vehicles``: there is a vehicle for each world."""
         if self._gcs is not None:
-            raise EnvOptionError(f"world {world.name!r}: the vehicle that a ground station (gcs) sees stays in one world")
+            raise EnvOptionError(
+                f"world {world.name!r}: the vehicle that a ground station (gcs) sees stays in one world"
+            )
         left = self.links[index]
         if isinstance(left, InProcess):
             self._elsewhere[index, self.worlds[index].name] = left
