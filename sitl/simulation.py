@@ -415,8 +415,8 @@ class Simulation:
         self._resume(snapshot)
 
     def enter(self, around: Surroundings) -> None:
-        """Be in another world from now on; a vehicle on native physics in a world. Its record is not changed: ``restore``
-        or ``take_up`` it next."""
+        """Be in another world from now on; a vehicle on native physics in a world. Its record is not changed:
+        ``restore`` or ``take_up`` follows."""
         assert isinstance(self.plant, LocalPlant)
         self.plant.enter(around)
         self.world, self.home = around.world, self.plant.home

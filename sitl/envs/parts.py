@@ -170,7 +170,7 @@ class Height:
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
         pose = self._robot.true_state() if self._is_true else self._robot.pose
-        out[:, 0] = pose[:, 2] - self._robot.world.floor_z
+        out[:, 0] = pose[:, 2] - floors_of(self._robot)
 
 
 class Readings:

@@ -188,7 +188,7 @@ class Session:
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
-        self._varies = False
+        self.varies = False
         """Whether episodes are, or have been, in several worlds."""
         if isinstance(self.task, Task):
             self.task.judge_of = self.judge
@@ -224,7 +224,7 @@ class Session:
     def _allow(self, draw: WorldDraw) -> None:
         """Refuse worlds that the robot or the task cannot be in."""
         now = world_of(self.robot, 0)
-        if not (draw.varies or self._varies) and draw.first is now:
+        if not (draw.varies or self.varies) and draw.first is now:
             return
         if not isinstance(self.robot, TravellingRobot):
             raise EnvOptionError(f"world: robot {self.robot.name!r} stays in the world {now.name!r}; give one world")
@@ -238,7 +238,7 @@ class Session:
                 self._enter(0, world)
         finally:
             self._enter(0, now)
-        self._varies = True
+        self.varies = True
 
     def _enter(self, index: int, world: World) -> None:
         """Let the next episode of a robot be in a world."""
@@ -331,17 +331,18 @@ class Session:
 
     def _begin_in(self, index: int, world: World) -> None:
         """Let a robot be in the world of its next episode."""
-        if not self._varies and world is not world_of(self.robot, index):
+        if not self.varies and world is not world_of(self.robot, index):
             self._allow(WorldDraw(world))
-        if self._varies:
+        if self.varies:
             self._enter(index, world)
 
-    @property
-    def world_names(self) -> npt.NDArray[np.object_] | None:
-        """Name of each robot's world, shape (count,); None: episodes are all in one."""
-        if not self._varies:
-            return None
-        return np.array([world.name for world in cast(TravellingRobot, self.robot).worlds], object)
+    def first_info(self) -> dict[str, npt.NDArray[Any]]:
+        """What is told of episodes when they begin: the names of their worlds, where there are several; a row a
+        robot."""
+        return {"world": self._world_names()} if self.varies else {}
+
+    def _world_names(self) -> npt.NDArray[np.str_]:
+        return np.array([world.name for world in cast(TravellingRobot, self.robot).worlds])
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Read the lidars of these robots (None: all) after ``reset``; ``rows`` has shape (count,)."""
@@ -379,8 +380,8 @@ class Session:
         """What the task tells of this step, what ``details`` names, and the number of the fault that has begun; a row a
         robot."""
         found = self.task.info(self.step)
-        if self._varies:
-            found = {**found, "world": self.world_names}
+        if self.varies:
+            found = {**found, "world": self._world_names()}
         if self.details:
             found |= self._told_in_detail()
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
@@ -416,7 +417,7 @@ class Session:
             self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault,
             action=np.copy(self.actions[index]) if self.acted[index] else None,
             films=tuple(piece.memory(index) for piece in self.remembers),
-            world=key_of(world_of(self.robot, index)) if self._varies else None,
+            world=key_of(world_of(self.robot, index)) if self.varies else None,
         )  # fmt: skip
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Worlds of episodes: each episode is in one of several, drawn by its random generator.
 
-``TRAINING`` and ``TEST`` are lists of worlds for the tasks among solids. They have no world in common: who trains on the
-first is judged on the second, in worlds that no policy has seen.
+``TRAINING`` and ``TEST`` are lists of worlds for the tasks among solids. They have no world in common: who trains on
+the first is judged on the second, in worlds that no policy has seen.
 """
 
 from __future__ import annotations

@@ -128,8 +128,8 @@ class Turtlebots:
 
     @property
     def arguments(self) -> tuple[Records[TurtlebotRecord], Orders, Solids, Beams, NarrowTable]:
-        """What ``fleet.advance_fleet`` is called with, while all are in the world that they begin in: for laws of others
-        that call it; the arrays stay in place."""
+        """What ``fleet.advance_fleet`` is called with, while all are in the world that they begin in: for laws of
+        others that call it; the arrays stay in place."""
         return self._arguments
 
     def look(self) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lists of worlds, which a text can name in short: "rooms:seed=1..100" are a hundred. Each is made when it is needed."""
+"""Lists of worlds. A text can name many: "rooms:seed=1..100" are a hundred, each made when it is needed."""
 
 from __future__ import annotations
 

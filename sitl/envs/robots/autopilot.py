@@ -501,8 +501,9 @@ class AutopilotRobot:
         kept = [None if state is NOT_STARTED else self.snapshot(i) for i, state in enumerate(self._states)]
         vehicles = self._vehicles
         given = {**self._given, "world": self._setup.world}
+        wanted = [kind.name for kind in self._setup.wanted]
         return {"options": given, "worlds": self.worlds, "kept": kept, "changed": vehicles.changed,
-                "collided": self.collided, "base": vehicles.base, "wanted": [kind.name for kind in self._setup.wanted]}  # fmt: skip
+                "collided": self.collided, "base": vehicles.base, "wanted": wanted}  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["options"])  # type: ignore[misc]
