@@ -16,7 +16,7 @@ from .actions import Discrete, Normalised
 from .observations import Digits
 from .options import EnvOptionError, unknown
 from .pictures import PICTURES
-from .robots.robot import Robot
+from .robots.robot import Robot, floors_of
 from .senses import FAR, REPORTS, SENSES, TRUE, TRUE_REPORTS, ReportingRobot, SensingRobot
 
 Narrow = npt.NDArray[np.float32]

@@ -310,9 +310,8 @@ class Session:
             if option not in RESET_OPTIONS:
                 raise unknown("reset: option", option, RESET_OPTIONS[:2])
         self.acted[index] = False
-        world = self.worlds.draw(rng)  # in any case: what else is drawn does not depend on who chose
         given = options.get("world") if options else None
-        self._begin_in(index, world if given is None else load_world(given))
+        self._begin_in(index, self.worlds.draw(rng) if given is None else load_world(given))
         pose = self.starts.draw(rng)
         if options and options.get("pose") is not None:
             pose = self.starts.pose(options["pose"])

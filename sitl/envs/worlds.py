@@ -35,6 +35,8 @@ TRAINING = {preset: text.format("1..200") for preset, text in _KINDS.items()}
 """Preset -> worlds to learn in, as the option ``world`` takes them."""
 TEST = {preset: text.format("1001..1100") for preset, text in _KINDS.items()}
 """Preset -> worlds to be judged in."""
+_STREAM = 4 << 40
+"""Second word of the seeds of the numbers that choose worlds: see ``session.RANDOMISE_STREAM``."""
 MOST = 256
 """Worlds of which an environment keeps what it has found out (free places, arenas, start poses)."""
 _EAGER = 64
@@ -79,9 +81,7 @@ class WorldDraw:
 
     def __init__(self, option: WorldOption) -> None:
         self._function = option if callable(option) and not isinstance(option, type) else None
-        self._list: WorldList | None = None
-        if self._function is None:
-            self._list = _loaded(option)
+        self._list = _loaded(option) if self._function is None else None
         self.varies = self._list is None or len(self._list) > 1
         """Whether there are several."""
         self.first = self.draw(np.random.default_rng(0)) if self._list is None else self._list[0]
@@ -93,11 +93,16 @@ class WorldDraw:
         return [] if self._list is None else list(self._list.loaded)[:_EAGER]
 
     def draw(self, rng: np.random.Generator) -> World:
-        """The world of an episode; where there is one only, ``rng`` is not used.
+        """The world of an episode. It takes no number out of ``rng``: what else is drawn for an episode is the same
+        whichever worlds there are.
 
         Raises:
             EnvOptionError: the function gave no world.
         """
+        if self.varies:
+            kept = rng.bit_generator.state
+            rng, before = np.random.default_rng((int(rng.integers(1 << 63)), _STREAM)), rng
+            before.bit_generator.state = kept
         if self._function is None:
             assert self._list is not None
             return self._one_of(self._list, rng)
