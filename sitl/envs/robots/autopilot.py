@@ -43,6 +43,7 @@ from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
 from ..options import COMMON, EnvOptionError, unknown
 from .at_connection import SocketVehicles
+from .boots import check_boots
 from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
@@ -94,6 +95,7 @@ class AutopilotRobot:
             raise unknown("reset", chosen.reset, RESETS)
         if chosen.begin not in BEGINS:
             raise unknown("begin", chosen.begin, BEGINS)
+        check_boots(chosen.boots)
         try:
             self.airframe = airframe = equipped(vehicles.load(chosen.frame), chosen.sensors)
         except (AirframeError, OptionError) as error:
