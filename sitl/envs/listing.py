@@ -89,7 +89,7 @@ def description(name: str) -> dict[str, Any]:
     moves = list(action.names) if hasattr(action, "names") else [action.setpoint.columns[c] for c in action.columns]
     row = {
         "robot": session.robot.name,
-        "world": session.robot.world.name,
+        "world": session.worlds.text,
         "task": type(session.task).__name__,
         "step_s": session.seconds,
         "max_episode_steps": made.spec.max_episode_steps,

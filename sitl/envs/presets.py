@@ -75,7 +75,7 @@ def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[s
     return {
         "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
         "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS,
-        "judge": ESTIMATE, **options,
+        "judge": ESTIMATE, "boots": 1, **options,
     }  # fmt: skip
 
 
@@ -83,7 +83,7 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
     return {
         "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
         "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS, "judge": ESTIMATE,
-        **options,
+        "boots": 1, **options,
     }  # fmt: skip
 
 
@@ -152,7 +152,13 @@ _FIRST = {**_CONTINUOUS, **{f"{preset}discrete": _discrete(preset) for preset in
 def _second(preset: str) -> Callable[[], dict[str, Any]]:
     """Options of the id "-v1": the same robot, world, observations and actions, judged by the truth."""
     task = tasks_v1.MADE[task_of(preset)]
-    return lambda: {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS}
+
+    def options() -> dict[str, Any]:
+        found = {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS}
+        del found["boots"]  # as many as usual
+        return found
+
+    return options
 
 
 PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
