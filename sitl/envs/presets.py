@@ -154,7 +154,13 @@ def _second(preset: str) -> Callable[[], dict[str, Any]]:
     name = task_of(preset)
     receiver = {"sensors": tasks_v1.RECEIVERS[name]} if name in tasks_v1.RECEIVERS else {}
     task = tasks_v1.MADE[name]
-    return lambda: {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS, **receiver}
+
+    def options() -> dict[str, Any]:
+        found = {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS, **receiver}
+        del found["boots"]  # as many as usual
+        return found
+
+    return options
 
 
 PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
