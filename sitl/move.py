@@ -46,9 +46,8 @@ class Move:
         wind: speed [m/s], where it comes from [deg], turbulence [m/s].
         figures: of the airframe, that are numbers: name -> value.
         seed: of the noise of all sensors from now on.
-        walks: slow errors of the receiver north and east, and of the barometer, in their standard deviations: as if
-            they had been so since long, so that the estimate has them, too. Before the heading is changed; the
-            barometer's of a vehicle in the air.
+        walks: slow error of the receiver north and east, in standard deviations, before the heading is changed: as if
+            it had walked there, so that the estimate has it, too.
     """
 
     north: float | None = None
@@ -59,7 +58,7 @@ class Move:
     wind: tuple[float, float, float] | None = None
     figures: Mapping[str, float] = field(default_factory=dict)
     seed: int | None = None
-    walks: tuple[float, float, float] | None = None
+    walks: tuple[float, float] | None = None
 
     def check(self, airframe: Airframe) -> None:
         """Look at all numbers.
@@ -77,8 +76,8 @@ class Move:
             _number(f"velocity {name}", value, -_FASTEST, _FASTEST, "m/s")
         for figure, value in zip(WIND, _three("wind", self.wind)):
             _number(figure.name, value, figure.low, figure.high, figure.unit)
-        for name, value in zip(("receiver north", "receiver east", "barometer"), _three("walks", self.walks)):
-            _number(f"walks: {name}", value, -_MOST_SIGMA, _MOST_SIGMA, "standard deviations")
+        for name, value in zip(("north", "east"), _some("walks", self.walks, 2)):
+            _number(f"walks {name}", value, -_MOST_SIGMA, _MOST_SIGMA, "standard deviations")
         if self.figures:
             known = _numbers(type(airframe))
             for name, value in self.figures.items():
@@ -112,9 +111,7 @@ class Move:
         order.says_height = self.height is not None
         order.height = self.height or 0.0
         if self.walks is not None:
-            if flies:
-                order.says_height, order.height = True, -here.z if self.height is None else self.height
-            walk(v.physics, self.walks, flies)
+            walk(v, self.walks)
         order.says_heading = self.heading is not None
         order.heading = self.heading or 0.0
         order.says_velocity = self.velocity is not None
@@ -156,12 +153,16 @@ def _number(name: str, value: float | None, low: float, high: float, unit: str) 
 
 
 def _three(name: str, value: Any) -> Any:
+    return _some(name, value, 3)
+
+
+def _some(name: str, value: Any, count: int) -> Any:
     if value is None:
         return ()
     try:
         found = tuple(value)
     except TypeError:
         found = ()
-    if len(found) != 3:
-        raise OptionError(f"{name} = {value!r}; three numbers are needed")
+    if len(found) != count:
+        raise OptionError(f"{name} = {value!r}; {'three' if count == 3 else 'two'} numbers are needed")
     return found

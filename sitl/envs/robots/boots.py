@@ -26,8 +26,8 @@ class Drawn(NamedTuple):
 
     boot: int
     """Number of the prepared boot."""
-    walks: tuple[float, float, float] | None
-    """Slow errors of receiver (north, east) and barometer, in their standard deviations; None: those of the boot."""
+    walks: tuple[float, float] | None
+    """Slow error of the receiver, north and east, in standard deviations; None: that of the boot."""
 
 
 def check_boots(boots: int) -> None:
@@ -41,8 +41,8 @@ def draw(boots: int, seed: int) -> Drawn:
     if boots == 1:
         return Drawn(SINGLE, None)
     random = np.random.default_rng((_STREAM, seed & 0xFFFF_FFFF_FFFF_FFFF))
-    north, east, high = random.standard_normal(3).tolist()
-    return Drawn(1 + int(random.integers(boots)), (north, east, high))
+    north, east = random.standard_normal(2).tolist()
+    return Drawn(1 + int(random.integers(boots)), (north, east))
 
 
 def booted(scenario: Scenario, airframe: Airframe, seed: int) -> tuple[Scenario, Airframe]:

@@ -48,7 +48,7 @@ class Prepared:
         figures: Sequence[tuple[str, float]],
         seed: int,
         world: World,
-        walks: tuple[float, float, float] | None = None,
+        walks: tuple[float, float] | None = None,
     ) -> Move:
         """The move to a pose: over it, as level and as still as it was prepared.
 
@@ -57,7 +57,7 @@ class Prepared:
             figures: that differ from the prepared vehicle's, by name.
             seed: of the sensors' noise.
             world: that the pose is in.
-            walks: slow errors of receiver and barometer (``Move.walks``); gusts are drawn, too. None: as prepared.
+            walks: slow error of the receiver (``Move.walks``); gusts are drawn, too. None: as prepared.
 
         Raises:
             EnvOptionError: the pose is off the floor.
