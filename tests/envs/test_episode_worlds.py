@@ -253,7 +253,7 @@ def test_ways_around_solids_are_those_of_the_episodes_world():
 
 def test_the_arena_ends_where_the_episodes_world_does():
     env = rover(["rooms:seed=1,size=20", "rooms:seed=1,size=60"], task=Waypoints(1))
-    for size, x in ((60, 20.0), (20, 20.0), (60, 20.0)):
+    for size in (60, 20, 60):
         env.reset(seed=1, options={"world": f"rooms:seed=1,size={size}", "pose": (1.0, 1.0, 0.0)})
         _, high = env.task.arena_at(0)
         assert high[0] == pytest.approx(0.5 * size, abs=0.2)
