@@ -14,6 +14,7 @@ from gymnasium.wrappers import TimeLimit
 from sitl import worlds
 from sitl.envs.navigate import Navigate
 from sitl.envs.options import EnvOptionError
+from sitl.envs.page.source import EnvSource
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.envs.starts import ReachableCells
 from sitl.envs.targets.among import Among
@@ -394,3 +395,32 @@ def test_reset_options_are_checked():
     refused("'nowhere' is not known", env.reset, options={"world": "nowhere"})
     vector = NavigateVector(2, world=ROOMS)
     refused("3 worlds for num_envs = 2", vector.reset, options={"world": ROOMS})
+
+
+# ---------------------------------------------------------------------- the page
+
+
+def test_frames_of_the_page_have_the_episodes_world():
+    env = Navigate(world=ROOMS)
+    source = EnvSource(env.session, "many")
+    env.reset(seed=1, options={"world": "rooms:seed=2"})
+    assert source.frame(source.capture()).world is env.world
+    env.reset(seed=1, options={"world": "maze"})
+    assert source.frame(source.capture()).world is env.world is worlds.load("maze")
+    alone = Navigate(world="maze")
+    alone.reset(seed=1)
+    source = EnvSource(alone.session, "one")
+    assert source.frame(source.capture()).world is None
+
+
+def test_frames_of_many_robots_have_their_worlds_side_by_side():
+    vector = NavigateVector(2, world=ROOMS)
+    source = EnvSource(vector.session, "many")
+    vector.reset(seed=1, options={"world": ["maze", "rooms:seed=1"]})
+    drawn, offsets = source.frame(source.capture()).world, source.stage.copies
+    solids = [*worlds.load("maze").solids, *worlds.load("rooms:seed=1").solids]
+    assert len(drawn.solids) == len(solids)
+    assert drawn.solids[0].centre == pytest.approx(solids[0].centre + offsets[0])
+    assert drawn.solids[-1].centre == pytest.approx(solids[-1].centre + offsets[1])
+    source.layout, source.chosen = "", 1
+    assert source.frame(source.capture()).world is worlds.load("rooms:seed=1")
