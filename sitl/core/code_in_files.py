@@ -10,6 +10,8 @@ permission.
 
 from __future__ import annotations
 
+import ast
+import json
 import os
 import re
 import shlex
@@ -83,7 +85,7 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "world": lambda value: value is None or are_worlds(value),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "faults", "home", "info", "latency", "max_episode_steps", "observation",
+        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps", "observation",
          "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
          "wait"), _is_free,
     ),
@@ -173,5 +175,9 @@ def refusal(file: Any, named: Iterable[str], say: str = "--option {name}={value}
 
 def _said(name: str, say: str) -> str:
     option, _, value = name.partition(" = ")
-    plain = value[1:-1] if value[:1] in "'\"" else {"None": "null", "True": "true", "False": "false"}.get(value, value)
+    try:
+        found = ast.literal_eval(value)
+        plain = found if isinstance(found, str) else json.dumps(found)  # as the command line takes it
+    except (ValueError, TypeError, SyntaxError):
+        plain = value
     return say.format(name=option, value=shlex.quote(plain))

@@ -87,7 +87,7 @@ OUTSIDE = [
     ({"threads": 100_000}, "threads = 100000", "threads=100000"),
     ({"world": "/dev/zero"}, "world = '/dev/zero'", "world=/dev/zero"),
     ({"world": "../a b.toml"}, r"world = '\.\./a b\.toml'", "world='../a b.toml'"),
-    ({"world": ["maze", "theirs.toml"]}, r"world = \['maze', 'theirs\.toml'\]", "world=['maze', 'theirs.toml'"),
+    ({"world": ["maze", "theirs.toml"]}, r"world = \['maze', 'theirs\.toml'\]", """world='["maze", "theirs.toml"]'"""),
     ({"world": "rooms:seed=1../x.toml"}, r"world = 'rooms:seed=1\.\./x\.toml'", "world=rooms:seed=1../x.toml"),
     ({"physics": "json:127.0.0.1:9002"}, "physics = 'json:127.0.0.1:9002'", "physics=json:127.0.0.1:9002"),
     ({"params": "/etc/theirs.parm"}, "params = '/etc/theirs.parm'", "params=/etc/theirs.parm"),
