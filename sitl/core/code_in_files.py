@@ -85,8 +85,8 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "world": lambda value: value is None or are_worlds(value),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps", "observation",
-         "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
+        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps",
+         "observation", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
          "wait"), _is_free,
     ),
 }  # fmt: skip
