@@ -165,9 +165,9 @@ class Gates(PlacesTask):
         self._robot, self.flies = robot, flies(robot)
         self._gates_in = PerWorld(self._gates_of)
         gates = self._gates_in(robot.world)
-        self._rows = np.tile(gates, (robot.count, 1, 1))
+        self._rows: Floats = np.tile(gates, (robot.count, 1, 1))
         """Gates of each robot's world, shape (count, gates, 6)."""
-        self._counts = np.full(robot.count, len(gates))
+        self._counts: npt.NDArray[np.int64] = np.full(robot.count, len(gates))
         """How many of them there are, shape (count,)."""
         super().prepare(robot)
         self._sensing: SensingRobot = robot
