@@ -196,6 +196,8 @@ class Fleet:
         self.observers: list[Callable[[], None]] = []
         """Called after each advance; they change nothing."""
         self._states: list[Snapshot] = []
+        self.holds = _HELD
+        """How many of the snapshots that ``put`` and ``move`` were given last are kept ready."""
         self._held: dict[int, _Held] = {}
         """Identity of a snapshot -> its state."""
         self._views: dict[int, Any] = {}
@@ -344,7 +346,7 @@ class Fleet:
             self.shell.restore(snapshot)  # refuses what cannot be put here
             self._link.receive()
             held = self._take()
-            if len(self._held) >= _HELD:
+            if len(self._held) >= self.holds:
                 del self._held[next(iter(self._held))]
             self._held[id(snapshot)] = held = held._replace(of=snapshot)
         self._give(rows, held)
