@@ -17,7 +17,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from numbers import Real
-from typing import Any, NamedTuple, Unpack
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 
@@ -94,7 +94,8 @@ class _Worlds:
         for k, (address, keeper) in enumerate(fleet._rooms):
             if address:
                 own = slice(count * k // threads, count * (k + 1) // threads)
-                self._rangings[own] = keeper[1][0]  # sensors and room of its thread
+                _, memory, _ = cast(Any, keeper)
+                self._rangings[own] = memory[0]  # sensors and room of its thread
         self.address: int = self._rangings.ctypes.data
         """Of one ``Ranging`` for each vehicle."""
         self._bytes = self._rangings.view("u1").reshape(count, -1)
@@ -304,7 +305,7 @@ class Fleet:
             return worlds
         run_part, vehicles = run_in_worlds, self.records.ctypes.data
         self._parts = [
-            partial(run_part.bind(self._unit_at, vehicles, size, count, first, last - first, *at), STAYS)
+            cast(Any, partial(run_part.bind(self._unit_at, vehicles, size, count, first, last - first, *at), STAYS))
             for first, last in pairwise(parts)
             if first < last
         ]
