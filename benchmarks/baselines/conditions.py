@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What baselines are evaluated under: as they were trained, and in worse or other conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+
+from sitl.agents import environments
+from sitl.agents.rehearsal.change import scaled
+from sitl.agents.runs.config import RunConfig
+from sitl.envs.options import COMMON
+from sitl.envs.robots.vehicles import AutopilotOptions
+
+MAIN, ROBUST, WORLDS, REAL = "main", "robustness", "worlds", "autopilot"
+"""Groups: each is a table."""
+NOMINAL, ESTIMATE, ARDUPILOT = "nominal", "estimate", "ardupilot"
+EPISODES, ROBUST_EPISODES, REAL_EPISODES = 200, 50, 10
+SEED = 1000
+"""Of the episodes: episode k is the one that ``sitl rollout --seed 1000`` plays as number k."""
+KINDS = ("copter", "rover")
+WIND = {"wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One of them."""
+
+    title: str
+    """In a table."""
+    group: str = ROBUST
+    episodes: int = ROBUST_EPISODES
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Of the environment, in place of its own."""
+    scale: Mapping[str, float] = field(default_factory=dict)
+    """Figure of the robot -> factor."""
+    draw: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Figure of the robot -> range that it is drawn from."""
+    kinds: tuple[str, ...] = KINDS
+    """Kinds of vehicle that have it."""
+
+    def fits(self, name: str) -> bool:
+        """Whether a baseline is evaluated under it: the vehicle has it, and the environment knows its options."""
+        known = {*COMMON, *AutopilotOptions.names(), *extra_options()}
+        return name.partition("-")[0] in self.kinds and set(self.options) <= known
+
+    def config(self, plain: RunConfig) -> RunConfig:
+        """The run in whose environment it is.
+
+        Args:
+            plain: of the baseline, without any of this.
+        """
+        options = {**plain.env_options, **self.options}
+        if self.scale or self.draw:
+            env = environments.make(plain)
+            try:
+                session: Any = env.unwrapped.session  # type: ignore[attr-defined]
+                drawn = dict(session.randomisation.ranges)
+                for figure, factor in self.scale.items():
+                    value = scaled(session.robot, figure, factor)
+                    drawn[figure] = (value, value)
+            finally:
+                env.close()
+            options["randomise"] = {**drawn, **self.draw}
+        return plain.with_(env_options=options)
+
+    def described(self) -> Any:
+        """What results depend on, as JSON."""
+        return {"options": dict(self.options), "scale": dict(self.scale), "draw": dict(self.draw)}
+
+
+def extra_options() -> tuple[str, ...]:
+    """Options of tasks that only newer versions of the environments have."""
+    spec = next((spec for name, spec in gym.registry.items() if name.startswith("sitl/CopterHover-v1")), None)
+    return () if spec is None else ("judge",)
+
+
+CONDITIONS: dict[str, Condition] = {
+    NOMINAL: Condition("as trained", MAIN, EPISODES),
+    ESTIMATE: Condition("judged by the estimate", MAIN, EPISODES, {"judge": "estimate"}),
+    **{f"latency-{seconds}": Condition(f"latency {seconds} s", options={"latency": seconds})
+       for seconds in (0.1, 0.2, 0.3, 0.4)},
+    **{f"wind-{speed}": Condition(f"wind {speed} m/s", draw={"wind_speed": (float(speed), float(speed)), **WIND},
+                                  kinds=("copter",)) for speed in (4, 8, 12)},
+    "mass-80": Condition("mass -20 %", scale={"mass": 0.8}),
+    "mass-120": Condition("mass +20 %", scale={"mass": 1.2}),
+    "motor-80": Condition("a motor at 80 %", options={"faults": {"motor:2=0.8": 0.0}}, kinds=("copter",)),
+}  # fmt: skip
+"""Name -> condition, in the order of tables."""
+
+
+def named(name: str) -> Condition:
+    """A condition, or that of a program of another autopilot."""
+    return CONDITIONS[name] if name != ARDUPILOT else Condition("ArduPilot", REAL, REAL_EPISODES)
+
+
+def program_of(name: str, programs: tuple[Path, ...]) -> Path | None:
+    """The one of some programs that flies a baseline: "arducopter" those of copters."""
+    kind = name.partition("-")[0]
+    return next((path for path in programs if kind in path.name), None)
+
+
+def of_group(group: str, name: str) -> tuple[str, ...]:
+    """Names of the conditions of a group that a baseline is evaluated under."""
+    return tuple(key for key, one in CONDITIONS.items() if one.group == group and one.fits(name))
