@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
-
 from sitl.agents import environments
 from sitl.agents.rehearsal.change import scaled
 from sitl.agents.runs.config import RunConfig
@@ -45,7 +43,7 @@ class Condition:
 
     def fits(self, name: str) -> bool:
         """Whether a baseline is evaluated under it: the vehicle has it, and the environment knows its options."""
-        known = {*COMMON, *AutopilotOptions.names(), *extra_options()}
+        known = {*COMMON, *AutopilotOptions.names()}
         return name.partition("-")[0] in self.kinds and set(self.options) <= known
 
     def config(self, plain: RunConfig) -> RunConfig:
@@ -71,12 +69,6 @@ class Condition:
     def described(self) -> Any:
         """What results depend on, as JSON."""
         return {"options": dict(self.options), "scale": dict(self.scale), "draw": dict(self.draw)}
-
-
-def extra_options() -> tuple[str, ...]:
-    """Options of tasks that only newer versions of the environments have."""
-    spec = next((spec for name, spec in gym.registry.items() if name.startswith("sitl/CopterHover-v1")), None)
-    return () if spec is None else ("judge",)
 
 
 CONDITIONS: dict[str, Condition] = {
