@@ -18,7 +18,7 @@ from sitl.agents.errors import check_names
 from sitl.agents.runs.backends import Workers
 from sitl.errors import SitlError
 
-from . import entries, page
+from . import defaults, entries, page
 from .campaign import Campaign, campaign
 from .records import FOLDER
 from .running import duration, run
@@ -43,6 +43,7 @@ def parser() -> argparse.ArgumentParser:
     )
     add("--ardupilot", type=Path, action="append", default=[], metavar="PROGRAM",
         help="a real arducopter or ardurover, to evaluate with; can be given twice")  # fmt: skip
+    add("--defaults", action="store_true", help="instead: curves of PPO, SAC and DQN with default settings")
     add("--ship", action="store_true", help="make the median training of each the policy that the package contains")
     add("--prune", action="store_true", help="delete results that are out of date")
     add("--results", type=Path, default=FOLDER, metavar="DIR", help="default: benchmarks/results")
@@ -76,7 +77,8 @@ def _main(options: argparse.Namespace) -> int:
         _plan(found, options.jobs)
         return 0
     require()
-    done = run(found, Workers(options.jobs), time.time() + 60.0 * options.budget, _say)
+    do = defaults.run if options.defaults else run
+    done = do(found, Workers(options.jobs), time.time() + 60.0 * options.budget, _say)
     if options.steps is None:
         if options.ship:
             page.ship(found, _say)
@@ -86,6 +88,9 @@ def _main(options: argparse.Namespace) -> int:
 
 
 def _plan(found: Campaign, jobs: int) -> None:
+    curves = len(defaults.missing(found))
+    most = duration(curves * defaults.LIMIT_S)
+    _say(f"== default settings (--defaults): {curves} curves, at most {most} of processor time")
     stages = found.stages()
     for title, some in stages:
         _say(f"== {title}: {duration(found.left([(title, some)]))} of processor time")

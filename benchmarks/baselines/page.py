@@ -14,7 +14,7 @@ from sitl.agents import baselines
 from sitl.agents.report.statistics import interquartile_mean, suite_interval, trained_interval, wilson
 from sitl.agents.runs.files import write_bytes
 
-from . import shipped
+from . import defaults, shipped
 from .campaign import Campaign
 from .conditions import ARDUPILOT, CONDITIONS, ESTIMATE, NOMINAL, ROBUST, SEED, WORLDS, named
 from .entries import Entry
@@ -146,6 +146,7 @@ def tables(found: Campaign) -> dict[str, str]:
             for group in (ROBUST, WORLDS)
             for kind in ("copter", "rover")
         },
+        "defaults": table(("id", "PPO", "SAC, or DQN of discrete actions"), defaults.table_rows(found), 3),
         "older": older(),
     }
 

@@ -89,7 +89,8 @@ def run(campaign: Campaign, workers: Workers, until: float, say: Callable[[str],
     stages = campaign.stages()
     progress = Progress(campaign.records, campaign.left(stages), workers.jobs, say)
     complete = True
-    for title, found in stages:
+    for title, _ in stages:
+        found = dict(campaign.stages()).get(title, [])  # what earlier stages have made is not asked for again
         jobs: Sequence[Job] = [replace(job, until=until) for job in found]
         say(f"== {title}: {len(jobs)} baselines; about {progress.rest()} left of all")
         estimates = [sum(campaign.seconds(job)) for job in jobs]
