@@ -9,7 +9,7 @@ from pathlib import Path
 
 from . import entries
 from .conditions import ARDUPILOT, MAIN, NOMINAL, ROBUST, WORLDS, named, of_group, program_of
-from .entries import Entry
+from .entries import MANY_WORLDS, Entry
 from .records import Record, Records
 from .references import References
 from .shipped import kept
@@ -61,25 +61,25 @@ class Campaign:
             for seed in range(self.seeds):
                 yield entry.training_key(seed, self.references.digest(entry.plain))
             for number in ("random", *range(self.seeds)):
-                for what in (*of_group(MAIN, entry.name), *_elsewhere(entry), ARDUPILOT):
+                for what in (*of_group(MAIN, entry.plain), *_elsewhere(entry), ARDUPILOT):
                     yield entry.playing_key(number, what, self.references.digest(entry.plain))
 
     # ------------------------------------------------------------------ work
 
     def stages(self) -> list[tuple[str, list[Job]]]:
         """What is missing: title of a stage -> its jobs, the shortest first."""
-        plain = [entry for entry in self.chosen if not entry.is_robust]
-        robust = [entry for entry in self.chosen if entry.is_robust]
+        plain = [entry for entry in self.chosen if not entry.is_variant]
+        variants = [entry for entry in self.chosen if entry.is_variant]
         found = [
             ("random policy", self._jobs(plain, None, lambda entry: (NOMINAL,))),
             ("training, seed 0", self._jobs(plain, 0, _main)),
             ("robustness, seed 0", self._jobs(plain, 0, _elsewhere)),
-            ("randomised training, seed 0", self._jobs(robust, 0, _all)),
+            ("variants, seed 0", self._jobs(variants, 0, _all)),
             ("another autopilot, seed 0", self._jobs(self.chosen, 0, self._real)),
         ]
         for seed in range(1, self.seeds):
             found.append((f"training, seed {seed}", self._jobs(plain, seed, _all)))
-            found.append((f"randomised training, seed {seed}", self._jobs(robust, seed, _all)))
+            found.append((f"variants, seed {seed}", self._jobs(variants, seed, _all)))
         return [(title, jobs) for title, jobs in found if jobs]
 
     def _real(self, entry: Entry) -> tuple[str, ...]:
@@ -133,11 +133,13 @@ class Campaign:
 
 
 def _main(entry: Entry) -> tuple[str, ...]:
-    return of_group(MAIN, entry.name)
+    return of_group(MAIN, entry.plain)
 
 
 def _elsewhere(entry: Entry) -> tuple[str, ...]:
-    return (*of_group(ROBUST, entry.name), *of_group(WORLDS, entry.name))
+    robust = () if entry.name.endswith(MANY_WORLDS) else of_group(ROBUST, entry.plain)
+    worlds = () if entry.name.endswith(entries.ROBUST) else of_group(WORLDS, entry.plain)
+    return (*robust, *worlds)
 
 
 def _all(entry: Entry) -> tuple[str, ...]:

@@ -3,21 +3,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sitl.agents import environments
+from sitl.agents import baselines, environments
 from sitl.agents.rehearsal.change import scaled
 from sitl.agents.runs.config import RunConfig
+from sitl.envs import ids
 from sitl.envs.options import COMMON
+from sitl.envs.presets import PRESETS
 from sitl.envs.robots.vehicles import AutopilotOptions
 
 MAIN, ROBUST, WORLDS, REAL = "main", "robustness", "worlds", "autopilot"
 """Groups: each is a table."""
 NOMINAL, ESTIMATE, ARDUPILOT = "nominal", "estimate", "ardupilot"
-EPISODES, ROBUST_EPISODES, REAL_EPISODES = 200, 50, 10
+EPISODES, ROBUST_EPISODES, WORLD_EPISODES, REAL_EPISODES = 200, 50, 100, 10
 SEED = 1000
 """Of the episodes: episode k is the one that ``sitl rollout --seed 1000`` plays as number k."""
 KINDS = ("copter", "rover")
@@ -40,11 +43,14 @@ class Condition:
     """Figure of the robot -> range that it is drawn from."""
     kinds: tuple[str, ...] = KINDS
     """Kinds of vehicle that have it."""
+    seeds: tuple[int, int] | None = None
+    """First and last seed of the worlds, in place of the one that the id has."""
 
     def fits(self, name: str) -> bool:
-        """Whether a baseline is evaluated under it: the vehicle has it, and the environment knows its options."""
-        known = {*COMMON, *AutopilotOptions.names()}
-        return name.partition("-")[0] in self.kinds and set(self.options) <= known
+        """Whether a baseline (without variant) is evaluated under it: the vehicle has it, the environment knows its
+        options, and its world is one of many."""
+        known = set(self.options) <= {*COMMON, *AutopilotOptions.names()}
+        return name.partition("-")[0] in self.kinds and known and (self.seeds is None or world_of(name) is not None)
 
     def config(self, plain: RunConfig) -> RunConfig:
         """The run in whose environment it is.
@@ -53,6 +59,8 @@ class Condition:
             plain: of the baseline, without any of this.
         """
         options = {**plain.env_options, **self.options}
+        if self.seeds is not None:
+            options["world"] = worlds_of(preset_of(plain.env), *self.seeds)
         if self.scale or self.draw:
             env = environments.make(plain)
             try:
@@ -68,7 +76,26 @@ class Condition:
 
     def described(self) -> Any:
         """What results depend on, as JSON."""
-        return {"options": dict(self.options), "scale": dict(self.scale), "draw": dict(self.draw)}
+        return {"options": dict(self.options), "scale": dict(self.scale), "draw": dict(self.draw), "seeds": self.seeds}
+
+
+def preset_of(env: str) -> str:
+    """The preset of an id."""
+    return ids.NEW[env].preset
+
+
+def world_of(name: str) -> str | None:
+    """The world of a baseline's id where a seed makes it ("rooms:seed=1"); None: it is the only one of its sort."""
+    task = name.removesuffix(baselines.DISCRETE)
+    world = PRESETS[f"{task}-v1"]()["world"]
+    return world if isinstance(world, str) and "seed=" in world else None
+
+
+def worlds_of(preset: str, first: int, last: int) -> str:
+    """Worlds of an id's sort, for the option ``world``: "rooms:seed=1..100"."""
+    world = world_of(ids.task_of(preset))
+    assert world is not None
+    return re.sub(r"seed=\d+", f"seed={first}..{last}", world)
 
 
 CONDITIONS: dict[str, Condition] = {
@@ -80,6 +107,8 @@ CONDITIONS: dict[str, Condition] = {
                                   kinds=("copter",)) for speed in (4, 8, 12)},
     "mass-80": Condition("mass -20 %", scale={"mass": 0.8}),
     "mass-120": Condition("mass +20 %", scale={"mass": 1.2}),
+    "worlds-trained": Condition("worlds 1 .. 100", WORLDS, WORLD_EPISODES, seeds=(1, 100)),
+    "worlds-unseen": Condition("unseen worlds", WORLDS, WORLD_EPISODES, seeds=(1001, 1100)),
     "motor-80": Condition("a motor at 80 %", options={"faults": {"motor:2=0.8": 0.0}}, kinds=("copter",)),
 }  # fmt: skip
 """Name -> condition, in the order of tables."""

@@ -84,7 +84,7 @@ def curve_of(found: Campaign, entry: Entry, algorithm: str) -> Curve:
 
 def missing(found: Campaign) -> list[Curve]:
     """Curves that are not there: PPO of all ids first."""
-    plain = [entry for entry in found.chosen if not entry.is_robust]
+    plain = [entry for entry in found.chosen if not entry.is_variant]
     curves = [curve_of(found, entry, algorithms_of(entry.name)[k]) for k in (0, 1) for entry in plain]
     return [curve for curve in curves if curve.key not in found.records]
 
@@ -175,7 +175,7 @@ def table_rows(found: Campaign) -> list[tuple[str, ...]]:
     """Rows of the table: id, what PPO learnt, what SAC or DQN did; learnt ones in bold."""
     rows = []
     for entry in found.chosen:
-        if entry.is_robust:
+        if entry.is_variant:
             continue
         records = [found.records.get(curve_of(found, entry, name).key) for name in algorithms_of(entry.name)]
         cells = ["" if one is None else f"**{outcome(one)}**" if one["learnt"] else outcome(one) for one in records]

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from sitl.agents import baselines, recipes
 from sitl.agents.policies import RANDOM
@@ -15,8 +14,10 @@ from sitl.envs.ids import TASKS
 from .conditions import SEED, named
 from .records import digest
 
-SUFFIX = "-robust"
-"""Ends the name of a recipe that trains in randomised conditions; results of the plain one stand beside it."""
+ROBUST, MANY_WORLDS = "-robust", "-worlds"
+VARIANTS = (ROBUST, MANY_WORLDS)
+"""End the names of recipes that train in randomised conditions, or in many worlds; results of the plain one stand
+beside theirs."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +29,13 @@ class Entry:
     env: str
     """Id of the environment."""
     plain: str
-    """Name of the baseline whose recipe has nothing randomised: its own, or that of the plain one."""
+    """Its own name, or of a variant that of what it is a variant of."""
     steps: int | None = None
     """Steps of a training, in place of the recipe's: for trials."""
 
     @property
-    def is_robust(self) -> bool:
-        """Whether it is trained in randomised conditions."""
+    def is_variant(self) -> bool:
+        """Whether it is trained in other conditions than its id has."""
         return self.name != self.plain
 
     def training(self, seed: int) -> RunConfig:
@@ -65,9 +66,14 @@ class Entry:
 
 
 def names() -> tuple[str, ...]:
-    """All baselines: one for each id of a task, then those that are trained in randomised conditions."""
+    """All baselines: one for each id of a task, then the variants."""
     plain = [preset + form for preset in TASKS for form in ("", baselines.DISCRETE)]
-    return (*sorted(plain), *(name for name in recipes.names() if name.endswith(SUFFIX)))
+    return (*sorted(plain), *(name for name in recipes.names() if name.endswith(VARIANTS)))
+
+
+def plain_of(name: str) -> str:
+    """The baseline that a name is a variant of; else the name itself."""
+    return next((name.removesuffix(end) for end in VARIANTS if name.endswith(end)), name)
 
 
 def load(name: str, steps: int | None = None) -> Entry:
@@ -77,9 +83,4 @@ def load(name: str, steps: int | None = None) -> Entry:
         AgentError: there is no such recipe.
     """
     recipe, env = baselines.recipe_of(name)
-    return Entry(name, recipe, env, name.removesuffix(SUFFIX), steps)
-
-
-def versions(entry: Entry) -> Any:
-    """Versions of what trains it."""
-    return dict(entry.training(0).versions)
+    return Entry(name, recipe, env, plain_of(name), steps)

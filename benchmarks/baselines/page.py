@@ -75,7 +75,7 @@ def results(found: Campaign) -> str:
     rows = []
     for entry in found.chosen:
         records = of_seeds(found, entry, NOMINAL)
-        if entry.is_robust or not records:
+        if entry.is_variant or not records:
             continue
         drawn = found.episodes(entry, "random", NOMINAL)
         trained = [found.training(entry, record["seed"]) for record in records]
@@ -103,7 +103,7 @@ def suites(found: Campaign) -> str:
         scores = []
         for entry in found.chosen:
             records = of_seeds(found, entry, NOMINAL)
-            if not entry.is_robust and fits(entry.name) and len(records) == found.seeds:
+            if not entry.is_variant and fits(entry.name) and len(records) == found.seeds:
                 scores.append([figures(record, "reached").mean() for record in records])
         if scores:
             value, low, high = (100 * one for one in suite_interval(np.array(scores)))
@@ -112,11 +112,11 @@ def suites(found: Campaign) -> str:
 
 
 def elsewhere(found: Campaign, group: str, kind: str) -> str:
-    """Baselines of a kind of vehicle under the conditions of a group; the randomised one below its plain one."""
+    """Baselines of a kind of vehicle under the conditions of a group; variants below their plain ones."""
     whats = [NOMINAL, *(key for key, one in CONDITIONS.items() if one.group == group and kind in one.kinds)]
     whats += [ARDUPILOT] if group == ROBUST else []
     rows: list[tuple[str, ...]] = []
-    for entry in sorted(found.chosen, key=lambda one: (one.plain, one.is_robust)):
+    for entry in sorted(found.chosen, key=lambda one: (one.plain, one.is_variant)):
         cells = [of_seeds(found, entry, what) for what in whats]
         if entry.name.startswith(kind) and any(cells[1:]):
             rows.append((f"`{entry.name}`", str(max(map(len, cells))), *map(percent, cells)))
@@ -165,7 +165,7 @@ def ship(found: Campaign, say: Callable[[str], None]) -> None:
     rows = shipped.kept()
     for entry in found.chosen:
         records = {record["seed"]: record for record in of_seeds(found, entry, NOMINAL)}
-        if entry.is_robust or not records:
+        if entry.is_variant or not records:
             continue
         seed = shipped.median({
             seed: (float(figures(one, "reached").mean()), float(figures(one, "reward").mean()))

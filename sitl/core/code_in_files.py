@@ -28,11 +28,12 @@ _ACTS = ("env", "frame", "autopilot", "autopilot_path", "reset", "guard")
 MADE = ("forest", "rooms", "labyrinth", "track", "slalom", "car_park")
 """Worlds that are made from numbers (``sitl.worlds.generated``), which a text may have behind a colon."""
 _NUMBER = r"[+-]?[0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?"
-_SETTINGS = re.compile(rf"(\w+={_NUMBER}(,\w+={_NUMBER})*)?")
+_VALUE = rf"({_NUMBER}|[0-9]+\.\.[0-9]+)"
+_SETTINGS = re.compile(rf"(\w+={_VALUE}(,\w+={_VALUE})*)?")
 
 
 def is_name(value: Any) -> bool:
-    """Whether a value is a name that a table of this package knows, or "KIND:settings" of a world that is made, and
+    """Whether a value is a name that a table of this package knows, or "KIND:settings" of worlds that are made, and
     neither a file nor an address."""
     if not isinstance(value, str):
         return False
@@ -68,10 +69,10 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "render_mode": _is_one_of(None, "rgb_array"),
     "reset": _is_one_of("reboot"),
     "threads": _are_processors,
-    "world": lambda value: value is None or is_name(value),
+    "world": lambda value: value is None or all(map(is_name, value if isinstance(value, list | tuple) else [value])),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "faults", "home", "info", "latency", "max_episode_steps", "observation",
+        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps", "observation",
          "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
          "wait"), _is_free,
     ),
