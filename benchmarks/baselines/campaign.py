@@ -133,7 +133,7 @@ class Campaign:
 
 
 def _main(entry: Entry) -> tuple[str, ...]:
-    return of_group(MAIN, entry.plain)
+    return (NOMINAL,) if entry.is_variant else of_group(MAIN, entry.plain)
 
 
 def _elsewhere(entry: Entry) -> tuple[str, ...]:

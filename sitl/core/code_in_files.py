@@ -72,8 +72,8 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "world": lambda value: value is None or all(map(is_name, value if isinstance(value, list | tuple) else [value])),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps", "observation",
-         "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
+        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps",
+         "observation", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
          "wait"), _is_free,
     ),
 }  # fmt: skip
