@@ -223,9 +223,10 @@ class _Play:
 
     def results(self) -> list[Played]:
         """Results in the order of episodes."""
+        judge = environments.judged_by(self._env)
         columns = (self._reward, self._steps, self._terminated, self._crashed, self._reached)
         return [
-            Played(reward, steps, terminated, crashed, reached, steps * self._step_time, float("nan"))
+            Played(reward, steps, terminated, crashed, reached, steps * self._step_time, float("nan"), judge)
             for reward, steps, terminated, crashed, reached in zip(*(column.tolist() for column in columns))
         ]
 
