@@ -55,6 +55,8 @@ run_fleet = Kernel(wire.run_fleet, lets_others_run=True)
 run_in_worlds = Kernel(wire_worlds.run_in_worlds, lets_others_run=True)
 _WORLDS = 256
 """Worlds whose surroundings are kept."""
+_WORLD_PART = Ranging.dtype.fields["movers"][1]  # type: ignore[index]
+"""So many bytes of a ``Ranging``, the first ones, say the world."""
 _HELD = 8
 """Snapshots whose state is held ready, so that vehicles get it again by a copy."""
 
@@ -83,6 +85,8 @@ class _Worlds:
         assert isinstance(plant, LocalPlant) and plant.surroundings is not None
         self._shell = shell
         self._known = {plant.surroundings.world.name: plant.surroundings}
+        self._parts: dict[str, tuple[World, Array]] = {}
+        """Name of a world -> that world, and the part of a ``Ranging`` that says it."""
         self.of = [plant.surroundings] * count
         """Where each vehicle is."""
         self._rangings: Array = Ranging.fleet(count)
@@ -93,7 +97,8 @@ class _Worlds:
                 self._rangings[own] = keeper[1][0]  # sensors and room of its thread
         self.address: int = self._rangings.ctypes.data
         """Of one ``Ranging`` for each vehicle."""
-        self._views = [Ranging.of(self._rangings, k) for k in range(count)]
+        self._bytes = self._rangings.view("u1").reshape(count, -1)
+        self._has_solids = fleet.records["physics"]["obstacles"]["present"]
 
     def ranging(self, row: int) -> int:
         """Address of a vehicle's ``Ranging``."""
@@ -104,7 +109,22 @@ class _Worlds:
         around = self.around(world)
         if self.of[row] is not around:
             self.of[row] = around
-            show_world(self._views[row], around.world.geometry, around.floor)
+            self._bytes[row, :_WORLD_PART] = self._part(around)
+
+    def _part(self, around: Surroundings) -> Array:
+        """The part of a ``Ranging`` that says what is around."""
+        found = self._parts.get(around.world.name)
+        if found is None or found[0] is not around.world:
+            if len(self._parts) >= _WORLDS:
+                del self._parts[next(iter(self._parts))]
+            one = Ranging.fleet(1)
+            show_world(Ranging.of(one, 0), around.world.geometry, around.floor)
+            found = self._parts[around.world.name] = around.world, one.view("u1")[:_WORLD_PART].copy()
+        return found[1]
+
+    def tell_solids(self, row: int) -> None:
+        """Tell a vehicle's record whether there are solids in its world."""
+        self._has_solids[row] = len(self.of[row].world.geometry) > 0
 
     def around(self, world: World) -> Surroundings:
         """What is around vehicles in a world; the last ones are kept."""
@@ -397,7 +417,7 @@ class Fleet:
         for k, (order, row) in enumerate(zip(orders, rows)):
             world = worlds.of[row].world
             order.other_world = came_from is not None and came_from != world.name
-            self.view(row).physics.obstacles.present = len(world.geometry) > 0
+            worlds.tell_solids(row)
             self._move_all(0, 1, self._orders.ctypes.data + k * size, worlds.ranging(row))
 
     def _refusal(self, row: int, move: Move, result: int) -> str:

@@ -106,7 +106,6 @@ class Navigate(gym.Env[Any, Any]):
         self._session.reset(0, self.np_random, options)
         self._session.look()
         self._is_begun = True
-        self._plain_info = self._plain_info and not self._session.varies
         if self._renderer is not None:
             self._renderer.start()
             self._show()
@@ -114,7 +113,7 @@ class Navigate(gym.Env[Any, Any]):
             self.watch(Directly(opened(self._session, self._title), self._session.seconds))
         if self._watcher is not None:
             self._watcher.started(0)
-        return self._observation(), {name: value[0].item() for name, value in self._session.first_info().items()}
+        return self._observation(), {"world": self._session.world_names[0]} if self._session.varies else {}
 
     def set_worlds(self, world: WorldOption) -> None:
         """Draw the worlds of later episodes from others: a curriculum (docs/worlds.md). The present episode goes on.
@@ -169,6 +168,8 @@ class Navigate(gym.Env[Any, Any]):
         else:
             rows = self._info().items()
             info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in rows}
+        if session.varies:
+            info["world"] = session.world_names[0]
         truncated = self._over is not None and bool(self._over[0])
         if truncated:
             info["handed_over"] = session.robot.why_over()  # type: ignore[attr-defined]

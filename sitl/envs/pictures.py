@@ -180,11 +180,8 @@ class Picture:
         worlds = [world_of(self._robot, index) for index in range(len(places))]
         if all(world is worlds[0] for world in worlds):
             return self._take(self._photographers(worlds[0]), places, discs)
-        taken = (
-            self._take(self._photographers(world), places[k : k + 1], discs[k : k + 1])
-            for k, world in enumerate(worlds)
-        )
-        return np.concatenate(list(taken))
+        each = ((self._photographers(world), slice(k, k + 1)) for k, world in enumerate(worlds))
+        return np.concatenate([self._take(one, places[row], discs[row]) for one, row in each])
 
     def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
         raise NotImplementedError

@@ -189,7 +189,9 @@ class Session:
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
         self.varies = False
-        """Whether episodes are, or have been, in several worlds."""
+        """Whether episodes are, or have been, in several worlds: then ``info`` names them."""
+        self.world_names = np.full(count, world.name, object)
+        """Of each robot's world, shape (count,)."""
         if isinstance(self.task, Task):
             self.task.judge_of = self.judge
         self.task.prepare(self.robot)
@@ -244,7 +246,7 @@ class Session:
         """Let the next episode of a robot be in a world."""
         if world is not world_of(self.robot, index):
             cast(TravellingRobot, self.robot).enter(index, world)
-        self.starts = self._starts_in(world)
+        self.starts, self.world_names[index] = self._starts_in(world), world.name
         enter = getattr(self.task, "enter", None)
         if enter is not None:
             enter(index, self.robot)
@@ -341,14 +343,6 @@ class Session:
         if self.varies:
             self._enter(index, world)
 
-    def first_info(self) -> dict[str, npt.NDArray[Any]]:
-        """What is told of episodes when they begin: the names of their worlds, where there are several; a row a
-        robot."""
-        return {"world": self._world_names()} if self.varies else {}
-
-    def _world_names(self) -> npt.NDArray[np.str_]:
-        return np.array([world.name for world in cast(TravellingRobot, self.robot).worlds])
-
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Read the lidars of these robots (None: all) after ``reset``; ``rows`` has shape (count,)."""
         self.robot.look(rows)
@@ -385,8 +379,6 @@ class Session:
         """What the task tells of this step, what ``details`` names, and the number of the fault that has begun; a row a
         robot."""
         found = self.task.info(self.step)
-        if self.varies:
-            found = {**found, "world": self._world_names()}
         if self.details:
             found |= self._told_in_detail()
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}

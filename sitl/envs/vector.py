@@ -159,7 +159,7 @@ class NavigateVector(OfSubEnvironments):
             self._start(index, {**(options or {}), **mine} if own else options)
         self._session.look(rows)
         self._steps[rows], self._ended[rows], self.closed = 0, False, False
-        return self.observe(), self._in_vector_form(self._session.first_info(), rows)
+        return self.observe(), self._worlds_of(rows)
 
     def set_worlds(self, world: WorldOption) -> None:
         """Draw the worlds of later episodes of all robots from others: see ``Navigate.set_worlds``."""
@@ -248,7 +248,7 @@ class NavigateVector(OfSubEnvironments):
         else:
             observations, infos = self.observe(), self._infos(moved)
         if session.varies:  # also of robots whose next episode begins with this step
-            infos |= self._in_vector_form(session.first_info(), self._all)
+            infos |= self._worlds_of(self._all)
         if self._watcher is not None:
             self._watcher.stepped(observations)
         return observations, rewards, terminated, truncated, infos
@@ -295,15 +295,8 @@ class NavigateVector(OfSubEnvironments):
         """Infos in Gymnasium's vector form: each array with a mask "_name" of the robots that it is valid for."""
         if rows is not self._all and not rows.any():
             return {}
-        return self._in_vector_form(self._session.info(), rows)
-
-    @staticmethod
-    def _in_vector_form(found: dict[str, npt.NDArray[Any]], rows: Flags) -> dict[str, Any]:
-        infos: dict[str, Any] = {}
-        for name, value in found.items():
-            if value.dtype.kind == "U":  # and arrays of objects of texts
-                infos[name], infos["_" + name] = np.where(rows, value.astype(object), None), rows.copy()
-                continue
+        infos = self._worlds_of(rows)
+        for name, value in self._session.info().items():
             if value.ndim == 1:  # Gymnasium makes arrays of Python's numbers
                 masked = value.astype(type(value[0].item()))
             else:
@@ -311,6 +304,12 @@ class NavigateVector(OfSubEnvironments):
             masked[~rows] = 0
             infos[name], infos["_" + name] = masked, rows.copy()
         return infos
+
+    def _worlds_of(self, rows: Flags) -> dict[str, Any]:
+        """Info of the worlds of these robots, where there are several."""
+        if not self._session.varies:
+            return {}
+        return {"world": np.where(rows, self._session.world_names, None), "_world": rows.copy()}
 
     # ------------------------------------------------------------------ snapshots
 

@@ -35,6 +35,7 @@ TRAINING = {preset: text.format("1..200") for preset, text in _KINDS.items()}
 """Preset -> worlds to learn in, as the option ``world`` takes them."""
 TEST = {preset: text.format("1001..1100") for preset, text in _KINDS.items()}
 """Preset -> worlds to be judged in."""
+_WORD = (1 << 64) - 1
 _STREAM = 4 << 40
 """Second word of the seeds of the numbers that choose worlds: see ``session.RANDOMISE_STREAM``."""
 MOST = 256
@@ -99,22 +100,33 @@ class WorldDraw:
         Raises:
             EnvOptionError: the function gave no world.
         """
-        if self.varies:
-            kept = rng.bit_generator.state
-            rng, before = np.random.default_rng((int(rng.integers(1 << 63)), _STREAM)), rng
-            before.bit_generator.state = kept
+        if not self.varies:
+            return self.first
+        kept = rng.bit_generator.state
+        number = int(rng.integers(1 << 63))
+        rng.bit_generator.state = kept
         if self._function is None:
             assert self._list is not None
-            return self._one_of(self._list, rng)
-        given = self._function(rng)
+            return self._list[_mixed(number) * len(self._list) >> 64]
+        own = np.random.default_rng((number, _STREAM))
+        given = self._function(own)
         try:
-            return self._one_of(_loaded(given), rng)
+            found = _loaded(given)
         except EnvOptionError as error:
             raise EnvOptionError(f"world: the function {_name(self._function)} gave {given!r}: {error}") from None
+        return found[int(own.integers(len(found)))]
 
-    @staticmethod
-    def _one_of(found: WorldList, rng: np.random.Generator) -> World:
-        return found[int(rng.integers(len(found))) if len(found) > 1 else 0]
+
+def _mixed(number: int) -> int:
+    """A number of 64 bits, each of which depends on all of those of ``number``.
+
+    Source: the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA
+    2014).
+    """
+    number = (number + _STREAM) & _WORD
+    number = (number ^ number >> 30) * 0xBF58476D1CE4E5B9 & _WORD
+    number = (number ^ number >> 27) * 0x94D049BB133111EB & _WORD
+    return number ^ number >> 31
 
 
 def key_of(world: World) -> str | World:
