@@ -101,16 +101,21 @@ class Campaign:
     # ------------------------------------------------------------------ times
 
     def seconds(self, job: Job) -> tuple[float, float]:
-        """Estimated processor time of a job's training, and of its evaluations [s]: as the last time, else by what is
-        known of others."""
-        playing = 0.0
-        for what in job.whats:
-            before = [one["took_s"] / len(one["reached"]) for one in self.records.all()
-                      if one["name"] == job.name and one.get("what") == what]  # fmt: skip
-            usual = REAL_S if what == ARDUPILOT else EPISODE_S
-            playing += (before[-1] if before else usual) * named(what).episodes
+        """Estimated processor time of a job's training, and of its evaluations [s]."""
         trains = job.seed is not None and not job.policy.exists()
-        return self._training_s(job.entry) if trains else 0.0, playing
+        return self.expected(job.entry, None) if trains else 0.0, sum(
+            self.expected(job.entry, what) for what in job.whats
+        )
+
+    def expected(self, entry: Entry, what: str | None) -> float:
+        """Estimated processor time of a training (None), or of an evaluation [s]: as the last time, else by what is
+        known of others."""
+        if what is None:
+            return self._training_s(entry)
+        before = [one["took_s"] / len(one["reached"]) for one in self.records.all()
+                  if one["name"] == entry.name and one.get("what") == what and "reached" in one]  # fmt: skip
+        usual = REAL_S if what == ARDUPILOT else EPISODE_S
+        return float(before[-1] if before else usual) * named(what).episodes
 
     def _training_s(self, entry: Entry) -> float:
         steps = float(entry.steps or entry.recipe.steps or 0)

@@ -12,7 +12,6 @@ from sitl.agents.runs.backends import Workers
 
 from .campaign import Campaign
 from .conditions import NOMINAL
-from .records import Records
 from .shipped import share
 from .work import Job, do
 
@@ -32,44 +31,49 @@ class Progress:
     """Takes what jobs send, keeps results, prints a line for each.
 
     Args:
-        records: where results are kept.
+        campaign: whose results they are.
         expected: estimated processor time of all that is to do [s].
         jobs: number of processes.
         say: prints a line.
     """
 
-    def __init__(self, records: Records, expected: float, jobs: int, say: Callable[[str], None]) -> None:
-        self._records, self._expected, self._jobs, self._say = records, max(expected, 1.0), jobs, say
-        self._began, self._steps, self._said = time.monotonic(), {}, {}  # type: ignore[var-annotated]
-        self.done, self.failed = 0.0, 0
-        """Estimated processor time of what is done [s]; number of jobs that failed."""
+    def __init__(self, campaign: Campaign, expected: float, jobs: int, say: Callable[[str], None]) -> None:
+        self._campaign, self._expected, self._jobs, self._say = campaign, max(expected, 1.0), jobs, say
+        self._began = time.monotonic()
+        self._steps: dict[Job, int] = {}
+        self._said: dict[Job, float] = {}
+        self._done = 0.0
+        """Estimated processor time of results that have come [s]."""
 
     def take(self, job: Job, message: Any) -> None:
         """A message of a job."""
         if isinstance(message, dict):
-            self._records.add(message)
-            self._say(f"{_title(job)}: {_result(message)}")
+            self._done += self._campaign.expected(job.entry, message.get("what"))
+            self._campaign.records.add(message)
+            self._steps.pop(job, None)
+            self._say(f"{_title(job)}: {_result(message)}; about {self.rest()} left")
             return
         kind, value = message
         if kind == "failed":
-            self.failed += 1
             self._say(f"{_title(job)} failed: {value}")
             return
         done = self._steps[job] = self._steps.get(job, 0) + value
         now = time.monotonic()
         if now - self._said.get(job, self._began) > EVERY_S:
             self._said[job] = now
-            self._say(f"{_title(job)}: {done:,} of {job.entry.steps or job.entry.recipe.steps or 0:,} steps")
-
-    def ended(self, seconds: float) -> None:
-        """Jobs of so much estimated processor time are done."""
-        self.done += seconds
+            self._say(f"{_title(job)}: {done:,} of {_steps_of(job):,} steps; about {self.rest()} left")
 
     def rest(self) -> str:
         """How long the rest takes: by the estimate, corrected by how long the first part took."""
-        spent, left = time.monotonic() - self._began, max(self._expected - self.done, 0.0)
-        pace = spent / self.done if self.done > 60.0 else 1.0 / self._jobs
-        return duration(pace * left)
+        trained = (min(steps / max(_steps_of(job), 1), 1.0) * self._campaign.expected(job.entry, None)
+                   for job, steps in self._steps.items())  # fmt: skip
+        spent, done = time.monotonic() - self._began, self._done + sum(trained)
+        pace = spent / done if done > 60.0 else 1.0 / self._jobs
+        return duration(pace * max(self._expected - done, 0.0))
+
+
+def _steps_of(job: Job) -> int:
+    return job.entry.steps or job.entry.recipe.steps or 0
 
 
 def _title(job: Job) -> str:
@@ -87,17 +91,15 @@ def _result(record: dict[str, Any]) -> str:
 def run(campaign: Campaign, workers: Workers, until: float, say: Callable[[str], None]) -> bool:
     """Do what is missing, stage after stage, until a wall time [s]; returns whether all is done."""
     stages = campaign.stages()
-    progress = Progress(campaign.records, campaign.left(stages), workers.jobs, say)
+    progress = Progress(campaign, campaign.left(stages), workers.jobs, say)
     complete = True
     for title, _ in stages:
         found = dict(campaign.stages()).get(title, [])  # what earlier stages have made is not asked for again
         jobs: Sequence[Job] = [replace(job, until=until) for job in found]
         say(f"== {title}: {len(jobs)} baselines; about {progress.rest()} left of all")
-        estimates = [sum(campaign.seconds(job)) for job in jobs]
         done = workers.each(
             do, jobs, workers.jobs, lambda index, message, jobs=jobs: progress.take(jobs[index], message)
         )
-        progress.ended(sum(estimates))
         if None in done or time.time() > until:
             return False
         complete &= all(done)

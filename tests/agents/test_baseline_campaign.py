@@ -291,6 +291,20 @@ def test_the_plan_lists_and_makes_nothing(few, tmp_path, capsys):
     assert "baseline 'rover-waypiont' is not known" in capsys.readouterr().err
 
 
+def test_lines_say_how_long_the_rest_takes(few, tmp_path, monkeypatch):
+    found, said, now = made(tmp_path, checked=False), [], [0.0]
+    monkeypatch.setattr(running.time, "monotonic", lambda: now[0])
+    job = dict(found.stages())["training, seed 0"][0]
+    training = found.expected(job.entry, None)
+    progress = running.Progress(found, 4 * training, 2, said.append)
+    assert progress.rest() == running.duration(2 * training)  # two at a time
+    now[0] = 3 * training  # three times as slow as was expected
+    progress.take(job, ("steps", job.entry.recipe.steps // 2))
+    assert said[-1].endswith(f"150,000 of 300,000 steps; about {running.duration(1.75 * training)} left")
+    progress.take(job, trained_record(job, "p"))
+    assert said[-1].endswith(f"; about {running.duration(9 * training)} left")
+
+
 def test_times_are_told_for_people():
     assert [running.duration(s) for s in (40.0, 420.0, 7500.0)] == ["40 s", "7 min", "2 h 05 min"]
 
