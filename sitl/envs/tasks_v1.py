@@ -41,7 +41,7 @@ GOAL = 20.0
 """For reaching it."""
 HALF = 0.7
 """Of curves of nearness [m]."""
-FAR = 5.0
+FAR = 20.0
 """Of goal-conditioned tasks: see ``Hold`` [m]."""
 
 
@@ -84,7 +84,7 @@ MADE: dict[str, Callable[[], Task]] = {
     "copter-land-moving": lambda: Land(
         speed=0.5, success_reward=GOAL, **{**_price("copter-land-moving", 0.5, -30.0), "floor_ends": False}
     ),
-    "copter-forest": lambda: _among("copter-forest", 0.5, -40.0, ceiling=3.0),
+    "copter-forest": lambda: _among("copter-forest", 0.5, -50.0, ceiling=3.0),
     "copter-rooms": lambda: _among("copter-rooms", 0.5, -40.0, ceiling=3.0),
     "rover-waypoint": lambda: _waypoints("rover-waypoint", 1),
     "rover-course": lambda: _waypoints("rover-course", 4),

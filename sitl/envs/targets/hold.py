@@ -31,8 +31,8 @@ class Hold(PlacesTask):
         half: distance at which the reward is half of that at the target [m]; None: it decreases linearly (``scale``).
         effort: weight of the squared actions.
         is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1.
-        far: with ``is_sparse``, a step outside of ``radius`` pays -0.5 - 0.5 * distance / (distance + far) instead of
-            -1: between -0.5 and -1, less the farther it is [m].
+        far: with ``is_sparse``, a step outside of ``radius`` pays -0.5 - 0.5 * min(distance / far, 1) instead of -1:
+            less the farther it is [m].
         others: further arguments of ``PlacesTask``.
     """
 
@@ -118,7 +118,7 @@ class Hold(PlacesTask):
     def _worth(self, distance: Floats) -> Floats:
         out: Floats = np.where(distance < self.radius, 0.0, -1.0)
         if self.far > 0.0:
-            out *= 0.5 + 0.5 * distance / (distance + self.far)
+            out *= 0.5 + 0.5 * np.minimum(distance / self.far, 1.0)
         return out
 
     def memory(self, index: int) -> Any:
