@@ -32,6 +32,7 @@ from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.receivers import equipped
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned, to_ned
 
@@ -94,8 +95,8 @@ class AutopilotRobot:
         if chosen.begin not in BEGINS:
             raise unknown("begin", chosen.begin, BEGINS)
         try:
-            self.airframe = airframe = vehicles.load(chosen.frame)
-        except AirframeError as error:
+            self.airframe = airframe = equipped(vehicles.load(chosen.frame), chosen.sensors)
+        except (AirframeError, OptionError) as error:
             raise EnvOptionError(str(error)) from None
         first, self.count = worlds.load(world), count
         self.name = airframe.name

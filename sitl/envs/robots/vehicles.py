@@ -89,6 +89,8 @@ class AutopilotOptions:
         begin: how vehicles in process on native physics come to the start of an episode: "move" (one vehicle boots and
             takes off at the environment's start pose, once, and is moved to others, with other figures), or "boot" (it
             boots and takes off at each start pose, with each set of figures). Others always boot.
+        sensors: what tells the vehicle where it is: "gps" (as the airframe has it), "rtk", "mocap", "uwb" or
+            "ardupilot" (``sitl.vehicles.receivers``).
     """
 
     frame: str | Airframe = "erle_rover"
@@ -106,6 +108,7 @@ class AutopilotOptions:
     guard: Guard | Mapping[str, Any] | bool | None = None
     threads: int = 1
     begin: str = "move"
+    sensors: str = "gps"
 
     @classmethod
     def names(cls) -> list[str]:
