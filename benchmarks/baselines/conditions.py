@@ -25,6 +25,7 @@ SEED = 1000
 """Of the episodes: episode k is the one that ``sitl rollout --seed 1000`` plays as number k."""
 KINDS = ("copter", "rover")
 WIND = {"wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
+SENSORS = {"gps": "own GPS", "uwb": "beacons (UWB)", "rtk": "RTK", "mocap": "motion capture"}
 
 
 @dataclass(frozen=True)
@@ -110,6 +111,8 @@ CONDITIONS: dict[str, Condition] = {
     "worlds-trained": Condition("worlds 1 .. 100", WORLDS, WORLD_EPISODES, seeds=(1, 100)),
     "worlds-unseen": Condition("unseen worlds", WORLDS, WORLD_EPISODES, seeds=(1001, 1100)),
     "motor-80": Condition("a motor at 80 %", options={"faults": {"motor:2=0.8": 0.0}}, kinds=("copter",)),
+    **{f"sensors-{sensors}": Condition(title, options={"sensors": sensors}) for sensors, title in SENSORS.items()},
+    "boots-1": Condition("one boot", options={"boots": 1}),
 }  # fmt: skip
 """Name -> condition, in the order of tables."""
 

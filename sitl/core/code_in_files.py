@@ -73,8 +73,8 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
         ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps",
-         "observation", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
-         "wait"), _is_free,
+         "observation", "patience", "randomise", "robot", "sensors", "setpoint", "start", "step_time", "take_off",
+         "task", "tiled", "wait"), _is_free,
     ),
 }  # fmt: skip
 """All that a file may say of an environment of this package: name of the option -> whether a value is taken.
