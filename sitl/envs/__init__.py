@@ -24,20 +24,19 @@ def register() -> None:
     """Register every environment with Gymnasium; importing the package does it."""
     if "sitl/Navigate-v0" in gym.registry:
         return
-    for name, options in (("sitl/Navigate-v0", {"judge": "estimate"}), ("sitl/Navigate-v1", {})):
-        gym.register(
-            name,
-            entry_point="sitl.envs.navigate:Navigate",
-            vector_entry_point="sitl.envs.vector:NavigateVector",
-            max_episode_steps=MAX_EPISODE_STEPS,
-            kwargs=options,
-        )
+    gym.register(
+        "sitl/Navigate-v1",
+        entry_point="sitl.envs.navigate:Navigate",
+        vector_entry_point="sitl.envs.vector:NavigateVector",
+        max_episode_steps=MAX_EPISODE_STEPS,
+    )
     paper = {
         name: Listed(preset, MAX_EPISODE_STEPS)
         for paper_id, preset in PAPER.items()
         for name in (paper_id, paper_id.replace("LIDAR", "Lidar"))
     }
-    for name, (preset, steps) in (paper | FIRST | NEW).items():
+    any_robot = {"sitl/Navigate-v0": Listed("navigate-v0", MAX_EPISODE_STEPS)}
+    for name, (preset, steps) in (paper | any_robot | FIRST | NEW).items():
         gym.register(
             name,
             entry_point="sitl.envs.presets:PresetNavigate",

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from . import paper, tasks_v1
+from . import paper, robots, tasks_v1
 from .actions import VELOCITY, Continuous, Normalised
 from .boxes import GoalConditioned
 from .ids import FIRST, NEW, task_of
@@ -75,7 +75,7 @@ def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[s
     return {
         "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
         "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS,
-        "judge": ESTIMATE, **options,
+        "judge": ESTIMATE, "boots": 1, **options,
     }  # fmt: skip
 
 
@@ -83,7 +83,7 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
     return {
         "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
         "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS, "judge": ESTIMATE,
-        **options,
+        "boots": 1, **options,
     }  # fmt: skip
 
 
@@ -152,11 +152,17 @@ _FIRST = {**_CONTINUOUS, **{f"{preset}discrete": _discrete(preset) for preset in
 def _second(preset: str) -> Callable[[], dict[str, Any]]:
     """Options of the id "-v1": the same robot, world, observations and actions, judged by the truth."""
     task = tasks_v1.MADE[task_of(preset)]
-    return lambda: {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS}
+
+    def options() -> dict[str, Any]:
+        kept = {name: value for name, value in _FIRST[preset]().items() if name != "boots"}
+        return {**kept, "task": task(), "judge": TRUTH, "info": DETAILS}
+
+    return options
 
 
 PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
     **paper.PRESETS,
+    "navigate-v0": lambda: {"judge": ESTIMATE},
     **_FIRST,
     **{f"{preset}-v1": _second(preset) for preset in _FIRST},
 }
@@ -168,6 +174,8 @@ def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Options of a preset, with those that are given in their place; a box that is made for one kind of set-point
     gives way to the usual one when another kind is asked for. A vehicle at a connection keeps its own wind."""
     options = {**PRESETS[preset](), **given}
+    if preset == "navigate-v0" and robots.has_boots(options.get("robot")):
+        options.setdefault("boots", 1)
     if options.get("connection", "inprocess") != "inprocess" and "randomise" not in given:
         options["randomise"] = None
     action = options.get("action")

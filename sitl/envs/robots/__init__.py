@@ -30,6 +30,11 @@ def world_of(robot: str | Callable[..., Robot]) -> str:
     return WORLDS.get(_name(robot), WORLD) if isinstance(robot, str) else WORLD
 
 
+def has_boots(robot: Any) -> bool:
+    """Whether robots of this name have an autopilot that boots (``AutopilotOptions.boots``)."""
+    return isinstance(robot, str) and ROBOTS.get(_name(robot), "").startswith("sitl.envs.robots.autopilot:")
+
+
 def _name(robot: str) -> str:
     return robot.strip().lower().replace("-", "_")
 

@@ -47,7 +47,7 @@ from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
-from .moves import BEGINS
+from .moves import BEGINS, MAX_BOOTS
 from .robot import Floats, Pose
 from .truth import TRUE_REPORT
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
@@ -94,6 +94,8 @@ class AutopilotRobot:
             raise unknown("reset", chosen.reset, RESETS)
         if chosen.begin not in BEGINS:
             raise unknown("begin", chosen.begin, BEGINS)
+        if type(chosen.boots) is not int or not 1 <= chosen.boots <= MAX_BOOTS:
+            raise EnvOptionError(f"boots = {chosen.boots!r}; it must be a whole number, 1 .. {MAX_BOOTS}")
         try:
             self.airframe = airframe = equipped(vehicles.load(chosen.frame), chosen.sensors)
         except (AirframeError, OptionError) as error:

@@ -99,7 +99,8 @@ class FleetVehicles(InProcessVehicles):
         """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
         self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
         """Start state, seed and move of each vehicle's episode, until its first step."""
-        self._prepared: Prepared | None = None
+        self._prepared: dict[int, Prepared] = {}
+        """Identity of a start state -> how it comes to other starts."""
         self._failing: dict[int, list[Failure]] = {}
         """What is ordered to fail from the next step on."""
         self._used = "", 0
@@ -159,13 +160,21 @@ class FleetVehicles(InProcessVehicles):
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         figures = tuple(sorted(self.changed[index].items()))
         base, world = self.base or self._start, self.worlds[index]
+        boot = self._boot(seed)
+        if self.options.begin == BOOT and boot is not None:
+            state = self._booted(pose, figures, world, seed)
+            self._put(index, state)  # its noise goes on
+            return state
         if self.options.begin == BOOT or (pose == base and not figures and world is self.setup.world):
-            state, move = self._restored(pose, figures, world), None
+            state, move = self._restored(pose, figures, world, boot), None
         else:
-            state = self._restored(base, (), self.setup.world)
-            if self._prepared is None or self._prepared.state is not state:
-                self._prepared = Prepared(state, self.setup, base)
-            move = self._prepared.to(pose, figures, seed, world)
+            state = self._restored(base, (), self.setup.world, boot)
+            prepared = self._prepared.get(id(state))
+            if prepared is None or prepared.state is not state:
+                if len(self._prepared) >= MAX_STATES:
+                    del self._prepared[next(iter(self._prepared))]
+                prepared = self._prepared[id(state)] = Prepared(state, self.setup, base)
+            move = prepared.to(pose, figures, seed, world)
         ready = self._changed.get((id(state.simulation), *self._used))
         if ready is not None:  # as the last episodes went on
             state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)

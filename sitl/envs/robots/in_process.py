@@ -82,7 +82,8 @@ class InProcessVehicles(Vehicles):
         return f"connection {self.options.connection!r}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        state = self._restored(pose, tuple(sorted(self.changed[index].items())), self.worlds[index])
+        figures = tuple(sorted(self.changed[index].items()))
+        state = self._restored(pose, figures, self.worlds[index], self._boot(seed))
         self.restore(index, state)
         self.simulation(index).reseed(seed)
         return state
@@ -101,29 +102,46 @@ class InProcessVehicles(Vehicles):
         if len(self._elsewhere) > MAX_ELSEWHERE:
             self._elsewhere.pop(next(iter(self._elsewhere))).close()
 
-    def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World) -> EpisodeState:
-        """The state after take-off at a pose in a world; calculated on first use."""
-        key = (pose, figures, world.name)
+    def _boot(self, seed: int) -> int | None:
+        """The seed of the boot that an episode begins from; None: the scenario's, of the single boot."""
+        boots = self.options.boots
+        return None if boots == 1 else seed % boots
+
+    def _restored(
+        self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World, boot: int | None
+    ) -> EpisodeState:
+        """The state after take-off at a pose in a world; calculated on first use. ``boot``: see ``_boot``."""
+        key = (pose, figures, world.name, boot)
         state = self._states.get(key)
         if state is None:
-            simulation = self._simulation(pose, figures, world)
-            link = InProcess(simulation, self.setup.inbox())
-            origin = self.prepare(link, pose)
-            state = EpisodeState(
-                simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US
-            )
-            link.close()
+            state = self._booted(pose, figures, world, boot)
             if len(self._states) >= MAX_STATES:
                 del self._states[next(iter(self._states))]
             self._states[key] = state
         return state
 
+    def _booted(
+        self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World, boot: int | None
+    ) -> EpisodeState:
+        """Boot and take off; ``boot``: the seed of the noise, None: the scenario's."""
+        simulation = self._simulation(pose, figures, world, boot)
+        link = InProcess(simulation, self.setup.inbox())
+        origin = self.prepare(link, pose)
+        state = EpisodeState(simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US)
+        link.close()
+        return state
+
     def _simulation(
-        self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = (), world: World | None = None
+        self,
+        pose: Pose | None = None,
+        figures: Sequence[tuple[str, float]] = (),
+        world: World | None = None,
+        seed: int | None = None,
     ) -> Simulation:
-        simulation: Simulation = self._made(
-            pose, figures, lambda scenario: Simulation(scenario, core=self._core), world
-        )
+        def make(scenario: Scenario) -> Simulation:
+            return Simulation(scenario if seed is None else replace(scenario, seed=seed), core=self._core)
+
+        simulation: Simulation = self._made(pose, figures, make, world)
         check_parameters(simulation)
         if self.setup.scenario.physics == NATIVE:
             self._core = simulation.core

@@ -22,6 +22,8 @@ from .vehicles import EpisodeState, VehicleSetup
 MOVE, BOOT = "move", "boot"
 BEGINS = (MOVE, BOOT)
 """Values of the option ``begin``."""
+MAX_BOOTS = 2000
+"""Most boots that episodes begin from: their states are kept."""
 _WINDS = [figure.name for figure in WIND]
 
 
