@@ -17,7 +17,7 @@ from .work import Job
 
 STEP_S = {"ppo": 2.2e-4, "sac": 5e-3, "dqn": 2.5e-3}
 """Processor time of a step of training where none was measured [s]."""
-EPISODE_S, REAL_S = 0.03, 5.0
+EPISODE_S, REAL_S = 0.1, 5.0
 """That of an episode of an evaluation; of one of another autopilot [s]."""
 
 

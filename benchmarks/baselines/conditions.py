@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,7 @@ def preset_of(env: str) -> str:
     return ids.NEW[env].preset
 
 
+@cache
 def world_of(name: str) -> str | None:
     """The world of a baseline's id where a seed makes it ("rooms:seed=1"); None: it is the only one of its sort."""
     task = name.removesuffix(baselines.DISCRETE)

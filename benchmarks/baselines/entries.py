@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 from sitl.agents import baselines, recipes
 from sitl.agents.policies import RANDOM
@@ -44,8 +45,7 @@ class Entry:
 
     def playing(self) -> RunConfig:
         """The run whose environment it is evaluated in: the plain recipe's."""
-        recipe, env = baselines.recipe_of(self.plain)
-        return RunConfig(env, recipe.algorithm, dict(recipe.options), steps=1, max_steps=recipe.max_steps)
+        return _playing(self.plain)
 
     def training_key(self, seed: int, env_digest: str) -> str:
         """Key of the result of a training."""
@@ -65,6 +65,12 @@ class Entry:
         return digest("episodes", of, played, env_digest)
 
 
+@cache
+def _playing(plain: str) -> RunConfig:
+    recipe, env = baselines.recipe_of(plain)
+    return RunConfig(env, recipe.algorithm, dict(recipe.options), steps=1, max_steps=recipe.max_steps)
+
+
 def names() -> tuple[str, ...]:
     """All baselines: one for each id of a task, then the variants."""
     plain = [preset + form for preset in TASKS for form in ("", baselines.DISCRETE)]
@@ -76,6 +82,7 @@ def plain_of(name: str) -> str:
     return next((name.removesuffix(end) for end in VARIANTS if name.endswith(end)), name)
 
 
+@cache
 def load(name: str, steps: int | None = None) -> Entry:
     """A baseline by its name.
 
