@@ -14,12 +14,12 @@ from sitl.agents import baselines
 from sitl.agents.report.statistics import interquartile_mean, suite_interval, trained_interval, wilson
 from sitl.agents.runs.files import write_bytes
 
-from . import defaults, shipped
+from . import defaults, shipped, work
 from .campaign import Campaign
 from .conditions import ARDUPILOT, CONDITIONS, ESTIMATE, NOMINAL, ROBUST, SEED, WORLDS, named
 from .entries import Entry
 from .records import Record
-from .work import figures, policy_file
+from .work import figures
 
 PAGE = shipped.DOCS / "baselines.md"
 NONE = "*No results yet.*"
@@ -174,11 +174,14 @@ def ship(found: Campaign, say: Callable[[str], None]) -> None:
         training = found.training(entry, seed)
         assert training is not None
         if training["key"] != shipped.key_of(entry.name):
-            path = policy_file(found.runs, entry.name, seed, training["key"])
-            if not path.exists():
-                say(f"{entry.name}: the policy of seed {seed} is not in {path.parent}; it is not shipped")
+            job = work.Job(entry.name, seed, (), False, found.references.digest(entry.plain), found.runs)
+            if not job.policy.exists():
+                say(f"{entry.name}: seed {seed} is trained again, because its policy is not in {job.policy.parent}")
+                work.train(job, lambda message: None, lambda: False)
+            if work.sha256(job.policy) != training["policy"]:
+                say(f"{entry.name}: seed {seed} gives another policy here than the one with these results; it stays")
                 continue
-            write_bytes(baselines.file(entry.name), path.read_bytes())
+            write_bytes(baselines.file(entry.name), job.policy.read_bytes())
         rows[entry.name] = _row(found, entry, training, records[seed], len(records))
     shipped.write(rows)
 

@@ -255,6 +255,31 @@ def test_the_median_training_is_shipped():
     assert shipped.median({0: (1.0, 1.0), 1: (1.0, 1.0), 2: (1.0, 1.0)}) == 1
 
 
+def test_shipping_takes_the_medians_file_and_figures(few, tmp_path, monkeypatch):
+    monkeypatch.setattr(shipped, "FILE", tmp_path / "baselines.json")
+    monkeypatch.setattr(baselines, "file", lambda name: tmp_path / f"{name}.npz")
+    found, said, given = made(tmp_path, seeds=5, checked=False), [], iter([b"others", b"p"])
+    monkeypatch.setattr(work, "sha256", lambda path: path.read_text())
+
+    def train(job, send_progress, stopped):
+        make_folder(job.policy.parent)
+        job.policy.write_bytes(next(given))
+
+    monkeypatch.setattr(work, "train", train)
+    fill(found, ["1111", "1110", "1100", "1000", "0000"])
+    page.ship(found, said.append)
+    assert "seed 2 is trained again" in said[0] and "another policy" in said[1] and shipped.kept() == {}
+    path = work.policy_file(found.runs, NAME, 2, found.training(found.chosen[0], 2)["key"])
+    path.unlink()
+    page.ship(found, said.append)
+    row = shipped.kept()[NAME]
+    assert (tmp_path / f"{NAME}.npz").read_bytes() == b"p" and len(said) == 3
+    assert (row["training"], row["trainings"], row["solved"], row["episodes"]) == (2, 5, 2, 4)
+    path.unlink()
+    job = Job(NAME, 2, (), False, found.references.digest(NAME), found.runs)
+    assert work._shipped(job) and path.read_bytes() == b"p"  # it is not trained again
+
+
 def test_tables_say_on_how_many_trainings_they_rest(few, tmp_path):
     found = made(tmp_path, seeds=5, checked=False)
     fill(found, ["1110"])

@@ -12,7 +12,6 @@ from sitl.agents import baselines, learnt, recipes
 from sitl.agents.rollout import rollout
 from sitl.envs import ids
 
-
 LIMITED: dict[str, str] = {}
 """Policies that solve fewer than nine of ten episodes -> what limits them, as the page says it."""
 
