@@ -24,6 +24,7 @@ from .records import FOLDER
 from .running import duration, run
 
 RUNS = Path("runs/baselines")
+SEEDS = 5
 
 
 def parser() -> argparse.ArgumentParser:
@@ -32,7 +33,7 @@ def parser() -> argparse.ArgumentParser:
     add = made.add_argument
     add("names", nargs="*", metavar="NAME", help="baselines (docs/baselines.md); default: all")
     add("--plan", action="store_true", help="list what is missing, with estimated times, and do nothing")
-    add("--seeds", type=int, default=5, metavar="N", help="trainings of each (default 5)")
+    add("--seeds", type=int, default=SEEDS, metavar="N", help=f"trainings of each (default {SEEDS})")
     add("--jobs", type=int, default=1, metavar="N", help="processes (default 1); torch has one thread in each")
     add(
         "--budget",
@@ -79,10 +80,10 @@ def _main(options: argparse.Namespace) -> int:
     require()
     do = defaults.run if options.defaults else run
     done = do(found, Workers(options.jobs), time.time() + 60.0 * options.budget, _say)
-    if options.steps is None:
-        if options.ship:
-            page.ship(found, _say)
-        page.write(found)
+    if options.steps is None and options.ship:
+        page.ship(found, _say)
+    if options.steps is None and options.results == FOLDER:  # the page shows all baselines, whichever were chosen
+        page.write(campaign(names, FOLDER, options.runs, max(options.seeds, SEEDS), (), None))
     _say("all is done" if done else "not all is done; the same command goes on")
     return 0
 
