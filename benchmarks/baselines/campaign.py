@@ -77,9 +77,10 @@ class Campaign:
             ("variants, seed 0", self._jobs(variants, 0, _all)),
             ("another autopilot, seed 0", self._jobs(self.chosen, 0, self._real)),
         ]
-        for seed in range(1, self.seeds):
-            found.append((f"training, seed {seed}", self._jobs(plain, seed, _all)))
-            found.append((f"variants, seed {seed}", self._jobs(variants, seed, _all)))
+        later = range(1, self.seeds)
+        found += [(f"training, seed {seed}", self._jobs(plain, seed, _main)) for seed in later]
+        found += [(f"robustness, seed {seed}", self._jobs(plain, seed, _elsewhere)) for seed in later]
+        found += [(f"variants, seed {seed}", self._jobs(variants, seed, _all)) for seed in later]
         return [(title, jobs) for title, jobs in found if jobs]
 
     def _real(self, entry: Entry) -> tuple[str, ...]:

@@ -100,7 +100,7 @@ def run(campaign: Campaign, workers: Workers, until: float, say: Callable[[str],
         done = workers.each(
             do, jobs, workers.jobs, lambda index, message, jobs=jobs: progress.take(jobs[index], message)
         )
-        if None in done or time.time() > until:
+        if None in done:
             return False
         complete &= all(done)
     return complete

@@ -169,7 +169,8 @@ def test_seed_0_of_all_comes_first_and_the_shortest_first(tmp_path):
     stages = found.stages()
     assert [title for title, _ in stages] == [
         "random policy", "training, seed 0", "robustness, seed 0", "variants, seed 0",
-        "training, seed 1", "variants, seed 1", "training, seed 2", "variants, seed 2",
+        "training, seed 1", "training, seed 2", "robustness, seed 1", "robustness, seed 2", "variants, seed 1",
+        "variants, seed 2",
     ]  # fmt: skip
     assert [job.name for job in dict(stages)["training, seed 1"]] == ["copter-hover", "copter-rooms"]
     whats = {(title, job.name): job.whats for title, jobs in stages for job in jobs}
