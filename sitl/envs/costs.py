@@ -27,7 +27,7 @@ from .arena import Arena, arena_of, flies
 from .options import EnvOptionError, unknown
 from .rewards import Floats, Step, Term
 from .robots.kind import volume
-from .robots.robot import Robot
+from .robots.robot import Robot, world_of
 from .senses import ReportingRobot, SensingRobot
 
 TOTAL = "cost"
@@ -92,12 +92,19 @@ class Fence(_Limit):
 
     def prepare(self, robot: Robot, task: Any) -> None:
         """Called once, when the task is prepared."""
-        arena = self.box or getattr(task, "arena", None) or arena_of(robot)
-        self._low, self._high = np.array(arena.low), np.array(arena.high)
+        self._low, self._high = np.zeros((2, robot.count, 3))
+        for index in range(robot.count):
+            self.enter(index, robot, task)
+
+    def enter(self, index: int, robot: Robot, task: Any) -> None:
+        """The next episode of a robot is in the world that it is in now."""
+        arena_at = getattr(task, "arena_at", None)
+        arena = self.box or (arena_at(index) if arena_at else arena_of(robot, world=world_of(robot, index)))
+        self._low[index], self._high[index] = arena
         if self.box is None:
-            self._low[2] = -math.inf  # an arena's floor is where places are drawn from, and pads lie below it
+            self._low[index, 2] = -math.inf  # an arena's floor is where places are drawn from, and pads lie below it
         if not flies(robot):
-            self._low[2], self._high[2] = -math.inf, math.inf
+            self._low[index, 2], self._high[index, 2] = -math.inf, math.inf
 
     def __call__(self, step: Step) -> Floats:
         """See ``rewards.Term``."""
@@ -116,16 +123,26 @@ class Proximity(_Limit):
 
     def prepare(self, robot: Robot, task: Any) -> None:
         """Called once, when the task is prepared."""
-        self._solids = robot.world.geometry.solids
         vehicle: Any = robot
         body = volume(vehicle.airframe, 0.0) if flies(robot) else robot.volume  # without the way up of a take-off
         self._volume = float(body.radius), float(body.bottom), float(body.top)
+        self._worlds = [world_of(robot, index) for index in range(robot.count)]
+
+    def enter(self, index: int, robot: Robot, task: Any) -> None:
+        """The next episode of a robot is in the world that it is in now."""
+        self._worlds[index] = world_of(robot, index)
 
     def distances(self, step: Step) -> Floats:
         """Distance of each robot's volume to the nearest solid [m], shape (count,)."""
         places = np.ascontiguousarray(state_of(step)[:, :3])
         out = np.empty(len(places))
-        _distances(self._solids, places, *self._volume, out)
+        rows: dict[int, list[int]] = {}
+        for index, world in enumerate(self._worlds):
+            rows.setdefault(id(world), []).append(index)
+        for which in rows.values():
+            found = np.empty(len(which))
+            _distances(self._worlds[which[0]].geometry.solids, places[which], *self._volume, found)
+            out[which] = found
         return out
 
     def __call__(self, step: Step) -> Floats:
@@ -246,6 +263,12 @@ class Costs:
             prepare = getattr(term, "prepare", None)
             if prepare is not None:
                 prepare(robot, task)
+        self._entering = [term.enter for term in self._terms.values() if hasattr(term, "enter")]
+
+    def enter(self, index: int, robot: Robot, task: Any) -> None:
+        """The next episode of a robot is in the world that it is in now."""
+        for enter in self._entering:
+            enter(index, robot, task)
 
     def of(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """Entries of ``info``: each cost of the step, "cost_NAME", and their sum, "cost"; shape (count,)."""

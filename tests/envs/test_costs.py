@@ -63,7 +63,7 @@ def test_a_fence_is_a_box_and_what_does_not_fly_is_judged_in_x_and_y():
     assert costs_of(robot, Fence(box))["cost_fence"].tolist() == [0.0, 1.0, 1.0]
     robot.kind = type("Kind", (), {"takes_off": True})
     assert costs_of(robot, Fence(box))["cost_fence"].tolist() == [1.0, 1.0, 1.0]
-    task = type("Task", (), {"arena": box})
+    task = type("Task", (), {"arena_at": lambda self, index: box})()
     robot.truth[:, 2] = 1.0, 1.0, -3.0
     assert costs_of(robot, "fence", task=task)["cost_fence"].tolist() == [0.0, 1.0, 1.0]
 
@@ -146,7 +146,7 @@ def test_vectors_give_the_costs_of_singles(mode):
     running = np.ones(2, np.bool_)
     sums = []
     while running.any():
-        _, _, costs, terminated, truncated, infos = vector.step(np.stack([AHEAD, AHEAD]))
+        _, _, costs, terminated, _, infos = vector.step(np.stack([AHEAD, AHEAD]))
         for k, env in enumerate(singles):
             if running[k]:
                 _, _, cost, ended, _, info = env.step(AHEAD)
@@ -157,6 +157,25 @@ def test_vectors_give_the_costs_of_singles(mode):
                 running[k] = not ended
     assert sum(sums) > 2.0
     vector.close()
+
+
+def test_each_robot_has_the_solids_and_the_fence_of_its_own_world():
+    names = ["rooms:seed=1", "forest:seed=3"]
+    options = {"costs": [Proximity(0.8), "fence"]}
+    vector = gym.make_vec("sitl/CopterRooms-v1", num_envs=4, world=names, **options)
+    vector.reset(seed=3)
+    told = [vector.step(np.tile(AHEAD, (4, 1)))[4] for _ in range(25)]
+    drawn = list(vector.unwrapped.session.world_names)
+    assert {name.partition(":")[0] for name in drawn} == {"rooms", "forest"}
+    vector.close()
+    for k, name in enumerate(drawn):
+        env = gym.make("sitl/CopterRooms-v1", world=name, **options)
+        env.reset(seed=3 + k)
+        for step in told:
+            info = env.step(AHEAD)[4]
+            assert step["cost"][k] == info["cost"]
+        env.close()
+    assert len({bytes(np.array([step["cost"][k] for step in told])) for k in range(4)}) > 1
 
 
 def test_a_step_that_only_resets_costs_nothing():

@@ -12,6 +12,7 @@ from sitl.core.elementary import cos, sin
 from sitl.errors import OptionError
 from sitl.move import WIND, Move
 from sitl.plants.surroundings import start_pose
+from sitl.worlds import World
 from sitl.worlds.shapes import to_heading, to_ned
 
 from ..options import EnvOptionError
@@ -41,13 +42,14 @@ class Prepared:
         wind = v.physics.wind  # type: ignore[attr-defined]
         self._wind = {"wind_speed": wind.speed, "wind_direction": wind.direction, "wind_turbulence": wind.turbulence}
 
-    def to(self, pose: Pose, figures: Sequence[tuple[str, float]], seed: int) -> Move:
+    def to(self, pose: Pose, figures: Sequence[tuple[str, float]], seed: int, world: World) -> Move:
         """The move to a pose: over it, as level and as still as it was prepared.
 
         Args:
             pose: x, y, z [m], yaw [rad] in the world.
             figures: that differ from the prepared vehicle's, by name.
             seed: of the sensors' noise.
+            world: that the pose is in.
 
         Raises:
             EnvOptionError: the pose is off the floor.
@@ -61,7 +63,7 @@ class Prepared:
         if pose == self._pose and "base_along" not in changed:
             return Move(wind=wind, figures=changed, seed=seed)
         try:
-            start_pose(self._setup.world, (*pose[:3], math.degrees(pose[3])), self._setup.airframe.name)
+            start_pose(world, (*pose[:3], math.degrees(pose[3])), self._setup.airframe.name)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         north, east, _ = to_ned(*pose[:3])

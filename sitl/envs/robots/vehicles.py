@@ -158,6 +158,8 @@ class Vehicles(ABC):
 
     def __init__(self, setup: VehicleSetup) -> None:
         self.setup, self.options = setup, setup.options
+        self.worlds = [setup.world] * setup.count
+        """The world of each vehicle."""
         physics, count = self.options.physics, setup.count
         if physics not in backends() or (physics != NATIVE and not self.simulates):
             raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(backends())}, of a vehicle in process")
@@ -184,6 +186,17 @@ class Vehicles(ABC):
     def extra_figures(self) -> Mapping[str, Figure]:
         """Figures besides the airframe's that can be changed."""
         return {}
+
+    def enter(self, index: int, world: World) -> None:
+        """One vehicle's next episode is in this world.
+
+        Raises:
+            EnvOptionError: it stays in the world that it was made in, or cannot start in this one.
+        """
+        raise EnvOptionError(
+            f"world {world.name!r}: a vehicle of {self.where} stays in the world {self.setup.world.name!r} that it was "
+            "made in; only vehicles in process change worlds between episodes"
+        )
 
     @property
     @abstractmethod
@@ -244,6 +257,7 @@ class Vehicles(ABC):
             physics = self.physics(index)
             if physics is not None:
                 true_states(physics["body"], ahead, out[index : index + 1])
+                out[index, 2] += self.worlds[index].floor_z  # bodies count from the floor
 
     def true_reports(self, out: Floats) -> None:
         """Write what the vehicles would measure without errors: see ``truth.write_true_reports``. Rows of vehicles

@@ -70,7 +70,8 @@ class Hold(PlacesTask):
         """See ``Task``."""
         wide, high = self.offset
         place = self.judged_pose()[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
-        self.places[index, 0] = np.clip(place, self.arena.low, self.arena.high)
+        arena = self.arena_at(index)
+        self.places[index, 0] = np.clip(place, arena.low, arena.high)
         self.at[index], self.since[index], self.success[index] = 0, 0.0, False
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:

@@ -11,10 +11,12 @@ import numpy.typing as npt
 
 from sitl.core import elementary_arrays as arrays
 from sitl.core.elementary import cos, sin
+from sitl.worlds import World
 
+from ..arena import Arena
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, floors_of, world_of
 from ..senses import LandingRobot, SensingRobot
 from .moving import MovingTask
 
@@ -93,17 +95,19 @@ class Land(MovingTask):
         self._sensing: SensingRobot = robot
         self._landing: LandingRobot = robot
         self._lets_down = self.speed == 0.0 and robot.let_down(LET_DOWN)
-        self._limits = self._limits._replace(low=(*self._limits.low[:2], -math.inf))
         self._velocity = np.zeros((robot.count, 3))
         """Of each robot's pad at first [m/s]."""
         self._distance, self._sinking = np.zeros(robot.count), np.zeros(robot.count)
         self._touched = np.zeros((robot.count, 3))
         """Way from where it touched the ground to the pad; as long as it flies, from where it is [m]."""
 
+    def _bounded(self, limits: Arena, world: World) -> Arena:
+        return limits._replace(low=(*limits.low[:2], -math.inf))
+
     def _draw(self, index: int, rng: np.random.Generator) -> None:
         way, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
         self.centre[index, :2] += way
-        self.centre[index, 2] = self._robot.world.floor_z
+        self.centre[index, 2] = world_of(self._robot, index).floor_z
         self._velocity[index, :2] = self.speed * cos(heading), self.speed * sin(heading)
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
@@ -133,7 +137,7 @@ class Land(MovingTask):
         gain, spent = self.progress * (self._distance - distance), self.each_second * step.seconds
         rewards += gain + spent
         self._distance = distance
-        height = state[:, 2] - step.robot.world.floor_z
+        height = state[:, 2] - floors_of(step.robot)
         touches = (height < DOWN) & (not self._lets_down)
         down = (touches | self._landing.has_landed()) & ~terminated
         turned = np.where(time % 20.0 < 10.0, 1.0, -1.0)[:, None]

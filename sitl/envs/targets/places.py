@@ -5,21 +5,23 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sitl.core.array_kernels import IntLine, Kernel, Table
 from sitl.core.kernels import law
+from sitl.worlds import World
 
 from ...core.elementary import sincos
 from ..arena import REACH, Arena, arena_of, flies
 from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, world_of
 from ..tasks import Task
+from ..worlds import PerWorld
 
 BEYOND = 5.0
 """An episode ends so far outside of the arena [m]."""
@@ -51,6 +53,14 @@ def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, out: Tab
 _ways = Kernel(write_ways)
 
 
+class Extent(NamedTuple):
+    """What belongs to a world."""
+
+    arena: Arena
+    limits: Arena
+    """Where an episode ends."""
+
+
 class PlacesTask(Task):
     """Base of tasks with target positions ("places"); subclasses draw them and judge steps.
 
@@ -79,31 +89,79 @@ class PlacesTask(Task):
         self._given, self._reach, self.out_reward = arena, reach, out_reward
         self.out_ends, self.floor_ends = bool(out_ends), bool(floor_ends)
         self._fixed: Floats | None = None
-        """Places that are the same in every episode [m]; the arena holds them. None: they are drawn."""
+        """Places of one world that are the same in every episode [m]; the arena holds them. None: they are drawn."""
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         super().prepare(robot)
-        count = robot.count
-        self.arena = self._given or arena_of(robot, self._reach)
-        if self._fixed is not None and self._given is None:
-            self.arena = self.arena.around(self._fixed[:, :3])
+        count, self._robot = robot.count, robot
         self.flies = flies(robot)
         self.axes = np.array((1.0, 1.0, float(self.flies)))
         assert self.judge_of is not None
         self._ends_on_floor = self.floor_ends and self.flies and self.judge_of.by == TRUTH
-        self._floor = robot.world.floor_z + ON_FLOOR
-        self._limits = self.arena.grown(BEYOND)
-        if not self.flies:
-            (x0, y0, _), (x1, y1, _) = self._limits
-            self._limits = self._limits._replace(low=(x0, y0, -math.inf), high=(x1, y1, math.inf))
+        self._extents = PerWorld(self._extent)
+        self._low, self._high = np.zeros((count, 3)), np.zeros((count, 3))
+        self._floor = np.zeros(count)
+        for index in range(count):
+            self._settle(index)
         self.places = np.zeros((count, self.per_robot, 3))
         """x, y, z of each robot's places [m], shape (count, per_robot, 3)."""
         self.at = np.zeros(count, np.int64)
         """Number of each robot's present place, shape (count,)."""
         self.success = np.zeros(count, np.bool_)
         """Whether each robot has done the task, shape (count,)."""
-        self._robot = robot
+
+    @property
+    def is_of_one_world(self) -> bool:  # type: ignore[override]
+        """See ``Task``."""
+        return self._fixed is not None
+
+    def enter(self, index: int, robot: Robot) -> None:
+        """See ``Task``."""
+        self._settle(index)
+
+    def _settle(self, index: int) -> None:
+        """Take over where the arena of a robot's world ends."""
+        world = world_of(self._robot, index)
+        self._low[index], self._high[index] = self._extents(world).limits
+        self._floor[index] = world.floor_z + ON_FLOOR
+
+    def _extent(self, world: World) -> Extent:
+        arena = self._given or arena_of(self._robot, self._reach, world)
+        fixed = self._fixed_in(world)
+        if fixed is not None and self._given is None:
+            arena = arena.around(fixed)
+        limits = arena.grown(BEYOND)
+        if not self.flies:
+            (x0, y0, _), (x1, y1, _) = limits
+            limits = limits._replace(low=(x0, y0, -math.inf), high=(x1, y1, math.inf))
+        return Extent(arena, self._bounded(limits, world))
+
+    def _fixed_in(self, world: World) -> Floats | None:
+        """Places that are the same in every episode in a world [m], shape (n, 3); None: they are drawn."""
+        return self._fixed
+
+    def _bounded(self, limits: Arena, world: World) -> Arena:
+        """Where an episode in a world ends."""
+        return limits
+
+    def arena_at(self, index: int) -> Arena:
+        """The arena of one robot's world."""
+        return self._extents(world_of(self._robot, index)).arena
+
+    @property
+    def arena(self) -> Arena:
+        """That of the first robot."""
+        return self.arena_at(0)
+
+    @property
+    def _limits(self) -> Arena:
+        """Where the first robot's episode ends."""
+        return self._extents(world_of(self._robot, 0)).limits
+
+    def _held(self, index: int) -> int:
+        """How many places one robot has."""
+        return self.per_robot
 
     @property
     @abstractmethod
@@ -138,8 +196,7 @@ class PlacesTask(Task):
         crashed = terminated.copy()
         self._judge(step, rewards, terminated)
         rewards[crashed] = self.crash_reward
-        low, high = self._limits
-        outside = ((step.pose[:, :3] < low) | (step.pose[:, :3] > high)).any(axis=1) & ~terminated
+        outside = ((step.pose[:, :3] < self._low) | (step.pose[:, :3] > self._high)).any(axis=1) & ~terminated
         if self.out_ends:
             rewards[outside] += self.out_reward
             terminated |= outside
@@ -157,13 +214,14 @@ class PlacesTask(Task):
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
-        return self.places[index].copy(), int(self.at[index]), bool(self.success[index])
+        return self.places[index, : self._held(index)].copy(), int(self.at[index]), bool(self.success[index])
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
-        if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != self.places[index].shape:
+        if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != (self._held(index), 3):
             raise EnvOptionError("snapshot cannot be restored: it is of another task")
-        self.places[index], self.at[index], self.success[index] = memory[:3]
+        self.places[index] = memory[0][-1]
+        self.places[index, : self._held(index)], self.at[index], self.success[index] = memory[:3]
 
 
 def nearness(distance: Floats, scale: float, half: float | None) -> Floats:
