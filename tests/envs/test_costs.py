@@ -15,7 +15,8 @@ from sitl.envs import EnvOptionError
 from sitl.envs.arena import Arena
 from sitl.envs.costs import COSTS, Costs, Energy, Fence, Proximity, Tilt
 from sitl.envs.rewards import Step
-from sitl.envs.safety import SafetyEnv, SafetyVectorEnv
+from sitl.envs.safety import SafetyEnv
+from sitl.envs.safety_vector import SafetyVectorEnv
 from sitl.worlds import World
 from sitl.worlds.shapes import Box, Start
 from tests.envs.vector_equality import same
