@@ -69,7 +69,7 @@ class Sensed:
         rate: readings a second [Hz], whole steps apart; None: one each step. Between them the last one stays.
         dropout: share of readings that are lost, within [0, 1); in their place the last one that arrived is seen, as it
             was. The first one of an episode arrives.
-        burst: mean number of readings that are lost in a row, 1 or more; None: each is lost independently of the others.
+        burst: mean number of readings that are lost in a row, 1 or more; None: losses are independent of each other.
         mask: whether there is one more column: 1 if the last reading arrived, 0 if it was lost.
 
     Angles [rad] that are bounded by pi stay within it. What is beyond other bounds is clipped.

@@ -133,7 +133,7 @@ def test_the_chain_has_the_share_and_the_bursts_that_were_asked_for():
 
 def test_numbers_without_state_are_uniform_and_independent():
     drawn = uniform(np.repeat(np.arange(200), 200), np.tile(np.arange(200), 200)).reshape(200, 200)
-    assert 0.0 <= drawn.min() and drawn.max() < 1.0
+    assert drawn.min() >= 0.0 and drawn.max() < 1.0
     assert np.histogram(drawn, 10, (0.0, 1.0))[0] == pytest.approx(4000, abs=300)
     for a, b in ((drawn[1:], drawn[:-1]), (drawn[:, 1:], drawn[:, :-1])):
         assert abs(np.corrcoef(a.ravel(), b.ravel())[0, 1]) < 0.02
