@@ -72,6 +72,11 @@ class Stage:
         return found.act
 
 
+def options_of(preset: str) -> dict[str, Any]:
+    """Options of the environment that the trained policy of a preset was trained with: how it observes."""
+    return dict(learnt.load(baselines.file(baselines.of_preset(preset))).config.env_options)
+
+
 def _constant(velocity: tuple[float, ...]) -> Callable[[Stage], Policy]:
     def begin(stage: Stage) -> Policy:
         actions = stage.velocities(np.tile(velocity, (stage.count, 1)))

@@ -221,7 +221,7 @@ class Navigate(gym.Env[Any, Any]):
         if self._renderer is None:
             gym.logger.warn(
                 "render() without a render mode: make the environment with "
-                f'gym.make("{self.spec.id if self.spec else "sitl/Navigate-v0"}", render_mode="rgb_array")'
+                f'gym.make("{self.spec.id if self.spec else "sitl/Navigate-v1"}", render_mode="rgb_array")'
             )
             return None
         return self._renderer.picture() if self.render_mode == "rgb_array" else self._renderer.show()

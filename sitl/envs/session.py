@@ -259,6 +259,12 @@ class Session:
             enter(index, self.robot)
         self.costs.enter(index, self.robot, self.task)
 
+    @property
+    def judged_by(self) -> str:
+        """By what success goes: "truth" or "estimate" (``judge.JUDGES``)."""
+        sees = self.judge.knows_truth and getattr(self.task, "sees_truth", False)
+        return TRUTH if sees else self.judge.by
+
     def _rehearse(self) -> None:
         """Do once, on a robot that stands nowhere, what each step does: compiled pieces are loaded now, and not while a
         vehicle waits for its first set-point."""

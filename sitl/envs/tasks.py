@@ -82,6 +82,8 @@ class Task:
         self.contact_ends = bool(contact_ends)
         self._range = 0.0
 
+    sees_truth = False
+    """Whether it goes by where robots really are, where anybody knows, whatever the option ``judge`` says."""
     judge_of: Judge | None = None
     """Says where robots are, as the task judges them; the environment sets it before ``prepare``."""
 

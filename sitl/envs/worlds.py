@@ -82,11 +82,20 @@ class WorldDraw:
 
     def __init__(self, option: WorldOption) -> None:
         self._function = option if callable(option) and not isinstance(option, type) else None
-        self._list = _loaded(option) if self._function is None else None
+        self._given, self._list = option, _loaded(option) if self._function is None else None
         self.varies = self._list is None or len(self._list) > 1
         """Whether there are several."""
         self.first = self.draw(np.random.default_rng(0)) if self._list is None else self._list[0]
         """One of them: that which an environment is made in."""
+
+    @property
+    def text(self) -> str:
+        """The worlds in a few words."""
+        if not self.varies:
+            return self.first.name
+        if self._function is not None:
+            return f"drawn by {_name(self._function)}"
+        return self._given if isinstance(self._given, str) else f"one of {len(self._list or ())}"
 
     @property
     def listed(self) -> list[World]:

@@ -88,6 +88,8 @@ class Gates(PlacesTask):
         others: further arguments of ``PlacesTask``.
     """
 
+    sees_truth = True
+
     def __init__(
         self,
         gates: Sequence[Gate | Sequence[float]] | None = None,

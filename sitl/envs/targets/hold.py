@@ -30,8 +30,9 @@ class Hold(PlacesTask):
         scale: distance from which on the reward is 0 [m].
         half: distance at which the reward is half of that at the target [m]; None: it decreases linearly (``scale``).
         effort: weight of the squared actions.
-        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1. With ``out_ends``
-            False nothing ends an episode early but a crash.
+        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1.
+        far: with ``is_sparse``, a step outside of ``radius`` pays -0.5 - 0.5 * min(distance / far, 1) instead of -1:
+            less the farther it is [m].
         others: further arguments of ``PlacesTask``.
     """
 
@@ -46,6 +47,7 @@ class Hold(PlacesTask):
         effort: float = 0.05,
         is_sparse: bool = False,
         half: float | None = None,
+        far: float = 0.0,
         **others: Any,
     ) -> None:
         super().__init__(**others)
@@ -58,7 +60,9 @@ class Hold(PlacesTask):
             if not value > 0.0:
                 raise EnvOptionError(f"Hold({name}={value}); it must be above 0")
         self.offset, self.radius, self.hold, self.scale, self.effort = offset, radius, hold, scale, effort
-        self.is_sparse, self.half = is_sparse, half
+        self.is_sparse, self.half, self.far = is_sparse, half, far
+        if not far >= 0.0:
+            raise EnvOptionError(f"Hold(far={far}); it must be 0 m or more")
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -96,7 +100,8 @@ class Hold(PlacesTask):
             step.note(effort=-effort)
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
-        """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3).
+        """0 within ``radius``, -1 elsewhere (see ``far``): what a goal-conditioned step pays, of goals [m] of shape
+        (..., 3).
 
         Args:
             achieved: where the robot believes to be.
@@ -112,6 +117,8 @@ class Hold(PlacesTask):
 
     def _worth(self, distance: Floats) -> Floats:
         out: Floats = np.where(distance < self.radius, 0.0, -1.0)
+        if self.far > 0.0:
+            out *= 0.5 + 0.5 * np.minimum(distance / self.far, 1.0)
         return out
 
     def memory(self, index: int) -> Any:

@@ -62,6 +62,7 @@ class Land(MovingTask):
         others: further arguments of ``MovingTask``; ``radius`` and ``scale`` have no effect.
     """
 
+    sees_truth = True
     lands = True
     """It ends on the ground: a guard's floor must let it down there."""
 
