@@ -229,7 +229,7 @@ class Costs:
     """What the option ``costs`` names.
 
     Args:
-        given: names of ``COSTS``, objects of their classes, functions of a ``Step``, or mappings of "cost" -> a name
+        given: names of ``COSTS`` (as text: "proximity+tilt"), objects of their classes, functions of a ``Step``, or mappings of "cost" -> a name
             and arguments by name (data, as recipes have it).
 
     Raises:
@@ -239,7 +239,9 @@ class Costs:
     def __init__(self, given: Any) -> None:
         if not isinstance(given, str | Iterable):
             raise EnvOptionError(f"costs = {given!r}; it must be names of {', '.join(COSTS)}, or () for none")
-        listed = [given] if isinstance(given, str | Mapping) else list(given)
+        if isinstance(given, str):
+            given = given.split("+")
+        listed = [given] if isinstance(given, Mapping) else list(given)
         terms = [_term(one) for one in listed]
         names = [getattr(term, "name", f"term_{k}") for k, term in enumerate(terms)]
         twice = next((name for name in names if names.count(name) > 1), None)

@@ -128,6 +128,13 @@ def test_costs_change_nothing_else():
     costly.close()
 
 
+def test_names_can_be_one_text():
+    assert list(costs_of(Told(), "tilt")) == ["cost", "cost_tilt"]
+    costs = Costs("tilt+speed")
+    costs.prepare(Told(), None)
+    assert list(costs.of(Step(Told(), 0.1))) == ["cost", "cost_tilt", "cost_speed"]
+
+
 def test_costs_go_by_the_truth_where_it_is_known():
     robot = Told()
     robot.truth[0, 8] = 1.0
