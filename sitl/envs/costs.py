@@ -229,8 +229,8 @@ class Costs:
     """What the option ``costs`` names.
 
     Args:
-        given: names of ``COSTS`` (as text: "proximity+tilt"), objects of their classes, functions of a ``Step``, or mappings of "cost" -> a name
-            and arguments by name (data, as recipes have it).
+        given: names of ``COSTS`` (as text: "proximity+tilt"), objects of their classes, functions of a
+            ``Step``, or mappings of "cost" -> a name and arguments by name (data, as recipes have it).
 
     Raises:
         EnvOptionError: another name or argument, a name twice, or a robot that has no such cost.
