@@ -63,17 +63,19 @@ class Residual(VecEnvWrapper):
         return self.seen, rewards, ended, infos
 
 
-def fly(env: Residual, act) -> tuple[float, float]:
-    """One episode of each robot: the mean return, and the true distance from the goal in the second half [m]."""
+def fly(env: Residual, act) -> str:
+    """One episode of each robot: mean return, and median distances from the goal in the second half."""
     env.seed(1000)
-    seen, total, distances = env.reset(), np.zeros(ROBOTS), []
+    seen, total, true, believed = env.reset(), np.zeros(ROBOTS), [], []
     robot, task = env.venv.env.unwrapped.robot, env.venv.env.unwrapped.task
     for k in range(OPTIONS["max_episode_steps"] - 1):
         seen, rewards, *_ = env.step(act(seen))
         total += rewards
         if k >= OPTIONS["max_episode_steps"] // 2:
-            distances.append(np.linalg.norm(task.targets - robot.true_state()[:, :3], axis=1))
-    return float(total.mean()), float(np.median(distances))
+            true.append(np.linalg.norm(task.targets - robot.true_state()[:, :3], axis=1))
+            believed.append(np.linalg.norm(seen[:, :3], axis=1))
+    far = f"{np.median(true):.2f} m from the goal, {np.median(believed):.2f} m by the estimate"
+    return f"return {total.mean():.2f}, {far}"
 
 
 def main() -> None:
@@ -83,7 +85,7 @@ def main() -> None:
     options = parser.parse_args()
     env = Residual(Sb3VecEnv(ID, num_envs=ROBOTS, **OPTIONS))
     none = np.zeros((ROBOTS, 4), np.float32)
-    print("controller alone: return {:.2f}, {:.2f} m from the goal".format(*fly(env, lambda seen: none)), flush=True)
+    print("controller alone:", fly(env, lambda seen: none), flush=True)
     policy = {"log_std_init": -1.5, "net_arch": [64, 64]}
     model = PPO(
         "MlpPolicy", env, n_steps=256, batch_size=2048, n_epochs=5, gamma=0.98, learning_rate=1e-3,
@@ -91,8 +93,7 @@ def main() -> None:
     )  # fmt: skip
     with_zeros(model)
     model.learn(options.steps)
-    found = fly(env, lambda seen: model.predict(seen, deterministic=True)[0])
-    print("with the residual: return {:.2f}, {:.2f} m from the goal".format(*found))
+    print("with the residual:", fly(env, lambda seen: model.predict(seen, deterministic=True)[0]))
     env.close()
 
 
