@@ -103,8 +103,8 @@ def train(critic_parts: list, steps: int, seed: int = 1) -> tuple[float, float]:
             done = terminated | truncated
             returns += running[done].tolist()
             running[done] = 0.0
-            if truncated.any():  # time ran out, but the task did not end: what would have come is worth something
-                late = np.flatnonzero(truncated & ~terminated)
+            late = np.flatnonzero(truncated & ~terminated)
+            if len(late):  # time ran out, but the task did not end: what would have come is worth something
                 last = np.array([infos["final_obs"][i]["critic"] for i in late])
                 with torch.no_grad():
                     reward[late] += DISCOUNT * critic(scale["critic"](last))[:, 0].numpy()
