@@ -128,6 +128,14 @@ def test_costs_change_nothing_else():
     costly.close()
 
 
+def test_costs_are_told_where_the_task_tells_nothing_but_crashes():
+    env = gym.make("sitl/Navigate-v1", costs="proximity+crash", world="maze")
+    env.reset(seed=1)
+    info = env.step(0)[4]
+    assert list(info) == ["crashed", "cost", "cost_proximity", "cost_crash"]
+    env.close()
+
+
 def test_names_can_be_one_text():
     assert list(costs_of(Told(), "tilt")) == ["cost", "cost_tilt"]
     costs = Costs("tilt+speed")
