@@ -24,8 +24,9 @@ except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is missing: pip install torch") from None
 
 ID = "sitl.envs:sitl/CopterHover-v1"
-ROBOTS, HORIZON, EPOCHS, BATCH = 32, 128, 5, 1024
-DISCOUNT, TRACE, CLIP, RATE = 0.97, 0.95, 0.2, 1e-3
+ROBOTS, HORIZON, EPOCHS, BATCH = 32, 64, 8, 256
+DISCOUNT, TRACE, CLIP, RATE, SCALE = 0.97, 0.95, 0.2, 1e-3, 0.3
+"""SCALE: of rewards, as the networks see them."""
 
 
 class TrueGoal(Path):
@@ -107,8 +108,8 @@ def train(critic_parts: list, steps: int, seed: int = 1) -> tuple[float, float]:
             if len(late):  # time ran out, but the task did not end: what would have come is worth something
                 last = np.array([infos["final_obs"][i]["critic"] for i in late])
                 with torch.no_grad():
-                    reward[late] += DISCOUNT * critic(scale["critic"](last))[:, 0].numpy()
-            found = (*rows.values(), action, chosen.log_prob(action).sum(1), value, reward, done)
+                    reward[late] += DISCOUNT / SCALE * critic(scale["critic"](last))[:, 0].numpy()
+            found = (*rows.values(), action, chosen.log_prob(action).sum(1), value, SCALE * reward, done)
             for name, one in zip(kept, found):
                 kept[name].append(torch.as_tensor(one, dtype=torch.float32))
         all_of = {name: torch.stack(values) for name, values in kept.items()}
