@@ -92,7 +92,7 @@ class Fence(_Limit):
 
     def prepare(self, robot: Robot, task: Any) -> None:
         """Called once, when the task is prepared."""
-        self._low, self._high = np.zeros((2, robot.count, 3))
+        self._low, self._high = np.zeros((robot.count, 3)), np.zeros((robot.count, 3))
         for index in range(robot.count):
             self.enter(index, robot, task)
 
