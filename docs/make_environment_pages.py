@@ -20,6 +20,7 @@ from sitl.envs.boxes import GoalConditioned
 from sitl.envs.ids import TASKS, camel_case
 from sitl.envs.targets.gates import Gates
 from sitl.envs.targets.landing import Land
+from sitl.envs.tasks_v1 import RECEIVERS
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
@@ -170,7 +171,7 @@ def page(name: str) -> str:
         "## Start and end", "",
         "An episode starts at the world's start pose" + (", in the air." if name.startswith("Copter") else "."),
         "It terminates",
-        "", *ends(task), "", *judged(task),
+        "", *ends(task), "", *judged(spelling(name), task),
         "", f"## Arguments of the task: `task={type(task).__name__}(...)`", "",
         f"`from {type(task).__module__} import {type(task).__name__}`", "",
         "| argument | value here | meaning |", "|---|---:|---|",
@@ -203,7 +204,7 @@ def ends(task: Any) -> list[str]:
     return [*lines, "- as the section on the reward says."]
 
 
-def judged(task: Any) -> list[str]:
+def judged(preset: str, task: Any) -> list[str]:
     """By what a task judges, and what neither floor nor arena do."""
     lines = [
         "Reward, success and end are judged by where the robot really is. Observations are what the autopilot",
@@ -214,6 +215,13 @@ def judged(task: Any) -> list[str]:
         lines += ["The robot sees the goal: `goal` and `path` are exact, also where the estimate is not."]
     elif not getattr(task, "is_sparse", False):
         lines += ["`goal` and `path` are told from the estimate: its error is the agent's."]
+    if preset in RECEIVERS:
+        lines += [
+            f'Success is finer than what an ordinary GPS tells, so the robot has another receiver: `sensors="'
+            f'{RECEIVERS[preset]}"` ([sensor sets](../vehicles.md#sensor-sets)); `sensors="gps"` is the ordinary one.',
+        ]
+    elif not isinstance(task, Gates | Land):
+        lines += ["The receiver is an ordinary GPS; the radius of success, 1 m, is what it can do."]
     if not task.out_ends:
         lines += [
             "Nothing is won outside of the arena: an episode goes on there, and on the floor, which is no obstacle and",

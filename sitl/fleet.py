@@ -17,7 +17,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from numbers import Real
-from typing import Any, NamedTuple, Unpack
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 
@@ -94,7 +94,8 @@ class _Worlds:
         for k, (address, keeper) in enumerate(fleet._rooms):
             if address:
                 own = slice(count * k // threads, count * (k + 1) // threads)
-                self._rangings[own] = keeper[1][0]  # sensors and room of its thread
+                _, memory, _ = cast(Any, keeper)
+                self._rangings[own] = memory[0]  # sensors and room of its thread
         self.address: int = self._rangings.ctypes.data
         """Of one ``Ranging`` for each vehicle."""
         self._bytes = self._rangings.view("u1").reshape(count, -1)
@@ -195,6 +196,8 @@ class Fleet:
         self.observers: list[Callable[[], None]] = []
         """Called after each advance; they change nothing."""
         self._states: list[Snapshot] = []
+        self.holds = _HELD
+        """How many of the snapshots that ``put`` and ``move`` were given last are kept ready."""
         self._held: dict[int, _Held] = {}
         """Identity of a snapshot -> its state."""
         self._views: dict[int, Any] = {}
@@ -302,7 +305,7 @@ class Fleet:
             return worlds
         run_part, vehicles = run_in_worlds, self.records.ctypes.data
         self._parts = [
-            partial(run_part.bind(self._unit_at, vehicles, size, count, first, last - first, *at), STAYS)
+            cast(Any, partial(run_part.bind(self._unit_at, vehicles, size, count, first, last - first, *at), STAYS))
             for first, last in pairwise(parts)
             if first < last
         ]
@@ -343,7 +346,7 @@ class Fleet:
             self.shell.restore(snapshot)  # refuses what cannot be put here
             self._link.receive()
             held = self._take()
-            if len(self._held) >= _HELD:
+            if len(self._held) >= self.holds:
                 del self._held[next(iter(self._held))]
             self._held[id(snapshot)] = held = held._replace(of=snapshot)
         self._give(rows, held)

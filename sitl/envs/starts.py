@@ -61,7 +61,9 @@ def mark_free(solids: Table, grid: Grid, robot: Volume, margin: float, out: IntT
         out: shape (rows, columns), 1 for free.
     """
     first, cell, rows, columns = grid.first, grid.cell, out.shape[0], out.shape[1]
-    out[:, :] = 1
+    for i in range(rows):
+        for j in range(columns):
+            out[i, j] = 1
     for k in range(solids.shape[0]):
         length, width, c, s = solids[k, HALF_LENGTH], solids[k, HALF_WIDTH], abs(solids[k, COS]), abs(solids[k, SIN])
         near = robot.radius + margin + solids[k, RADIUS] + cell
@@ -143,7 +145,7 @@ class ReachableCells:
         first = ((np.array(start.position[:2]) - self.low) / self.cell).astype(int).tolist()
         free = self._free(rows, columns)
         is_free = bool(free[first[0], first[1]])
-        _flood(free, *first, np.empty(free.size, np.int64))
+        _flood(free, first[0], first[1], np.empty(free.size, np.int64))
         self.cells = np.argwhere(free == 2).astype(np.min_scalar_type(max(rows, columns)))
         """Indices of the cells along x and y, shape (n, 2); the first one is included even when it is not free."""
         if len(self.cells) == 1 and not is_free:

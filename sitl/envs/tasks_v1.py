@@ -96,6 +96,15 @@ MADE: dict[str, Callable[[], Task]] = {
 """By the name of the preset."""
 
 
+RECEIVERS = dict.fromkeys(
+    (
+        "copter-hover", "copter-reach-goal", "rover-reach-goal", "copter-trajectory", "copter-follow", "rover-parking",
+    ), "rtk",
+)  # fmt: skip
+"""Receivers (option ``sensors``) of tasks whose success is finer than what an ordinary GPS tells: 0.4 to 1 m, for
+seconds or on average."""
+
+
 def worst_of(task: Any, seconds: float) -> float:
     """The least that an episode can still be worth that goes on until its time limit, from whatever state.
 

@@ -309,7 +309,9 @@ class NavigateVector(OfSubEnvironments):
         """Info of the worlds of these robots, where there are several."""
         if not self._session.varies:
             return {}
-        return {"world": np.where(rows, self._session.world_names, None), "_world": rows.copy()}
+        names = self._session.world_names.copy()
+        names[~rows] = None
+        return {"world": names, "_world": rows.copy()}
 
     # ------------------------------------------------------------------ snapshots
 

@@ -32,7 +32,7 @@ def flown(name, steps, action=0.0, **options):
 
 @pytest.mark.parametrize("judge", [TRUTH, ESTIMATE])
 def test_rewards_go_by_the_truth_unless_the_estimate_is_asked_for(judge):
-    env, last = flown("sitl/CopterHover-v1", 30, judge=judge, faults={"gps/wrong=4": 0.0})
+    env, last = flown("sitl/CopterHover-v1", 30, judge=judge, sensors="gps", faults={"gps/wrong=4": 0.0})
     info, inner = last[4], env.unwrapped
     assert inner.session.judged_by == judge
     assert info["estimate_error"][0] > 2.0
@@ -83,7 +83,7 @@ def test_a_judge_is_pickled_without_what_it_has_seen():
 
 @pytest.mark.parametrize("name", ["sitl/CopterReachGoal-v1", "sitl/RoverReachGoalDiscrete-v1"])
 def test_a_goal_is_worth_what_the_step_paid_where_the_info_tells_the_error(name):
-    env = gym.make(name, faults={"gps/wrong=4": 0.0})
+    env = gym.make(name, sensors="gps", faults={"gps/wrong=4": 0.0})
     seen, _ = env.reset(seed=3)
     differs = False
     for _ in range(40):

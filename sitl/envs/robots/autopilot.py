@@ -32,6 +32,7 @@ from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.receivers import equipped
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned, to_ned
 
@@ -42,6 +43,7 @@ from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
 from ..options import COMMON, EnvOptionError, unknown
 from .at_connection import SocketVehicles
+from .boots import check_boots
 from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
@@ -93,9 +95,10 @@ class AutopilotRobot:
             raise unknown("reset", chosen.reset, RESETS)
         if chosen.begin not in BEGINS:
             raise unknown("begin", chosen.begin, BEGINS)
+        check_boots(chosen.boots)
         try:
-            self.airframe = airframe = vehicles.load(chosen.frame)
-        except AirframeError as error:
+            self.airframe = airframe = equipped(vehicles.load(chosen.frame), chosen.sensors)
+        except (AirframeError, OptionError) as error:
             raise EnvOptionError(str(error)) from None
         first, self.count = worlds.load(world), count
         self.name = airframe.name

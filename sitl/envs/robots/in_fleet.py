@@ -61,6 +61,7 @@ from ..mavlink.setpoints import (
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART
 from ..options import EnvOptionError
+from .boots import draw
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
@@ -99,7 +100,8 @@ class FleetVehicles(InProcessVehicles):
         """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
         self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
         """Start state, seed and move of each vehicle's episode, until its first step."""
-        self._prepared: Prepared | None = None
+        self._prepared: dict[int, Prepared] = {}
+        """By the number of the boot."""
         self._failing: dict[int, list[Failure]] = {}
         """What is ordered to fail from the next step on."""
         self._used = "", 0
@@ -115,6 +117,7 @@ class FleetVehicles(InProcessVehicles):
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )
         self._is_open = True
+        self.fleet.holds = max(self.fleet.holds, 2 * self.options.boots)  # each, and ready for a kind of set-point
         for index, world in enumerate(self.worlds):
             if world is not self.setup.world:
                 self._enter(index, world)
@@ -159,13 +162,16 @@ class FleetVehicles(InProcessVehicles):
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         figures = tuple(sorted(self.changed[index].items()))
         base, world = self.base or self._start, self.worlds[index]
-        if self.options.begin == BOOT or (pose == base and not figures and world is self.setup.world):
-            state, move = self._restored(pose, figures, world), None
+        stays = pose == base and not figures and world is self.setup.world
+        if self.options.begin == BOOT or (self.options.boots == 1 and stays):
+            state, move = self._restored(pose, figures, world, self._boot_of(seed)), None
         else:
-            state = self._restored(base, (), self.setup.world)
-            if self._prepared is None or self._prepared.state is not state:
-                self._prepared = Prepared(state, self.setup, base)
-            move = self._prepared.to(pose, figures, seed, world)
+            boot, walks = draw(self.options.boots, seed)
+            state = self._restored(base, (), self.setup.world, boot)
+            prepared = self._prepared.get(boot)
+            if prepared is None or prepared.state is not state:
+                prepared = self._prepared[boot] = Prepared(state, self.setup, base)
+            move = prepared.to(pose, figures, seed, world, walks)
         ready = self._changed.get((id(state.simulation), *self._used))
         if ready is not None:  # as the last episodes went on
             state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)

@@ -27,6 +27,8 @@ from sitl.worlds import World
 
 from ..mavlink.preparation import INTERVAL_US
 from ..options import EnvOptionError
+from .boots import SINGLE, booted, draw
+from .moves import BOOT
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
@@ -82,7 +84,8 @@ class InProcessVehicles(Vehicles):
         return f"connection {self.options.connection!r}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        state = self._restored(pose, tuple(sorted(self.changed[index].items())), self.worlds[index])
+        figures = tuple(sorted(self.changed[index].items()))
+        state = self._restored(pose, figures, self.worlds[index], self._boot_of(seed))
         self.restore(index, state)
         self.simulation(index).reseed(seed)
         return state
@@ -101,12 +104,19 @@ class InProcessVehicles(Vehicles):
         if len(self._elsewhere) > MAX_ELSEWHERE:
             self._elsewhere.pop(next(iter(self._elsewhere))).close()
 
-    def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World) -> EpisodeState:
-        """The state after take-off at a pose in a world; calculated on first use."""
-        key = (pose, figures, world.name)
+    def _boot_of(self, seed: int) -> int:
+        """Seed of the boot that an episode begins with."""
+        boots = self.options.boots
+        return seed if self.options.begin == BOOT and boots > 1 else draw(boots, seed).boot
+
+    def _restored(
+        self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World, boot: int = SINGLE
+    ) -> EpisodeState:
+        """The state after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
+        key = (pose, figures, world.name, boot)
         state = self._states.get(key)
         if state is None:
-            simulation = self._simulation(pose, figures, world)
+            simulation = self._simulation(pose, figures, world, boot)
             link = InProcess(simulation, self.setup.inbox())
             origin = self.prepare(link, pose)
             state = EpisodeState(
@@ -119,10 +129,14 @@ class InProcessVehicles(Vehicles):
         return state
 
     def _simulation(
-        self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = (), world: World | None = None
+        self,
+        pose: Pose | None = None,
+        figures: Sequence[tuple[str, float]] = (),
+        world: World | None = None,
+        boot: int = SINGLE,
     ) -> Simulation:
         simulation: Simulation = self._made(
-            pose, figures, lambda scenario: Simulation(scenario, core=self._core), world
+            pose, figures, lambda scenario: Simulation(scenario, core=self._core), world, boot
         )
         check_parameters(simulation)
         if self.setup.scenario.physics == NATIVE:
@@ -135,13 +149,14 @@ class InProcessVehicles(Vehicles):
         figures: Sequence[tuple[str, float]],
         make: Callable[[Scenario], Any],
         world: World | None = None,
+        boot: int = SINGLE,
     ) -> Any:
         """What ``make`` makes of the scenario at a pose, with changed figures, in a world (None: the scenario's).
 
         Raises:
             EnvOptionError: an option is refused.
         """
-        scenario, airframe = self.setup.scenario, self.setup.airframe
+        scenario, airframe = booted(self.setup.scenario, self.setup.airframe, boot)
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
         own = {name: value for name, value in figures if name not in WIND}

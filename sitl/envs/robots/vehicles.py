@@ -89,6 +89,12 @@ class AutopilotOptions:
         begin: how vehicles in process on native physics come to the start of an episode: "move" (one vehicle boots and
             takes off at the environment's start pose, once, and is moved to others, with other figures), or "boot" (it
             boots and takes off at each start pose, with each set of figures). Others always boot.
+        boots: number of prepared boots, 1 .. 1024, one of which each episode begins with, by its seed: biases of IMU
+            and compass and the errors of the estimate are those of that boot; the slow error of the receiver is
+            drawn for each episode. With ``begin="boot"`` each episode has a boot of its own. 1: one boot with seed
+            0, with which all episodes begin: the estimate's error at the start is the same constant in all of them.
+        sensors: what tells the vehicle where it is: "gps" (as the airframe has it), "rtk", "mocap", "uwb" or
+            "ardupilot" (``sitl.vehicles.receivers``).
     """
 
     frame: str | Airframe = "erle_rover"
@@ -106,6 +112,8 @@ class AutopilotOptions:
     guard: Guard | Mapping[str, Any] | bool | None = None
     threads: int = 1
     begin: str = "move"
+    boots: int = 64
+    sensors: str = "gps"
 
     @classmethod
     def names(cls) -> list[str]:

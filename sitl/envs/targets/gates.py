@@ -90,6 +90,11 @@ class Gates(PlacesTask):
 
     sees_truth = True
 
+    _rows: Floats
+    """Gates of each robot's world, shape (count, gates, 6); valid after ``prepare``."""
+    _counts: npt.NDArray[np.int64]
+    """How many of them there are, shape (count,)."""
+
     def __init__(
         self,
         gates: Sequence[Gate | Sequence[float]] | None = None,
@@ -166,9 +171,7 @@ class Gates(PlacesTask):
         self._gates_in = PerWorld(self._gates_of)
         gates = self._gates_in(robot.world)
         self._rows = np.tile(gates, (robot.count, 1, 1))
-        """Gates of each robot's world, shape (count, gates, 6)."""
         self._counts = np.full(robot.count, len(gates))
-        """How many of them there are, shape (count,)."""
         super().prepare(robot)
         self._sensing: SensingRobot = robot
         self._before, self._now = np.zeros((robot.count, 3)), np.zeros((robot.count, 3))
