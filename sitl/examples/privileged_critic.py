@@ -83,8 +83,9 @@ def train(critic_parts: list, steps: int, seed: int = 1) -> tuple[float, float]:
     mean of the second half of the training."""
     torch.manual_seed(seed)
     env = gym.make_vec(
-        ID, num_envs=ROBOTS, autoreset_mode="SameStep", observation={"actor": SEEN, "critic": critic_parts}
-    )
+        ID, num_envs=ROBOTS, autoreset_mode="SameStep", sensors="gps",
+        observation={"actor": SEEN, "critic": critic_parts},
+    )  # fmt: skip
     widths = {name: space.shape[0] for name, space in env.single_observation_space.items()}
     scale = {name: Scaler(width) for name, width in widths.items()}
     actor, critic = network(widths["actor"], 4), network(widths["critic"], 1)
