@@ -30,7 +30,7 @@ class Navigate(gym.Env[Any, Any]):
         render_mode: "rgb_array"; "human": the browser view if the extra ``view`` is installed, else a window;
             "window"; or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
-            randomise, latency, faults, info, and options of the robot's class.
+            randomise, latency, faults, info, judge, costs, and options of the robot's class.
 
     ``reset`` takes ``options={"pose": (x, y, yaw)}``, the start pose [m, rad], and "world", the episode's world.
     ``info`` has "crashed", the task's entries (``Task.info``), and those that the option ``info`` names.
@@ -60,7 +60,8 @@ class Navigate(gym.Env[Any, Any]):
         session = self._session
         self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.info
-        self._plain_info = type(session.task).info is Task.info and session.faults is None and not session.details
+        told = session.faults is not None or session.details or session.costs
+        self._plain_info = type(session.task).info is Task.info and not told
         self._over = getattr(session.robot, "over", None)
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 

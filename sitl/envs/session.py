@@ -19,6 +19,7 @@ from sitl.worlds import World
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
 from .arena import normalised
+from .costs import Costs
 from .faults import EpisodeFaults, Faults
 from .judge import TRUTH, Judge
 from .latency import LATENCY, Latency
@@ -105,6 +106,9 @@ class NavigateOptions:
         judge: by what rewards, success and ends of episodes go: "truth", where the robot really is, or "estimate",
             where it believes to be. The truth of a vehicle at a connection is unknown, which is judged by its estimate
             (``Session.judge``). Observations are the estimate in any case.
+        costs: what a step violates, for constrained learning: names of ``costs.COSTS``, objects of their classes,
+            functions of a step, or arguments by name ({"cost": "tilt", "angle": 0.3}). ``info`` has each as "cost_NAME"
+            and their sum as "cost"; ``safety.SafetyEnv`` returns it beside the reward. (): none.
         robot_options: further options of the robot's class, by name.
 
     Raises:
@@ -124,6 +128,7 @@ class NavigateOptions:
     faults: Faults | None = None
     info: Sequence[str] = ()
     judge: str = TRUTH
+    costs: Any = ()
     robot_options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -195,6 +200,8 @@ class Session:
         if isinstance(self.task, Task):
             self.task.judge_of = self.judge
         self.task.prepare(self.robot)
+        self.costs = Costs(options.costs)
+        self.costs.prepare(self.robot, self.task)
         self._allow(self.worlds)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
@@ -206,7 +213,7 @@ class Session:
         self.remembers: tuple[Remembering, ...] = tuple(getattr(self.observation, "remembers", ()))
         """Pieces of the observation that remember the last steps."""
         if isinstance(self.robot, AskedRobot):
-            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
+            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task) or reads_scan(self.costs))
             if self.robot.is_live:
                 self._rehearse()
 
@@ -250,6 +257,7 @@ class Session:
         enter = getattr(self.task, "enter", None)
         if enter is not None:
             enter(index, self.robot)
+        self.costs.enter(index, self.robot, self.task)
 
     @property
     def judged_by(self) -> str:
@@ -381,6 +389,8 @@ class Session:
         found = self.task.info(self.step)
         if self.details:
             found |= self._told_in_detail()
+        if self.costs:
+            found |= self.costs.of(self.step)
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
 
     def _told_in_detail(self) -> dict[str, npt.NDArray[Any]]:
