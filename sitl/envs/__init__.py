@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Gymnasium environments: ``import sitl.envs``, then ``gymnasium.make``. Nothing heavy is loaded before that.
 
-``sitl/Navigate-v0`` is any robot in any world. The paper's have its names ("...LIDAR-v0") and those of the original
-code ("...Lidar-v0"). ``ids.NEW`` are the flight and driving tasks.
+``sitl/Navigate-v1`` is any robot in any world. The paper's have its names ("...LIDAR-v0") and those of the original
+code ("...Lidar-v0"). ``NEW`` are the flight and driving tasks, ``FIRST`` their first versions.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ import gymnasium as gym
 
 from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
-from .ids import MAX_EPISODE_STEPS, NEW, PAPER, Listed
+from .ids import FIRST, MAX_EPISODE_STEPS, NEW, PAPER, Listed
 from .options import EnvOptionError
 
 __all__ = [
-    "MAX_EPISODE_STEPS", "NEW", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError", "NotReadyError",
-    "register",
+    "FIRST", "MAX_EPISODE_STEPS", "NEW", "PAPER", "EnvOptionError", "LinkLostError", "NotASimulatorError",
+    "NotReadyError", "register",
 ]  # fmt: skip
 
 
@@ -24,18 +24,20 @@ def register() -> None:
     """Register every environment with Gymnasium; importing the package does it."""
     if "sitl/Navigate-v0" in gym.registry:
         return
-    gym.register(
-        "sitl/Navigate-v0",
-        entry_point="sitl.envs.navigate:Navigate",
-        vector_entry_point="sitl.envs.vector:NavigateVector",
-        max_episode_steps=MAX_EPISODE_STEPS,
-    )
+    for name, options in (("sitl/Navigate-v0", {"judge": "estimate"}), ("sitl/Navigate-v1", {})):
+        gym.register(
+            name,
+            entry_point="sitl.envs.navigate:Navigate",
+            vector_entry_point="sitl.envs.vector:NavigateVector",
+            max_episode_steps=MAX_EPISODE_STEPS,
+            kwargs=options,
+        )
     paper = {
         name: Listed(preset, MAX_EPISODE_STEPS)
         for paper_id, preset in PAPER.items()
         for name in (paper_id, paper_id.replace("LIDAR", "Lidar"))
     }
-    for name, (preset, steps) in (paper | NEW).items():
+    for name, (preset, steps) in (paper | FIRST | NEW).items():
         gym.register(
             name,
             entry_point="sitl.envs.presets:PresetNavigate",

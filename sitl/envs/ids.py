@@ -78,9 +78,21 @@ def camel_case(preset: str) -> str:
     return "".join(word.capitalize() for word in preset.split("-"))
 
 
-NEW = {
-    f"sitl/{camel_case(preset)}{form}-v0": Listed(preset + form.lower(), task.steps)
-    for preset, task in TASKS.items()
-    for form in ("", "Discrete")
-}
+def _version(number: int) -> dict[str, Listed]:
+    of_preset = f"-v{number}" if number else ""
+    return {
+        f"sitl/{camel_case(preset)}{form}-v{number}": Listed(preset + form.lower() + of_preset, task.steps)
+        for preset, task in TASKS.items()
+        for form in ("", "Discrete")
+    }
+
+
+NEW = _version(1)
 """Flight and driving tasks; "...Discrete" has discrete actions."""
+FIRST = _version(0)
+"""The same in their first version, for what was published with them: judged by the estimate, and ending early pays."""
+
+
+def task_of(preset: str) -> str:
+    """The task (``TASKS``) of an id's preset: "copter-hover" of "copter-hoverdiscrete-v1"."""
+    return preset.removesuffix("-v1").removesuffix("discrete")

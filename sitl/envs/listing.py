@@ -14,7 +14,7 @@ from sitl.errors import OptionError, did_you_mean
 
 from .ids import NEW, PAPER, TASKS, camel_case
 
-ANY = "sitl/Navigate-v0"
+ANY = "sitl/Navigate-v1"
 _FEW = 20
 """Columns of an observation that are printed one by one."""
 

@@ -7,23 +7,23 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from sitl.core.elementary import cos, sin
-
-from . import paper
+from . import paper, tasks_v1
 from .actions import VELOCITY, Continuous, Normalised
 from .boxes import GoalConditioned
-from .ids import NEW
+from .ids import FIRST, NEW, task_of
+from .judge import ESTIMATE, TRUTH
 from .navigate import Navigate
 from .session import DETAILS
 from .starts import Near
 from .targets.among import Among
-from .targets.gates import Gate, Gates
+from .targets.gates import Gates
 from .targets.hold import Hold
 from .targets.landing import Land
 from .targets.moving import Follow, Trajectory
 from .targets.parking import Park
 from .targets.waypoints import Waypoints
 from .tasks import Task
+from .tasks_v1 import TRACK
 
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
 ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
@@ -67,24 +67,23 @@ ROVER_MOVES = {
     "stay": (0.0, 0.0, 0.0, 0.0),
 }
 """Velocities: forward, left, up [m/s], turn [rad/s]."""
-TRACK = [
-    Gate(10.0 + 8.0 * cos(angle), 12.0 * sin(angle), 2.5 + sin(2.0 * angle), angle + math.pi / 2)
-    for angle in (math.radians(-120.0 + 60.0 * k) for k in range(6))
-]
-"""An oval of six gates, counter-clockwise."""
+FIRST_DETAILS = ("rewards", "true_pose", "events")
+"""What ``info`` of ids "-v0" has besides what the task tells."""
 
 
 def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[str, Any]:
     return {
         "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
-        "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": DETAILS, **options,
+        "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS,
+        "judge": ESTIMATE, **options,
     }  # fmt: skip
 
 
 def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[str, Any]:
     return {
         "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
-        "action": "normalised", "setpoint": "velocity", "info": DETAILS, **options,
+        "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS, "judge": ESTIMATE,
+        **options,
     }  # fmt: skip
 
 
@@ -147,13 +146,22 @@ def _discrete(preset: str) -> Callable[[], dict[str, Any]]:
     return lambda: {**_CONTINUOUS[preset](), "action": moves}
 
 
+_FIRST = {**_CONTINUOUS, **{f"{preset}discrete": _discrete(preset) for preset in _CONTINUOUS}}
+
+
+def _second(preset: str) -> Callable[[], dict[str, Any]]:
+    """Options of the id "-v1": the same robot, world, observations and actions, judged by the truth."""
+    task = tasks_v1.MADE[task_of(preset)]
+    return lambda: {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS}
+
+
 PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
     **paper.PRESETS,
-    **_CONTINUOUS,
-    **{f"{preset}discrete": _discrete(preset) for preset in _CONTINUOUS},
+    **_FIRST,
+    **{f"{preset}-v1": _second(preset) for preset in _FIRST},
 }
 """Options of ``Navigate`` by the preset's name; ``sitl.envs.ids`` says which environment has which."""
-assert all(listed.preset in PRESETS for listed in NEW.values())
+assert all(listed.preset in PRESETS for listed in (FIRST | NEW).values())
 
 
 def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:

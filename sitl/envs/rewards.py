@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .judge import ESTIMATE, Judge
 from .options import EnvOptionError
 from .robots.robot import Robot
 
@@ -22,8 +23,10 @@ Floats = npt.NDArray[np.float64]
 class Step:
     """Data of a step for reward terms. Arrays have a row a robot."""
 
-    def __init__(self, robot: Robot, seconds: float) -> None:
+    def __init__(self, robot: Robot, seconds: float, judge: Judge | None = None) -> None:
         self.robot = robot
+        self.judge = judge or Judge(robot, ESTIMATE)
+        """By what ``pose`` and ``velocity`` go."""
         self.seconds = seconds
         """Simulated time of a step [s]."""
         self.actions: npt.NDArray[Any] = np.zeros(robot.count)
@@ -50,13 +53,13 @@ class Step:
 
     @property
     def pose(self) -> Floats:
-        """x, y, z [m], yaw [rad], in the frame of world files, shape (count, 4)."""
-        return self.robot.pose
+        """x, y, z [m], yaw [rad], in the frame of world files, as they are judged, shape (count, 4)."""
+        return self.judge.pose
 
     @property
     def velocity(self) -> Floats:
-        """Forward, left, up [m/s], turn rate [rad/s], shape (count, 4)."""
-        return self.robot.velocity
+        """Forward, left, up [m/s], turn rate [rad/s], as they are judged, shape (count, 4)."""
+        return self.judge.velocity
 
 
 Term = Callable[[Step], Floats]

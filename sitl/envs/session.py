@@ -21,6 +21,7 @@ from . import robots
 from .actions import SETPOINTS, Action, Discrete
 from .arena import normalised
 from .faults import EpisodeFaults, Faults
+from .judge import TRUTH, Judge
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
 from .observations import OBSERVATIONS, Observation
@@ -31,12 +32,12 @@ from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot
-from .senses import SensingRobot, reads_scan
+from .senses import reads_scan
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 
 FORMS = ("discrete", "continuous", "normalised")
-DETAILS = ("rewards", "true_pose", "events")
+DETAILS = ("rewards", "true_pose", "estimate_error", "events")
 """What ``info`` may have besides what the task tells."""
 RESET_OPTIONS = ("pose", "reset_mask")
 """Options of ``reset``; the second one only in vector environments."""
@@ -95,7 +96,11 @@ class NavigateOptions:
             each episode draws one of them.
         info: what ``info`` has besides what the task tells, of ``DETAILS``: "rewards", the terms of the reward as
             "reward_NAME"; "true_pose", x, y, z [m], yaw [rad] as they really are (left out where nobody knows);
-            "events", "touched" and "outside".
+            "estimate_error", the estimate minus the truth in the same columns, likewise; "events", "touched" and
+            "outside".
+        judge: by what rewards, success and ends of episodes go: "truth", where the robot really is, or "estimate",
+            where it believes to be. The truth of a vehicle at a connection is unknown, which is judged by its estimate
+            (``Session.judge``). Observations are the estimate in any case.
         robot_options: further options of the robot's class, by name.
 
     Raises:
@@ -114,6 +119,7 @@ class NavigateOptions:
     latency: float = 0.0
     faults: Faults | None = None
     info: Sequence[str] = ()
+    judge: str = TRUTH
     robot_options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -171,11 +177,14 @@ class Session:
         self.commands = np.zeros((count, self.action.setpoint.width))
         self.rewards = np.zeros(count)
         self.terminated = np.zeros(count, np.bool_)
-        self.step = Step(self.robot, self.seconds)
+        self.judge = Judge(self.robot, options.judge)
+        """Says where robots are for the task; ``judge.by`` is "truth" or "estimate"."""
+        self.step = Step(self.robot, self.seconds, self.judge)
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
-        self._knows_truth = isinstance(self.robot, SensingRobot) and getattr(self.robot, "knows_truth", False)
+        if isinstance(self.task, Task):
+            self.task.judge_of = self.judge
         self.task.prepare(self.robot)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
@@ -259,6 +268,7 @@ class Session:
         if self.latency is not None:
             self.latency.begin(index)
         self.robot.reset(index, pose, seed)
+        self.judge.moved()
         self.randomisation.begin(index, self.robot)
         if self.faults is not None:
             self.faults.begin(index, np.random.default_rng((seed, FAULTS_STREAM)))
@@ -286,6 +296,7 @@ class Session:
             self.robot.advance(self.seconds, rows)
         else:
             self._advance_late(self.latency, rows)
+        self.judge.moved()
         if "rewards" in self.details:
             self.step.terms = {}
         self.task.judge(self.step, self.rewards, self.terminated)
@@ -313,8 +324,11 @@ class Session:
             terms = step.terms or {}
             found |= {f"reward_{name}": np.where(crashed, 0.0, term) for name, term in terms.items()}
             found["reward_crash"] = np.where(crashed, self.rewards, 0.0)
-        if "true_pose" in self.details and self._knows_truth:
-            found["true_pose"] = cast(SensingRobot, self.robot).true_state()[:, :4].copy()
+        if self.judge.knows_truth:
+            if "true_pose" in self.details:
+                found["true_pose"] = self.judge.state()[:, :4].copy()
+            if "estimate_error" in self.details:
+                found["estimate_error"] = self.judge.error()
         if "events" in self.details:
             found |= {"touched": self.robot.collided != 0, "outside": step.outside.copy()}
         return found
@@ -352,6 +366,7 @@ class Session:
                                  "parts that are seen late")  # fmt: skip
         self.task.recall(index, snapshot.task)
         self.robot.restore(index, snapshot.robot)
+        self.judge.moved()
         if self.latency is not None and snapshot.late is not None:
             self.latency.recall(index, snapshot.late)
         if self.faults is not None and snapshot.fault is not None:

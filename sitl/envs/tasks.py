@@ -14,6 +14,7 @@ from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import Flags, IntColumn, Kernel, NarrowTable
 from sitl.core.kernels import law
 
+from .judge import ESTIMATE, Judge
 from .options import EnvOptionError, unknown
 from .rewards import TERMS, ByAction, EachStep, Floats, Forward, Step, Term
 from .robots.robot import Robot
@@ -78,8 +79,12 @@ class Task:
         self.contact_ends = bool(contact_ends)
         self._range = 0.0
 
+    judge_of: Judge | None = None
+    """Says where robots are, as the task judges them; the environment sets it before ``prepare``."""
+
     def prepare(self, robot: Robot) -> None:
         """Called once, before the first episode."""
+        self.judge_of = self.judge_of or Judge(robot, ESTIMATE)
         self._range = float(robot.crash_range if self.crash_range is None else self.crash_range)
 
     @property
@@ -112,6 +117,11 @@ class Task:
             step.note(**{self._names[k]: paid})
         if crashes:
             rewards[terminated] = self.crash_reward
+
+    def judged_pose(self) -> Floats:
+        """x, y, z [m], yaw [rad] of robots, as the task judges them, shape (count, 4); valid after ``prepare``."""
+        assert self.judge_of is not None
+        return self.judge_of.pose
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """Entries of ``info`` for the step: arrays with a row a robot."""
@@ -163,7 +173,7 @@ class ReachGoal(Task):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        place = robot.pose[index, :2]
+        place = self.judged_pose()[index, :2]
         for _ in range(_DRAWS if self._cells else 1):
             self.goals[index] = self._cells.draw(rng) if self._cells else self.goal
             self._distance[index] = arrays.hypot(*(place - self.goals[index]))  # as in ``judge``, to the last bit

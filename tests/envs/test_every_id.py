@@ -17,7 +17,7 @@ import sitl.envs  # noqa: F401
 from sitl.envs import ids
 
 NAVIGATE = "sitl/Navigate-v0"
-IDS = [*ids.PAPER, *ids.NEW, NAVIGATE]
+IDS = [*ids.PAPER, *ids.FIRST, *ids.NEW, NAVIGATE, "sitl/Navigate-v1"]
 STEPS = 4
 pytestmark = pytest.mark.filterwarnings("ignore:.*Box.*(infinity|bound|symmetric|normalized)", "ignore:.*render")
 

@@ -101,5 +101,7 @@ def test_it_is_not_told_unless_asked_for_and_names_are_checked():
     env = gym.make("GazeboMazeTurtlebotLIDAR-v0")
     env.reset(seed=1)
     assert env.step(0)[4].keys() == {"crashed"}
-    with pytest.raises(EnvOptionError, match="info 'reward' is not known; it is one of rewards, true_pose, events"):
+    with pytest.raises(
+        EnvOptionError, match="info 'reward' is not known; it is one of rewards, true_pose, estimate_error, events"
+    ):
         gym.make("GazeboMazeTurtlebotLIDAR-v0", info=["reward"])

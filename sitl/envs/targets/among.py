@@ -53,7 +53,7 @@ class Among(Waypoints):
     def _aim(self, index: int) -> None:
         x, y, _ = self.places[index, min(self.at[index], self.per_robot - 1)].tolist()
         self._ways.aim(index, x, y)
-        self._left[index] = self._ways.lengths(self._robot.pose)[index]
+        self._left[index] = self._ways.lengths(self.judged_pose())[index]
 
     def _nearer(self, pose: Floats) -> Floats:
         left = self._ways.lengths(pose).copy()

@@ -3,31 +3,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import PlacesTask
+from .places import PlacesTask, nearness
 
 
 class Hold(PlacesTask):
     """Go to a target position near the start and hold it.
 
-    Reward of a step: ``step_time * max(1 - distance / scale, 0)``, minus ``effort * step_time`` times the mean squared
-    action. ``info["is_success"]``: the robot has been within ``radius`` for the last ``hold`` seconds. Success does not
-    end the episode.
+    Reward of a step: ``step_time * max(1 - distance / scale, 0)``, or with ``half`` ``step_time / (1 + (distance /
+    half)^2)``, minus ``effort * step_time`` times the mean squared action. ``info["is_success"]``: the robot has been
+    within ``radius`` for the last ``hold`` seconds. Success does not end the episode.
 
     Args:
         offset: greatest distance of the random target from the start, horizontally along each axis and vertically [m].
         radius: distance that counts as reached [m].
         hold: time to stay there for success [s].
         scale: distance from which on the reward is 0 [m].
+        half: distance at which the reward is half of that at the target [m]; None: it decreases linearly (``scale``).
         effort: weight of the squared actions.
-        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1.
+        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1. With ``out_ends``
+            False nothing ends an episode early but a crash.
         others: further arguments of ``PlacesTask``.
     """
 
@@ -41,14 +45,20 @@ class Hold(PlacesTask):
         scale: float = 4.0,
         effort: float = 0.05,
         is_sparse: bool = False,
+        half: float | None = None,
         **others: Any,
     ) -> None:
         super().__init__(**others)
-        for name, value in {"radius": radius, "hold": hold, "scale": scale}.items():
+        for name, value in {
+            "radius": radius,
+            "hold": hold,
+            "scale": scale,
+            "half": 1.0 if half is None else half,
+        }.items():
             if not value > 0.0:
                 raise EnvOptionError(f"Hold({name}={value}); it must be above 0")
         self.offset, self.radius, self.hold, self.scale, self.effort = offset, radius, hold, scale, effort
-        self.is_sparse = is_sparse
+        self.is_sparse, self.half = is_sparse, half
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -59,7 +69,7 @@ class Hold(PlacesTask):
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         wide, high = self.offset
-        place = robot.pose[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
+        place = self.judged_pose()[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
         self.places[index, 0] = np.clip(place, self.arena.low, self.arena.high)
         self.at[index], self.since[index], self.success[index] = 0, 0.0, False
 
@@ -67,7 +77,7 @@ class Hold(PlacesTask):
         way = self.axes * (self.places[:, 0] - step.pose[:, :3])
         distance = np.sqrt((way * way).sum(axis=1))
         if self.is_sparse:
-            paid = self.compute_reward(self.achieved(), self.targets, None)
+            paid = self._worth(distance)
             rewards += paid
             step.note(goal=paid)
         else:
@@ -76,7 +86,7 @@ class Hold(PlacesTask):
         self.success = self.since >= self.hold - 1e-9
 
     def _pay(self, step: Step, rewards: Floats, distance: Floats) -> None:
-        near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        near = step.seconds * nearness(distance, self.scale, self.half)
         rewards += near
         step.note(nearness=near)
         if self.effort and step.actions.ndim == 2:
@@ -85,9 +95,22 @@ class Hold(PlacesTask):
             step.note(effort=-effort)
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
-        """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3)."""
-        way = self.axes * (np.asarray(achieved, np.float64) - np.asarray(desired, np.float64))
-        out: Floats = np.where(np.sqrt((way * way).sum(axis=-1)) < self.radius, 0.0, -1.0)
+        """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3).
+
+        Args:
+            achieved: where the robot believes to be.
+            desired: where it is to be.
+            info: of the step, or one for each row; its "estimate_error" is taken off what is achieved where the task
+                judges the truth, so that the result is the reward of the step, exactly. Without it the estimate counts.
+        """
+        way = np.asarray(achieved, np.float64) - np.asarray(desired, np.float64)
+        if self.judge_of is not None and self.judge_of.by == TRUTH:
+            way -= _errors(info)
+        way *= self.axes
+        return self._worth(np.sqrt((way * way).sum(axis=-1)))
+
+    def _worth(self, distance: Floats) -> Floats:
+        out: Floats = np.where(distance < self.radius, 0.0, -1.0)
         return out
 
     def memory(self, index: int) -> Any:
@@ -98,3 +121,12 @@ class Hold(PlacesTask):
         """See ``Task``."""
         super().recall(index, memory)
         self.since[index] = memory[3]
+
+
+def _errors(info: Any) -> Any:
+    """Errors of the estimate [m] that infos tell; 0 where they tell none."""
+    if isinstance(info, Mapping):
+        return np.asarray(info["estimate_error"])[..., :3] if "estimate_error" in info else 0.0
+    if info is None or not len(info) or not all("estimate_error" in one for one in info):
+        return 0.0
+    return np.array([one["estimate_error"][:3] for one in info])

@@ -148,7 +148,8 @@ class Land(MovingTask):
         rewards[down & ~self.success] += self.crash_reward
         landing = self.success_reward * self.success + self.crash_reward * (down & ~self.success)
         step.note(progress=gain, time=spent, landing=landing)
-        terminated |= down | (distance > self.lost)
+        terminated |= down
+        self._end_lost(step, distance > self.lost, rewards, terminated)
         is_agents = height > (LET_DOWN if self._lets_down else -math.inf)
         self._sinking = np.where(is_agents, 0.0 - state[:, 6], self._sinking)
 

@@ -17,14 +17,15 @@ from ..noise import dirichlet
 from ..options import EnvOptionError, unknown
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import PlacesTask
+from .places import PlacesTask, nearness
 
 AHEAD_S = 0.5
 """Time from one of the places that "path" tells to the next [s]."""
 
 
 class MovingTask(PlacesTask):
-    """Base of tasks with a moving target. Reward of a step: ``step_time * max(1 - distance / scale, 0)``.
+    """Base of tasks with a moving target. Reward of a step: ``step_time * max(1 - distance / scale, 0)``, or with
+    ``half`` ``step_time / (1 + (distance / half)^2)``.
 
     ``info["error"]`` is the root mean square distance to the target since the first ``settle`` seconds [m], 0 before.
     ``info["is_success"]``: it is below ``radius``. "path" is the vector to the target now, in 0.5 s and in 1 s.
@@ -34,19 +35,24 @@ class MovingTask(PlacesTask):
         settle: time at the start that does not count [s].
         scale: distance from which on the reward is 0 [m].
         lost: distance beyond which the episode ends [m].
+        lost_reward: added to the reward then.
+        half: distance at which the reward is half of that at the target [m]; None: it decreases linearly (``scale``).
         others: further arguments of ``PlacesTask``.
     """
 
     per_robot = 1
 
     def __init__(
-        self, radius: float = 0.7, settle: float = 5.0, scale: float = 4.0, lost: float = 10.0, **others: Any
-    ) -> None:
+        self, radius: float = 0.7, settle: float = 5.0, scale: float = 4.0, lost: float = 10.0,
+        lost_reward: float = 0.0, half: float | None = None, **others: Any,
+    ) -> None:  # fmt: skip
         super().__init__(**others)
-        for name, value in {"radius": radius, "scale": scale, "lost": lost}.items():
+        given = {"radius": radius, "scale": scale, "lost": lost, "half": 1.0 if half is None else half}
+        for name, value in given.items():
             if not value > 0.0:
                 raise EnvOptionError(f"{type(self).__name__}({name}={value}); it must be above 0 m")
         self.radius, self.settle, self.scale, self.lost = radius, settle, scale, lost
+        self.lost_reward, self.half = lost_reward, half
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -58,7 +64,7 @@ class MovingTask(PlacesTask):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        self.centre[index] = robot.pose[index, :3]
+        self.centre[index] = self.judged_pose()[index, :3]
         self.at[index], self.sums[index], self.success[index] = 0, 0.0, False
         self._draw(index, rng)
         self.places[index, 0] = self.along(np.zeros((self._robot.count, 1)))[index, 0]
@@ -93,11 +99,21 @@ class MovingTask(PlacesTask):
         way = self.axes * (self.places[:, 0] - step.pose[:, :3])
         squared = (way * way).sum(axis=1)
         distance = np.sqrt(squared)
-        near = step.seconds * np.maximum(1.0 - distance / self.scale, 0.0)
+        near = step.seconds * nearness(distance, self.scale, self.half)
         rewards += near
         step.note(nearness=near)
         self.success = self._note_errors(time, squared) & (self._errors() < self.radius)
-        terminated |= distance > self.lost
+        self._end_lost(step, distance > self.lost, rewards, terminated)
+
+    def _end_lost(
+        self, step: Step, lost: npt.NDArray[np.bool_], rewards: Floats, terminated: npt.NDArray[np.bool_]
+    ) -> None:
+        """End the episodes of robots that have lost the target."""
+        if self.lost_reward:
+            paid = np.where(lost & ~terminated, self.lost_reward, 0.0)
+            rewards += paid
+            step.note(lost=paid)
+        terminated |= lost
 
     def _note_errors(self, time: Floats, squared: Floats) -> npt.NDArray[np.bool_]:
         """Note squared distances [m^2] for the error; tells for which robots they count."""
@@ -178,7 +194,7 @@ class Trajectory(MovingTask):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        self._drawn[index, 1] = robot.pose[index, 3]
+        self._drawn[index, 1] = self.judged_pose()[index, 3]
         super().start(index, robot, rng)
 
     def _draw(self, index: int, rng: np.random.Generator) -> None:

@@ -82,9 +82,9 @@ class Park(PlacesTask):
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         x, y, yaw = self._bays[int(rng.integers(len(self._bays)))].tolist()
-        self.places[index, 0] = x, y, robot.pose[index, 2]
+        self.places[index, 0] = x, y, self.judged_pose()[index, 2]
         self.headings[index], self.at[index], self.success[index] = yaw, 0, False
-        distance, _, left = self._worth(robot.pose)
+        distance, _, left = self._worth(self.judged_pose())
         self._distance[index], self._left[index] = distance[index], left[index]
 
     def turns(self) -> Floats:

@@ -15,6 +15,7 @@ from sitl.core.kernels import law
 
 from ...core.elementary import sincos
 from ..arena import REACH, Arena, arena_of, flies
+from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
@@ -22,6 +23,8 @@ from ..tasks import Task
 
 BEYOND = 5.0
 """An episode ends so far outside of the arena [m]."""
+ON_FLOOR = 0.12
+"""A robot that flies has sunk to the floor when its base is so little above it [m]."""
 
 
 @law
@@ -59,6 +62,9 @@ class PlacesTask(Task):
         reach: see ``arena_of`` [m].
         crash_reward: reward of a step that ends in a crash.
         out_reward: added to the reward of a step that ends more than 5 m outside of the arena.
+        out_ends: whether that ends the episode; if not, it is worth nothing.
+        floor_ends: whether a robot that flies and sinks to the floor has crashed, where the truth is judged: set-points
+            do not lift it again.
         others: further arguments of ``Task``.
     """
 
@@ -67,10 +73,11 @@ class PlacesTask(Task):
 
     def __init__(
         self, arena: Arena | None = None, reach: float = REACH, crash_reward: float = -10.0, out_reward: float = -10.0,
-        **others: Any,
+        out_ends: bool = True, floor_ends: bool = False, **others: Any,
     ) -> None:  # fmt: skip
         super().__init__(**{"rewards": (), "crash_range": 0.0, **others}, crash_reward=crash_reward)
         self._given, self._reach, self.out_reward = arena, reach, out_reward
+        self.out_ends, self.floor_ends = bool(out_ends), bool(floor_ends)
         self._fixed: Floats | None = None
         """Places that are the same in every episode [m]; the arena holds them. None: they are drawn."""
 
@@ -83,6 +90,9 @@ class PlacesTask(Task):
             self.arena = self.arena.around(self._fixed[:, :3])
         self.flies = flies(robot)
         self.axes = np.array((1.0, 1.0, float(self.flies)))
+        assert self.judge_of is not None
+        self._ends_on_floor = self.floor_ends and self.flies and self.judge_of.by == TRUTH
+        self._floor = robot.world.floor_z + ON_FLOOR
         self._limits = self.arena.grown(BEYOND)
         if not self.flies:
             (x0, y0, _), (x1, y1, _) = self._limits
@@ -107,7 +117,7 @@ class PlacesTask(Task):
         return out
 
     def achieved(self) -> Floats:
-        """x, y, z of each robot, as the task judges them [m], shape (count, 3)."""
+        """x, y, z of each robot, where it believes to be [m], shape (count, 3)."""
         return self._robot.pose[:, :3]
 
     def ways(self, count: int) -> Floats:
@@ -123,15 +133,18 @@ class PlacesTask(Task):
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """See ``Task``."""
         super().judge(step, rewards, terminated)
+        if self._ends_on_floor:
+            terminated |= step.pose[:, 2] < self._floor
         crashed = terminated.copy()
         self._judge(step, rewards, terminated)
         rewards[crashed] = self.crash_reward
         low, high = self._limits
         outside = ((step.pose[:, :3] < low) | (step.pose[:, :3] > high)).any(axis=1) & ~terminated
-        rewards[outside] += self.out_reward
-        terminated |= outside
+        if self.out_ends:
+            rewards[outside] += self.out_reward
+            terminated |= outside
+            step.note(out=np.where(outside, self.out_reward, 0.0))
         step.outside = outside
-        step.note(out=np.where(outside, self.out_reward, 0.0))
         step.crashed, step.reached = crashed, self.success & ~crashed
 
     @abstractmethod
@@ -151,3 +164,12 @@ class PlacesTask(Task):
         if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != self.places[index].shape:
             raise EnvOptionError("snapshot cannot be restored: it is of another task")
         self.places[index], self.at[index], self.success[index] = memory[:3]
+
+
+def nearness(distance: Floats, scale: float, half: float | None) -> Floats:
+    """What a second at a distance [m] from a target is worth: 1 there; 0 from ``scale`` [m] on, or, not linearly, one
+    half at ``half`` [m]: who keeps at some distance, or does nothing, gets little."""
+    if half is None:
+        return np.maximum(1.0 - distance / scale, 0.0)
+    share = distance / half
+    return 1.0 / (1.0 + share * share)

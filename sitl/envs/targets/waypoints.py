@@ -112,7 +112,7 @@ class Waypoints(PlacesTask):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        here = robot.pose[index, :3]
+        here = self.judged_pose()[index, :3]
         self.places[index] = self._drawn(here, rng) if self._fixed is None else self._fixed
         self.at[index], self.success[index] = 0, False
         self._distance[index] = lengths(self.axes * (self.places[index, 0] - here))

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Policies that try to be paid for what they should not do, and what they get."""
