@@ -61,9 +61,9 @@ def gather(
                     value = 1.0
                 out[i, to + k] = value
                 narrow = out[i, to + k]
-                if not narrow > low[to + k] and narrow == narrow:  # noqa: PLR0124 - not NaN
+                if not narrow > low[to + k] and narrow == narrow:
                     out[i, to + k] = low[to + k]
-                if not out[i, to + k] < high[to + k] and narrow == narrow:  # noqa: PLR0124
+                if not out[i, to + k] < high[to + k] and narrow == narrow:
                     out[i, to + k] = high[to + k]
 
 
@@ -127,8 +127,8 @@ class Gathering:
 
         write = _gather.bind(
             np.array(self._blocks, np.int64).reshape(-1, 4),
-            used(STATE, lambda: robot.state), used(TRUTH, lambda: robot.true_state()), used(REPORTS, lambda: robot.reports),
-            used(TRUE_REPORTS, lambda: robot.true_reports()), computed, robot.scan,
+            used(STATE, lambda: robot.state), used(TRUTH, lambda: robot.true_state()),
+            used(REPORTS, lambda: robot.reports), used(TRUE_REPORTS, lambda: robot.true_reports()), computed, robot.scan,
             used(ACTIONS, lambda: session.actions), used(CHOSEN, lambda: session.actions, none_chosen), session.acted,
             low, high,
         )  # fmt: skip
