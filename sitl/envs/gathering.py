@@ -128,9 +128,9 @@ class Gathering:
         write = _gather.bind(
             np.array(self._blocks, np.int64).reshape(-1, 4),
             used(STATE, lambda: robot.state), used(TRUTH, lambda: robot.true_state()),
-            used(REPORTS, lambda: robot.reports), used(TRUE_REPORTS, lambda: robot.true_reports()), computed, robot.scan,
-            used(ACTIONS, lambda: session.actions), used(CHOSEN, lambda: session.actions, none_chosen), session.acted,
-            low, high,
+            used(REPORTS, lambda: robot.reports), used(TRUE_REPORTS, lambda: robot.true_reports()),
+            computed, robot.scan, used(ACTIONS, lambda: session.actions),
+            used(CHOSEN, lambda: session.actions, none_chosen), session.acted, low, high,
         )  # fmt: skip
         if not before:
             return write

@@ -149,6 +149,8 @@ class Hold(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         actions = step.actions if step.actions.ndim == 2 else _NONE
+        if actions is _NONE:
+            self.paid.pop("effort", None)
         rule = Holding(
             float(self.radius), float(self.hold - 1e-9), float(self.scale), float(self.half or 0.0),
             float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, step.seconds,

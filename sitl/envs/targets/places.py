@@ -50,9 +50,7 @@ def nearness(distance: float, scale: float, half: float) -> float:
 
 
 @law
-def write_ways(
-    pose: Table, places: Table, at: IntLine, per_robot: int, count: int, out: Table, first: int
-) -> None:
+def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, count: int, out: Table, first: int) -> None:
     """Write the ways from each robot to its next places; after the last place comes the last again.
 
     Args:
@@ -159,7 +157,8 @@ def end_step(by: Outside, state: Table, success: Flags, rewards: Line, terminate
         ends.reached[i] = success[i] and not ends.crashed[i]
 
 
-_ways, _begin, _end = Kernel(write_ways), Kernel(begin_step), Kernel(end_step)
+write_ways_to = Kernel(write_ways)
+_begin, _end = Kernel(begin_step), Kernel(end_step)
 
 
 class PlacesTask(Task):
@@ -224,7 +223,7 @@ class PlacesTask(Task):
         names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
         self._paid = np.zeros((len(names), count))
         """Terms of the last rewards, by ``paid_names``, shape (terms, count)."""
-        self.paid = dict(zip(names, self._paid))
+        self.paid: dict[str, Floats] = dict(zip(names, self._paid))
         if self.out_ends:
             self._ends = self._ends._replace(paid=self._paid[-1])
 
@@ -266,7 +265,7 @@ class PlacesTask(Task):
         return lambda: self._write_ways(np.ascontiguousarray(self._from()), count, out, first)
 
     def _write_ways(self, pose: Floats, count: int, out: Floats, first: int) -> None:
-        _ways.unchecked()(pose, self._rows, self.at, self._per_robot, count, out, first)
+        write_ways_to.unchecked()(pose, self._rows, self.at, self._per_robot, count, out, first)
 
     def ways_from(self, pose: Floats, count: int) -> Floats:
         """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
