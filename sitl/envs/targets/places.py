@@ -214,18 +214,28 @@ class PlacesTask(Task):
         self.success = np.zeros(count, np.bool_)
         """Whether each robot has done the task, shape (count,)."""
         self._robot = robot
-        self._rows, self._per_robot = self.places.reshape(-1, 3), self.per_robot
+        self._per_robot = self.per_robot
         self._table: Floats = np.zeros((count, 8))
         """Poses and velocities by which the present step is judged."""
         self._ends = Ends(*np.zeros((3, count), np.bool_), np.zeros(count))
         self._bounds: tuple[Arena, Floats, Floats] | None = None
         """``_limits``, and its low and high as arrays."""
-        names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
-        self._paid = np.zeros((len(names), count))
-        """Terms of the last rewards, by ``paid_names``, shape (terms, count)."""
-        self.paid: dict[str, Floats] = dict(zip(names, self._paid))
+        self._paid_names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
+        self._paid = np.zeros((len(self._paid_names), count))
+        """Terms of the last rewards, by name, shape (terms, count)."""
+        self._link()
+
+    def _link(self) -> None:
+        """Views of arrays: a copy of the task has its own."""
+        self._rows = self.places.reshape(-1, 3)
+        self.paid: dict[str, Floats] = dict(zip(self._paid_names, self._paid))
         if self.out_ends:
             self._ends = self._ends._replace(paid=self._paid[-1])
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        if "_paid" in state:
+            self._link()
 
     def paid_names(self) -> tuple[str, ...]:
         """Names of the terms that ``_judge`` writes into the rows of ``_paid``; valid after ``Task.prepare``."""
