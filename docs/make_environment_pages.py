@@ -20,6 +20,7 @@ from sitl.envs.boxes import GoalConditioned
 from sitl.envs.ids import TASKS, camel_case
 from sitl.envs.targets.gates import Gates
 from sitl.envs.targets.landing import Land
+from sitl.envs.tasks_v1 import RECEIVERS
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
@@ -33,6 +34,13 @@ OTHERS = {
 """Another world of the same sort."""
 MANY = 12
 """Columns of one kind beyond which a table has one row for all."""
+OUT_PAYS = {
+    "CopterReachGoal", "RoverReachGoal", "CopterCourse", "CopterGates", "CopterRace", "RoverWaypoint", "RoverCourse",
+    "RoverSlalom",
+}  # fmt: skip
+"""In v0 it pays more to leave the arena than to do nothing."""
+CRASH_PAYS = {"CopterRooms", "RoverLabyrinth", "RoverRace"}
+"""In v0 it pays more to crash than to do nothing."""
 UNUSED = {"Land": ("radius", "settle", "scale")}
 """Arguments of base classes that a task does not use."""
 
@@ -104,8 +112,9 @@ def baseline(name: str) -> list[str]:
     return [
         *lines, "",
         "± is the 95 % confidence interval of the mean; *random policy* is its mean return in the same episodes.",
-        f"`sitl rollout {rows[0][0]} --episodes {rows[0][1]['episodes']} --seed {rows[0][1]['seed']}` repeats the "
-        "first row; [baselines](../baselines.md) has more.",
+        f"They are of `{rows[0][1]['env']}`: `sitl rollout {rows[0][0]} --episodes {rows[0][1]['episodes']} "
+        f"--seed {rows[0][1]['seed']}` repeats the first row; [baselines](../baselines.md) has more. What v1 pays, and",
+        "how often they succeed there, is in [rewards](../rewards.md).",
     ]  # fmt: skip
 
 
@@ -129,9 +138,9 @@ def arguments(task: Any) -> list[tuple[str, str]]:
 
 
 def page(name: str) -> str:
-    """The page of an id without "sitl/" and "-v0"."""
+    """The page of an id without "sitl/" and its version."""
     title, summary = TITLES[name]
-    continuous, discrete = (gym.make(f"sitl/{name}{form}-v0") for form in ("", "Discrete"))
+    continuous, discrete = (gym.make(f"sitl/{name}{form}-v1") for form in ("", "Discrete"))
     env: Any = continuous.unwrapped
     task, spec = env.task, continuous.spec
     text = (inspect.getdoc(type(task)) or "").partition("\nArgs:\n")[0]
@@ -142,8 +151,8 @@ def page(name: str) -> str:
     picture = f"![{shows}](images/{name}.png)"
     lines = [
         f"# {title}", "", "<!-- Made by python docs/make_environment_pages.py -->", "", summary, "",
-        "```python", "import gymnasium as gym", "", f'env = gym.make("sitl.envs:sitl/{name}-v0")          # continuous',
-        f'env = gym.make("sitl.envs:sitl/{name}Discrete-v0")  # discrete', "```", "",
+        "```python", "import gymnasium as gym", "", f'env = gym.make("sitl.envs:sitl/{name}-v1")          # continuous',
+        f'env = gym.make("sitl.envs:sitl/{name}Discrete-v1")  # discrete', "```", "",
         picture if (HERE / "images" / f"{name}.png").exists() else "", "",
         "| | |", "|---|---|",
         f"| robot | `{env.robot.name}`, with the whole autopilot |",
@@ -162,17 +171,15 @@ def page(name: str) -> str:
         "## Start and end", "",
         "An episode starts at the world's start pose" + (", in the air." if name.startswith("Copter") else "."),
         "It terminates",
-        "", f"- with a crash, when the robot touches an obstacle: reward {number(task.crash_reward)};",
-        f"- more than 5 m outside of the arena{ceiling(task)}: {number(task.out_reward)} is added to the reward;",
-        "- as the section on the reward says.", "", *judged(task),
+        "", *ends(task), "", *judged(spelling(name), task),
         "", f"## Arguments of the task: `task={type(task).__name__}(...)`", "",
         f"`from {type(task).__module__} import {type(task).__name__}`", "",
         "| argument | value here | meaning |", "|---|---:|---|",
         *(f"| `{a}` | {chosen(task, a)} | {b.strip().replace('``', '`')} |" for a, b in arguments(task)),
-        "", "All [options](../environments.md) of `sitl/Navigate-v0` can be changed, too: observations, set-points,",
+        "", "All [options](../environments.md) of `sitl/Navigate-v1` can be changed, too: observations, set-points,",
         "worlds, wind, faults, a vehicle at a connection.",
         *baseline(name),
-        "", "## Version history", "", "v0: first version.", "",
+        "", "## Version history", "", *versions(name, task), "",
     ]  # fmt: skip
     continuous.close()
     discrete.close()
@@ -185,23 +192,64 @@ def ceiling(task: Any) -> str:
     return "" if height is None else f", or higher than {number(height)} m above the floor"
 
 
-def judged(task: Any) -> list[str]:
-    """By what a task judges, and what the floor does."""
-    lines = []
-    if not isinstance(task, Gates | Land):
+def ends(task: Any) -> list[str]:
+    """What ends an episode."""
+    lines = [f"- with a crash, when the robot touches an obstacle: reward {number(task.crash_reward)};"]
+    if task.floor_ends and task.flies:
+        lines.append("- when a copter sinks to the floor, which is a crash, too;")
+    if task.out_ends:
+        lines.append(
+            f"- more than 5 m outside of the arena{ceiling(task)}: {number(task.out_reward)} is added to the reward;"
+        )
+    return [*lines, "- as the section on the reward says."]
+
+
+def judged(preset: str, task: Any) -> list[str]:
+    """By what a task judges, and what neither floor nor arena do."""
+    lines = [
+        "Reward, success and end are judged by where the robot really is. Observations are what the autopilot",
+        'estimates; `info["estimate_error"]` is the estimate minus the truth, `info["true_pose"]` the truth.',
+        '`judge="estimate"` judges by the estimate, as a vehicle at a connection is, whose true position is unknown.',
+    ]
+    if isinstance(task, Gates | Land):
+        lines += ["The robot sees the goal: `goal` and `path` are exact, also where the estimate is not."]
+    elif not getattr(task, "is_sparse", False):
+        lines += ["`goal` and `path` are told from the estimate: its error is the agent's."]
+    if preset in RECEIVERS:
         lines += [
-            "Reward, success and end are judged by the position that the autopilot estimates and reports. With the",
-            'usual errors of GPS it is within about a metre of the true one, which is `info["true_pose"]`; a fault of',
-            "GPS moves it.",
+            f'Success is finer than what an ordinary GPS tells, so the robot has another receiver: `sensors="'
+            f'{RECEIVERS[preset]}"` ([sensor sets](../vehicles.md#sensor-sets)); `sensors="gps"` is the ordinary one.',
         ]
-    if task.flies and not isinstance(task, Land):
+    elif not isinstance(task, Gates | Land):
+        lines += ["The receiver is an ordinary GPS; the radius of success, 1 m, is what it can do."]
+    if not task.out_ends:
         lines += [
-            "The floor is no obstacle: a copter that sinks to it has landed, and set-points do not lift it again; the",
-            "episode goes on until the time limit.",
+            "Nothing is won outside of the arena: an episode goes on there, and on the floor, which is no obstacle and",
+            "does not let a copter go.",
         ]
     if getattr(task, "is_sparse", False):
-        lines += ["The end outside of the arena is not in `compute_reward`, which knows positions only."]
+        lines += [
+            '`"achieved_goal"` is the estimate. `compute_reward(achieved, desired, info)` takes the `"estimate_error"`',
+            "of `info` off it, and is then the reward of the step, exactly; without it, as from a replay buffer that",
+            "keeps no infos, it judges by the estimate.",
+        ]
     return lines
+
+
+def versions(name: str, task: Any) -> list[str]:
+    """What changed from version to version, and why."""
+    pays = {"leave the arena": OUT_PAYS, "crash": CRASH_PAYS}
+    why = [f"In v0 it pays more to {what} than to do nothing." for what, names in pays.items() if name in names]
+    lost = (
+        "" if isinstance(task, Gates | Land) else " Its judge is the autopilot's estimate, an error of 0.7 m included."
+    )
+    return [
+        "- v1: judged by the truth. From whatever state, ending an episode early is worth less than whatever else",
+        "  until the time limit, and staying near the goal is worth less than half of reaching it: see",
+        "  [rewards](../rewards.md).",
+        "- v0: first version, kept bit for bit for what was published with it; do not use it for anything new." + lost,
+        *(f"  {line}" for line in why),
+    ]
 
 
 def space(of: Any) -> str:
@@ -215,9 +263,11 @@ def index() -> str:
     """The page that lists them."""
     rows = ["# Flight and driving tasks", "", "<!-- Made by python docs/make_environment_pages.py -->", ""]
     rows += [
-        "Each task has a continuous id, `sitl/NAME-v0`, and a discrete one, `sitl/NAMEDiscrete-v0`. The whole",
+        "Each task has a continuous id, `sitl/NAME-v1`, and a discrete one, `sitl/NAMEDiscrete-v1`. The whole",
         "autopilot is in the loop. [Environments](../environments.md) explains what they have in common.",
-        "*Trained policy* is the success rate of the [baseline](../baselines.md) of the continuous id in 200 episodes.",
+        "*Trained policy* is the success rate of the [baseline](../baselines.md) of the continuous id in 200 episodes",
+        "of v0.",
+        "[Rewards](../rewards.md) says how v1 differs from v0, and measures both.",
     ]
     for robot in ("Copter", "Rover"):
         rows += [
@@ -228,21 +278,21 @@ def index() -> str:
             "|---|---|---:|---:|---:|",
         ]
         for name in (name for name in TITLES if name.startswith(robot)):
-            spec = gym.spec(f"sitl/{name}-v0")
+            spec = gym.spec(f"sitl/{name}-v1")
             env: Any = gym.make(spec)
             seconds = env.unwrapped.step_time * (spec.max_episode_steps or math.nan)
             step = number(env.unwrapped.step_time)
             found = dict(baselines_of(name)).get(spelling(name))
             solved = f"{100 * found['solved'] / found['episodes']:.1f} %" if found else "none"
             link = f"[{TITLES[name][0]}]({name}.md)"
-            rows.append(f"| {link} | `sitl/{name}-v0` | {step} s | {number(seconds)} s | {solved} |")
+            rows.append(f"| {link} | `sitl/{name}-v1` | {step} s | {number(seconds)} s | {solved} |")
             env.close()
     return "\n".join(rows) + "\n"
 
 
 def main() -> None:
     """Write all of them."""
-    known = {name.removeprefix("sitl/").removesuffix("-v0") for name in sitl.envs.NEW if "Discrete" not in name}
+    known = {name.removeprefix("sitl/").removesuffix("-v1") for name in sitl.envs.NEW if "Discrete" not in name}
     if known != set(TITLES):
         raise SystemExit(
             f"TITLES in {Path(__file__).name}: environments without one: {sorted(known - set(TITLES))}; "

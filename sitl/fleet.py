@@ -17,7 +17,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from numbers import Real
-from typing import Any, NamedTuple, Unpack
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from .bridge.links import LinkFaults
 from .bridge.links.inprocess import InProcessLink
 from .bridge.services.faults import FaultService
 from .bridge.wire import fleet as wire
+from .bridge.wire import worlds as wire_worlds
 from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core import rng
@@ -35,7 +36,10 @@ from .core.compile import Progress
 from .core.kernels import jit_disabled
 from .errors import OptionError
 from .move import Move
+from .physics.native.ranging import Ranging
+from .plants.lidar import show_world
 from .plants.local import LocalPlant
+from .plants.surroundings import Surroundings
 from .scenario import Options, Scenario
 from .simulation import Simulation, Snapshot
 from .vehicle.core_entry import Core, bind_fleet_unit, unit_address
@@ -43,10 +47,16 @@ from .vehicle.faults import Failure
 from .vehicle.kind import load
 from .vehicle.move import DONE, IN_SOLID, MoveOrder
 from .vehicles import Airframe
+from .worlds import World
 
 Array = np.ndarray[Any, Any]
 set_goals, any_waits = Kernel(wire.set_goals), Kernel(wire.any_waits)
 run_fleet = Kernel(wire.run_fleet, lets_others_run=True)
+run_in_worlds = Kernel(wire_worlds.run_in_worlds, lets_others_run=True)
+_WORLDS = 256
+"""Worlds whose surroundings are kept."""
+_WORLD_PART = Ranging.dtype.fields["movers"][1]  # type: ignore[index]
+"""So many bytes of a ``Ranging``, the first ones, say the world."""
 _HELD = 8
 """Snapshots whose state is held ready, so that vehicles get it again by a copy."""
 
@@ -60,6 +70,83 @@ class _Held(NamedTuple):
     state: Snapshot
     events_seen: int
     shell_us: int
+
+
+class _Worlds:
+    """Worlds of the vehicles of a fleet, once they are not all in the scenario's.
+
+    Args:
+        fleet: whose vehicles are all in the scenario's world so far.
+    """
+
+    def __init__(self, fleet: Fleet) -> None:
+        shell, count, threads = fleet.shell, len(fleet), fleet.threads
+        plant = shell.plant
+        assert isinstance(plant, LocalPlant) and plant.surroundings is not None
+        self._shell = shell
+        self._known = {plant.surroundings.world.name: plant.surroundings}
+        self._parts: dict[str, tuple[World, Array]] = {}
+        """Name of a world -> that world, and the part of a ``Ranging`` that says it."""
+        self.of = [plant.surroundings] * count
+        """Where each vehicle is."""
+        self._rangings: Array = Ranging.fleet(count)
+        self.room = self._rangings.itemsize
+        for k, (address, keeper) in enumerate(fleet._rooms):
+            if address:
+                own = slice(count * k // threads, count * (k + 1) // threads)
+                _, memory, _ = cast(Any, keeper)
+                self._rangings[own] = memory[0]  # sensors and room of its thread
+        self.address: int = self._rangings.ctypes.data
+        """Of one ``Ranging`` for each vehicle."""
+        self._bytes = self._rangings.view("u1").reshape(count, -1)
+        self._has_solids = fleet.records["physics"]["obstacles"]["present"]
+
+    def ranging(self, row: int) -> int:
+        """Address of a vehicle's ``Ranging``."""
+        return self.address + self.room * row
+
+    def enter(self, row: int, world: World) -> None:
+        """Put a vehicle into a world."""
+        around = self.around(world)
+        if self.of[row] is not around:
+            self.of[row] = around
+            self._bytes[row, :_WORLD_PART] = self._part(around)
+
+    def _part(self, around: Surroundings) -> Array:
+        """The part of a ``Ranging`` that says what is around."""
+        found = self._parts.get(around.world.name)
+        if found is None or found[0] is not around.world:
+            if len(self._parts) >= _WORLDS:
+                del self._parts[next(iter(self._parts))]
+            one = Ranging.fleet(1)
+            show_world(Ranging.of(one, 0), around.world.geometry, around.floor)
+            found = self._parts[around.world.name] = around.world, one.view("u1")[:_WORLD_PART].copy()
+        return found[1]
+
+    def tell_solids(self, row: int) -> None:
+        """Tell a vehicle's record whether there are solids in its world."""
+        self._has_solids[row] = len(self.of[row].world.geometry) > 0
+
+    def around(self, world: World) -> Surroundings:
+        """What is around vehicles in a world; the last ones are kept."""
+        found = self._known.pop(world.name, None)
+        if found is None or found.world is not world:
+            found = Surroundings(world, None, self._shell.airframe)
+        self._known[world.name] = found  # the last one that was used
+        if len(self._known) > max(_WORLDS, 2 * len(self.of)):
+            del self._known[next(iter(self._known))]
+        return found
+
+    def let_in(self, row: int) -> None:
+        """Let the shell be where a vehicle is."""
+        if self._shell.world is not self.of[row].world:
+            self._shell.enter(self.of[row])
+
+    def let_in_named(self, name: str | None) -> None:
+        """Let the shell be in a world that vehicles have been in; of others, it says itself that it is not there."""
+        around = self._known.get(name or "")
+        if around is not None and self._shell.world is not around.world:
+            self._shell.enter(around)
 
 
 class Fleet:
@@ -109,6 +196,8 @@ class Fleet:
         self.observers: list[Callable[[], None]] = []
         """Called after each advance; they change nothing."""
         self._states: list[Snapshot] = []
+        self.holds = _HELD
+        """How many of the snapshots that ``put`` and ``move`` were given last are kept ready."""
         self._held: dict[int, _Held] = {}
         """Identity of a snapshot -> its state."""
         self._views: dict[int, Any] = {}
@@ -150,6 +239,10 @@ class Fleet:
             self._run_alone = run_fleet.bind(unit_address(unit, shell.kind), *numbers)
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
+        self._worlds: _Worlds | None = None
+        """None: all vehicles are in the scenario's world."""
+        self._slots_at, self._unit_at = slots, unit_address(unit, shell.kind)
+        self._run_unit = run
         self._orders: Array = MoveOrder.fleet(0)
         self._order_views: list[MoveOrder] = []
         self._move_all: Callable[..., None] | None = None
@@ -171,6 +264,55 @@ class Fleet:
         found: Array = self._before_boot_us + self._times
         return found
 
+    # ------------------------------------------------------------------ worlds
+
+    def enter(self, which: int | Iterable[int], world: World) -> None:
+        """Let vehicles be in another world from now on, each alone. Their states are not changed: ``put`` or ``move``
+        them next, since what they know of solids near them is of the world before.
+
+        Args:
+            which: a vehicle, or several.
+            world: whose start pose for this airframe has to be free.
+
+        Raises:
+            OptionError: the fleet is in no world, or the airframe cannot stand at the world's start.
+        """
+        rows = [which] if isinstance(which, int | np.integer) else list(which)
+        for row in rows:
+            self._check(row)
+        self._check_open()
+        if self._worlds is None:
+            if self.shell.world is None:
+                raise OptionError(f"world {world.name!r}: a fleet that was made without a world stays in none")
+            self._worlds = self._part_ways()
+        self._worlds.around(world)
+        for row in rows:
+            self._worlds.enter(int(row), world)
+
+    def world(self, index: int) -> World | None:
+        """The world that a vehicle is in; None: a plain without end."""
+        self._check(index)
+        return self.shell.world if self._worlds is None else self._worlds.of[index].world
+
+    def _part_ways(self) -> _Worlds:
+        """Let each vehicle measure by itself from now on."""
+        worlds, count, threads = _Worlds(self), len(self), self.threads
+        size, at = self.records.itemsize, (self._slots_at, worlds.address, worlds.room)
+        parts = [count * k // threads for k in range(threads + 1)]
+        if jit_disabled():
+            run, slots = self._run_unit, self._slots_at
+            self._parts = [partial(run, k, k + 1, slots, worlds.ranging(k)) for k in range(count)]
+            return worlds
+        run_part, vehicles = run_in_worlds, self.records.ctypes.data
+        self._parts = [
+            cast(Any, partial(run_part.bind(self._unit_at, vehicles, size, count, first, last - first, *at), STAYS))
+            for first, last in pairwise(parts)
+            if first < last
+        ]
+        if threads == 1:
+            self._run_alone = run_part.bind(self._unit_at, vehicles, size, count, 0, count, *at)
+        return worlds
+
     # ------------------------------------------------------------------ states
 
     def put(self, which: int | Iterable[int], snapshot: Snapshot, seed: int | None = None) -> None:
@@ -187,13 +329,24 @@ class Fleet:
         rows = [which] if isinstance(which, int) else list(which)
         for row in rows:
             self._check(row)
+            self._check_world(row, snapshot)
+        self._put(rows, snapshot, seed)
+
+    def _check_world(self, row: int, snapshot: Snapshot) -> None:
+        """Refuse the snapshot of a vehicle that was in another world than this one is."""
+        if self._worlds is not None and snapshot.world != (here := self._worlds.of[row].world.name):
+            raise OptionError(f"the snapshot is of world {snapshot.world}, vehicle {row} is in world {here}")
+
+    def _put(self, rows: list[int], snapshot: Snapshot, seed: int | None = None) -> None:
         self._check_open()
         held = self._held.get(id(snapshot))
         if held is None:
+            if self._worlds is not None:
+                self._worlds.let_in_named(snapshot.world)
             self.shell.restore(snapshot)  # refuses what cannot be put here
             self._link.receive()
             held = self._take()
-            if len(self._held) >= _HELD:
+            if len(self._held) >= self.holds:
                 del self._held[next(iter(self._held))]
             self._held[id(snapshot)] = held = held._replace(of=snapshot)
         self._give(rows, held)
@@ -208,7 +361,8 @@ class Fleet:
         Args:
             which: a vehicle, or several, each once.
             moves: where to: one for all, or one for each.
-            snapshot: they are given its state first, as by ``put``; None: from where they are.
+            snapshot: they are given its state first, as by ``put``, but it may be of another world that the fleet has
+                been in; None: from where they are.
 
         Raises:
             OptionError: a move that cannot be made (a number out of its limits, a place in a solid, figures with which
@@ -226,14 +380,14 @@ class Fleet:
         kept = [self._state_of(row) for row in rows]
         try:
             if snapshot is not None:
-                self.put(rows, snapshot)
-            self._obey(rows, each)
+                self._put(rows, snapshot)
+            self._obey(rows, each, None if snapshot is None else snapshot.world)
         except OptionError:
             for row, held in zip(rows, kept):
                 self._give([row], held)
             raise
 
-    def _obey(self, rows: list[int], moves: list[Move]) -> None:
+    def _obey(self, rows: list[int], moves: list[Move], came_from: str | None) -> None:
         kind = self.kind
         if kind.move is None:
             raise OptionError(f"vehicles of kind {kind.name} cannot be moved: the kind has no unit for it")
@@ -248,12 +402,26 @@ class Fleet:
             move.write(order, int(row), v, kind)
             for name, value in move.figures.items():
                 self._figures[name][row] = value
+            order.other_world = False
             if move.seed is not None:
                 rng.seed(v.rng, move.seed)
-        self._move_all(0, len(rows), self._orders.ctypes.data, self._rooms[0][0])
+        if self._worlds is None:
+            self._move_all(0, len(rows), self._orders.ctypes.data, self._rooms[0][0])
+        else:
+            self._move_each(self._worlds, orders, rows, came_from)
         for order, row, move in zip(orders, rows, moves):
             if order.result != DONE:
                 raise OptionError(self._refusal(row, move, order.result))
+
+    def _move_each(self, worlds: _Worlds, orders: list[MoveOrder], rows: list[int], came_from: str | None) -> None:
+        """Obey orders, each in its vehicle's world; ``came_from``: the world that they come from, None: the same."""
+        assert self._move_all is not None
+        size = self._orders.itemsize
+        for k, (order, row) in enumerate(zip(orders, rows)):
+            world = worlds.of[row].world
+            order.other_world = came_from is not None and came_from != world.name
+            worlds.tell_solids(row)
+            self._move_all(0, 1, self._orders.ctypes.data + k * size, worlds.ranging(row))
 
     def _refusal(self, row: int, move: Move, result: int) -> str:
         v, name = self.view(row), self.scenario.airframe.name
@@ -261,7 +429,7 @@ class Fleet:
             north, east, down = v.physics.body.pos
             return (
                 f"vehicle {row} cannot be moved: at north {north:g}, east {east:g} m, {-down:g} m high, {name} would "
-                f"be in a solid of world {self.scenario.load_world().name!r}"  # type: ignore[union-attr]
+                f"be in a solid of world {self.world(row).name!r}"  # type: ignore[union-attr]
             )
         return (
             f"vehicle {row} cannot be moved: {name} does not hover with figures {dict(move.figures)}, wind {move.wind}"
@@ -273,11 +441,13 @@ class Fleet:
         held = self._states[index]
         port = ChannelState(0, self._ports_u1[index, :STATE].tobytes(), held.bridge.channels[0].ways)
         bridge = held.bridge._replace(channels=(port,))
-        return replace(held, record=self._records_u1[index].tobytes(), bridge=bridge)
+        world = held.world if self._worlds is None else self._worlds.of[index].world.name
+        return replace(held, record=self._records_u1[index].tobytes(), bridge=bridge, world=world)
 
     def simulation(self, index: int) -> Simulation:
         """A simulation of its own in the state of a vehicle: a copy, which flies on without the fleet."""
-        made = Simulation(self.scenario)
+        world = None if self._worlds is None else self._worlds.of[index].world
+        made = Simulation(self.scenario if world is None else replace(self.scenario, world=world, start=None))
         made.restore(self.snapshot(index))
         return made
 
@@ -369,6 +539,8 @@ class Fleet:
             self._check(index)
         self._check_open()
         for index in rows:
+            if self._worlds is not None:
+                self._worlds.let_in(index)
             self.shell.restore(self.snapshot(index))
             self.shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].tobytes()
             yield int(index)
@@ -450,7 +622,7 @@ class Fleet:
     def _run_parts(self, step_us: int) -> bool:
         """Advance all vehicles by a time, or as their slots say (STAYS); whether any needs the shell."""
         if step_us != STAYS:
-            self._set_goals(step_us)
+            self._set_goals(step_us)  # the parts go as the slots say
         if self._pool is None:
             for run in self._parts:
                 run()
@@ -464,6 +636,8 @@ class Fleet:
     def _serve(self, index: int, left_us: int, needs_shell: int, data: bytes = b"") -> None:
         """Let the shell act on ``data`` and on what the core left to it, and advance the vehicle by ``left_us``."""
         shell = self.shell
+        if self._worlds is not None:
+            self._worlds.let_in(index)
         shell.take_up(self._states[index], self._records_u1[index].data)
         shell.bridge.channels[0].port._bytes[:] = self._ports_u1[index].data
         self._link.send(data)

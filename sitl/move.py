@@ -13,6 +13,7 @@ from .core.vectors import Vec2, Vec3
 from .errors import OptionError, did_you_mean
 from .vehicle.kind import Kind
 from .vehicle.move import MoveOrder
+from .vehicle.walks import walk
 from .vehicles import Airframe
 from .vehicles.figures.figure import Figure
 
@@ -26,6 +27,7 @@ _FARTHEST = 100_000.0
 _HIGHEST = 10_000.0
 _FASTEST = 100.0
 _MISSION_RUNS = 1
+_MOST_SIGMA = 10.0
 _known: dict[type[Airframe], dict[str, Figure]] = {}
 
 
@@ -44,6 +46,8 @@ class Move:
         wind: speed [m/s], where it comes from [deg], turbulence [m/s].
         figures: of the airframe, that are numbers: name -> value.
         seed: of the noise of all sensors from now on.
+        walks: slow error of the receiver north and east, in standard deviations, before the heading is changed: as if
+            it had walked there, so that the estimate has it, too.
     """
 
     north: float | None = None
@@ -54,6 +58,7 @@ class Move:
     wind: tuple[float, float, float] | None = None
     figures: Mapping[str, float] = field(default_factory=dict)
     seed: int | None = None
+    walks: tuple[float, float] | None = None
 
     def check(self, airframe: Airframe) -> None:
         """Look at all numbers.
@@ -71,6 +76,8 @@ class Move:
             _number(f"velocity {name}", value, -_FASTEST, _FASTEST, "m/s")
         for figure, value in zip(WIND, _three("wind", self.wind)):
             _number(figure.name, value, figure.low, figure.high, figure.unit)
+        for name, value in zip(("north", "east"), _some("walks", self.walks, 2)):
+            _number(f"walks {name}", value, -_MOST_SIGMA, _MOST_SIGMA, "standard deviations")
         if self.figures:
             known = _numbers(type(airframe))
             for name, value in self.figures.items():
@@ -96,13 +103,15 @@ class Move:
         if self.height is not None and not flies:
             raise OptionError(f"height = {self.height!r}: vehicle {vehicle} is not in the air")
         body = v.physics.body
+        here = body.pos
         order.vehicle = vehicle
-        order.says_place = self.north is not None or self.east is not None
+        order.says_place = self.north is not None or self.east is not None or self.walks is not None
         if order.says_place:
-            here = body.pos
             order.place = Vec2(here.x if self.north is None else self.north, here.y if self.east is None else self.east)
         order.says_height = self.height is not None
         order.height = self.height or 0.0
+        if self.walks is not None:
+            walk(v, self.walks)
         order.says_heading = self.heading is not None
         order.heading = self.heading or 0.0
         order.says_velocity = self.velocity is not None
@@ -144,12 +153,16 @@ def _number(name: str, value: float | None, low: float, high: float, unit: str) 
 
 
 def _three(name: str, value: Any) -> Any:
+    return _some(name, value, 3)
+
+
+def _some(name: str, value: Any, count: int) -> Any:
     if value is None:
         return ()
     try:
         found = tuple(value)
     except TypeError:
         found = ()
-    if len(found) != 3:
-        raise OptionError(f"{name} = {value!r}; three numbers are needed")
+    if len(found) != count:
+        raise OptionError(f"{name} = {value!r}; {'three' if count == 3 else 'two'} numbers are needed")
     return found

@@ -31,6 +31,7 @@ from .physics.carried import Carried
 from .physics.engines import NATIVE
 from .plants.local import LocalPlant
 from .plants.plant import PhysicsLostError, Plant, SimulatedVehicle, is_remote, remote
+from .plants.surroundings import Surroundings
 from .scenario import Options, Scenario
 from .vehicle import sim_parameters
 from .vehicle.core_entry import Core, load_core
@@ -412,6 +413,13 @@ class Simulation:
             self._record[:] = kept  # all of it or nothing
             raise
         self._resume(snapshot)
+
+    def enter(self, around: Surroundings) -> None:
+        """Be in another world from now on; a vehicle on native physics in a world. Its record is not changed:
+        ``restore`` or ``take_up`` follows."""
+        assert isinstance(self.plant, LocalPlant)
+        self.plant.enter(around)
+        self.world, self.home = around.world, self.plant.home
 
     def take_up(self, state: Snapshot, record: memoryview) -> None:
         """``restore`` of a ``state`` and a record, both of a simulation of this scenario on native physics: they are

@@ -19,9 +19,11 @@ from sitl.bridge.links import InProcessLink
 from sitl.client import Client
 from sitl.errors import OptionError
 from sitl.fleet import Fleet
+from sitl.move import Move
 from sitl.simulation import Simulation, Snapshot
 from sitl.vehicle.core_entry import Core, load_core
 from sitl.vehicle.kinds import KINDS
+from sitl.worlds import load as load_world
 
 VELOCITY_ONLY = 0x5C7
 FRAMES = {"copter": "erle_copter", "rover": "erle_rover"}
@@ -277,3 +279,46 @@ def test_memory_of_a_vehicle() -> None:
     fleet = Fleet("erle_copter", 1)
     assert fleet.records.itemsize + fleet.ports.itemsize < 72_000
     assert np.all(fleet.time_us == 0)
+
+
+def test_vehicles_of_a_fleet_are_in_different_worlds() -> None:
+    """Each flies as in a fleet that is in its world alone."""
+    first, second = (load_world(name) for name in ("rooms:seed=1", "rooms:seed=2"))
+    core, still = core_of("copter"), Move(seed=3)
+    both, alone = Fleet("erle_copter", 3, core=core, world=first), Fleet("erle_copter", 1, core=core, world=second)
+    start, other = both.snapshot(0), alone.snapshot(0)
+    both.enter(1, second)
+    assert both.world(0) is first and both.world(1) is second
+    with pytest.raises(OptionError, match=f"snapshot is of world {first.name}, vehicle 1 is in world {second.name}"):
+        both.put(1, start)
+    both.move([0, 1], [still, still], start)
+    alone.move(0, still, other)
+    for fleet in (both, alone):
+        fleet.advance(1.0)
+    assert both.records[1]["sensors"] == alone.records[0]["sensors"]
+    assert both.records[0]["sensors"] != both.records[1]["sensors"]
+    kept = both.snapshot(1)
+    assert kept.world == second.name and both.simulation(1).world == second
+    both.put(1, kept)
+
+
+def test_a_fleet_without_a_world_stays_in_none() -> None:
+    with pytest.raises(OptionError, match="made without a world stays in none"):
+        Fleet("erle_copter", 1, core=core_of("copter")).enter(0, load_world("open"))
+
+
+def test_the_shell_serves_a_vehicle_in_its_world() -> None:
+    """A message that Python answers: the vehicle goes on among the solids of its own world."""
+    first, second = load_world("open"), load_world("rooms:seed=2")
+    fleet = Fleet("erle_copter", 2, core=core_of("copter"), world=first)
+    start = fleet.snapshot(0)
+    fleet.enter(1, second)
+    fleet.move(1, Move(seed=1), start)
+    quiet, asked = fleet.simulation(1), says("PARAM_REQUEST_READ", target_system=1, param_index=3)
+    fleet.send(1, asked), fleet.send(0, asked)
+    fleet.advance(0.5)
+    quiet.advance(0.5)
+    assert fleet.receive(1) and np.isinf(fleet.records[0]["sensors"]["lidar_ranges"][:5]).all()
+    assert np.array_equal(
+        fleet.records[1]["sensors"]["lidar_ranges"], quiet.fleet[0]["sensors"]["lidar_ranges"], equal_nan=True
+    )

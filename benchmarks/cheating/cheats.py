@@ -72,6 +72,11 @@ class Stage:
         return found.act
 
 
+def options_of(preset: str) -> dict[str, Any]:
+    """Options of the environment that the trained policy of a preset was trained with: how it observes."""
+    return dict(learnt.load(baselines.file(baselines.of_preset(preset))).config.env_options)
+
+
 def _constant(velocity: tuple[float, ...]) -> Callable[[Stage], Policy]:
     def begin(stage: Stage) -> Policy:
         actions = stage.velocities(np.tile(velocity, (stage.count, 1)))
@@ -147,7 +152,7 @@ def cheats_of(stage: Stage) -> dict[str, Callable[[Stage], Policy]]:
     if stage.task.flies:
         found["sink and stay"] = _constant((0.0, 0.0, -1.0, 0.0))
     space = stage.env.single_action_space
-    corners = range(space.n) if stage.is_discrete else product((-1.0, 1.0), repeat=space.shape[0])
+    corners: Any = range(space.n) if stage.is_discrete else product((-1.0, 1.0), repeat=space.shape[0])
     for corner in corners:
         name = f"always {corner}" if stage.is_discrete else "always " + "".join("-+"[c > 0] for c in corner)
         found[name] = partial(_always, np.asarray(corner, space.dtype))

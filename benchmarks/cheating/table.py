@@ -11,9 +11,9 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from sitl.envs.ids import NEW
+from sitl.envs.ids import FIRST, NEW
 
-from .cheats import WRONG, Policy, Stage, baseline, cheats_of, nothing
+from .cheats import WRONG, Policy, Stage, baseline, cheats_of, nothing, options_of
 
 SEED = 1000
 HALF = 0.5
@@ -37,20 +37,26 @@ class Played(NamedTuple):
         """Mean return."""
         return float(self.returns.mean())
 
+    def failed(self) -> Played:
+        """Those of the episodes that were no success; all, if there are none."""
+        rows = ~self.is_success if not self.is_success.all() else self.early | True
+        return Played(self.returns[rows], self.is_success[rows], self.early[rows], self.steps[rows])
+
 
 def play(name: str, begin: Callable[[Stage], Policy], episodes: int, seed: int = SEED, **options: Any) -> Played:
     """Play an id, episode k with the seed ``seed`` + k.
 
     Args:
-        name: of ``NEW``.
+        name: of ``NEW`` or ``FIRST``.
         begin: makes the policy.
         episodes: how many.
         seed: of the first.
         options: of the environment.
     """
-    env: Any = gym.make_vec(name, num_envs=episodes, vectorization_mode="vector_entry_point", **options)
+    preset = (NEW | FIRST)[name].preset.removesuffix("-v1")
+    given = {**options_of(preset), **options}
+    env: Any = gym.make_vec(name, num_envs=episodes, vectorization_mode="vector_entry_point", **given)
     try:
-        preset = NEW[name].preset.removesuffix("-v1") if name in NEW else name
         stage = Stage(env, preset)
         seen, _ = env.reset(seed=seed)
         policy = begin(stage)
@@ -125,7 +131,7 @@ def row(name: str, episodes: int) -> Row:
     env.close()
     played = {cheat: play(name, begin, episodes) for cheat, begin in cheats.items()}
     if not SEEN.intersection(cls.__name__ for cls in type(task).__mro__):
-        played[HIDE] = play(name, baseline, episodes, faults=WRONG)
+        played[HIDE] = play(name, baseline, episodes, faults=WRONG, sensors="gps").failed()
     return Row(name, play(name, baseline, episodes), play(name, nothing, episodes), played)
 
 

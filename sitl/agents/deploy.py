@@ -16,6 +16,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from sitl.core.sums import lengths
+from sitl.envs.judge import ESTIMATE
 from sitl.envs.mavlink.guard import Deed, Guard
 from sitl.envs.rewards import Floats
 from sitl.envs.targets.landing import Land
@@ -67,15 +68,17 @@ class Deployed:
     """Wall time of the policy for each step [s]."""
     periods: list[float] = field(default_factory=list)
     """Time of the vehicle from step to step [s]."""
+    judge: str = ESTIMATE
+    """By what success was judged (``sitl.envs.judge``): nobody knows where a vehicle at a connection really is."""
 
     def sentences(self, step_time: float) -> list[str]:
         """The result in lines; ``step_time``: what the policy was learnt with [s]."""
-        lines = []
+        lines, judged = [], " by its own estimate" if self.judge == ESTIMATE else ""
         for k, flown in enumerate(self.episodes):
             off = "" if math.isnan(flown.off_path) else f", {flown.off_path:.2f} m off the straight way"
             lines.append(
                 f"episode {k}: {flown.steps} steps, {flown.seconds:.1f} s, reward {flown.reward:.1f}, "
-                f"{'solved' if flown.solved else 'not solved'}{off}"
+                f"{'solved' if flown.solved else 'not solved'}{judged}{off}"
             )
         if self.periods:
             median, slow = np.percentile(self.periods, (50, 95))
@@ -179,6 +182,7 @@ def fly(env: Any, policy: Policy, seed: int, out: Deployed, clock: Callable[[], 
     """
     observation, info = env.reset(seed=seed)
     policy.begin(seed)
+    out.judge = environments.judged_by(env)
     robot: Any = env.unwrapped.robot
     places = _places(env.unwrapped.task)
     steps, total, ended, before = 0, 0.0, False, float(robot.time[0])

@@ -92,6 +92,11 @@ def seed_of(seed: int, episode: int) -> int:
     return int(np.random.SeedSequence([seed, episode]).generate_state(1)[0])
 
 
+def judged_by(env: gym.Env[Any, Any] | gym.vector.VectorEnv[Any, Any, Any]) -> str:
+    """By what an environment judges success: "truth", "estimate", or "" for one that does not say."""
+    return str(getattr(getattr(env.unwrapped, "session", None), "judged_by", ""))
+
+
 def step_time(env: gym.Env[Any, Any] | gym.vector.VectorEnv[Any, Any, Any]) -> float:
     """Simulated time of a step [s]; nan for environments that do not say."""
     return float(getattr(env.unwrapped, "step_time", math.nan))

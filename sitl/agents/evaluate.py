@@ -13,6 +13,7 @@ import gymnasium as gym
 import numpy as np
 
 from sitl.core.elementary import atan2
+from sitl.envs.judge import ESTIMATE
 from sitl.errors import SitlError
 
 from . import algorithms, environments
@@ -75,6 +76,9 @@ class Played:
     simulated_s: float
     laps: float
     """Net turns around the centre of the world; nan in worlds without laps."""
+    judge: str = ""
+    """By what success was judged: "truth", where the robot really was; "estimate", where it believed to be; "":
+    unknown, of an environment of another kind."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +124,8 @@ class Evaluation:
         if ended:
             parts.append(f"{ended} terminated otherwise")
         if any(played.reached for played in self.episodes):
-            parts.append(f"success in {sum(played.reached for played in self.episodes)}")
+            judged = " by the estimate" if any(played.judge == ESTIMATE for played in self.episodes) else ""
+            parts.append(f"success{judged} in {sum(played.reached for played in self.episodes)}")
         if not math.isnan(self.mean_simulated_s):
             parts.append(f"{self.mean_simulated_s:.0f} simulated s per episode")
         return ", ".join(parts)
@@ -199,6 +204,7 @@ def play(env: gym.Env[Any, Any], policy: Policy, seed: int, options: Mapping[str
         reached=bool(info.get("is_success", info.get("reached", False))),
         simulated_s=steps * environments.step_time(env),
         laps=math.nan if counter is None else counter.laps,
+        judge=environments.judged_by(env),
     )
 
 

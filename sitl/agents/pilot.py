@@ -25,6 +25,8 @@ from sitl.envs.targets.hold import Hold
 from sitl.envs.targets.landing import Land
 from sitl.envs.targets.moving import AHEAD_S, MovingTask
 from sitl.envs.targets.parking import Park
+from sitl.envs.worlds import PerWorld
+from sitl.worlds import World
 
 from .errors import AgentError
 from .expert import Expert, Shown, named
@@ -72,7 +74,7 @@ class Pilot(Expert):
         session = navigate.session
         self._robot: Any = navigate.robot
         self._turns: dict[int, Any] | None = None
-        self._plans: Ways | None = None
+        self._plans_in: PerWorld[Ways] | None = None
         self._way: Floats = np.zeros((0, 2))
         """x, y [m] of the way that was planned, for the place of number ``_of``; ``_at`` of it he is, ``_since`` so
         many steps it has been there."""
@@ -90,8 +92,16 @@ class Pilot(Expert):
             )
         self._shown = Shown(session.action)
         self._flies = bool(getattr(self._task, "flies", False))
-        if self._robot.world.solids or not self._flies:
-            self._plans = Ways(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
+        if self._robot.world.solids or session.varies or not self._flies:
+            self._plans_in = PerWorld(self._planned)
+
+    def _planned(self, world: World) -> Ways:
+        return Ways(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
+
+    @property
+    def _plans(self) -> Ways | None:
+        """Ways in the world of the present episode."""
+        return None if self._plans_in is None else self._plans_in(self._robot.world)
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""

@@ -8,6 +8,7 @@ one part after another: which worker that is, and how many there are, changes no
 from __future__ import annotations
 
 import pickle
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -114,7 +115,7 @@ def rollout(
 def _config(policy: Named, env: str | None, max_steps: int | None, options: Mapping[str, Any]) -> RunConfig:
     if isinstance(policy, Path):
         run = learnt.load(policy, code_in_files.EVERY).config
-        same = env in (None, run.env)
+        same = env is None or _unversioned(env) == _unversioned(run.env)
         refused = code_in_files.refusal(policy, run.code_but(options)) if same else None
         if refused is not None:
             raise AgentError(refused)
@@ -126,6 +127,11 @@ def _config(policy: Named, env: str | None, max_steps: int | None, options: Mapp
     if env is None:
         raise AgentError(f"policy {policy!r} has no environment of its own: give ENV, the id of one")
     return RunConfig(env, "none", options, max_steps=max_steps or MAX_STEPS)
+
+
+def _unversioned(env: str) -> str:
+    """An id without its version: versions have the same observations and actions."""
+    return re.sub(r"-v\d+$", "", env)
 
 
 def _check_sendable(policy: Named) -> None:
@@ -223,9 +229,10 @@ class _Play:
 
     def results(self) -> list[Played]:
         """Results in the order of episodes."""
+        judge = environments.judged_by(self._env)
         columns = (self._reward, self._steps, self._terminated, self._crashed, self._reached)
         return [
-            Played(reward, steps, terminated, crashed, reached, steps * self._step_time, float("nan"))
+            Played(reward, steps, terminated, crashed, reached, steps * self._step_time, float("nan"), judge)
             for reward, steps, terminated, crashed, reached in zip(*(column.tolist() for column in columns))
         ]
 

@@ -16,6 +16,7 @@ from ..plants.plant import FORMS
 from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, checked_home
 from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import DEFAULT, KINDS
+from ..vehicles.receivers import AS_IT_IS, SETS, equipped
 from ..worlds.heights import FORMS as FORMS_OF_HEIGHTS
 from .fault_options import add_fail_option, vehicle_faults, watch_faults
 from .progress import CompileProgress
@@ -84,6 +85,12 @@ def seconds(text: str) -> float:
 def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe the vehicle and its start."""
     parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (sitl help vehicles)")
+    parser.add_argument(
+        "--sensors",
+        choices=SETS,
+        default=AS_IT_IS,
+        help="what tells the vehicle where it is (default gps: as the airframe has it)",
+    )
     parser._negative_number_matcher = re.compile(r"-[\d.]")  # a value such as -35.3,149.1,584,0 is no option
     parser.add_argument(
         "--home",
@@ -132,6 +139,7 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
     vehicle = getattr(options, "vehicle", DEFAULT)
     airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
     check_kind(options.frame, airframe, vehicle)
+    airframe = equipped(airframe, getattr(options, "sensors", AS_IT_IS))
     if isinstance(params, files.FileValues) and not params.is_told:
         params.is_told = True
         for text in files.notes(KINDS[airframe.kind].firmware.table, params):

@@ -10,6 +10,8 @@ permission.
 
 from __future__ import annotations
 
+import ast
+import json
 import os
 import re
 import shlex
@@ -28,6 +30,7 @@ _ACTS = ("env", "frame", "autopilot", "autopilot_path", "reset", "guard")
 MADE = ("forest", "rooms", "labyrinth", "track", "slalom", "car_park")
 """Worlds that are made from numbers (``sitl.worlds.generated``), which a text may have behind a colon."""
 _NUMBER = r"[+-]?[0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?"
+_SEEDS = re.compile(r"(?<=[:,])(seed=[0-9]+)\.\.[0-9]+(?=,|$)")
 _SETTINGS = re.compile(rf"(\w+={_NUMBER}(,\w+={_NUMBER})*)?")
 
 
@@ -40,6 +43,17 @@ def is_name(value: Any) -> bool:
     if not colon:
         return bool(re.fullmatch(r"[\w -]*", value))
     return kind.lower().replace("-", "_") in MADE and bool(_SETTINGS.fullmatch(settings))
+
+
+def are_worlds(value: Any) -> bool:
+    """Whether a value is such a name, or many: a range of seeds ("rooms:seed=1..100"), or a list of both."""
+    if isinstance(value, list | tuple):
+        return all(is_name(one) or _is_range(one) for one in value)
+    return is_name(value) or _is_range(value)
+
+
+def _is_range(value: Any) -> bool:
+    return isinstance(value, str) and is_name(_SEEDS.sub(r"\1", value, count=1))
 
 
 def _are_processors(value: Any) -> bool:
@@ -68,11 +82,11 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "render_mode": _is_one_of(None, "rgb_array"),
     "reset": _is_one_of("reboot"),
     "threads": _are_processors,
-    "world": lambda value: value is None or is_name(value),
+    "world": lambda value: value is None or are_worlds(value),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "faults", "home", "info", "latency", "max_episode_steps", "observation",
-         "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
+        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps",
+         "observation", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
          "wait"), _is_free,
     ),
 }  # fmt: skip
@@ -161,5 +175,9 @@ def refusal(file: Any, named: Iterable[str], say: str = "--option {name}={value}
 
 def _said(name: str, say: str) -> str:
     option, _, value = name.partition(" = ")
-    plain = value[1:-1] if value[:1] in "'\"" else {"None": "null", "True": "true", "False": "false"}.get(value, value)
+    try:
+        found = ast.literal_eval(value)
+        plain = found if isinstance(found, str) else json.dumps(found)  # as the command line takes it
+    except (ValueError, TypeError, SyntaxError):
+        plain = value
     return say.format(name=option, value=shlex.quote(plain))

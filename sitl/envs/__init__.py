@@ -24,7 +24,7 @@ def register() -> None:
     """Register every environment with Gymnasium; importing the package does it."""
     if "sitl/Navigate-v0" in gym.registry:
         return
-    for name, options in (("sitl/Navigate-v0", {"judge": "estimate"}), ("sitl/Navigate-v1", {})):
+    for name, options in (("sitl/Navigate-v0", {"judge": "estimate", "boots": 1}), ("sitl/Navigate-v1", {})):
         gym.register(
             name,
             entry_point="sitl.envs.navigate:Navigate",

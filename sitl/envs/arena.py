@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sitl.worlds import World
+
 from .actions import POSITION, Continuous, Normalised, Setpoint
 from .options import EnvOptionError
 from .robots.robot import Floats, Robot
@@ -42,15 +44,16 @@ class Arena(NamedTuple):
         return Arena((x - by, y - by, z - by), (a + by, b + by, c + by))
 
 
-def arena_of(robot: Robot, reach: float = REACH) -> Arena:
+def arena_of(robot: Robot, reach: float = REACH, world: World | None = None) -> Arena:
     """The world's solids and markings, and ``reach`` round the robot's start [m]; a robot that does not fly stays at
-    the height of its start."""
+    the height of its start. ``world``: None: that of the first robot."""
+    world = world or robot.world
     if not 0.0 < reach < math.inf:
         raise EnvOptionError(f"arena: reach = {reach!r}; it must be above 0 m")
-    x, y, z = robot.world.start(robot.name).position
-    x0, y0, x1, y1 = robot.world.bounds
+    x, y, z = world.start(robot.name).position
+    x0, y0, x1, y1 = world.bounds
     low, high = (min(x0, x - reach), min(y0, y - reach)), (max(x1, x + reach), max(y1, y + reach))
-    floor = robot.world.floor_z
+    floor = world.floor_z
     heights = (floor + LOWEST, floor + HIGHEST) if flies(robot) else (z, z)
     return Arena((*low, heights[0]), (*high, heights[1]))
 

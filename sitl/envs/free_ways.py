@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,9 +12,11 @@ import numpy.typing as npt
 from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import IntLine, IntTable, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
+from sitl.worlds import World
 
-from .robots.robot import Floats, Robot
+from .robots.robot import Floats, Robot, world_of
 from .starts import ReachableCells
+from .worlds import PerWorld
 
 CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
@@ -99,21 +102,20 @@ def march(free: IntTable, row: float, column: float, keys: Line, items: IntLine,
 
 
 @law
-def read_ways(fields: NarrowTable, columns: int, low: Line, cell: float, pose: Table, out: Line) -> None:
+def read_ways(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None:
     """Read the length of the way of each robot, between the middles of cells in proportion.
 
     Args:
-        fields: lengths [m] of each robot's ways, row after row of the grid, shape (count, rows * columns).
-        columns: of the grid.
-        low: x, y of the middle of its first cell [m], shape (2,).
-        cell: side of a cell [m].
+        fields: lengths [m] of each robot's ways, row after row of its grid, shape (count, rows * columns or more).
+        grids: of each robot, shape (count, 5): rows, columns, x, y of the middle of the first cell [m], side of a
+            cell [m].
         pose: x, y [m] and more, shape (count, 2 or more).
         out: [m], shape (count,).
     """
-    rows = fields.shape[1] // columns
     for k in range(out.shape[0]):
-        x = min(max((pose[k, 0] - low[0]) / cell, 0.0), rows - 1.0)
-        y = min(max((pose[k, 1] - low[1]) / cell, 0.0), columns - 1.0)
+        rows, columns, cell = int(grids[k, 0]), int(grids[k, 1]), grids[k, 4]
+        x = min(max((pose[k, 0] - grids[k, 2]) / cell, 0.0), rows - 1.0)
+        y = min(max((pose[k, 1] - grids[k, 3]) / cell, 0.0), columns - 1.0)
         i, j = min(int(x), rows - 2), min(int(y), columns - 2)
         u, v, at = x - i, y - j, i * columns + j
         below = (1.0 - v) * float(fields[k, at]) + v * float(fields[k, at + 1])
@@ -125,6 +127,21 @@ _march = Kernel(march)
 _read = Kernel(read_ways)
 
 
+class Ground(NamedTuple):
+    """A world's grid, seen from above."""
+
+    free: npt.NDArray[np.bool_]
+    """Where a way can lead, shape (rows, columns)."""
+    nearest: npt.NDArray[np.int32]
+    """Number of the nearest free cell of each cell."""
+    beside: Floats
+    """How far it is [cells]."""
+    low: Floats
+    """x, y of the middle of the first cell [m]."""
+    cell: float
+    """Side of a cell [m]."""
+
+
 class FreeWays:
     """Lengths of the shortest free ways of robots to their goals, seen from above.
 
@@ -132,48 +149,56 @@ class FreeWays:
     (``starts.ReachableCells``). Of places without that room the way begins at the nearest one with room.
 
     Args:
-        robot: robots whose world, start and volume are used.
+        robot: robots whose worlds, start and volume are used.
         crash_range: a reading below it is a crash [m].
     """
 
     def __init__(self, robot: Robot, crash_range: float = 0.0) -> None:
-        found = ReachableCells(robot, crash_range, CELLS)
-        self._cell = found.cell
-        self._low = found.low + 0.5 * found.cell
-        shape = found.shape
-        self._free = np.zeros(shape, np.int64)
-        self._free[found.cells[:, 0], found.cells[:, 1]] = 1
-        self._nearest, self._beside = _nearest(self._free)
-        size = 4 * self._free.size + 9
-        self._keys, self._items = np.zeros(size), np.zeros(size, np.int64)
-        self._field = np.zeros(shape)
-        self._fields = np.zeros((robot.count, self._free.size), np.float32)
+        self._robot, self._crash_range = robot, crash_range
+        self._in = PerWorld(self._ground)
+        size = self._in(robot.world).free.size
+        self._grids = np.zeros((robot.count, 5))
+        self._grids[:, :2], self._grids[:, 4] = 2.0, 1.0
+        self._fields = np.zeros((robot.count, size), np.float32)
         self._out = np.zeros(robot.count)
 
+    def _ground(self, world: World) -> Ground:
+        found = ReachableCells(self._robot, self._crash_range, CELLS, world)
+        free = np.zeros(found.shape, np.bool_)
+        free[found.cells[:, 0], found.cells[:, 1]] = True
+        return Ground(free, *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+
     def aim(self, index: int, x: float, y: float) -> None:
-        """Give a robot its goal, x, y in the world's frame [m]."""
-        rows, columns = self._free.shape
-        row, column = (np.array([x, y]) - self._low) / self._cell
+        """Give a robot its goal, x, y in the frame of its world [m]."""
+        ground = self._in(world_of(self._robot, index))
+        rows, columns = ground.free.shape
+        row, column = (np.array([x, y]) - ground.low) / ground.cell
         i, j = (int(np.clip(np.rint(at), 0, last - 1)) for at, last in ((row, rows), (column, columns)))
-        beside = float(self._beside[i, j])
+        beside = float(ground.beside[i, j])
         if beside > 0.0:
-            row, column = divmod(int(self._nearest[i, j]), columns)
-        _march(self._free, float(row), float(column), self._keys, self._items, self._field)
-        lengths = self._field.ravel()[self._nearest] + self._beside + beside
-        self._fields[index] = (self._cell * lengths).ravel()
+            row, column = divmod(int(ground.nearest[i, j]), columns)
+        size = ground.free.size
+        keys, items, field = np.empty(4 * size + 9), np.empty(4 * size + 9, np.int64), np.empty(ground.free.shape)
+        _march(ground.free.astype(np.int64), float(row), float(column), keys, items, field)
+        lengths = field.ravel()[ground.nearest] + ground.beside + beside
+        if size > self._fields.shape[1]:
+            more = np.zeros((len(self._fields), size - self._fields.shape[1]), np.float32)
+            self._fields = np.concatenate((self._fields, more), axis=1)
+        self._fields[index, :size] = (ground.cell * lengths).ravel()
+        self._grids[index] = rows, columns, *ground.low, ground.cell
 
     def lengths(self, pose: Floats) -> Floats:
         """Length of each robot's way from a pose (x, y, ...) [m], shape (count,); the array is used again."""
-        _read(self._fields, self._free.shape[1], self._low, self._cell, np.ascontiguousarray(pose), self._out)
+        _read(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
         return self._out
 
 
-def _nearest(free: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], Floats]:
+def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:
     """Number of the nearest free cell of each cell, and how far it is [cells]."""
     rows, columns = free.shape
     at = np.arange(free.size).reshape(free.shape)
-    nearest = np.where(free != 0, at, -1)
-    distance = np.where(free != 0, 0.0, np.inf)
+    nearest = np.where(free, at, -1)
+    distance = np.where(free, 0.0, np.inf)
     i, j = np.divmod(at, columns)
     changed = True
     while changed:
@@ -188,4 +213,4 @@ def _nearest(free: npt.NDArray[np.int64]) -> tuple[npt.NDArray[np.int64], Floats
             if better.any():
                 nearest[here][better], distance[here][better] = offered[better], far[better]
                 changed = True
-    return nearest, distance
+    return nearest.astype(np.int32), distance

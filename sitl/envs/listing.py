@@ -12,7 +12,7 @@ import gymnasium as gym
 from sitl.cli.output import add_json_option, print_json
 from sitl.errors import OptionError, did_you_mean
 
-from .ids import NEW, PAPER, TASKS, camel_case
+from .ids import FIRST, NEW, PAPER, TASKS, camel_case, task_of
 
 ANY = "sitl/Navigate-v1"
 _FEW = 20
@@ -46,6 +46,7 @@ def envs(options: argparse.Namespace) -> int:
             print(*(f"{name:{width}s}  {aim}" for name, aim in listed.items()), sep="\n")
             print("\nsitl envs ID tells what one observes and does")
         return 0
+    listed |= dict(_first())
     name = next((known for known in listed if options.id in (known, known.removeprefix("sitl/"))), None)
     if name is None:
         raise OptionError(
@@ -66,8 +67,18 @@ def ids() -> Iterator[tuple[str, str]]:
         world, _, robot = preset.partition("-")
         yield name, f"Of the paper: {robot.replace('-', ' ')} in the world {world}, by lidar. Discrete actions."
     for name, listed in NEW.items():
-        preset = listed.preset.removesuffix("discrete")
-        yield name, TASKS[preset].aim + (" Discrete actions." if preset != listed.preset else "")
+        yield name, _aim(listed.preset)
+
+
+def _first() -> Iterator[tuple[str, str]]:
+    """The same of first versions."""
+    yield ANY.replace("v1", "v0"), "Judged by the estimate: use v1."
+    for name, listed in FIRST.items():
+        yield name, f"{_aim(listed.preset)} First version, for what was published with it: use v1."
+
+
+def _aim(preset: str) -> str:
+    return TASKS[task_of(preset)].aim + (" Discrete actions." if "discrete" in preset else "")
 
 
 def description(name: str) -> dict[str, Any]:
@@ -78,7 +89,7 @@ def description(name: str) -> dict[str, Any]:
     moves = list(action.names) if hasattr(action, "names") else [action.setpoint.columns[c] for c in action.columns]
     row = {
         "robot": session.robot.name,
-        "world": session.robot.world.name,
+        "world": session.worlds.text,
         "task": type(session.task).__name__,
         "step_s": session.seconds,
         "max_episode_steps": made.spec.max_episode_steps,
@@ -112,11 +123,13 @@ def lines(row: dict[str, Any]) -> Iterator[str]:
     yield f"  action       {row['action_space']}, set-point {row['setpoint']}"
     for move in row["action"]:
         yield f"                 {move}"
-    preset = NEW[row["id"]].preset.removesuffix("discrete") if row["id"] in NEW else None
+    version = NEW | FIRST
+    preset = task_of(version[row["id"]].preset) if row["id"] in version else None
     if preset is not None:
         policy = preset + "-discrete" if "Discrete" in row["id"] else preset
-        yield f"\n  {f'sitl rollout {policy} --episodes 20':48s}  a trained policy that comes with the package"
-        yield f"  {f'sitl help {camel_case(preset)}':48s}  its page: reward, ends of an episode, figures"
+        command = f"sitl rollout {policy} {row['id']} --episodes 20"
+        yield f"\n  {command:72s}  a trained policy that comes with the package"
+        yield f"  {f'sitl help {camel_case(preset)}':72s}  its page: reward, ends of an episode, figures"
     else:
         yield ""
     yield f'  gymnasium.make("sitl.envs:{row["id"]}")'

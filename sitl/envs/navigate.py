@@ -20,6 +20,7 @@ from .rendering import RENDER_MODES, Renderer
 from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
 from .tasks import Task, reward_of_goals
+from .worlds import WorldOption
 
 
 class Navigate(gym.Env[Any, Any]):
@@ -31,8 +32,8 @@ class Navigate(gym.Env[Any, Any]):
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
             randomise, latency, faults, info, and options of the robot's class.
 
-    ``reset`` takes ``options={"pose": (x, y, yaw)}``: the start pose [m, rad]. ``info`` has "crashed", the task's
-    entries (``Task.info``), and those that the option ``info`` names.
+    ``reset`` takes ``options={"pose": (x, y, yaw)}``, the start pose [m, rad], and "world", the episode's world.
+    ``info`` has "crashed", the task's entries (``Task.info``), and those that the option ``info`` names.
 
     Raises:
         EnvOptionError: an option that cannot be used; the message says what is allowed.
@@ -70,7 +71,7 @@ class Navigate(gym.Env[Any, Any]):
 
     @property
     def world(self) -> World:
-        """The world."""
+        """The world of the present episode."""
         return self._session.robot.world
 
     @property
@@ -89,7 +90,7 @@ class Navigate(gym.Env[Any, Any]):
         return self._session.seconds
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """See ``gymnasium.Env.reset``; options: "pose", the start pose of this episode."""
+        """See ``gymnasium.Env.reset``; options: "pose" and "world" of this episode."""
         try:
             return self._reset(seed, options)
         except BaseException as error:
@@ -112,7 +113,18 @@ class Navigate(gym.Env[Any, Any]):
             self.watch(Directly(opened(self._session, self._title), self._session.seconds))
         if self._watcher is not None:
             self._watcher.started(0)
-        return self._observation(), {}
+        return self._observation(), {"world": self._session.world_names[0]} if self._session.varies else {}
+
+    def set_worlds(self, world: WorldOption) -> None:
+        """Draw the worlds of later episodes from others: a curriculum (docs/worlds.md). The present episode goes on.
+
+        Args:
+            world: as the option ``world``.
+
+        Raises:
+            EnvOptionError: no such world, or one that robot or task cannot be in; those before stay.
+        """
+        self._session.set_worlds(world)
 
     def _say_unreached(self) -> None:
         """Warn of a fault that no episode reaches; ``gymnasium.make`` keeps to itself which limit it was given."""
@@ -156,6 +168,8 @@ class Navigate(gym.Env[Any, Any]):
         else:
             rows = self._info().items()
             info = {name: value.item(0) if value.ndim == 1 else value[0].copy() for name, value in rows}
+        if session.varies:
+            info["world"] = session.world_names[0]
         truncated = self._over is not None and bool(self._over[0])
         if truncated:
             info["handed_over"] = session.robot.why_over()  # type: ignore[attr-defined]
@@ -206,7 +220,7 @@ class Navigate(gym.Env[Any, Any]):
         if self._renderer is None:
             gym.logger.warn(
                 "render() without a render mode: make the environment with "
-                f'gym.make("{self.spec.id if self.spec else "sitl/Navigate-v0"}", render_mode="rgb_array")'
+                f'gym.make("{self.spec.id if self.spec else "sitl/Navigate-v1"}", render_mode="rgb_array")'
             )
             return None
         return self._renderer.picture() if self.render_mode == "rgb_array" else self._renderer.show()

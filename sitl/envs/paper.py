@@ -44,6 +44,7 @@ def autopilot(robot: str, world: str) -> dict[str, Any]:
         "action": "discrete",
         "setpoint": "rc",
         "step_time": 0.1,
+        "boots": 1,  # as published
     }
 
 

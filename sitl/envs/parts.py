@@ -22,7 +22,7 @@ from .gathering import TRUE_REPORTS as TRUE_REPORTS_
 from .observations import Digits
 from .options import EnvOptionError, unknown
 from .pictures import PICTURES
-from .robots.robot import Floats, Robot
+from .robots.robot import Floats, Robot, floors_of
 from .senses import FAR, REPORTS, SENSES, TRUE, TRUE_REPORTS, ReportingRobot, SensingRobot
 
 Narrow = npt.NDArray[np.float32]
@@ -224,7 +224,7 @@ class Height:
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
         pose = self._robot.true_state() if self._is_true else self._robot.pose
-        out[:, 0] = pose[:, 2] - self._robot.world.floor_z
+        out[:, 0] = pose[:, 2] - floors_of(self._robot)
 
 
 class Readings:

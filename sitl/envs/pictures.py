@@ -27,7 +27,8 @@ from ..core.elementary import sincos, tan
 from .noise import standard_normal
 from .options import EnvOptionError
 from .past import Film, Past, Remembering
-from .robots.robot import Floats, Robot
+from .robots.robot import Floats, Robot, world_of
+from .worlds import PerWorld
 
 MOST_PIXELS = 1_000_000
 PLACE = 7
@@ -126,7 +127,7 @@ class Picture:
         discs = 0 if self._others is None else self._others().shape[1]
         self._past = Past(self.name, robot.count, PLACE + DISC * discs, seconds, self._rate, self._latency)
         """Where the camera was, and what moved about, at the ends of the last steps."""
-        self._photographer = Photographer(robot.world, self._optics)
+        self._photographers = PerWorld(Photographer(robot.world, self._optics).in_world)
         self._places = np.zeros((robot.count, PLACE))
 
     # ------------------------------------------------------------------ episodes
@@ -167,13 +168,22 @@ class Picture:
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         seen = self._past.seen()
-        out = self._take(np.ascontiguousarray(seen[:, :PLACE]), seen[:, PLACE:].reshape(len(seen), -1, DISC))
+        places, discs = np.ascontiguousarray(seen[:, :PLACE]), seen[:, PLACE:].reshape(len(seen), -1, DISC)
+        out = self._take_in_worlds(places, discs)
         if self._noise > 0.0:
             for i, rng in enumerate(self._past.generators()):
                 out[i] = self._spoilt(out[i] + self._noise * standard_normal(rng, out[i].shape, np.float32))
         return out
 
-    def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+    def _take_in_worlds(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+        """Pictures of all robots, each in its world."""
+        worlds = [world_of(self._robot, index) for index in range(len(places))]
+        if all(world is worlds[0] for world in worlds):
+            return self._take(self._photographers(worlds[0]), places, discs)
+        each = ((self._photographers(world), slice(k, k + 1)) for k, world in enumerate(worlds))
+        return np.concatenate([self._take(one, places[row], discs[row]) for one, row in each])
+
+    def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
         raise NotImplementedError
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
@@ -190,8 +200,8 @@ class Depth(Picture):
         """See ``Observation``."""
         return gym.spaces.Box(0.0, self._optics.reach, (self._optics.height, self._optics.width), np.float32)
 
-    def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
-        return self._photographer.depths(places, discs)
+    def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+        return photographer.depths(places, discs)
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
         return np.clip(noisy, 0.0, self._optics.reach)
@@ -212,8 +222,8 @@ class Camera(Picture):
         channels = 1 if self._grey else 3
         return gym.spaces.Box(0, 255, (self._optics.height, self._optics.width, channels), np.uint8)
 
-    def _take(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
-        colours = self._photographer.colours(places, discs)
+    def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+        colours = photographer.colours(places, discs)
         if not self._grey:
             return colours
         shares = np.array([77, 150, 29], np.uint32)  # of 256: luma of ITU-R BT.601

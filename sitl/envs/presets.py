@@ -75,7 +75,7 @@ def _copter(task: Task, parts: tuple[str, ...] = SEEN, **options: Any) -> dict[s
     return {
         "robot": "erle_copter", "world": "open", "take_off": 3.0, "step_time": 0.1, "task": task,
         "observation": list(parts), "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS,
-        "judge": ESTIMATE, **options,
+        "judge": ESTIMATE, "boots": 1, **options,
     }  # fmt: skip
 
 
@@ -83,7 +83,7 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
     return {
         "robot": "erle_rover", "world": "open", "step_time": 0.2, "task": task, "observation": list(parts),
         "action": "normalised", "setpoint": "velocity", "info": FIRST_DETAILS, "judge": ESTIMATE,
-        **options,
+        "boots": 1, **options,
     }  # fmt: skip
 
 
@@ -151,8 +151,16 @@ _FIRST = {**_CONTINUOUS, **{f"{preset}discrete": _discrete(preset) for preset in
 
 def _second(preset: str) -> Callable[[], dict[str, Any]]:
     """Options of the id "-v1": the same robot, world, observations and actions, judged by the truth."""
-    task = tasks_v1.MADE[task_of(preset)]
-    return lambda: {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS}
+    name = task_of(preset)
+    receiver = {"sensors": tasks_v1.RECEIVERS[name]} if name in tasks_v1.RECEIVERS else {}
+    task = tasks_v1.MADE[name]
+
+    def options() -> dict[str, Any]:
+        found = {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS, **receiver}
+        del found["boots"]  # as many as usual
+        return found
+
+    return options
 
 
 PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
@@ -164,12 +172,18 @@ PRESETS: dict[str, Callable[[], dict[str, Any]]] = {
 assert all(listed.preset in PRESETS for listed in (FIRST | NEW).values())
 
 
+_OTHERS = ("connection", "robot", "frame")
+"""Options with which a vehicle has receivers of its own."""
+
+
 def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Options of a preset, with those that are given in their place; a box that is made for one kind of set-point
     gives way to the usual one when another kind is asked for. A vehicle at a connection keeps its own wind."""
     options = {**PRESETS[preset](), **given}
     if options.get("connection", "inprocess") != "inprocess" and "randomise" not in given:
         options["randomise"] = None
+    if "sensors" not in given and any(given.get(name, "inprocess") != "inprocess" for name in _OTHERS):
+        options.pop("sensors", None)
     action = options.get("action")
     if isinstance(action, Normalised) and options.get("setpoint", action.setpoint.name) != action.setpoint.name:
         options["action"] = "normalised"

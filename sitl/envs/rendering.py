@@ -15,7 +15,7 @@ from gymnasium.error import DependencyNotInstalled
 
 from sitl.worlds import Marking, Solid
 
-from .robots.robot import Robot
+from .robots.robot import Robot, world_of
 from .targets.gates import Gates
 from .targets.places import PlacesTask
 from .tasks import ReachGoal, Task
@@ -86,15 +86,8 @@ class Renderer:
 
     def __init__(self, robot: Robot, task: Task, index: int = 0) -> None:
         self._robot, self._task, self._index = robot, task, index
-        x0, y0, x1, y1 = robot.world.bounds
-        if isinstance(task, PlacesTask):
-            low, high = task.arena.low, task.arena.high
-            x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
-        for gate in task.gates if isinstance(task, Gates) else ():
-            x0, y0 = min(x0, gate.x - _ROUND_GATES), min(y0, gate.y - _ROUND_GATES)
-            x1, y1 = max(x1, gate.x + _ROUND_GATES), max(y1, gate.y + _ROUND_GATES)
-        self._low = (x0 - _BORDER, y0 - _BORDER)
-        extent = (x1 - x0 + 2.0 * _BORDER, y1 - y0 + 2.0 * _BORDER)
+        self._world = world_of(robot, index)
+        extent = self._fit()
         self._scale = SIZE / max(extent)
         self._shape = tuple(max(math.ceil(length * self._scale), 64) for length in extent)
         self.trail: list[tuple[float, float]] = []
@@ -106,12 +99,33 @@ class Renderer:
         self._canvas: Any = None
         self._window: Any = None
 
+    def _fit(self) -> tuple[float, float]:
+        """Note where the world begins; its lengths along x and y, with a border [m]."""
+        task = self._task
+        x0, y0, x1, y1 = self._world.bounds
+        if isinstance(task, PlacesTask):
+            low, high = task.arena_at(self._index)
+            x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
+        for gate in task.gates_at(self._index) if isinstance(task, Gates) else ():
+            x0, y0 = min(x0, gate.x - _ROUND_GATES), min(y0, gate.y - _ROUND_GATES)
+            x1, y1 = max(x1, gate.x + _ROUND_GATES), max(y1, gate.y + _ROUND_GATES)
+        self._low = (x0 - _BORDER, y0 - _BORDER)
+        return x1 - x0 + 2.0 * _BORDER, y1 - y0 + 2.0 * _BORDER
+
+    def _enter(self) -> None:
+        """Draw the world that the robot is in now, in pictures of the same size."""
+        world = world_of(self._robot, self._index)
+        if world is not self._world:
+            self._world, self._plan = world, None
+            self._scale = min(size / length for size, length in zip(self._shape, self._fit(), strict=True))
+
     def _point(self, x: float, y: float) -> tuple[float, float]:
         """World x, y [m] to image coordinates [pixels]: x to the right, y up."""
         return (x - self._low[0]) * self._scale, self._shape[1] - (y - self._low[1]) * self._scale
 
     def start(self) -> None:
         """Start an episode with an empty trail."""
+        self._enter()
         self.trail = []
         self._with_trail = None
         self.note()
@@ -124,7 +138,7 @@ class Renderer:
     def _draw_plan(self, pygame: Any) -> Any:
         plan = pygame.Surface(self._shape)
         plan.fill(_PAPER)
-        world = self._robot.world
+        world = self._world
         for marking in world.markings:
             self._draw_marking(pygame, plan, marking)
         at = world.plan_height
@@ -181,8 +195,9 @@ class Renderer:
 
     def _draw_gates(self, pygame: Any, task: Gates) -> None:
         """Their lines; that of the next one is thick."""
-        present = int(task.at[self._index]) % len(task.gates)
-        for k, gate in enumerate(task.gates):
+        gates = task.gates_at(self._index)
+        present = int(task.at[self._index]) % len(gates)
+        for k, gate in enumerate(gates):
             across = 0.5 * gate.width * np.array([-math.sin(gate.yaw), math.cos(gate.yaw)])
             ends = [self._point(*(np.array([gate.x, gate.y]) + sign * across).tolist()) for sign in (-1.0, 1.0)]
             pygame.draw.line(self._canvas, _GOAL, *ends, 5 if k == present else 2)
@@ -209,7 +224,7 @@ class Renderer:
                 raise DependencyNotInstalled(
                     f'render_mode "window" finds no screen ({error}); "rgb_array" needs none'
                 ) from None
-            pygame.display.set_caption(f"{self._robot.name} in {self._robot.world.name}")
+            pygame.display.set_caption(f"{self._robot.name} in {self._world.name}")
         self._window.blit(self._draw(), (0, 0))
         pygame.event.pump()
         pygame.display.flip()

@@ -7,17 +7,16 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
-from pathlib import Path
+from functools import partial
 from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from sitl import worlds
 from sitl.core.array_kernels import Flags, Kernel, Line
 from sitl.core.kernels import law
-from sitl.worlds import World, WorldError
+from sitl.worlds import World
 
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
@@ -33,16 +32,17 @@ from .past import Film, Remembering
 from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
-from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot
+from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot, TravellingRobot, world_of
 from .senses import reads_scan
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
+from .worlds import PerWorld, WorldDraw, WorldOption, key_of, load_world
 
 FORMS = ("discrete", "continuous", "normalised")
 DETAILS = ("rewards", "true_pose", "estimate_error", "events")
 """What ``info`` may have besides what the task tells."""
-RESET_OPTIONS = ("pose", "reset_mask")
-"""Options of ``reset``; the second one only in vector environments."""
+RESET_OPTIONS = ("pose", "world", "reset_mask")
+"""Options of ``reset``; the last one only in vector environments."""
 MAX_STEP_S = 3600.0
 """Longest step, in simulated time [s]."""
 RANDOMISE_STREAM, FAULTS_STREAM = 2 << 40, 3 << 40
@@ -80,6 +80,8 @@ class Snapshot:
     """Of what the observation remembers: pictures, parts that are seen late."""
     fault: tuple[int, float] | None = None
     """Number and time of the episode's fault; None: there are no faults."""
+    world: str | World | None = None
+    """The episode's world, by its name if that makes it; None: the only one that the environment has."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,9 @@ class NavigateOptions:
 
     Args:
         robot: name (``robots.ROBOTS``) or class.
-        world: name (``sitl.worlds.names()``), .toml file or World; None: the robot's usual one (``robots.WORLDS``).
+        world: name (``sitl.worlds.names()``), .toml file or World; a list of such; seeds of one that is made
+            ("rooms:seed=1..100"); or a function of a random generator that gives any of these. Each episode is in one
+            of them, drawn by its seed, and ``info["world"]`` names it. None: the robot's usual one (``robots.WORLDS``).
         task: name (``tasks.TASKS``) or Task: rewards, and when an episode ends.
         observation: name (``observations.OBSERVATIONS``), names of parts (``parts.PARTS``; a list: one box of float32;
             "scan+velocity": a dict), pictures ("depth", "depth+velocity"; ``pictures.PICTURES``), a dict of such, or
@@ -120,7 +124,7 @@ class NavigateOptions:
     """
 
     robot: str | Callable[..., Robot] = "turtlebot"
-    world: str | Path | World | None = None
+    world: WorldOption | None = None
     task: str | Task = "wander"
     observation: str | Sequence[str | Part] | Mapping[str, Any] | Observation = "scan"
     action: str | Mapping[str, Sequence[float]] | Action = "discrete"
@@ -145,10 +149,9 @@ class Session:
     """Robot, task, observation and action of an environment with ``count`` robots."""
 
     def __init__(self, count: int, options: NavigateOptions) -> None:
-        try:
-            world = worlds.load(robots.world_of(options.robot) if options.world is None else options.world)
-        except WorldError as error:
-            raise EnvOptionError(str(error)) from None
+        self.worlds = WorldDraw(robots.world_of(options.robot) if options.world is None else options.world)
+        """What draws the worlds of episodes."""
+        world = self._made_in = self.worlds.first
         self.robot = robots.load(options.robot, world, count, options.robot_options)
         scan, touched = self.robot.scan, self.robot.collided
         if scan.dtype != np.float32 or not scan.flags.c_contiguous or touched.dtype != np.int64:
@@ -165,7 +168,9 @@ class Session:
         self.randomisation = Randomisation(ranges, self.robot, self.latency)
         self.faults = None if options.faults is None else EpisodeFaults(options.faults, self.robot)
         """None: nothing fails."""
-        self.starts = Starts(options.start, self.robot)
+        self._starts_in = PerWorld(partial(Starts, options.start, self.robot))
+        self.starts = self._starts_in(world)
+        """What draws start poses in the world of the last episode."""
         if self.starts.fixed is None and getattr(self.robot, "is_live", False):
             name = world.start(self.robot.name).name
             raise EnvOptionError(
@@ -197,9 +202,14 @@ class Session:
         """What crashes were worth in the last step."""
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
+        self.varies = False
+        """Whether episodes are, or have been, in several worlds: then ``info`` names them."""
+        self.world_names = np.full(count, world.name, object)
+        """Of each robot's world, shape (count,)."""
         if isinstance(self.task, Task):
             self.task.judge_of = self.judge
         self.task.prepare(self.robot)
+        self._allow(self.worlds)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
             watch(self.task)
@@ -213,6 +223,53 @@ class Session:
             self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
             if self.robot.is_live:
                 self._rehearse()
+
+    def set_worlds(self, option: WorldOption) -> None:
+        """Draw the worlds of later episodes from others: a curriculum. Those that have begun go on in theirs.
+
+        Args:
+            option: as the option ``world``.
+
+        Raises:
+            EnvOptionError: no such world, or one that robot or task cannot be in; those before stay.
+        """
+        draw = WorldDraw(option)
+        self._allow(draw)
+        self.worlds = draw
+
+    def _allow(self, draw: WorldDraw) -> None:
+        """Refuse worlds that the robot or the task cannot be in."""
+        now = world_of(self.robot, 0)
+        if not (draw.varies or self.varies) and draw.first is now:
+            return
+        if not isinstance(self.robot, TravellingRobot):
+            raise EnvOptionError(f"world: robot {self.robot.name!r} stays in the world {now.name!r}; give one world")
+        if getattr(self.task, "is_of_one_world", False):
+            raise EnvOptionError(
+                f"world: task {type(self.task).__name__} was given places of one world (goal, places, gates or bays); "
+                "leave them out, and each world has its own; or give one world"
+            )
+        try:
+            for world in draw.listed or [draw.first]:
+                self._enter(0, world)
+        finally:
+            self._enter(0, now)
+        self.varies = True
+
+    def _enter(self, index: int, world: World) -> None:
+        """Let the next episode of a robot be in a world."""
+        if world is not world_of(self.robot, index):
+            cast(TravellingRobot, self.robot).enter(index, world)
+        self.starts, self.world_names[index] = self._starts_in(world), world.name
+        enter = getattr(self.task, "enter", None)
+        if enter is not None:
+            enter(index, self.robot)
+
+    @property
+    def judged_by(self) -> str:
+        """By what success goes: "truth" or "estimate" (``judge.JUDGES``)."""
+        sees = self.judge.knows_truth and getattr(self.task, "sees_truth", False)
+        return TRUTH if sees else self.judge.by
 
     def _rehearse(self) -> None:
         """Do once, on a robot that stands nowhere, what each step does: compiled pieces are loaded now, and not while a
@@ -268,12 +325,15 @@ class Session:
         Args:
             index: index of the robot.
             rng: random generator of its episodes.
-            options: "pose": start pose (x, y, yaw) or (x, y, z, yaw) in the world frame [m, rad].
+            options: "pose": start pose (x, y, yaw) or (x, y, z, yaw) in the world frame [m, rad]; "world": that of
+                this episode, in place of one that is drawn.
         """
         for option in options or ():
             if option not in RESET_OPTIONS:
-                raise unknown("reset: option", option, RESET_OPTIONS[:1])
+                raise unknown("reset: option", option, RESET_OPTIONS[:2])
         self.acted[index] = False
+        given = options.get("world") if options else None
+        self._begin_in(index, self.worlds.draw(rng) if given is None else load_world(given))
         pose = self.starts.draw(rng)
         if options and options.get("pose") is not None:
             pose = self.starts.pose(options["pose"])
@@ -289,6 +349,13 @@ class Session:
         self.task.start(index, self.robot, rng)
         for k, piece in enumerate(self.remembers):
             piece.start(index, seed + (k << 32))  # noise of its own
+
+    def _begin_in(self, index: int, world: World) -> None:
+        """Let a robot be in the world of its next episode."""
+        if not self.varies and world is not world_of(self.robot, index):
+            self._allow(WorldDraw(world))
+        if self.varies:
+            self._enter(index, world)
 
     def look(self, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Read the lidars of these robots (None: all) after ``reset``; ``rows`` has shape (count,)."""
@@ -364,6 +431,7 @@ class Session:
             self.robot.snapshot(index), self.task.memory(index), rng.bit_generator.state, late=late, fault=fault,
             action=np.copy(self.actions[index]) if self.acted[index] else None,
             films=tuple(piece.memory(index) for piece in self.remembers),
+            world=key_of(world_of(self.robot, index)) if self.varies else None,
         )  # fmt: skip
 
     def restore(self, index: int, snapshot: Snapshot, rng: np.random.Generator) -> None:
@@ -381,6 +449,7 @@ class Session:
         if len(snapshot.films) != len(self.remembers):
             raise EnvOptionError("snapshot cannot be restored: of it and this environment, one has other pictures or "
                                  "parts that are seen late")  # fmt: skip
+        self._begin_in(index, self._made_in if snapshot.world is None else load_world(snapshot.world))
         self.task.recall(index, snapshot.task)
         self.robot.restore(index, snapshot.robot)
         self.judge.moved()

@@ -5,18 +5,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sitl.core.algebra import ZERO2
-from sitl.core.array_kernels import IntTable, Kernel, Table
+from sitl.core.array_kernels import IntLine, IntTable, Kernel, Table
 from sitl.core.kernels import law
 from sitl.core.vectors import Vec2
 from sitl.turtlebots.native import full_pose
-from sitl.worlds import WorldError
-from sitl.worlds.contact import Volume, clearance, distance, nearest_of
+from sitl.worlds import World, WorldError
+from sitl.worlds.contact import Volume, clearance, distance, separation
+from sitl.worlds.geometry import COS, EAST, HALF_LENGTH, HALF_WIDTH, NORTH, RADIUS, SIN
 from sitl.worlds.shapes import to_ned
 
 from .options import EnvOptionError
@@ -39,45 +40,95 @@ StartOption = str | Sequence[float] | Callable[[np.random.Generator], Sequence[f
 the same ones: a vehicle with an autopilot calculates its state after take-off once for each of them."""
 
 
+class Grid(NamedTuple):
+    """Cells of which ``north`` grows with the row, and ``east`` falls with the column."""
+
+    first: Vec2
+    """North and east of the centre of cell (0, 0) [m]."""
+    cell: float
+    """Side of a cell [m]."""
+
+
 @law
-def mark_free(solids: Table, first: Vec2, cell: float, robot: Volume, margin: float, out: IntTable) -> None:
+def mark_free(solids: Table, grid: Grid, robot: Volume, margin: float, out: IntTable) -> None:
     """Mark the cells of a grid in whose centre a robot can stand with a margin to solids.
 
     Args:
         solids: rows of a ``Geometry``.
-        first: north and east of the centre of cell (0, 0) [m]; north grows with the row, east falls with the column.
-        cell: side of a cell [m].
+        grid: of the cells.
         robot: its volume, anywhere.
         margin: distance to keep to solids [m].
         out: shape (rows, columns), 1 for free.
     """
-    for i in range(out.shape[0]):
-        for j in range(out.shape[1]):
-            there = Vec2(first.x + cell * i, first.y - cell * j)
-            volume = Volume(there, robot.top, robot.bottom, robot.radius)
-            out[i, j] = 1 if nearest_of(solids, solids.shape[0], volume).distance > margin else 0
+    first, cell, rows, columns = grid.first, grid.cell, out.shape[0], out.shape[1]
+    for i in range(rows):
+        for j in range(columns):
+            out[i, j] = 1
+    for k in range(solids.shape[0]):
+        length, width, c, s = solids[k, HALF_LENGTH], solids[k, HALF_WIDTH], abs(solids[k, COS]), abs(solids[k, SIN])
+        near = robot.radius + margin + solids[k, RADIUS] + cell
+        north, east = c * length + s * width + near, s * length + c * width + near
+        low, high = (solids[k, NORTH] - north - first.x) / cell, (solids[k, NORTH] + north - first.x) / cell
+        left, right = (first.y - solids[k, EAST] - east) / cell, (first.y - solids[k, EAST] + east) / cell
+        for i in range(max(int(low), 0), min(int(high) + 2, rows)):
+            for j in range(max(int(left), 0), min(int(right) + 2, columns)):
+                there = Vec2(first.x + cell * i, first.y - cell * j)
+                volume = Volume(there, robot.top, robot.bottom, robot.radius)
+                if not separation(solids, k, volume).distance > margin:
+                    out[i, j] = 0
 
 
-_mark_free = Kernel(mark_free)
+@law
+def flood(free: IntTable, row: int, column: int, todo: IntLine) -> None:
+    """Mark the free cells that are connected to a cell, and that cell itself, with 2.
+
+    Args:
+        free: 1 where a cell is free.
+        row, column: of the cell.
+        todo: room, as long as there are cells.
+    """
+    rows, columns, count = free.shape[0], free.shape[1], 1
+    todo[0] = row * columns + column
+    free[row, column] = 2
+    while count > 0:
+        count -= 1
+        i, j = todo[count] // columns, todo[count] % columns
+        for side in range(4):
+            a = i + (1 if side == 0 else -1 if side == 1 else 0)
+            b = j + (1 if side == 2 else -1 if side == 3 else 0)
+            if 0 <= a < rows and 0 <= b < columns and free[a, b] == 1:
+                free[a, b] = 2
+                todo[count] = a * columns + b
+                count += 1
+
+
+_mark_free, _flood = Kernel(mark_free), Kernel(flood)
 
 
 class ReachableCells:
     """Positions that a robot can reach from its start pose without a crash, as cells of a grid.
 
     Args:
-        robot: robot whose world, start pose and volume are used.
+        robot: robot whose start pose and volume are used.
         crash_range: a reading below it is a crash [m]; None: the robot's.
         most: above so many cells, cells are made larger.
+        world: where; None: the robot's.
     """
 
-    def __init__(self, robot: Robot, crash_range: float | None = None, most: int = _MAX_CELLS) -> None:
-        self._world, self._volume = robot.world, robot.volume
+    def __init__(
+        self,
+        robot: Robot,
+        crash_range: float | None = None,
+        most: int = _MAX_CELLS,
+        world: World | None = None,
+    ) -> None:
+        self._world, self._volume = world or robot.world, robot.volume
         crash_range = robot.crash_range if crash_range is None else crash_range
         self.margin = _MARGIN + max(crash_range - robot.volume.radius, 0.0)
         """Free distance around the robot [m]."""
-        start = robot.world.start(robot.name)
+        start = self._world.start(robot.name)
         self.z = start.position[2]
-        x0, y0, x1, y1 = robot.world.bounds
+        x0, y0, x1, y1 = self._world.bounds
         reach = robot.volume.radius + self.margin
         self.low = np.array([x0 - reach, y0 - reach])
         """x, y of the first cell's corner [m]."""
@@ -93,9 +144,11 @@ class ReachableCells:
             raise EnvOptionError(f"random places in world {self._world.name!r}: {size} is too large; say where instead")
         first = ((np.array(start.position[:2]) - self.low) / self.cell).astype(int).tolist()
         free = self._free(rows, columns)
-        self.cells = np.array(self._flood(first, free))
-        """Indices of the cells along x and y, shape (n, 2)."""
-        if len(self.cells) == 1 and not free[first[0], first[1]]:
+        is_free = bool(free[first[0], first[1]])
+        _flood(free, first[0], first[1], np.empty(free.size, np.int64))
+        self.cells = np.argwhere(free == 2).astype(np.min_scalar_type(max(rows, columns)))
+        """Indices of the cells along x and y, shape (n, 2); the first one is included even when it is not free."""
+        if len(self.cells) == 1 and not is_free:
             where = f"random places in world {self._world.name!r}"
             raise EnvOptionError(f"{where}: {robot.name} has no room at start {start.name!r} to set out")
 
@@ -106,24 +159,8 @@ class ReachableCells:
         v = self._volume
         geometry = self._world.geometry
         robot = Volume(ZERO2, down - v.top, down - v.bottom, v.radius)
-        _mark_free(geometry.solids, Vec2(north, east), self.cell, robot, self.margin, out)
+        _mark_free(geometry.solids, Grid(Vec2(north, east), self.cell), robot, self.margin, out)
         return out
-
-    @staticmethod
-    def _flood(first: list[int], free: npt.NDArray[np.int64]) -> list[tuple[int, int]]:
-        """Free cells that are connected to the first cell, which is included even when it is not free."""
-        columns = free.shape[1]
-        left = {divmod(int(place), columns) for place in np.flatnonzero(free)}
-        todo, found = [(first[0], first[1])], [(first[0], first[1])]
-        left.discard(found[0])
-        while todo:
-            i, j = todo.pop()
-            for near in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
-                if near in left:
-                    left.remove(near)
-                    todo.append(near)
-                    found.append(near)
-        return sorted(found)
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether the robot can stand at x, y [m] in the world frame, with the margin."""
@@ -190,28 +227,29 @@ class Starts:
     Args:
         option: see ``StartOption``.
         robot: robot that starts there.
+        world: where; None: the robot's.
 
     Raises:
         EnvOptionError: unknown start, or an invalid pose.
     """
 
-    def __init__(self, option: StartOption | None, robot: Robot) -> None:
-        self._robot = robot
+    def __init__(self, option: StartOption | None, robot: Robot, world: World | None = None) -> None:
+        self._robot, self._world = robot, world or robot.world
         self._draw: Callable[[np.random.Generator], Any] | None = None
         self._cells: ReachableCells | None = None
-        self._z = robot.world.start(robot.name).position[2]
+        self._z = self._world.start(robot.name).position[2]
         self.fixed: Pose | None = None
         """The start pose, where there is one only."""
         if isinstance(option, str) and option == "random":
-            self._cells = ReachableCells(robot)
+            self._cells = ReachableCells(robot, world=self._world)
         elif isinstance(option, str) and option.startswith("random:"):
-            self._draw = self._few(option, ReachableCells(robot))
+            self._draw = self._few(option, ReachableCells(robot, world=self._world))
         elif isinstance(option, str) and option == "turned":
-            start = robot.world.start(robot.name)
+            start = self._world.start(robot.name)
             self._draw = Turned(start.position)
         elif option is None or isinstance(option, str):
             try:
-                start = robot.world.start(robot.name, option)
+                start = self._world.start(robot.name, option)
             except WorldError as error:
                 raise EnvOptionError(f'start {option!r}: {error}, "turned" and "random"') from None
             self.fixed = self.pose((*start.position, start.yaw))
@@ -248,7 +286,7 @@ class Starts:
         """Refuse a pose inside of a solid: all readings are 0 there, which is no crash, so the robot could drive
         out."""
         north, east, down = to_ned(*pose[:3])
-        volume, world = self._robot.volume, self._robot.world
+        volume, world = self._robot.volume, self._world
         room = world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0
         if distance(*room) < 0.0:
             solid = world.solids[clearance(*room).solid]

@@ -15,16 +15,17 @@ from gymnasium.vector import VectorEnv
 
 from sitl.worlds import World
 
-from .robots.robot import Robot
+from .robots.robot import Robot, world_of
 from .session import Snapshot
 from .tasks import Task, reward_of_goals
+from .worlds import WorldOption
 
 if TYPE_CHECKING:
     from .vector import NavigateVector
 
-_ROWS = ("pose", "velocity", "scan", "collided", "time")
+_ROWS = ("pose", "velocity", "scan", "collided", "time", "worlds", "floors")
 _BY_INDEX = ("link", "simulation", "view", "snapshot", "photograph")
-_OF_ALL = ("apply", "advance", "advance_late", "look", "reset", "restore", "set_figure", "close")
+_OF_ALL = ("apply", "advance", "advance_late", "look", "reset", "restore", "set_figure", "close", "enter")
 
 
 class OfSubEnvironments(VectorEnv[Any, Any, Any]):
@@ -103,6 +104,8 @@ class RobotRow:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name in _OF_ALL:
             raise AttributeError(f"{name}: a robot of a vector environment moves with all others")
+        if name == "world":
+            return world_of(self._robots, self._index)
         value = getattr(self._robots, name)
         if name in _ROWS:
             return value[self._index : self._index + 1]
@@ -140,8 +143,12 @@ class SubEnvironment(gym.Env[Any, Any]):
 
     @property
     def world(self) -> World:
-        """The world."""
-        return self._vector.robot.world
+        """The world of this robot's present episode."""
+        return world_of(self._vector.robot, self._index)
+
+    def set_worlds(self, world: WorldOption) -> None:
+        """Draw the worlds of later episodes from others, for all robots: see ``Navigate.set_worlds``."""
+        self._vector.set_worlds(world)
 
     @property
     def task(self) -> Task:
@@ -176,7 +183,9 @@ class SubEnvironment(gym.Env[Any, Any]):
         vector, mine = self._vector, np.arange(self._vector.num_envs) == self._index
         seeds = [seed if me else None for me in mine.tolist()]
         observations, infos = vector.reset(seed=seeds, options={**(options or {}), "reset_mask": mine})
-        return row_of(observations, self._index), infos
+        return row_of(observations, self._index), {
+            name: value[self._index] for name, value in infos.items() if not name.startswith("_")
+        }
 
     def step(self, action: Any) -> Any:
         """Refused: robots of a vector environment move together."""

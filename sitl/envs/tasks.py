@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -14,13 +15,15 @@ import numpy.typing as npt
 from sitl.core import elementary_arrays as arrays
 from sitl.core.array_kernels import Flags, IntColumn, Kernel, NarrowTable
 from sitl.core.kernels import law
+from sitl.worlds import World
 
 from .judge import ESTIMATE, Judge
 from .options import EnvOptionError, unknown
 from .rewards import TERMS, ByAction, EachStep, Floats, Forward, Step, Term
-from .robots.robot import Robot
+from .robots.robot import Robot, world_of
 from .senses import reads_scan
 from .starts import ReachableCells
+from .worlds import PerWorld
 
 _DRAWS = 100
 """Attempts to draw a random goal that the robot has not reached at its start."""
@@ -82,6 +85,8 @@ class Task:
 
     paid: Mapping[str, Floats] = MappingProxyType({})
     """Terms of the last step's rewards that the task itself has written, by name, 0 where it ended in a crash."""
+    sees_truth = False
+    """Whether it goes by where robots really are, where anybody knows, whatever the option ``judge`` says."""
     judge_of: Judge | None = None
     """Says where robots are, as the task judges them; the environment sets it before ``prepare``."""
 
@@ -100,6 +105,13 @@ class Task:
         """Whether it needs lidar readings (``senses.reads_scan``): for its crash range, or a term. A subclass that
         reads them besides says True. Valid after ``prepare``."""
         return self._range > 0.0 or any(reads_scan(term) for term in self.terms)
+
+    is_of_one_world = False
+    """Whether it was given places of one world, so that episodes can be in no other."""
+
+    def enter(self, index: int, robot: Robot) -> None:
+        """Called when one robot's next episode is in another world than its last one (``robots.robot.world_of``);
+        ``start`` or ``recall`` follows."""
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """Called at the start of an episode of one robot, when it is at its start pose."""
@@ -172,13 +184,21 @@ class ReachGoal(Task):
         self.goals = np.zeros((robot.count, 2))
         """x, y of each robot's goal [m]."""
         self._distance = np.zeros(robot.count)
-        self._cells = ReachableCells(robot) if self.goal is None else None
+        self._cells_in = PerWorld(partial(_cells, robot)) if self.goal is None else None
+        if self._cells_in is not None:
+            self._cells_in(robot.world)
+
+    @property
+    def is_of_one_world(self) -> bool:  # type: ignore[override]
+        """See ``Task``."""
+        return self.goal is not None
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         place = self.judged_pose()[index, :2]
-        for _ in range(_DRAWS if self._cells else 1):
-            self.goals[index] = self._cells.draw(rng) if self._cells else self.goal
+        cells = None if self._cells_in is None else self._cells_in(world_of(robot, index))
+        for _ in range(_DRAWS if cells else 1):
+            self.goals[index] = cells.draw(rng) if cells else self.goal
             self._distance[index] = arrays.hypot(*(place - self.goals[index]))  # as in ``judge``, to the last bit
             if self._distance[index] > self.radius:
                 break
@@ -210,6 +230,10 @@ class ReachGoal(Task):
         if memory is None:
             raise EnvOptionError("snapshot cannot be restored: it is of a task without a goal")
         self.goals[index], self._distance[index] = memory
+
+
+def _cells(robot: Robot, world: World) -> ReachableCells:
+    return ReachableCells(robot, world=world)
 
 
 def reward_of_goals(task: Task, achieved: Any, desired: Any, info: Any) -> Any:

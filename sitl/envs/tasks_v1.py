@@ -41,6 +41,8 @@ GOAL = 20.0
 """For reaching it."""
 HALF = 0.7
 """Of curves of nearness [m]."""
+FAR = 20.0
+"""Of goal-conditioned tasks: see ``Hold`` [m]."""
 
 
 def _price(preset: str, progress: float, fail: float, **others: Any) -> dict[str, Any]:
@@ -61,8 +63,9 @@ def _among(preset: str, progress: float, fail: float, **others: Any) -> Task:
 
 
 def _sparse(offset: tuple[float, float], limit: float) -> Task:
-    """Nothing ends an episode early in the world without solids. A crash pays for all steps that it saves."""
-    return Hold(offset, 1.0, is_sparse=True, out_ends=False, crash_reward=-limit, out_reward=0.0)
+    """Nothing ends an episode early in the world without solids. A crash pays for all steps that it saves. Where no
+    episode reaches the goal, each is worth less the farther it ends: who has not learnt yet does not drift away."""
+    return Hold(offset, 1.0, is_sparse=True, far=FAR, out_ends=False, crash_reward=-limit, out_reward=0.0)
 
 
 _NEAR: dict[str, Any] = {"half": HALF, "floor_ends": True}
@@ -81,7 +84,7 @@ MADE: dict[str, Callable[[], Task]] = {
     "copter-land-moving": lambda: Land(
         speed=0.5, success_reward=GOAL, **{**_price("copter-land-moving", 0.5, -30.0), "floor_ends": False}
     ),
-    "copter-forest": lambda: _among("copter-forest", 0.5, -40.0, ceiling=3.0),
+    "copter-forest": lambda: _among("copter-forest", 0.5, -50.0, ceiling=3.0),
     "copter-rooms": lambda: _among("copter-rooms", 0.5, -40.0, ceiling=3.0),
     "rover-waypoint": lambda: _waypoints("rover-waypoint", 1),
     "rover-course": lambda: _waypoints("rover-course", 4),
@@ -91,6 +94,15 @@ MADE: dict[str, Callable[[], Task]] = {
     "rover-parking": lambda: Park(success_reward=GOAL, turn_progress=1.0, **_price("rover-parking", 0.5, -40.0)),
 }
 """By the name of the preset."""
+
+
+RECEIVERS = dict.fromkeys(
+    (
+        "copter-hover", "copter-reach-goal", "rover-reach-goal", "copter-trajectory", "copter-follow", "rover-parking",
+    ), "rtk",
+)  # fmt: skip
+"""Receivers (option ``sensors``) of tasks whose success is finer than what an ordinary GPS tells: 0.4 to 1 m, for
+seconds or on average."""
 
 
 def worst_of(task: Any, seconds: float) -> float:

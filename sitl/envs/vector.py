@@ -26,6 +26,7 @@ from .session import NavigateOptions, Session, Snapshot
 from .sub_environment import OfSubEnvironments, row_of
 from .tasks import Task
 from .tensors import as_numpy, converter
+from .worlds import WorldOption
 
 _NUMBERS = {"b": np.bool_, "i": np.int64, "u": np.int64, "f": np.float64}
 """Arrays of Python's numbers, by kind of type."""
@@ -133,7 +134,8 @@ class NavigateVector(OfSubEnvironments):
         Args:
             seed: robot i gets ``seed + i``; or one for each robot, None for those that go on with their random numbers.
             options: "reset_mask": which robots, booleans of shape (num_envs,); "pose": start pose of all, or a list
-                with one for each robot, None for those that start where they usually do.
+                with one for each robot, None for those that start where they usually do; "world": world of all, or a
+                list with one for each robot, None for those that draw theirs.
 
         Raises:
             EnvOptionError: an option that cannot be used.
@@ -155,17 +157,23 @@ class NavigateVector(OfSubEnvironments):
             seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"{len(seeds)} seeds for num_envs = {self.num_envs}")
-        rows, poses = self._reset_mask(options), self._poses(options)
+        rows, each = self._reset_mask(options), {"pose": self._poses(options), "world": self._worlds(options)}
+        own = {name: given for name, given in each.items() if given is not None}
         if self.render_mode == "human" and self._watcher is None:
             name = self.spec.id if self.spec is not None else self.robot.name
             self.watch(Directly(opened(self._session, f"{self.num_envs} of {name}"), self._session.seconds))
         for index in np.flatnonzero(rows).tolist():
             if seeds[index] is not None or self.generators[index] is None:
                 self.generators[index], self.seeds[index] = seeding.np_random(seeds[index])
-            self._start(index, options if poses is None else {**(options or {}), "pose": poses[index]})
+            mine = {name: given[index] for name, given in own.items()}
+            self._start(index, {**(options or {}), **mine} if own else options)
         self._session.look(rows)
         self._steps[rows], self._ended[rows], self.closed = 0, False, False
-        return self.observe(), {}
+        return self.observe(), self._worlds_of(rows)
+
+    def set_worlds(self, world: WorldOption) -> None:
+        """Draw the worlds of later episodes of all robots from others: see ``Navigate.set_worlds``."""
+        self._session.set_worlds(world)
 
     def _reset_mask(self, options: dict[str, Any] | None) -> Flags:
         rows = None if options is None else options.get("reset_mask")
@@ -186,6 +194,15 @@ class NavigateVector(OfSubEnvironments):
             raise EnvOptionError(f"pose: {len(given)} start poses for num_envs = {self.num_envs}")
         poses: Sequence[Any] = given
         return poses
+
+    def _worlds(self, options: dict[str, Any] | None) -> Sequence[Any] | None:
+        """Worlds, one for each robot, where ``options`` has such; None: one for all, or none."""
+        given = None if options is None else options.get("world")
+        if not isinstance(given, list | tuple):
+            return None
+        if len(given) != self.num_envs:
+            raise EnvOptionError(f"world: {len(given)} worlds for num_envs = {self.num_envs}")
+        return given
 
     def _start(self, index: int, options: dict[str, Any] | None = None) -> None:
         self._session.reset(index, self.generator(index), options)
@@ -241,6 +258,8 @@ class NavigateVector(OfSubEnvironments):
             observations, infos = self._end_within(ended)
         else:
             observations, infos = self.observe(), self._infos(moved)
+        if session.varies:  # also of robots whose next episode begins with this step
+            infos |= self._worlds_of(self._all)
         if self._watcher is not None:
             self._watcher.stepped(observations)
         return observations, rewards, terminated, truncated, infos
@@ -286,9 +305,9 @@ class NavigateVector(OfSubEnvironments):
 
     def _infos(self, rows: Flags) -> dict[str, Any]:
         """Infos in Gymnasium's vector form: each array with a mask "_name" of the robots that it is valid for."""
-        infos: dict[str, Any] = {}
         if rows is not self._all and not rows.any():
-            return infos
+            return {}
+        infos = self._worlds_of(rows)
         others = None if rows is self._all else ~rows
         for name, value in self._session.info().items():
             # A copy, as the array belongs to the task; Gymnasium makes arrays of Python's numbers.
@@ -297,6 +316,14 @@ class NavigateVector(OfSubEnvironments):
                 masked[others] = 0
             infos[name], infos["_" + name] = masked, rows.copy()
         return infos
+
+    def _worlds_of(self, rows: Flags) -> dict[str, Any]:
+        """Info of the worlds of these robots, where there are several."""
+        if not self._session.varies:
+            return {}
+        names = self._session.world_names.copy()
+        names[~rows] = None
+        return {"world": names, "_world": rows.copy()}
 
     # ------------------------------------------------------------------ snapshots
 

@@ -68,6 +68,12 @@ def rays_of(v: Any) -> list[Rays | None]:
     ]
 
 
+def show_world(r: Ranging, geometry: Geometry, floor: float) -> None:
+    """Let sensors measure in a world, whose arrays have to stay in place; ``floor``: its height [m]."""
+    r.solids, r.grid, r.cells = (a.ctypes.data for a in (geometry.solids, geometry.grid, geometry.cells))
+    r.solid_count, r.cell_count, r.floor = len(geometry.solids), len(geometry.cells), floor
+
+
 class Rangers:
     """The sensors that one vehicle has, from power-on.
 
@@ -83,9 +89,7 @@ class Rangers:
         self.address: int = self._memory.ctypes.data
         """Of the record ``Ranging``, which lives as long as this."""
         self._ranging = r = Ranging.of(self._memory, 0)
-        g = scene.geometry
-        r.solids, r.grid, r.cells = (array.ctypes.data for array in (g.solids, g.grid, g.cells))
-        r.solid_count, r.cell_count, r.floor = len(g.solids), len(g.cells), scene.floor
+        show_world(r, scene.geometry, scene.floor)
         self._rays = rays_of(self._v)
         for number, arrays in enumerate(self._rays):
             if arrays is not None:
@@ -116,6 +120,11 @@ class Rangers:
                     own.ranges.ctypes.data,
                 )
         return memory.ctypes.data, (self, memory, room)
+
+    def enter(self, geometry: Geometry, floor: float) -> None:
+        """Measure in another world from now on; ``floor``: height of its floor in its frame [m]."""
+        self._scene = self._scene._replace(geometry=geometry, floor=floor)
+        show_world(self._ranging, geometry, floor)
 
     def share(self, company: Company) -> None:
         """Let the sensors meet other vehicles."""

@@ -110,6 +110,14 @@ class LocalPlant(Plant):
             self.measure()
             self._note_due()
 
+    def enter(self, around: Surroundings) -> None:
+        """Be in other surroundings from now on, and stand there after a power-on; native physics in a world. What the
+        record says of solids and readings is not changed."""
+        assert self.rangers is not None and self.engine is None
+        self.surroundings, self.world = around, around.world
+        self.home = (*self.home[:3], math.degrees(around.heading))
+        self.rangers.enter(around.world.geometry, around.floor)
+
     def join(self, company: Company) -> None:
         """Share the world with other vehicles, now and after each power-on; native physics in a world."""
         assert self.rangers is not None

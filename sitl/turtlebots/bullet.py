@@ -11,6 +11,7 @@ import numpy as np
 from ..physics.engine import EngineError
 from ..physics.native.turtlebot.state import Turtlebot
 from ..physics.pybullet.turtlebot import BulletTurtlebot
+from ..worlds import World
 from ..worlds.shapes import to_heading, to_ned
 from .native import Pose, Turtlebots, full_pose, ticks_in
 
@@ -26,6 +27,9 @@ class BulletTurtlebots(Turtlebots):
     def _ready(self) -> None:
         self.views = [Turtlebot.of(self.fleet, index) for index in range(self.count)]
         self.robots = [BulletTurtlebot(v, self.world, self.lidar) for v in self.views]
+
+    def enter(self, index: int, world: World) -> None:
+        raise ValueError("physics 'pybullet' keeps a Turtlebot in the world that it was made in; 'native' does not")
 
     def reset(self, index: int = 0, pose: Pose | None = None, seed: int = 0) -> None:
         start = self.world.start("turtlebot")

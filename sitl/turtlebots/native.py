@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ..core.array_kernels import NarrowTable
 from ..core.kernels import jit_disabled
 from ..core.records import Records
-from ..physics.native.turtlebot.fleet import Orders, advance
+from ..physics.native.turtlebot.fleet import Orders, advance, advance_apart
 from ..physics.native.turtlebot.init import place
 from ..physics.native.turtlebot.scan import Beams
 from ..physics.native.turtlebot.state import TICK_US
@@ -32,7 +32,7 @@ Pose = Sequence[float]
 
 
 class Turtlebots:
-    """Any number of Turtlebots, each alone in the same world; they do not see each other.
+    """Any number of Turtlebots, each alone; they do not see each other. All begin in the same world (``enter``).
 
     Args:
         world: name, .toml file or World.
@@ -57,6 +57,9 @@ class Turtlebots:
         if not 1 <= lidar.readings <= lidar.rays or not 0.0 < lidar.field_of_view <= 2.0 * math.pi:
             raise ValueError(f"{lidar}: readings must be 1 .. rays, field_of_view above 0 and at most 2 pi rad")
         self.world = load(world)
+        """That which they begin in."""
+        self.worlds = [self.world] * count
+        """That which each is in."""
         self.airframe = airframe
         self.lidar = lidar
         self.count = count
@@ -80,16 +83,33 @@ class Turtlebots:
         beams = Beams(rays, np.empty_like(rays), np.empty(self.lidar.rays))
         self._arguments = fleet, Orders(self.commands, self.ticks), g.arrays, beams, self.scan
         self._advance = advance.bind(*self._arguments)
+        self._places: npt.NDArray[np.int64] | None = None
+        """See ``advance_in_worlds``; None: all are in the world that they begin in."""
+        if any(world is not self.world for world in self.worlds):
+            self._part_ways()
+
+    def _part_ways(self) -> None:
+        self._places = np.array([_addresses(world) for world in self.worlds])
+        fleet, orders, _, beams, scan = self._arguments
+        self._advance = advance_apart.bind(fleet, orders, self._places, beams, scan)
+
+    def enter(self, index: int, world: World) -> None:
+        """Let one robot be in another world from now on; ``reset`` puts it somewhere there."""
+        self.worlds[index] = world
+        if self._places is None:
+            self._part_ways()
+        else:
+            self._places[index] = _addresses(world)
 
     def reset(self, index: int = 0, pose: Pose | None = None, seed: int = 0) -> None:
         """Put one robot at a pose, at rest; its scan is that of the next ``advance`` or ``look``.
 
         Args:
             index: of the robot.
-            pose: None: the world's start pose.
+            pose: None: the start pose of its world.
             seed: of its sensor noise.
         """
-        start = self.world.start("turtlebot")
+        start = self.worlds[index].start("turtlebot")
         x, y, z, yaw = (*start.position, start.yaw) if pose is None else full_pose(pose, start.position[2])
         place(self.views[index], *to_ned(x, y, z), math.remainder(to_heading(yaw), 2.0 * math.pi), seed)
 
@@ -108,7 +128,8 @@ class Turtlebots:
 
     @property
     def arguments(self) -> tuple[Records[TurtlebotRecord], Orders, Solids, Beams, NarrowTable]:
-        """What ``fleet.advance_fleet`` is called with: for laws of others that call it; the arrays stay in place."""
+        """What ``fleet.advance_fleet`` is called with, while all are in the world that they begin in: for laws of
+        others that call it; the arrays stay in place."""
         return self._arguments
 
     def look(self) -> None:
@@ -151,7 +172,8 @@ class Turtlebots:
         """Let go of what is open: nothing."""
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in vars(self).items() if name not in ("views", "_advance", "_arguments")}
+        made = ("views", "_advance", "_arguments", "_places")
+        return {name: value for name, value in vars(self).items() if name not in made}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -223,6 +245,12 @@ class Turtlebot:
     def restore(self, snapshot: tuple[bytes, bytes]) -> None:
         """Go back to a snapshot."""
         self.fleet.restore(snapshot)
+
+
+def _addresses(world: World) -> tuple[int, int, int, int, int]:
+    """The row of ``advance_in_worlds`` of a robot in this world, which has to stay."""
+    g = world.geometry
+    return g.solids.ctypes.data, len(g.solids), g.grid.ctypes.data, g.cells.ctypes.data, len(g.cells)
 
 
 def full_pose(pose: Pose, z: float) -> tuple[float, float, float, float]:

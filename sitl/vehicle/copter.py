@@ -123,7 +123,7 @@ def obey(v: Copter, order: MoveOrder, ranging: int) -> int:
         if not hover_again(v):
             return NO_HOVER
     show_field(p, v.sensors, before)
-    return DONE if look_around(v, ranging, d) else IN_SOLID
+    return DONE if look_around(v, ranging, order, d) else IN_SOLID
 
 
 @unit

@@ -47,6 +47,7 @@ class MoveOrder(Record):
     wind_direction: float  # where it comes from [deg]
     wind_turbulence: float  # standard deviation [m/s]
     other_figures: bool  # the airframe's figures have been changed in its record
+    other_world: bool  # what the record says of solids and lidar readings is of another world
     result: int  # DONE, IN_SOLID or NO_HOVER: then the record is of no use
 
 
@@ -130,9 +131,9 @@ def is_calm(v: Vehicle) -> bool:
 
 
 @law
-def look_around(v: Vehicle, ranging: int, d: Displacement) -> bool:
+def look_around(v: Vehicle, ranging: int, order: MoveOrder, d: Displacement) -> bool:
     """List the solids near the vehicle and take its scans anew; False: it is in a solid."""
-    if ranging == 0 or not goes_anywhere(d):
+    if ranging == 0 or not (order.other_world or goes_anywhere(d)):
         return True
     r = record_at(Ranging, ranging)
     if v.physics.obstacles.present:

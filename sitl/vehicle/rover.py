@@ -91,7 +91,7 @@ def obey(v: Rover, order: MoveOrder, ranging: int) -> int:
     if order.other_figures:
         prepare(p.airframe, p.derived)
     show_field(p, v.sensors, before)
-    return DONE if look_around(v, ranging, d) else IN_SOLID
+    return DONE if look_around(v, ranging, order, d) else IN_SOLID
 
 
 @unit

@@ -124,6 +124,8 @@ class Frame:
     q: Quat
     vel: Vec3
     """NED [m/s]"""
+    world: World | None = None
+    """What is around it now; None: the stage's."""
     stands: Vec3 = CALM
     """Where the origin of its own world is in the scene [m]."""
     estimate_pos: Vec3 | None = None

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Sequence
+from functools import cache, lru_cache
 from pathlib import Path
 
 from .generated import GENERATORS, generate, is_generated
 from .geometry import Geometry
+from .lists import WorldList
 from .loader import read
 from .shapes import Box, Cylinder, Lap, Marking, Solid, Start, WorldError
 from .world import World
@@ -22,7 +24,9 @@ __all__ = [
     "Start",
     "World",
     "WorldError",
+    "WorldList",
     "load",
+    "load_all",
     "names",
 ]
 
@@ -69,7 +73,18 @@ def load(name: str | Path | World) -> World:
     return _shipped(known)
 
 
-@cache
+def load_all(given: str | Path | World | Sequence[str | Path | World]) -> WorldList:
+    """Worlds by a list of what ``load`` takes, in which "rooms:seed=1..100" stands for a hundred, or by one of those.
+
+    Raises:
+        WorldError: see ``load`` and ``WorldList``.
+    """
+    if not isinstance(given, str | Path | World | Sequence):
+        raise WorldError(f"worlds {given!r} are neither a name nor a list of names, .toml files and Worlds")
+    return WorldList(given, load)
+
+
+@lru_cache(maxsize=256)  # worlds are drawn by the thousand
 def _generated(text: str) -> World:
     return generate(text)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -303,6 +304,12 @@ class Photographer:
         v, u = np.meshgrid(below, across, indexing="ij")
         rays = np.ascontiguousarray(np.stack([np.ones(u.size), u.ravel(), v.ravel()]))
         self._room = Room(rays, np.empty_like(rays), np.zeros(u.size), np.zeros(u.size, np.int64))
+
+    def in_world(self, world: World) -> Photographer:
+        """The same cameras in another world. They share room to work in: one takes pictures after the other."""
+        made = copy(self)
+        made._solids, made._paint = world.geometry.arrays, paint_of(world)
+        return made
 
     def depths(self, places: Floats, discs: Floats | None = None) -> npt.NDArray[np.float32]:
         """Depths along the camera's axis [m], shape (m, height, width), of cameras at ``places`` (``write_depths``)."""

@@ -19,6 +19,7 @@ from .world import World
 
 Door = tuple[bool, float, float, float]
 """Whether its wall stands across x, where the wall stands, where the door begins and ends [m]."""
+MOST_SEED = (1 << 32) - 1
 SMALLEST, LARGEST = 10.0, 200.0
 """Limits of a side [m]."""
 
@@ -140,12 +141,14 @@ def generate(text: str) -> World:
         key, _, value = pair.partition("=")
         if key not in KEYS:
             raise WorldError(f"world {text!r}: {key!r} is not known; there are {', '.join(KEYS)}")
+        if ".." in value:
+            raise WorldError(f"world {text!r}: one world has one {key}; a range stands for a list of worlds")
         try:
             given[key] = KEYS[key](value)
         except ValueError:
             raise WorldError(f"world {text!r}: {key}={value!r} is no number") from None
-    if not 0 <= given.get("seed", 0) < 1 << 32:
-        raise WorldError(f"world {text!r}: seed must be 0 .. 4294967295")
+    if not 0 <= given.get("seed", 0) <= MOST_SEED:
+        raise WorldError(f"world {text!r}: seed must be 0 .. {MOST_SEED}")
     if not 0.0 <= given.get("difficulty", 0.0) <= 1.0:
         raise WorldError(f"world {text!r}: difficulty must be 0 .. 1")
     if not SMALLEST <= given.get("size", SMALLEST) <= LARGEST:

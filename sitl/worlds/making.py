@@ -37,9 +37,14 @@ def made(
         markings: painted on the ground.
         ground: the ground itself; None: the square of the size about the origin.
     """
-    full = name + ":" + ",".join(f"{key}={value:g}" for key, value in zip(KEYS, figures))
+    full = name + ":" + ",".join(f"{key}={_written(value)}" for key, value in zip(KEYS, figures))
     ground = ground or Marking((0.0, 0.0), size=(figures[2], figures[2]), colour="white", name="ground")
     return World(full, tuple(solids), (start,), description, plan_height=1.0, markings=(ground, *markings))
+
+
+def _written(number: float) -> str:
+    """All digits that ``generate`` needs to make the same number again."""
+    return repr(number).removesuffix(".0")
 
 
 def wall(a: tuple[float, float], b: tuple[float, float], name: str) -> Box:

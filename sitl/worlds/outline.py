@@ -15,6 +15,8 @@ from .world import World
 
 _SEAM = 0.0005
 """Solids that stand this near to each other count as joined, and lesser parts of edges are left out [m]."""
+_NEAR = 20.0 * _SEAM
+"""Polygons that stand farther apart than this, seen along x or y, hide nothing of each other [m]."""
 _PARALLEL = 0.99
 
 
@@ -29,9 +31,12 @@ def outline(world: World, height: float) -> Array:
     The solid lies left of each segment.
     """
     polygons = footprints(world, height)
+    low = np.array([polygon.min(axis=0) for polygon in polygons]).reshape(-1, 2)
+    high = np.array([polygon.max(axis=0) for polygon in polygons]).reshape(-1, 2)
     kept = []
     for number, polygon in enumerate(polygons):
-        others = [(other, k < number) for k, other in enumerate(polygons) if k != number]
+        meets = ((low <= high[number] + _NEAR) & (high >= low[number] - _NEAR)).all(axis=1)
+        others = [(polygons[k], k < number) for k in np.flatnonzero(meets).tolist() if k != number]
         for start, end in zip(polygon, np.roll(polygon, -1, axis=0)):
             way = end - start
             shortest = _SEAM / lengths(way)

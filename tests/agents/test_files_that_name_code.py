@@ -87,6 +87,8 @@ OUTSIDE = [
     ({"threads": 100_000}, "threads = 100000", "threads=100000"),
     ({"world": "/dev/zero"}, "world = '/dev/zero'", "world=/dev/zero"),
     ({"world": "../a b.toml"}, r"world = '\.\./a b\.toml'", "world='../a b.toml'"),
+    ({"world": ["maze", "theirs.toml"]}, r"world = \['maze', 'theirs\.toml'\]", """world='["maze", "theirs.toml"]'"""),
+    ({"world": "rooms:seed=1../x.toml"}, r"world = 'rooms:seed=1\.\./x\.toml'", "world=rooms:seed=1../x.toml"),
     ({"physics": "json:127.0.0.1:9002"}, "physics = 'json:127.0.0.1:9002'", "physics=json:127.0.0.1:9002"),
     ({"params": "/etc/theirs.parm"}, "params = '/etc/theirs.parm'", "params=/etc/theirs.parm"),
     ({"render_mode": "human"}, "render_mode = 'human'", "render_mode=human"),
@@ -120,10 +122,11 @@ def test_environments_of_others_take_numbers_alone(tmp_path):
 def test_names_of_worlds_are_no_files():
     assert set(code_in_files.MADE) == set(generated.GENERATORS)
     made = ("forest", "forest:", "forest:seed=3,difficulty=0.8", "car-park:size=4e1", *worlds.names())
-    free = [{"world": name} for name in made] + [{"threads": count} for count in (1, os.cpu_count())]
+    lists = ("rooms:seed=1..3", ["maze", "labyrinth:size=60,seed=1..2,scale=3"])
+    free = [{"world": name} for name in (*made, *lists)] + [{"threads": count} for count in (1, os.cpu_count())]
     assert [named for options in free for named in code_in_files.code_of_options(options)] == []
-    for name in made:
-        worlds.load(name)
+    for name in (*made, *lists):
+        worlds.load_all(name)
 
 
 @pytest.mark.parametrize(

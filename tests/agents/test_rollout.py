@@ -140,7 +140,7 @@ def test_the_command_writes_a_row_an_episode(tmp_path, capsys):
     assert main([*command, "--trajectories"]) == 0
     assert "3 episodes: mean reward" in capsys.readouterr().out
     head, *rows = (out / "episodes.csv").read_text().splitlines()
-    assert head == "episode,seed,reward,steps,terminated,crashed,reached,simulated_s,laps"
+    assert head == "episode,seed,reward,steps,terminated,crashed,reached,simulated_s,laps,judge"
     assert [row.split(",")[:2] for row in rows] == [[str(k), str(environments.seed_of(1, k))] for k in range(3)]
     assert (out / "0000000" / TRAJECTORIES).exists()
     assert main(command) != 0 and "is not empty" in capsys.readouterr().err

@@ -27,7 +27,7 @@ def test_a_page_is_what_the_code_says(name: str) -> None:
 def test_every_environment_with_places_has_a_page() -> None:
     listed = (DOCS / "envs" / "index.md").read_text(encoding="utf-8")
     for name in sitl.envs.NEW:
-        word = name.removeprefix("sitl/").removesuffix("-v0").removesuffix("Discrete")
+        word = name.removeprefix("sitl/").removesuffix("-v1").removesuffix("Discrete")
         assert f"({word}.md)" in listed and (DOCS / "envs" / f"{word}.md").is_file()
 
 

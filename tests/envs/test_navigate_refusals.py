@@ -71,7 +71,7 @@ def test_actions_outside_of_a_box_are_refused(action):
         ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics, .*did you mean 'lidar'"),
         ({"wrld": "maze"}, r"option 'wrld' .*did you mean 'world'"),
         ({"render_mode": "ascii"}, r"render_mode 'ascii' is not known"),
-        ({"info": None}, r"info = None; it must be names of rewards, true_pose, events"),
+        ({"info": None}, r"info = None; it must be names of rewards, true_pose, estimate_error, events"),
         ({"robot": "erle_rover", "start": (1e9, 0.0, 0.0)}, r"start: north = 1000000000.*-100000 .. 100000 m"),
     ],
 )

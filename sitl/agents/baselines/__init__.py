@@ -32,8 +32,8 @@ def file(name: str) -> Path:
 
 
 def of_preset(preset: str) -> str:
-    """What the policy of an environment is called, by the environment's preset (``sitl.envs.ids``)."""
-    form = DISCRETE.removeprefix("-")
+    """What the policy of an environment is called, by the environment's preset (``sitl.envs.ids``), of any version."""
+    form, preset = DISCRETE.removeprefix("-"), preset.removesuffix("-v1")
     return preset.removesuffix(form) + DISCRETE if preset.endswith(form) else preset
 
 

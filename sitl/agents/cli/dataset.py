@@ -23,7 +23,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="The dataset is stored in Minari's folder ($MINARI_DATASETS_PATH), and minari.load_dataset "
         "opens it. The same command gives the same dataset.",
     )
-    record.add_argument("env", metavar="ENV", help="id of the environment, such as sitl/CopterWaypoint-v0")
+    record.add_argument("env", metavar="ENV", help="id of the environment, such as sitl/CopterWaypoint-v1")
     experts = ", ".join((*AUTOPILOTS, datasets.BASELINE, RANDOM))
     record.add_argument(
         "--expert",

@@ -144,7 +144,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Trains an agent and writes a run folder: config.json, episodes.csv, the model, curve.png. "
         "Ctrl-C stops the training after the episode; --resume continues it without loss.",
     )
-    parser.add_argument("env", nargs="?", metavar="ENV", help="id of an environment, such as sitl/CopterHover-v0")
+    parser.add_argument("env", nargs="?", metavar="ENV", help="id of an environment, such as sitl/CopterHover-v1")
     add_recipe(parser)
     parser.add_argument(
         "--algo",

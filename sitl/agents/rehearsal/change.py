@@ -12,6 +12,7 @@ from typing import Any
 from sitl import worlds
 from sitl.errors import did_you_mean
 from sitl.worlds import World
+from sitl.worlds.lists import is_range
 from sitl.worlds.shapes import Box, Solid
 
 from ..errors import AgentError, check_names
@@ -148,6 +149,9 @@ class Change:
         if self.latency is not None:
             out["latency"] = float(self.latency)
         if self._alters_world:
+            of_home = home.get("world")
+            if of_home is not None and (not isinstance(of_home, str | Path | World) or is_range(of_home)):
+                raise AgentError(f"change {self.name!r} mirrors or stretches one world; at home there are {of_home!r}")
             out["world"] = altered(robot.world, self.mirror, float(self.stretch))
         return out
 

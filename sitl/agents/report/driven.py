@@ -83,12 +83,15 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
     def __init__(self, env: gym.Env[Any, Any]) -> None:
         super().__init__(env)
         self._noted: list[list[tuple[float, float]]] = []
+        self.worlds: list[World] = []
+        """That of each episode."""
         self._where = place_of(env)
 
     def reset(self, **arguments: Any) -> Any:
         """See ``gymnasium.Env``."""
         found = self.env.reset(**arguments)
         self._noted.append([self._where()])
+        self.worlds.append(self.env.unwrapped.world)  # type: ignore[attr-defined]
         return found
 
     def step(self, action: Any) -> Any:
@@ -151,7 +154,7 @@ def drive(path: Path, plan: EvaluationPlan, watch: Callable[[Played], None] = la
         found = evaluate(noted, policy, plan.episodes, poses=poses, watch=watch)
         about = facts(env, {**run.config.env_options, **plan.options}.get("observation", "digits"))
         trails = noted.trails
-        return Driven(found, trails[:DRAWN], tuple(whereabouts(trail, about.world) for trail in trails), about)
+        return Driven(found, trails[:DRAWN], tuple(map(whereabouts, trails, noted.worlds)), about)
 
 
 def facts(env: gym.Env[Any, Any], asked: Any) -> Facts:

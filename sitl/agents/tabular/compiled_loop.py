@@ -159,6 +159,7 @@ class CompiledLoop:
         tables = [len(term.rewards) for term in session.task.terms if isinstance(term, ByAction)]
         return (
             session.latency is None
+            and not session.varies
             and type(session.robot) is Turtlebot
             and type(session.robot.robots) is Turtlebots
             and type(session.task) is Task

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,15 +20,18 @@ from sitl.view.layout import GRID, side_by_side
 from sitl.view.record import hits
 from sitl.view.shape import Shape, plain
 from sitl.view.signals import SignalError
+from sitl.worlds import World
 
 from ..arena import flies
-from ..robots.robot import Robot
+from ..robots.robot import Robot, world_of
 from ..session import Session
 from ..targets.places import PlacesTask
 from ..tasks import ReachGoal
 
 _MOST = 256
 """Numbers of an observation that can be plotted: pictures are not."""
+_DRAWN_EVERY = 1.0
+"""Worlds of many robots are drawn anew so often, at most [1/s]: with many, there is always one that changes."""
 _TURNING = 120.0
 """Speed at which rotors are drawn: robots do not tell it [rad/s]."""
 
@@ -47,6 +51,8 @@ class Captured(NamedTuple):
     total: float
     """Sum of the rewards of its episode."""
     signals: dict[str, float]
+    worlds: tuple[World, ...]
+    """Of all robots, where episodes are in several."""
 
 
 class EnvSource:
@@ -75,6 +81,8 @@ class EnvSource:
         self._rotors = (_TURNING, _TURNING, -_TURNING, -_TURNING) * 4
         self._rolled, self._last = np.zeros(2), (0, math.nan)
         self._plan: tuple[bytes, Plan] = (b"", Plan())
+        self._drawn: tuple[tuple[World, ...], int, World] | None = None
+        """Worlds of all robots, when they were drawn last, and as one."""
 
     # ------------------------------------------------------------------ where the environment is
 
@@ -95,8 +103,9 @@ class EnvSource:
         k, robot = self.chosen, self._robot
         time = float(np.asarray(robot.time)[k])
         places, signals = self._places(k), self._signals(k)
+        worlds = tuple(world_of(robot, j) for j in range(robot.count)) if self._session.varies else ()
         return Captured(
-            k, time, states(robot), np.array(robot.scan[k]), places, self.episode, self._total, signals
+            k, time, states(robot), np.array(robot.scan[k]), places, self.episode, self._total, signals, worlds
         )  # fmt: skip
 
     def _places(self, k: int) -> Points:
@@ -172,7 +181,8 @@ class EnvSource:
             pos=Vec3(*pos[k].tolist()), q=q[k], vel=Vec3(vx * c - vy * s, -(vx * s + vy * c), -vz),
             mode=f"episode {captured.episode}", armed=True, rotors=self._rotors,
             rolled=(float(self._rolled[0]), float(self._rolled[1])),
-            scan=self._scan(captured), plan=self._planned(captured.places, offset), signals=captured.signals,
+            world=self._world(captured), scan=self._scan(captured),
+            plan=self._planned(captured.places, offset), signals=captured.signals,
             company=Company(pos, np.array([tuple(each) for each in q]), k) if len(state) > 1 else None,
             facts=(
                 ("time", f"{captured.time:.1f} s"), ("return", f"{captured.total:.2f}"),
@@ -180,6 +190,18 @@ class EnvSource:
                 (f"speed ({whose})", f"{speed:.2f} m/s"),
             ),
         )  # fmt: skip
+
+    def _world(self, captured: Captured) -> World | None:
+        """What is drawn around robots that are in several worlds; None: what the stage has."""
+        worlds = captured.worlds
+        if not worlds:
+            return None
+        if len(worlds) == 1 or self.layout != GRID:
+            return worlds[captured.chosen]
+        now = round(_DRAWN_EVERY * captured.time)
+        if self._drawn is None or (worlds != self._drawn[0] and now != self._drawn[1]):
+            self._drawn = worlds, now, beside(worlds, self._offsets)
+        return self._drawn[2]
 
     def _offset(self, k: int) -> Points:
         has = self._robot.count > 1 and self.layout == GRID
@@ -208,6 +230,21 @@ class EnvSource:
             marks = (Mark(f"place {j + 1}", Vec3(*each), j) for j, each in enumerate(at.tolist()))
             self._plan = (key, Plan(items=tuple(marks)))
         return self._plan[1]
+
+
+def beside(worlds: Sequence[World], offsets: Points) -> World:
+    """Worlds side by side as one, for drawing; ``offsets``: where each stands [m], shape (n, 3)."""
+    solids = [
+        replace(solid, centre=tuple((np.array(solid.centre) + at).tolist()))
+        for world, at in zip(worlds, offsets)
+        for solid in world.solids
+    ]
+    markings = [
+        replace(marking, centre=tuple((np.array(marking.centre) + at[:2]).tolist()))
+        for world, at in zip(worlds, offsets)
+        for marking in world.markings
+    ]
+    return World("side by side", tuple(solids), worlds[0].starts, floor_z=worlds[0].floor_z, markings=tuple(markings))
 
 
 def knows_truth(robot: Robot) -> bool:

@@ -59,6 +59,8 @@ def load(robot: str | Callable[..., Robot], world: World, count: int, options: M
         raise EnvOptionError(f"robot {robot!r} is neither a name ({', '.join(ROBOTS)}) nor a class")
     parameters = inspect.signature(made).parameters
     if not any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
+        if "boots" not in parameters and options.get("boots") == 1:  # as of ids -v0: without an autopilot there is none
+            options = {name: value for name, value in options.items() if name != "boots"}
         for option in options:
             if option not in parameters:
                 own = [p for p in parameters if p not in ("world", "count")]

@@ -32,6 +32,7 @@ from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.receivers import equipped
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned, to_ned
 
@@ -42,6 +43,7 @@ from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
 from ..options import COMMON, EnvOptionError, unknown
 from .at_connection import SocketVehicles
+from .boots import check_boots
 from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
@@ -96,11 +98,12 @@ class AutopilotRobot:
             raise unknown("reset", chosen.reset, RESETS)
         if chosen.begin not in BEGINS:
             raise unknown("begin", chosen.begin, BEGINS)
+        check_boots(chosen.boots)
         try:
-            self.airframe = airframe = vehicles.load(chosen.frame)
-        except AirframeError as error:
+            self.airframe = airframe = equipped(vehicles.load(chosen.frame), chosen.sensors)
+        except (AirframeError, OptionError) as error:
             raise EnvOptionError(str(error)) from None
-        self.world, self.count = worlds.load(world), count
+        first, self.count = worlds.load(world), count
         self.name = airframe.name
         self.kind = kind = robot_kind(airframe.kind)
         readings = int(airframe.value("lidar_samples"))
@@ -120,14 +123,14 @@ class AutopilotRobot:
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
         try:
-            scenario = Scenario(airframe, chosen.home, params=chosen.params, world=self.world, physics=chosen.physics)
+            scenario = Scenario(airframe, chosen.home, params=chosen.params, world=first, physics=chosen.physics)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         arrays: Any = robot_arrays(count, readings)
         self.scan, self.state, self.collided, self.time, self._began_us, self.reports = arrays
         self.pose, self.velocity = self.state[:, :4], self.state[:, 4:8]
         self._truth, self._true_reports = np.zeros_like(self.state), np.zeros((count, TRUE_REPORT))
-        self._setup = setup = VehicleSetup(chosen, count, airframe, kind, self.world, scenario, self.angles, arrays)
+        self._setup = setup = VehicleSetup(chosen, count, airframe, kind, first, scenario, self.angles, arrays)
         self._vehicles = made = make_vehicles(setup, choice)
         is_driven = isinstance(made, FleetVehicles) and kind.drive is not None
         self.step_time, self.setpoints = 0.1, tuple(s for s in kind.setpoints if s is not MOTORS or is_driven)
@@ -147,6 +150,24 @@ class AutopilotRobot:
         """Kind of set-point and interval of telemetry [us] that vehicles of a fleet are ready for."""
         self._unready = set(range(count))
         """Those of them that are not, or whose episode has just begun."""
+        self.floors = np.full(count, float(first.floor_z))
+        """See ``TravellingRobot``."""
+
+    @property
+    def world(self) -> World:
+        """See ``Robot``."""
+        return self._vehicles.worlds[0]
+
+    @property
+    def worlds(self) -> list[World]:
+        """See ``TravellingRobot``."""
+        return self._vehicles.worlds
+
+    def enter(self, index: int, world: World) -> None:
+        """See ``TravellingRobot``."""
+        if world is not self.worlds[index]:
+            self._vehicles.enter(index, world)
+            self.floors[index] = world.floor_z
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
@@ -500,14 +521,19 @@ class AutopilotRobot:
             raise TypeError(f"an environment on {self._vehicles.where} cannot be pickled")
         kept = [None if state is NOT_STARTED else self.snapshot(i) for i, state in enumerate(self._states)]
         vehicles = self._vehicles
-        return {"options": self._given, "kept": kept, "changed": vehicles.changed, "collided": self.collided,
-                "base": vehicles.base, "wanted": [kind.name for kind in self._setup.wanted]}  # fmt: skip
+        given = {**self._given, "world": self._setup.world}
+        wanted = [kind.name for kind in self._setup.wanted]
+        return {"options": given, "worlds": self.worlds, "kept": kept, "changed": vehicles.changed,
+                "collided": self.collided, "base": vehicles.base, "wanted": wanted}  # fmt: skip
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state["options"])  # type: ignore[misc]
         self._vehicles.changed, self._vehicles.base = state["changed"], state["base"]
         for message in state["wanted"]:
             self.ask_for(message)
+        for index, world in enumerate(state["worlds"]):
+            if world != self.worlds[index]:
+                self.enter(index, world)
         for index, kept in enumerate(state["kept"]):
             if kept is not None:
                 self.restore(index, kept)

@@ -6,6 +6,8 @@ Each has its own link, and commands and telemetry are MAVLink's bytes, as for on
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -23,6 +25,7 @@ from sitl.physics.engine import EngineError
 from sitl.simulation import Simulation, Snapshot
 from sitl.turtlebots.native import full_pose
 from sitl.vehicle.faults import Failure
+from sitl.worlds import World
 
 from ..actions import MOTORS
 from ..mavlink.compiled import (
@@ -58,6 +61,7 @@ from ..mavlink.setpoints import (
 from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART
 from ..options import EnvOptionError
+from .boots import draw
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
@@ -96,7 +100,8 @@ class FleetVehicles(InProcessVehicles):
         """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
         self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
         """Start state, seed and move of each vehicle's episode, until its first step."""
-        self._prepared: Prepared | None = None
+        self._prepared: dict[int, Prepared] = {}
+        """By the number of the boot."""
         self._failing: dict[int, list[Failure]] = {}
         """What is ordered to fail from the next step on."""
         self._used = "", 0
@@ -104,6 +109,7 @@ class FleetVehicles(InProcessVehicles):
         lat, lon = setup.options.home[:2]
         self._home = round(1e7 * lat), round(1e7 * lon)
         super().__init__(setup)
+        self._floors = _floors(self.worlds)
 
     def _open(self) -> None:
         count, threads = self.setup.count, self.threads
@@ -111,6 +117,10 @@ class FleetVehicles(InProcessVehicles):
             None, (), lambda scenario: Fleet(scenario, count, threads=threads, core=self._core)
         )
         self._is_open = True
+        self.fleet.holds = max(self.fleet.holds, 2 * self.options.boots)  # each, and ready for a kind of set-point
+        for index, world in enumerate(self.worlds):
+            if world is not self.setup.world:
+                self._enter(index, world)
         self._bind()
         shell = self.fleet.shell
         check_parameters(shell)
@@ -118,6 +128,19 @@ class FleetVehicles(InProcessVehicles):
         self._builders = by_number(shell.bridge.profile.core.builders)
         for end in self._views:
             end.system = shell.bridge.system
+
+    def enter(self, index: int, world: World) -> None:
+        """See ``Vehicles``."""
+        if self._is_open:
+            self._enter(index, world)
+        self.worlds[index] = world
+        self._floors = _floors(self.worlds)
+
+    def _enter(self, index: int, world: World) -> None:
+        try:
+            self.fleet.enter(index, world)
+        except OptionError as error:
+            raise EnvOptionError(f"world {world.name!r}: {error}") from None
 
     def _bind(self) -> None:
         """Look up once what every step needs."""
@@ -138,14 +161,17 @@ class FleetVehicles(InProcessVehicles):
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         figures = tuple(sorted(self.changed[index].items()))
-        base = self.base or self._start
-        if self.options.begin == BOOT or (pose == base and not figures):
-            state, move = self._restored(pose, figures), None
+        base, world = self.base or self._start, self.worlds[index]
+        stays = pose == base and not figures and world is self.setup.world
+        if self.options.begin == BOOT or (self.options.boots == 1 and stays):
+            state, move = self._restored(pose, figures, world, self._boot_of(seed)), None
         else:
-            state = self._restored(base, ())
-            if self._prepared is None or self._prepared.state is not state:
-                self._prepared = Prepared(state, self.setup, base)
-            move = self._prepared.to(pose, figures, seed)
+            boot, walks = draw(self.options.boots, seed)
+            state = self._restored(base, (), self.setup.world, boot)
+            prepared = self._prepared.get(boot)
+            if prepared is None or prepared.state is not state:
+                prepared = self._prepared[boot] = Prepared(state, self.setup, base)
+            move = prepared.to(pose, figures, seed, world, walks)
         ready = self._changed.get((id(state.simulation), *self._used))
         if ready is not None:  # as the last episodes went on
             state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)
@@ -203,14 +229,14 @@ class FleetVehicles(InProcessVehicles):
         begun, self._begun[index] = self._begun[index], None
         self._used = setpoint, interval_us
         if begun is None:
-            self.fleet.put(index, self._ready(self.fleet.snapshot(index), setpoint, interval_us, now))
+            self.fleet.put(index, self._ready(index, self.fleet.snapshot(index), setpoint, interval_us, now))
         else:
             start, seed, move = begun
             key = (id(start), setpoint, interval_us)
             if key not in self._changed:
                 if len(self._changed) >= MAX_STATES:
                     del self._changed[next(iter(self._changed))]
-                self._changed[key] = (start, self._ready(start, setpoint, interval_us))
+                self._changed[key] = (start, self._ready(index, start, setpoint, interval_us))
             ready = self._changed[key][1]
             if move is None:
                 self.fleet.put(index, ready, seed)
@@ -218,8 +244,13 @@ class FleetVehicles(InProcessVehicles):
                 self.fleet.move(index, move, ready)
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 
-    def _ready(self, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED) -> Snapshot:
-        simulation = Simulation(self.fleet.scenario, core=self._core)
+    def _ready(
+        self, index: int, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED
+    ) -> Snapshot:
+        scenario, world = self.fleet.scenario, self.worlds[index]
+        if start.world == world.name != self.setup.world.name:
+            scenario = replace(scenario, world=world, start=None)
+        simulation = Simulation(scenario, core=self._core)
         link = InProcess(simulation, self.setup.inbox())
         simulation.restore(start)
         if now.interval_us != interval_us:
@@ -320,6 +351,8 @@ class FleetVehicles(InProcessVehicles):
 
     def true_states(self, ahead: float, out: Floats) -> None:
         true_states(self._bodies, ahead, out)
+        if self._floors is not None:
+            out[:, 2] += self._floors  # bodies count from the floor
 
     def true_reports(self, out: Floats) -> None:
         true_reports(self._physics, out)
@@ -359,3 +392,9 @@ class FleetVehicles(InProcessVehicles):
     def close(self) -> None:
         self.fleet.close()
         self._is_open = False
+
+
+def _floors(worlds: Sequence[World]) -> Floats | None:
+    """Heights of the floors of vehicles [m]; None: all are 0."""
+    heights = np.array([world.floor_z for world in worlds])
+    return heights if heights.any() else None

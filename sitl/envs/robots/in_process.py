@@ -23,12 +23,17 @@ from sitl.scenario import Scenario
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
 from sitl.vehicles.figures.figure import Figure
+from sitl.worlds import World
 
 from ..mavlink.preparation import INTERVAL_US
 from ..options import EnvOptionError
+from .boots import SINGLE, booted, draw
+from .moves import BOOT
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
+MAX_ELSEWHERE = 8
+"""Vehicles that wait in worlds in which no episode is now."""
 MAX_STATES = 2048
 """Number of start states that are kept, one for each start pose and set of figures: about 40 kB each. Calculating one
 takes about 30 ms."""
@@ -56,6 +61,8 @@ class InProcessVehicles(Vehicles):
     def __init__(self, setup: VehicleSetup) -> None:
         super().__init__(setup)
         self._states: dict[Any, EpisodeState] = {}
+        self._elsewhere: dict[tuple[int, str], InProcess] = {}
+        """(Number, world) -> the vehicle that was flown in a world that its number has left."""
         self._core: Core | None = None
         gcs = self.options.gcs
         try:
@@ -77,17 +84,39 @@ class InProcessVehicles(Vehicles):
         return f"connection {self.options.connection!r}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        state = self._restored(pose, tuple(sorted(self.changed[index].items())))
+        figures = tuple(sorted(self.changed[index].items()))
+        state = self._restored(pose, figures, self.worlds[index], self._boot_of(seed))
         self.restore(index, state)
         self.simulation(index).reseed(seed)
         return state
 
-    def _restored(self, pose: Pose, figures: tuple[tuple[str, float], ...]) -> EpisodeState:
-        """The state after take-off at a pose; calculated on first use."""
-        key = (pose, figures)
+    def enter(self, index: int, world: World) -> None:
+        """See ``Vehicles``: there is a vehicle for each world."""
+        if self._gcs is not None:
+            raise EnvOptionError(
+                f"world {world.name!r}: the vehicle that a ground station (gcs) sees stays in one world"
+            )
+        left = self.links[index]
+        if isinstance(left, InProcess):
+            self._elsewhere[index, self.worlds[index].name] = left
+        self.worlds[index] = world
+        self.links[index] = self._elsewhere.pop((index, world.name), None)
+        if len(self._elsewhere) > MAX_ELSEWHERE:
+            self._elsewhere.pop(next(iter(self._elsewhere))).close()
+
+    def _boot_of(self, seed: int) -> int:
+        """Seed of the boot that an episode begins with."""
+        boots = self.options.boots
+        return seed if self.options.begin == BOOT and boots > 1 else draw(boots, seed).boot
+
+    def _restored(
+        self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World, boot: int = SINGLE
+    ) -> EpisodeState:
+        """The state after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
+        key = (pose, figures, world.name, boot)
         state = self._states.get(key)
         if state is None:
-            simulation = self._simulation(pose, figures)
+            simulation = self._simulation(pose, figures, world, boot)
             link = InProcess(simulation, self.setup.inbox())
             origin = self.prepare(link, pose)
             state = EpisodeState(
@@ -99,24 +128,40 @@ class InProcessVehicles(Vehicles):
             self._states[key] = state
         return state
 
-    def _simulation(self, pose: Pose | None = None, figures: Sequence[tuple[str, float]] = ()) -> Simulation:
-        simulation: Simulation = self._made(pose, figures, lambda scenario: Simulation(scenario, core=self._core))
+    def _simulation(
+        self,
+        pose: Pose | None = None,
+        figures: Sequence[tuple[str, float]] = (),
+        world: World | None = None,
+        boot: int = SINGLE,
+    ) -> Simulation:
+        simulation: Simulation = self._made(
+            pose, figures, lambda scenario: Simulation(scenario, core=self._core), world, boot
+        )
         check_parameters(simulation)
         if self.setup.scenario.physics == NATIVE:
             self._core = simulation.core
         return simulation
 
-    def _made(self, pose: Pose | None, figures: Sequence[tuple[str, float]], make: Callable[[Scenario], Any]) -> Any:
-        """What ``make`` makes of the scenario at a pose, with changed figures.
+    def _made(
+        self,
+        pose: Pose | None,
+        figures: Sequence[tuple[str, float]],
+        make: Callable[[Scenario], Any],
+        world: World | None = None,
+        boot: int = SINGLE,
+    ) -> Any:
+        """What ``make`` makes of the scenario at a pose, with changed figures, in a world (None: the scenario's).
 
         Raises:
             EnvOptionError: an option is refused.
         """
-        scenario, airframe = self.setup.scenario, self.setup.airframe
+        scenario, airframe = booted(self.setup.scenario, self.setup.airframe, boot)
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
         wind = {WIND[name][0]: value for name, value in figures if name in WIND}
         own = {name: value for name, value in figures if name not in WIND}
         params = scenario.parameters | wind
+        scenario = scenario if world is None else replace(scenario, world=world)
         try:
             scenario = replace(scenario, frame=airframe.changed(**own) if own else airframe, params=params, start=start)
             return make(scenario)
@@ -126,7 +171,7 @@ class InProcessVehicles(Vehicles):
     def _link(self, index: int) -> InProcess:
         link = self.links[index]
         if link is None:
-            simulation = self._simulation()
+            simulation = self._simulation(world=self.worlds[index])
             link = self.links[index] = InProcess(simulation, self.setup.inbox())
             if index == 0 and self._gcs is not None:
                 simulation.bridge.add_link(self._gcs)

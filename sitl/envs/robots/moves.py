@@ -12,6 +12,7 @@ from sitl.core.elementary import cos, sin
 from sitl.errors import OptionError
 from sitl.move import WIND, Move
 from sitl.plants.surroundings import start_pose
+from sitl.worlds import World
 from sitl.worlds.shapes import to_heading, to_ned
 
 from ..options import EnvOptionError
@@ -41,13 +42,22 @@ class Prepared:
         wind = v.physics.wind  # type: ignore[attr-defined]
         self._wind = {"wind_speed": wind.speed, "wind_direction": wind.direction, "wind_turbulence": wind.turbulence}
 
-    def to(self, pose: Pose, figures: Sequence[tuple[str, float]], seed: int) -> Move:
+    def to(
+        self,
+        pose: Pose,
+        figures: Sequence[tuple[str, float]],
+        seed: int,
+        world: World,
+        walks: tuple[float, float] | None = None,
+    ) -> Move:
         """The move to a pose: over it, as level and as still as it was prepared.
 
         Args:
             pose: x, y, z [m], yaw [rad] in the world.
             figures: that differ from the prepared vehicle's, by name.
             seed: of the sensors' noise.
+            world: that the pose is in.
+            walks: slow error of the receiver (``Move.walks``); gusts are drawn, too. None: as prepared.
 
         Raises:
             EnvOptionError: the pose is off the floor.
@@ -57,11 +67,13 @@ class Prepared:
         if any(name in changed for name in _WINDS):
             speed, direction, turbulence = (changed.pop(name, self._wind[name]) for name in _WINDS)
             wind = speed, direction, turbulence
+        elif walks is not None and self._wind["wind_turbulence"] > 0.0:
+            wind = self._wind["wind_speed"], self._wind["wind_direction"], self._wind["wind_turbulence"]
         along = changed.get("base_along", self._along)
-        if pose == self._pose and "base_along" not in changed:
+        if pose == self._pose and "base_along" not in changed and walks is None:
             return Move(wind=wind, figures=changed, seed=seed)
         try:
-            start_pose(self._setup.world, (*pose[:3], math.degrees(pose[3])), self._setup.airframe.name)
+            start_pose(world, (*pose[:3], math.degrees(pose[3])), self._setup.airframe.name)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         north, east, _ = to_ned(*pose[:3])
@@ -73,4 +85,5 @@ class Prepared:
             wind=wind,
             figures=changed,
             seed=seed,
+            walks=walks,
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The interface between an environment and its robots. An object is one robot or many, each alone in the same world.
+"""The interface between an environment and its robots. An object is one robot or many, each alone in its world.
 
 Poses are in the frame of world files: x forward, y left, z up [m], yaw counter-clockwise [rad].
 """
@@ -44,6 +44,7 @@ class Robot(Protocol):
     name: str
     count: int
     world: World
+    """That of the first robot: of all, but for a ``TravellingRobot``."""
     volume: Volume
     tick: float
     """Resolution of time: an environment's step is a whole number of ticks [s]."""
@@ -107,6 +108,36 @@ class Robot(Protocol):
 
     def close(self) -> None:
         """Close connections and engines."""
+
+
+@runtime_checkable
+class TravellingRobot(Protocol):
+    """A robot that can begin its episodes in other worlds than that which it was made in."""
+
+    worlds: list[World]
+    """The world of each robot, shape (count,)."""
+    floors: Floats
+    """Height of each robot's floor [m], shape (count,)."""
+
+    def enter(self, index: int, world: World) -> None:
+        """One robot's next episode is in this world: ``reset`` or ``restore`` follows.
+
+        Raises:
+            EnvOptionError: it cannot be there.
+        """
+
+
+def world_of(robot: Any, index: int) -> World:
+    """The world that one robot is in now."""
+    worlds: list[World] | None = getattr(robot, "worlds", None)  # much quicker than to ask for the protocol
+    found: World = robot.world if worlds is None else worlds[index]
+    return found
+
+
+def floors_of(robot: Any) -> Floats | float:
+    """Height of each robot's floor [m], shape (count,); or that of all."""
+    floors: Floats | None = getattr(robot, "floors", None)
+    return float(robot.world.floor_z) if floors is None else floors
 
 
 class LateRobot(Robot, Protocol):

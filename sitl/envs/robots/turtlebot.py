@@ -55,14 +55,34 @@ class Turtlebot:
         physics: str = "native",
     ) -> None:
         self._robots = robots = _fleet(physics)(world, count, airframe, lidar)
-        self.count, self.world, self.scan = count, robots.world, robots.scan
+        self.count, self.scan = count, robots.scan
         self.volume = Volume(airframe.value("radius"), airframe.value("bottom"), airframe.value("top"))
         self.range_max = float(airframe.value("range_max"))
         self.angles = planar.angles(lidar.readings, lidar.field_of_view)
         self._bind()
 
+    @property
+    def world(self) -> World:
+        """See ``Robot``."""
+        return self._robots.worlds[0]
+
+    @property
+    def worlds(self) -> list[World]:
+        """See ``TravellingRobot``."""
+        return self._robots.worlds
+
+    def enter(self, index: int, world: World) -> None:
+        """See ``TravellingRobot``."""
+        try:
+            self._robots.enter(index, world)
+        except ValueError as error:
+            raise EnvOptionError(f"world {world.name!r}: {error}") from None
+        self.floors[index] = world.floor_z
+
     def _bind(self) -> None:
         robots = self._robots
+        self.floors = np.array([world.floor_z for world in robots.worlds])
+        """See ``TravellingRobot``."""
         self.scan = robots.scan
         self._ticks, self._seconds = robots.ticks, -1.0
         self._commands, self._run = robots.commands, robots.advance_each
@@ -194,7 +214,7 @@ class Turtlebot:
         self._robots.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = ("count", "world", "volume", "range_max", "angles", "_robots")
+        kept = ("count", "volume", "range_max", "angles", "_robots")
         return {name: vars(self)[name] for name in kept}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

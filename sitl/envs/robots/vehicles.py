@@ -89,6 +89,12 @@ class AutopilotOptions:
         begin: how vehicles in process on native physics come to the start of an episode: "move" (one vehicle boots and
             takes off at the environment's start pose, once, and is moved to others, with other figures), or "boot" (it
             boots and takes off at each start pose, with each set of figures). Others always boot.
+        boots: number of prepared boots, 1 .. 1024, one of which each episode begins with, by its seed: biases of IMU
+            and compass and the errors of the estimate are those of that boot; the slow error of the receiver is
+            drawn for each episode. With ``begin="boot"`` each episode has a boot of its own. 1: one boot with seed
+            0, with which all episodes begin: the estimate's error at the start is the same constant in all of them.
+        sensors: what tells the vehicle where it is: "gps" (as the airframe has it), "rtk", "mocap", "uwb" or
+            "ardupilot" (``sitl.vehicles.receivers``).
     """
 
     frame: str | Airframe = "erle_rover"
@@ -106,6 +112,8 @@ class AutopilotOptions:
     guard: Guard | Mapping[str, Any] | bool | None = None
     threads: int = 1
     begin: str = "move"
+    boots: int = 64
+    sensors: str = "gps"
 
     @classmethod
     def names(cls) -> list[str]:
@@ -158,6 +166,8 @@ class Vehicles(ABC):
 
     def __init__(self, setup: VehicleSetup) -> None:
         self.setup, self.options = setup, setup.options
+        self.worlds = [setup.world] * setup.count
+        """The world of each vehicle."""
         physics, count = self.options.physics, setup.count
         if physics not in backends() or (physics != NATIVE and not self.simulates):
             raise EnvOptionError(f"physics {physics!r}: it is one of {', '.join(backends())}, of a vehicle in process")
@@ -184,6 +194,17 @@ class Vehicles(ABC):
     def extra_figures(self) -> Mapping[str, Figure]:
         """Figures besides the airframe's that can be changed."""
         return {}
+
+    def enter(self, index: int, world: World) -> None:
+        """One vehicle's next episode is in this world.
+
+        Raises:
+            EnvOptionError: it stays in the world that it was made in, or cannot start in this one.
+        """
+        raise EnvOptionError(
+            f"world {world.name!r}: a vehicle of {self.where} stays in the world {self.setup.world.name!r} that it was "
+            "made in; only vehicles in process change worlds between episodes"
+        )
 
     @property
     @abstractmethod
@@ -244,6 +265,7 @@ class Vehicles(ABC):
             physics = self.physics(index)
             if physics is not None:
                 true_states(physics["body"], ahead, out[index : index + 1])
+                out[index, 2] += self.worlds[index].floor_z  # bodies count from the floor
 
     def true_reports(self, out: Floats) -> None:
         """Write what the vehicles would measure without errors: see ``truth.write_true_reports``. Rows of vehicles

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sitl.worlds import World
+
+from ..arena import Arena
 from ..free_ways import FreeWays
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
@@ -38,12 +41,15 @@ class Among(Waypoints):
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         super().prepare(robot)
-        if self.ceiling is not None and self.flies:
-            x, y, _ = self._limits.high
-            self._limits = self._limits._replace(high=(x, y, robot.world.floor_z + self.ceiling))
         self._ways = FreeWays(robot, self.limit)
         self._left = np.zeros(robot.count)
         """How long each robot's free way to its place is [m]."""
+
+    def _bounded(self, limits: Arena, world: World) -> Arena:
+        if self.ceiling is None or not self.flies:
+            return limits
+        x, y, _ = limits.high
+        return limits._replace(high=(x, y, world.floor_z + self.ceiling))
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""

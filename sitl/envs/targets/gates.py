@@ -12,13 +12,15 @@ import numpy.typing as npt
 
 from sitl.core.array_kernels import Flags, IntLine, Kernel, Line, Table
 from sitl.core.kernels import law
+from sitl.worlds import World
 
 from ...core.elementary import sincos
 from ..arena import flies
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, world_of
 from ..senses import SensingRobot
+from ..worlds import PerWorld
 from .places import PlacesTask
 
 
@@ -37,17 +39,19 @@ class Gate(NamedTuple):
 
 
 @law
-def cross_gates(before: Table, now: Table, gates: Table, at: IntLine, passed: Flags) -> None:
+def cross_gates(before: Table, now: Table, gates: Table, counts: IntLine, at: IntLine, passed: Flags) -> None:
     """Which robots have passed their gate in its direction during a step.
 
     Args:
         before, now: x, y, z of each robot at the step's ends [m], shape (count, 3 or more).
-        gates: rows of ``Gate``, shape (gates, 6).
+        gates: rows of ``Gate``, one robot's after another's, each with as many, shape (count * most, 6).
+        counts: how many of each robot's rows are gates, shape (count,).
         at: number of each robot's gate, shape (count,).
         passed: written, shape (count,).
     """
+    most = gates.shape[0] // at.shape[0]
     for i in range(at.shape[0]):
-        row = at[i] % gates.shape[0]
+        row = i * most + at[i] % counts[i]
         s, c = sincos(gates[row, 3])
         x, y = before[i, 0] - gates[row, 0], before[i, 1] - gates[row, 1]
         u, v = now[i, 0] - gates[row, 0], now[i, 1] - gates[row, 1]
@@ -73,8 +77,8 @@ class GatePrices(NamedTuple):
 
 @law
 def pay_gates(
-    prices: GatePrices, before: Table, now: Table, places: Table, at: IntLine, laps: Table, round_: int, time: Line,
-    passed: Flags, crashed: Flags, success: Flags, rewards: Line, terminated: Flags, paid: Table,
+    prices: GatePrices, before: Table, now: Table, places: Table, at: IntLine, laps: Table, counts: IntLine, last: int,
+    time: Line, passed: Flags, crashed: Flags, success: Flags, rewards: Line, terminated: Flags, paid: Table,
 ) -> None:  # fmt: skip
     """Pay for a step through gates.
 
@@ -84,7 +88,8 @@ def pay_gates(
         places: middles of the gates of all laps, one robot after another [m], shape (count * n, 3).
         at: number of each robot's gate; goes on where that is passed, shape (count,).
         laps: when each robot's lap began, how long its last one took, and its shortest one [s], shape (count, 3).
-        round_: gates of a lap.
+        counts: gates of a lap of each robot, shape (count,).
+        last: number of laps.
         time: of each robot's episode [s], shape (count,).
         passed: whether each robot has passed its gate, shape (count,).
         crashed: robots whose terms are told as 0, shape (count,).
@@ -106,11 +111,11 @@ def pay_gates(
         before[i, 0], before[i, 1], before[i, 2] = now[i, 0], now[i, 1], now[i, 2]
         if passed[i]:
             at[i] += 1
-            if at[i] % round_ == 0:
+            if at[i] % counts[i] == 0:
                 took = time[i] - laps[i, 0]
                 best = min(laps[i, 2], took) if laps[i, 2] > 0.0 else took
                 laps[i, 0], laps[i, 1], laps[i, 2] = time[i], took, best
-        success[i] = at[i] == per_robot
+        success[i] = at[i] == last * counts[i]
         if success[i]:
             terminated[i] = True
 
@@ -139,6 +144,13 @@ class Gates(PlacesTask):
         others: further arguments of ``PlacesTask``.
     """
 
+    sees_truth = True
+
+    _rows: Floats
+    """Gates of each robot's world, shape (count, gates, 6); valid after ``prepare``."""
+    _counts: npt.NDArray[np.int64]
+    """How many of them there are, shape (count,)."""
+
     def __init__(
         self,
         gates: Sequence[Gate | Sequence[float]] | None = None,
@@ -149,50 +161,74 @@ class Gates(PlacesTask):
         **others: Any,
     ) -> None:
         super().__init__(**others)
-        self._gates = np.zeros((0, 6))
-        if gates is not None:
-            self._take(gates)
+        self._given_gates = None if gates is None else _checked(gates)
         if not 1 <= laps <= 100:
             raise EnvOptionError(f"Gates(laps={laps}); it must be 1 .. 100")
         self.laps, self.progress, self.gate_reward, self.each_second = laps, progress, gate_reward, each_second
 
-    def _take(self, gates: Any) -> None:
-        try:
-            self._gates = np.array([tuple(Gate(*gate)) for gate in gates], np.float64)
-        except (TypeError, ValueError):
-            self._gates = np.full((0, 6), np.nan)
-        if not len(self._gates) or not np.isfinite(self._gates).all() or not (self._gates[:, 4:] > 0.0).all():
-            raise EnvOptionError(f"Gates(gates={gates!r}); it must be (x, y, z, yaw[, width, height]), one at least")
-        self._fixed = self._gates[:, :3]
+    def _gates_of(self, world: World) -> Floats:
+        """Rows of ``Gate`` of a world, shape (gates, 6)."""
+        return self._painted(world) if self._given_gates is None else self._given_gates
 
-    def _painted(self, robot: Robot) -> list[Gate]:
+    def _painted(self, world: World) -> Floats:
         """The gates that are marked on the world's floor."""
-        world = robot.world
         found = {m.name: m for m in world.markings if m.name.startswith("gate ")}
         names = [f"gate {k + 1}" for k in range(len(found))]
         if not found or set(names) != set(found):
             has = ", ".join(found) or "none"
             raise EnvOptionError(f'Gates: world {world.name!r} needs markings "gate 1", "gate 2", ...; it has {has}')
-        middle = world.floor_z + 0.5 * _HIGH if flies(robot) else world.start(robot.name).position[2]
+        middle = world.floor_z + 0.5 * _HIGH if self.flies else world.start(self._robot.name).position[2]
         marked = [found[name] for name in names]
-        return [Gate(*m.centre, middle, m.yaw, m.size[1], _HIGH) for m in marked]
+        return _checked([Gate(*m.centre, middle, m.yaw, m.size[1], _HIGH) for m in marked])
+
+    def gates_at(self, index: int) -> list[Gate]:
+        """Those of one robot's world, in their order."""
+        return [Gate(*gate) for gate in self._gates_in(world_of(self._robot, index)).tolist()]
 
     @property
     def gates(self) -> list[Gate]:
-        """In their order."""
-        return [Gate(*gate) for gate in self._gates.tolist()]
+        """Those of the first robot's world."""
+        return self.gates_at(0)
 
     @property
     def per_robot(self) -> int:
-        """See ``PlacesTask``: gates of all rounds."""
-        return self.laps * len(self._gates)
+        """See ``PlacesTask``: gates of all rounds, in the world that has most; of others the last gate comes again."""
+        return self.laps * self._rows.shape[1]
+
+    @property
+    def is_of_one_world(self) -> bool:  # type: ignore[override]
+        """See ``Task``."""
+        return self._given_gates is not None
+
+    def _fixed_in(self, world: World) -> Floats | None:
+        return self._gates_in(world)[:, :3]
+
+    def _held(self, index: int) -> int:
+        return self.laps * int(self._counts[index])
+
+    def enter(self, index: int, robot: Robot) -> None:
+        """See ``Task``."""
+        super().enter(index, robot)
+        gates = self._gates_in(world_of(robot, index))
+        more = len(gates) - self._rows.shape[1]
+        if more > 0:
+            self._rows = np.concatenate((self._rows, np.repeat(self._rows[:, -1:], more, axis=1)), axis=1)
+            self.places = np.concatenate(
+                (self.places, np.repeat(self.places[:, -1:], self.laps * more, axis=1)), axis=1
+            )
+            self._link()
+        self._rows[index, : len(gates)], self._rows[index, len(gates) :] = gates, gates[-1]
+        self._counts[index] = len(gates)
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         if not isinstance(robot, SensingRobot):
             raise EnvOptionError(f"task: robot {robot.name!r} does not say where it is")
-        if self._fixed is None:
-            self._take(self._painted(robot))
+        self._robot, self.flies = robot, flies(robot)
+        self._gates_in = PerWorld(self._gates_of)
+        gates = self._gates_in(robot.world)
+        self._rows = np.tile(gates, (robot.count, 1, 1))
+        self._counts = np.full(robot.count, len(gates))
         super().prepare(robot)
         self._sensing: SensingRobot = robot
         self._before = np.zeros((robot.count, 3))
@@ -202,7 +238,9 @@ class Gates(PlacesTask):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        self.places[index] = np.tile(self._gates[:, :3], (self.laps, 1))
+        gates = self._rows[index, : self._counts[index], :3]
+        self.places[index] = gates[-1]
+        self.places[index, : self._held(index)] = np.tile(gates, (self.laps, 1))
         self.at[index], self.success[index], self._lap[index] = 0, False, 0.0
         self._before[index] = self._sensing.judged_state()[index, :3]
 
@@ -212,10 +250,10 @@ class Gates(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         now = step.judge.true_table()
-        _cross.unchecked()(self._before, now, self._gates, self.at, self._passed)
+        _cross.unchecked()(self._before, now, self._rows.reshape(-1, 6), self._counts, self.at, self._passed)
         prices = GatePrices(float(self.progress), float(self.gate_reward), float(self.each_second * step.seconds))
         _pay.unchecked()(
-            prices, self._before, now, self._rows, self.at, self._lap, len(self._gates),
+            prices, self._before, now, self._spots, self.at, self._lap, self._counts, self.laps,
             np.ascontiguousarray(step.robot.time), self._passed, self._ends.crashed, self.success, rewards, terminated,
             self._paid,
         )  # fmt: skip
@@ -237,3 +275,14 @@ class Gates(PlacesTask):
         """See ``Task``."""
         super().recall(index, memory)
         self._before[index], self._lap[index] = memory[3:5]
+
+
+def _checked(gates: Any) -> Floats:
+    """Rows of ``Gate``, shape (gates, 6)."""
+    try:
+        rows = np.array([tuple(Gate(*gate)) for gate in gates], np.float64)
+    except (TypeError, ValueError):
+        rows = np.full((0, 6), np.nan)
+    if not len(rows) or not np.isfinite(rows).all() or not (rows[:, 4:] > 0.0).all():
+        raise EnvOptionError(f"Gates(gates={gates!r}); it must be (x, y, z, yaw[, width, height]), one at least")
+    return rows

@@ -104,8 +104,9 @@ class Hold(PlacesTask):
         scale: distance from which on the reward is 0 [m].
         half: distance at which the reward is half of that at the target [m]; None: it decreases linearly (``scale``).
         effort: weight of the squared actions.
-        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1. With ``out_ends``
-            False nothing ends an episode early but a crash.
+        is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1.
+        far: with ``is_sparse``, a step outside of ``radius`` pays -0.5 - 0.5 * min(distance / far, 1) instead of -1:
+            less the farther it is [m].
         others: further arguments of ``PlacesTask``.
     """
 
@@ -120,6 +121,7 @@ class Hold(PlacesTask):
         effort: float = 0.05,
         is_sparse: bool = False,
         half: float | None = None,
+        far: float = 0.0,
         **others: Any,
     ) -> None:
         super().__init__(**others)
@@ -132,7 +134,9 @@ class Hold(PlacesTask):
             if not value > 0.0:
                 raise EnvOptionError(f"Hold({name}={value}); it must be above 0")
         self.offset, self.radius, self.hold, self.scale, self.effort = offset, radius, hold, scale, effort
-        self.is_sparse, self.half = is_sparse, half
+        self.is_sparse, self.half, self.far = is_sparse, half, far
+        if not far >= 0.0:
+            raise EnvOptionError(f"Hold(far={far}); it must be 0 m or more")
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -144,7 +148,8 @@ class Hold(PlacesTask):
         """See ``Task``."""
         wide, high = self.offset
         place = self.judged_pose()[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
-        self.places[index, 0] = np.clip(place, self.arena.low, self.arena.high)
+        arena = self.arena_at(index)
+        self.places[index, 0] = np.clip(place, arena.low, arena.high)
         self.at[index], self.since[index], self.success[index] = 0, 0.0, False
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
@@ -156,7 +161,7 @@ class Hold(PlacesTask):
             float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, step.seconds,
         )  # fmt: skip
         _judge.unchecked()(
-            rule, self._table, self._rows, self.axes, actions, self._ends.crashed, self.since, self.success, rewards,
+            rule, self._table, self._spots, self.axes, actions, self._ends.crashed, self.since, self.success, rewards,
             self._paid,
         )  # fmt: skip
 
@@ -165,7 +170,8 @@ class Hold(PlacesTask):
         return ("goal",) if self.is_sparse else ("nearness", "effort") if self.effort else ("nearness",)
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
-        """0 within ``radius``, -1 elsewhere: what a goal-conditioned step pays, of goals [m] of shape (..., 3).
+        """0 within ``radius``, -1 elsewhere (see ``far``): what a goal-conditioned step pays, of goals [m] of shape
+        (..., 3).
 
         Args:
             achieved: where the robot believes to be.
@@ -181,6 +187,8 @@ class Hold(PlacesTask):
 
     def _worth(self, distance: Floats) -> Floats:
         out: Floats = np.where(distance < self.radius, 0.0, -1.0)
+        if self.far > 0.0:
+            out *= 0.5 + 0.5 * np.minimum(distance / self.far, 1.0)
         return out
 
     def memory(self, index: int) -> Any:

@@ -12,10 +12,12 @@ import numpy.typing as npt
 from sitl.core.array_kernels import Flags, Kernel, Line, Table
 from sitl.core.elementary import cos, hypot, sin, sincos
 from sitl.core.kernels import law
+from sitl.worlds import World
 
+from ..arena import Arena
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, floors_of, world_of
 from ..senses import LandingRobot, SensingRobot
 from .moving import MovingTask, end_lost, note_error
 
@@ -51,7 +53,6 @@ class Landing(NamedTuple):
     lost_reward: float
     settle: float
     """Time at the start that does not count in the error [s]."""
-    floor: float
     lets_down: bool
     """Whether the autopilot puts the robot down."""
 
@@ -92,14 +93,15 @@ def write_pads(velocity: Table, centre: Table, times: Table, out: Table) -> None
 
 @law
 def judge_land(
-    rule: Landing, state: Table, pads: Table, time: Line, landed: Flags, crashed: Flags, so_far: SoFar, success: Flags,
-    rewards: Line, terminated: Flags, paid: Table,
+    rule: Landing, state: Table, floors: Line, pads: Table, time: Line, landed: Flags, crashed: Flags, so_far: SoFar,
+    success: Flags, rewards: Line, terminated: Flags, paid: Table,
 ) -> None:  # fmt: skip
     """Judge a step of robots that land.
 
     Args:
         rule: see ``Landing``.
         state: x, y, z [m], yaw [rad], forward, left, up [m/s] as they really are, shape (count, 8 or more).
+        floors: heights of the floors of the robots' worlds [m], shape (count,).
         pads: where the pads are [m], shape (count, 3).
         time: of each robot's episode [s], shape (count,).
         landed: whether the autopilot says so, shape (count,).
@@ -117,7 +119,7 @@ def judge_land(
         gain = rule.progress * (so_far.distance[i] - distance)
         rewards[i] += gain + rule.time
         so_far.distance[i] = distance
-        height, climb = state[i, 2] - rule.floor, state[i, 6]
+        height, climb = state[i, 2] - floors[i], state[i, 6]
         down = ((height < DOWN and not rule.lets_down) or landed[i]) and not terminated[i]
         turned = 1.0 if time[i] % 20.0 < 10.0 else -1.0
         s, c = sincos(state[i, 3])
@@ -166,6 +168,7 @@ class Land(MovingTask):
         others: further arguments of ``MovingTask``; ``radius`` and ``scale`` have no effect.
     """
 
+    sees_truth = True
     lands = True
     """It ends on the ground: a guard's floor must let it down there."""
 
@@ -199,17 +202,19 @@ class Land(MovingTask):
         self._sensing: SensingRobot = robot
         self._landing: LandingRobot = robot
         self._lets_down = self.speed == 0.0 and robot.let_down(LET_DOWN)
-        self._limits = self._limits._replace(low=(*self._limits.low[:2], -math.inf))
         self._velocity = np.zeros((robot.count, 3))
         """Of each robot's pad at first [m/s]."""
         self._distance, self._sinking = np.zeros(robot.count), np.zeros(robot.count)
         self._touched = np.zeros((robot.count, 3))
         """Way from where it touched the ground to the pad; as long as it flies, from where it is [m]."""
 
+    def _bounded(self, limits: Arena, world: World) -> Arena:
+        return limits._replace(low=(*limits.low[:2], -math.inf))
+
     def _draw(self, index: int, rng: np.random.Generator) -> None:
         way, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
         self.centre[index, :2] += way
-        self.centre[index, 2] = self._robot.world.floor_z
+        self.centre[index, 2] = world_of(self._robot, index).floor_z
         self._velocity[index, :2] = self.speed * cos(heading), self.speed * sin(heading)
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
@@ -232,15 +237,16 @@ class Land(MovingTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = np.ascontiguousarray(step.robot.time)
-        self._write_along(time.reshape(-1, 1), self._rows)
+        floors = np.ascontiguousarray(np.broadcast_to(floors_of(step.robot), time.shape), np.float64)
+        self._write_along(time.reshape(-1, 1), self._spots)
         rule = Landing(
             float(self.pad), float(self.progress), float(self.each_second * step.seconds), float(self.success_reward),
             float(self.crash_reward), float(self.lost), float(self.lost_reward), float(self.settle),
-            float(step.robot.world.floor_z), self._lets_down,
+            self._lets_down,
         )  # fmt: skip
         so_far = SoFar(self._velocity, self._distance, self._sinking, self._touched, self.sums, self.errors)
         _land.unchecked()(
-            rule, step.judge.true_table(), self._rows, time, np.ascontiguousarray(self._landing.has_landed()),
+            rule, step.judge.true_table(), floors, self._spots, time, np.ascontiguousarray(self._landing.has_landed()),
             self._ends.crashed, so_far, self.success, rewards, terminated, self._paid,
         )  # fmt: skip
 

@@ -196,13 +196,13 @@ class MovingTask(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = np.ascontiguousarray(step.robot.time)
-        self._write_along(time.reshape(-1, 1), self._rows)
+        self._write_along(time.reshape(-1, 1), self._spots)
         rule = Following(
             float(self.radius), float(self.settle), float(self.scale), float(self.half or 0.0), float(self.lost),
             float(self.lost_reward), step.seconds,
         )  # fmt: skip
         _follow.unchecked()(
-            rule, self._table, self._rows, self.axes, time, self._ends.crashed, self.sums, self.errors, self.success,
+            rule, self._table, self._spots, self.axes, time, self._ends.crashed, self.sums, self.errors, self.success,
             rewards, terminated, self._paid,
         )  # fmt: skip
 

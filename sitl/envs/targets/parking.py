@@ -12,10 +12,12 @@ import numpy.typing as npt
 
 from sitl.core.array_kernels import Flags, Kernel, Line, Table
 from sitl.core.kernels import law
+from sitl.worlds import World
 
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, world_of
+from ..worlds import PerWorld
 from .places import PlacesTask
 
 _NEAR = 4.0
@@ -134,12 +136,9 @@ class Park(PlacesTask):
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
-        if not len(self._bays):
-            marked = [m for m in robot.world.markings if m.name.startswith("bay ")]
-            if not marked:
-                raise EnvOptionError(f'Park: world {robot.world.name!r} has no markings "bay 1", "bay 2", ...')
-            self._bays = np.array([(*m.centre, m.yaw) for m in marked])
         super().prepare(robot)
+        self._bays_in = PerWorld(self._marked)
+        self._bays_in(robot.world)
         self.headings = np.zeros(robot.count)
         """Of each robot's bay [rad], shape (count,)."""
         self._left = np.zeros(robot.count)
@@ -147,9 +146,29 @@ class Park(PlacesTask):
         self._distance = np.zeros(robot.count)
         """From each robot to its bay [m]."""
 
+    @property
+    def is_of_one_world(self) -> bool:  # type: ignore[override]
+        """See ``Task``."""
+        return len(self._bays) > 0
+
+    def enter(self, index: int, robot: Robot) -> None:
+        """See ``Task``."""
+        super().enter(index, robot)
+        self._bays_in(world_of(robot, index))
+
+    def _marked(self, world: World) -> Floats:
+        """Bays of a world: x, y [m], yaw [rad], shape (n, 3)."""
+        if len(self._bays):
+            return self._bays
+        marked = [m for m in world.markings if m.name.startswith("bay ")]
+        if not marked:
+            raise EnvOptionError(f'Park: world {world.name!r} has no markings "bay 1", "bay 2", ...')
+        return np.array([(*m.centre, m.yaw) for m in marked])
+
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        x, y, yaw = self._bays[int(rng.integers(len(self._bays)))].tolist()
+        bays = self._bays_in(world_of(robot, index))
+        x, y, yaw = bays[int(rng.integers(len(bays)))].tolist()
         self.places[index, 0] = x, y, self.judged_pose()[index, 2]
         self.headings[index], self.at[index], self.success[index] = yaw, 0, False
         assert self.judge_of is not None
@@ -164,7 +183,7 @@ class Park(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         _park.unchecked()(
-            self._rule(step.seconds), self._table, self._rows, self.headings, self._ends.crashed, self._left,
+            self._rule(step.seconds), self._table, self._spots, self.headings, self._ends.crashed, self._left,
             self._distance, self.success, rewards, terminated, self._paid,
         )  # fmt: skip
 

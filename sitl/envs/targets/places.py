@@ -13,15 +13,17 @@ import numpy.typing as npt
 
 from sitl.core.array_kernels import Flags, IntColumn, IntLine, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
+from sitl.worlds import World
 
 from ...core.elementary import sincos
 from ..arena import REACH, Arena, arena_of, flies
 from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, world_of
 from ..senses import arrays_stay
 from ..tasks import Task, count_crashes
+from ..worlds import PerWorld
 
 BEYOND = 5.0
 """An episode ends so far outside of the arena [m]."""
@@ -84,8 +86,10 @@ class Beginning(NamedTuple):
     """A reading above 0 and below it is a crash [m]."""
     contact_ends: bool
     """Whether touching is a crash."""
-    floor: float
-    """Below this height a robot has sunk to the floor, which is a crash [m]."""
+    floor: Line
+    """Below this height a robot has sunk to the floor [m], shape (count,)."""
+    floor_ends: bool
+    """Whether that is a crash."""
 
 
 @law
@@ -101,7 +105,7 @@ def begin_step(by: Beginning, state: Table, rewards: Line, terminated: Flags, cr
     count_crashes(by.scan, by.crash_range, by.touched, by.contact_ends, terminated)
     for i in range(rewards.shape[0]):
         rewards[i] = 0.0
-        if state[i, 2] < by.floor:
+        if by.floor_ends and state[i, 2] < by.floor[i]:
             terminated[i] = True
         crashed[i] = terminated[i]
 
@@ -109,9 +113,9 @@ def begin_step(by: Beginning, state: Table, rewards: Line, terminated: Flags, cr
 class Outside(NamedTuple):
     """The end of the arena, and what ends cost."""
 
-    low: Line
-    high: Line
-    """x, y, z [m], shape (3,)."""
+    low: Table
+    high: Table
+    """x, y, z of each robot's arena [m], shape (count, 3)."""
     reward: float
     ends: bool
     """Whether the end of the arena is the episode's."""
@@ -146,7 +150,8 @@ def end_step(by: Outside, state: Table, success: Flags, rewards: Line, terminate
         if ends.crashed[i]:
             rewards[i] = by.crash_reward
         x, y, z = state[i, 0], state[i, 1], state[i, 2]
-        is_out = x < low[0] or y < low[1] or z < low[2] or x > high[0] or y > high[1] or z > high[2]
+        is_out = x < low[i, 0] or y < low[i, 1] or z < low[i, 2]
+        is_out = is_out or x > high[i, 0] or y > high[i, 1] or z > high[i, 2]
         is_out = is_out and not terminated[i]
         ends.outside[i] = is_out
         ends.paid[i] = 0.0
@@ -159,6 +164,14 @@ def end_step(by: Outside, state: Table, success: Flags, rewards: Line, terminate
 
 write_ways_to = Kernel(write_ways)
 _begin, _end = Kernel(begin_step), Kernel(end_step)
+
+
+class Extent(NamedTuple):
+    """What belongs to a world."""
+
+    arena: Arena
+    limits: Arena
+    """Where an episode ends."""
 
 
 class PlacesTask(Task):
@@ -189,37 +202,30 @@ class PlacesTask(Task):
         self._given, self._reach, self.out_reward = arena, reach, out_reward
         self.out_ends, self.floor_ends = bool(out_ends), bool(floor_ends)
         self._fixed: Floats | None = None
-        """Places that are the same in every episode [m]; the arena holds them. None: they are drawn."""
+        """Places of one world that are the same in every episode [m]; the arena holds them. None: they are drawn."""
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         super().prepare(robot)
-        count = robot.count
-        self.arena = self._given or arena_of(robot, self._reach)
-        if self._fixed is not None and self._given is None:
-            self.arena = self.arena.around(self._fixed[:, :3])
+        count, self._robot = robot.count, robot
         self.flies = flies(robot)
         self.axes = np.array((1.0, 1.0, float(self.flies)))
         assert self.judge_of is not None
         self._ends_on_floor = self.floor_ends and self.flies and self.judge_of.by == TRUTH
-        self._floor = robot.world.floor_z + ON_FLOOR
-        self._limits = self.arena.grown(BEYOND)
-        if not self.flies:
-            (x0, y0, _), (x1, y1, _) = self._limits
-            self._limits = self._limits._replace(low=(x0, y0, -math.inf), high=(x1, y1, math.inf))
+        self._extents = PerWorld(self._extent)
+        self._low, self._high = np.zeros((count, 3)), np.zeros((count, 3))
+        self._floor = np.zeros(count)
+        for index in range(count):
+            self._settle(index)
         self.places = np.zeros((count, self.per_robot, 3))
         """x, y, z of each robot's places [m], shape (count, per_robot, 3)."""
         self.at = np.zeros(count, np.int64)
         """Number of each robot's present place, shape (count,)."""
         self.success = np.zeros(count, np.bool_)
         """Whether each robot has done the task, shape (count,)."""
-        self._robot = robot
-        self._per_robot = self.per_robot
         self._table: Floats = np.zeros((count, 8))
         """Poses and velocities by which the present step is judged."""
         self._ends = Ends(*np.zeros((3, count), np.bool_), np.zeros(count))
-        self._bounds: tuple[Arena, Floats, Floats] | None = None
-        """``_limits``, and its low and high as arrays."""
         self._paid_names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
         self._paid = np.zeros((len(self._paid_names), count))
         """Terms of the last rewards, by name, shape (terms, count)."""
@@ -227,7 +233,7 @@ class PlacesTask(Task):
 
     def _link(self) -> None:
         """Views of arrays: a copy of the task has its own."""
-        self._rows = self.places.reshape(-1, 3)
+        self._spots, self._per_robot = self.places.reshape(-1, 3), self.places.shape[1]
         self.paid: dict[str, Floats] = dict(zip(self._paid_names, self._paid))
         if self.out_ends:
             self._ends = self._ends._replace(paid=self._paid[-1])
@@ -240,6 +246,58 @@ class PlacesTask(Task):
     def paid_names(self) -> tuple[str, ...]:
         """Names of the terms that ``_judge`` writes into the rows of ``_paid``; valid after ``Task.prepare``."""
         return ()
+
+    @property
+    def is_of_one_world(self) -> bool:  # type: ignore[override]
+        """See ``Task``."""
+        return self._fixed is not None
+
+    def enter(self, index: int, robot: Robot) -> None:
+        """See ``Task``."""
+        self._settle(index)
+
+    def _settle(self, index: int) -> None:
+        """Take over where the arena of a robot's world ends."""
+        world = world_of(self._robot, index)
+        self._low[index], self._high[index] = self._extents(world).limits
+        self._floor[index] = world.floor_z + ON_FLOOR
+
+    def _extent(self, world: World) -> Extent:
+        arena = self._given or arena_of(self._robot, self._reach, world)
+        fixed = self._fixed_in(world)
+        if fixed is not None and self._given is None:
+            arena = arena.around(fixed)
+        limits = arena.grown(BEYOND)
+        if not self.flies:
+            (x0, y0, _), (x1, y1, _) = limits
+            limits = limits._replace(low=(x0, y0, -math.inf), high=(x1, y1, math.inf))
+        return Extent(arena, self._bounded(limits, world))
+
+    def _fixed_in(self, world: World) -> Floats | None:
+        """Places that are the same in every episode in a world [m], shape (n, 3); None: they are drawn."""
+        return self._fixed
+
+    def _bounded(self, limits: Arena, world: World) -> Arena:
+        """Where an episode in a world ends."""
+        return limits
+
+    def arena_at(self, index: int) -> Arena:
+        """The arena of one robot's world."""
+        return self._extents(world_of(self._robot, index)).arena
+
+    @property
+    def arena(self) -> Arena:
+        """That of the first robot."""
+        return self.arena_at(0)
+
+    @property
+    def _limits(self) -> Arena:
+        """Where the first robot's episode ends."""
+        return self._extents(world_of(self._robot, 0)).limits
+
+    def _held(self, index: int) -> int:
+        """How many places one robot has."""
+        return self.per_robot
 
     @property
     @abstractmethod
@@ -275,7 +333,7 @@ class PlacesTask(Task):
         return lambda: self._write_ways(np.ascontiguousarray(self._from()), count, out, first)
 
     def _write_ways(self, pose: Floats, count: int, out: Floats, first: int) -> None:
-        write_ways_to.unchecked()(pose, self._rows, self.at, self._per_robot, count, out, first)
+        write_ways_to.unchecked()(pose, self._spots, self.at, self._per_robot, count, out, first)
 
     def ways_from(self, pose: Floats, count: int) -> Floats:
         """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
@@ -286,8 +344,8 @@ class PlacesTask(Task):
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """See ``Task``."""
         self._table, ends = step.judge.table(), self._ends
-        robot, floor = step.robot, self._floor if self._ends_on_floor else -math.inf
-        by = Beginning(robot.scan, robot.collided, self._range, self.contact_ends, floor)
+        robot, floor = step.robot, self._floor
+        by = Beginning(robot.scan, robot.collided, self._range, self.contact_ends, floor, self._ends_on_floor)
         if self.terms:
             super().judge(step, rewards, terminated)
             paid = rewards.copy()
@@ -297,10 +355,7 @@ class PlacesTask(Task):
             _begin.unchecked()(by, self._table, rewards, terminated, ends.crashed)
         self._judge(step, rewards, terminated)
         success = np.ascontiguousarray(self.success, np.bool_)
-        if self._bounds is None or self._bounds[0] is not self._limits:
-            self._bounds = self._limits, *(np.array(bound, np.float64) for bound in self._limits)
-        _, low, high = self._bounds
-        outside = Outside(low, high, float(self.out_reward), self.out_ends, float(self.crash_reward))
+        outside = Outside(self._low, self._high, float(self.out_reward), self.out_ends, float(self.crash_reward))
         _end.unchecked()(outside, self._table, success, rewards, terminated, ends)
         step.crashed, step.outside, step.reached = ends.crashed, ends.outside, ends.reached
 
@@ -314,10 +369,11 @@ class PlacesTask(Task):
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
-        return self.places[index].copy(), int(self.at[index]), bool(self.success[index])
+        return self.places[index, : self._held(index)].copy(), int(self.at[index]), bool(self.success[index])
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
-        if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != self.places[index].shape:
+        if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != (self._held(index), 3):
             raise EnvOptionError("snapshot cannot be restored: it is of another task")
-        self.places[index], self.at[index], self.success[index] = memory[:3]
+        self.places[index] = memory[0][-1]
+        self.places[index, : self._held(index)], self.at[index], self.success[index] = memory[:3]

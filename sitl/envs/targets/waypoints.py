@@ -13,11 +13,13 @@ import numpy.typing as npt
 from sitl.core.array_kernels import Flags, IntLine, Kernel, Line, Table
 from sitl.core.kernels import law
 from sitl.core.sums import lengths
+from sitl.worlds import World
 
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
-from ..robots.robot import Robot
+from ..robots.robot import Robot, world_of
 from ..starts import ReachableCells
+from ..worlds import PerWorld
 from .places import PlacesTask
 
 
@@ -158,20 +160,26 @@ class Waypoints(PlacesTask):
         self._passed = np.zeros(robot.count, np.bool_)
         self._going = 0
         """How many robots have passed a place in this step, and go on to another."""
-        self._cells = ReachableCells(robot, self.limit) if self.reachable and self._fixed is None else None
+        self._cells_in = PerWorld(self._cells) if self.reachable and self._fixed is None else None
+        if self._cells_in is not None:
+            self._cells_in(robot.world)
+
+    def _cells(self, world: World) -> ReachableCells:
+        return ReachableCells(self._robot, self.limit, world=world)
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         here = self.judged_pose()[index, :3]
-        self.places[index] = self._drawn(here, rng) if self._fixed is None else self._fixed
+        self.places[index] = self._drawn(index, here, rng) if self._fixed is None else self._fixed
         self.at[index], self.success[index] = 0, False
         self._distance[index] = lengths(self.axes * (self.places[index, 0] - here))
 
-    def _drawn(self, here: Floats, rng: np.random.Generator) -> Floats:
-        out = np.empty((self._count, 3))
+    def _drawn(self, index: int, here: Floats, rng: np.random.Generator) -> Floats:
+        out, arena = np.empty((self._count, 3)), self.arena_at(index)
+        cells = None if self._cells_in is None else self._cells_in(world_of(self._robot, index))
         for k in range(self._count):
             for _ in range(100):
-                out[k] = self.arena.draw(rng) if self._cells is None else (*self._cells.draw(rng), here[2])
+                out[k] = arena.draw(rng) if cells is None else (*cells.draw(rng), here[2])
                 if np.square(out[k] - here).sum() >= self.apart * self.apart:
                     break
             here = out[k]
@@ -180,7 +188,7 @@ class Waypoints(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         state, up = self._table, float(self.axes[2])
         _pass.unchecked()(
-            state, self._rows, up, float(self.radius), self.at, self._distance, self._gain, self._passed
+            state, self._spots, up, float(self.radius), self.at, self._distance, self._gain, self._passed
         )  # fmt: skip
         prices = Prices(float(self.progress), float(self.place_reward), float(self.each_second * step.seconds))
         self._going = _pay.unchecked()(

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...core.algebra import norm
 from ...core.vectors import Quat, Vec3
+from ...worlds import World
 from ..axes import place
 from ..colours import of_vehicle
 from ..frame import Frame, Points, Stage
@@ -37,6 +38,8 @@ class Scene:
         scene.configure_default_lights(cast_shadow=True)
         self._world, self._surroundings = stage.world, surroundings.draw(scene, stage.world, stage.copies)
         self._scene, self._shapes, self._chosen = scene, stage.company, 0
+        self._entered: World | None = None
+        """The world that a frame had last, which is drawn in place of the stage's."""
         self.company = CompanyNodes(scene, stage.company) if stage.company else None
         """All vehicles, where there are several."""
         shape = tinted(stage.shape, of_vehicle(0)) if stage.company else stage.shape
@@ -58,6 +61,8 @@ class Scene:
 
     def show(self, frame: Frame, span: float) -> None:
         """Draw a moment; ``span``: metres that are seen around the vehicle."""
+        if frame.world is not None and frame.world is not self._entered:
+            self._enter(frame.world)
         if self.company is not None and frame.company is not None:
             self._choose(frame.company.chosen)
             self.company.show(frame.company)
@@ -74,8 +79,17 @@ class Scene:
 
     def place_world(self, copies: Points | None) -> None:
         """Draw the world at other places, shape (n, 3) [m]; None: once, at the origin."""
+        if self._entered is None:  # else frames say what is around
+            self._surroundings.remove()
+            self._surroundings = surroundings.draw(self._scene, self._world, copies)
+        self.trail.clear()
+        self.contacts.clear()
+
+    def _enter(self, world: World) -> None:
+        """Draw another world in place of the stage's."""
+        self._entered = world
         self._surroundings.remove()
-        self._surroundings = surroundings.draw(self._scene, self._world, copies)
+        self._surroundings = surroundings.draw(self._scene, world)
         self.trail.clear()
         self.contacts.clear()
 

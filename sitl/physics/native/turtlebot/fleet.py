@@ -6,10 +6,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ....core.array_kernels import IntLine, Kernel, NarrowTable, Table
+from ....core.array_kernels import IntLine, IntTable, Kernel, NarrowLine, NarrowTable, Table
 from ....core.kernels import law
+from ....core.memory import floats_at, ints_at, table_at
 from ....core.records import Records
-from ....worlds.geometry import Solids
+from ....core.vectors import Vec2
+from ....worlds.geometry import GRID_FIGURES, SOLID_FIGURES, Solids
 from .scan import Beams, add_noise, scan
 from .state import TICK_US, Turtlebot
 from .step import commanded, move
@@ -38,21 +40,50 @@ def advance_fleet(
         beams: of the lidar.
         readings: shape (n, readings) [m].
     """
-    commands, ticks = orders.commands, orders.ticks
-    for i in range(ticks.shape[0]):
-        if ticks[i] < 0:
-            continue
-        v = fleet[i]
-        if ticks[i] > 0:
-            v.body.collided = False
-            if not math.isnan(commands[i, 0]):
-                c = v.command
-                c.forward, c.turn, c.time_us = commands[i, 0], commands[i, 1], v.time_us
-        for _ in range(ticks[i]):
-            move(v.body, v.figures, commanded(v.figures, v.command, v.time_us), solids.rows)
-            v.time_us += TICK_US
-        scan(v.body, v.figures, solids, beams, readings[i])
-        add_noise(readings[i], v.figures, v.rng)
+    for i in range(orders.ticks.shape[0]):
+        if orders.ticks[i] >= 0:
+            advance_one(fleet[i], Vec2(orders.commands[i, 0], orders.commands[i, 1]), orders.ticks[i], solids)
+            look(fleet[i], solids, beams, readings[i])
+
+
+@law
+def advance_one(v: Turtlebot, command: Vec2, ticks: int, solids: Solids) -> None:
+    """Command one robot (see ``Orders``) and move it on by some physics steps."""
+    if ticks > 0:
+        v.body.collided = False
+        if not math.isnan(command.x):
+            c = v.command
+            c.forward, c.turn, c.time_us = command.x, command.y, v.time_us
+    for _ in range(ticks):
+        move(v.body, v.figures, commanded(v.figures, v.command, v.time_us), solids.rows)
+        v.time_us += TICK_US
+
+
+@law
+def look(v: Turtlebot, solids: Solids, beams: Beams, readings: NarrowLine) -> None:
+    """Read one robot's lidar."""
+    scan(v.body, v.figures, solids, beams, readings)
+    add_noise(readings, v.figures, v.rng)
+
+
+SOLIDS, SOLID_COUNT, GRID, CELLS, CELL_COUNT = 0, 1, 2, 3, 4
+"""Columns of ``worlds``: addresses and lengths of the arrays of a ``Geometry``."""
+WORLD_FIGURES = 5
+
+
+@law
+def advance_in_worlds(
+    fleet: Records[Turtlebot], orders: Orders, worlds: IntTable, beams: Beams, readings: NarrowTable
+) -> None:
+    """The same for robots that are each in a world of their own; ``worlds``: a row a robot, shape (n, 5)."""
+    for i in range(orders.ticks.shape[0]):
+        if orders.ticks[i] >= 0:
+            rows = table_at(worlds[i, SOLIDS], worlds[i, SOLID_COUNT], SOLID_FIGURES)
+            grid, cells = floats_at(worlds[i, GRID], GRID_FIGURES), ints_at(worlds[i, CELLS], worlds[i, CELL_COUNT])
+            solids = Solids(rows, grid, cells)
+            advance_one(fleet[i], Vec2(orders.commands[i, 0], orders.commands[i, 1]), orders.ticks[i], solids)
+            look(fleet[i], solids, beams, readings[i])
 
 
 advance = Kernel(advance_fleet)
+advance_apart = Kernel(advance_in_worlds)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Vehicles of a fleet that are in different worlds: each measures with a record of its own."""
+
+from __future__ import annotations
+
+from ...core.kernels import law
+from ...core.memory import call_unit, ints_at, record_at
+from .fleet import GOES_ON, SLOT_SIZE, STAYS, Slot
+
+
+@law
+def run_in_worlds(
+    unit: int, vehicles: int, size: int, total: int, first: int, count: int, slots: int, ranging: int, room: int,
+    step_us: int,
+) -> bool:  # fmt: skip
+    """Let vehicles ``first`` .. ``first + count`` - 1 of a fleet go on, in one thread; whether any of them needs the
+    shell.
+
+    Args:
+        unit: address of ``run_all`` of their kind.
+        vehicles: address of the fleet's records, whose first number is the time since boot.
+        size: of a record [bytes].
+        total: of the fleet's vehicles.
+        first, count: of those that go on.
+        slots: address of one ``Slot`` for each vehicle.
+        ranging: address of one ``Ranging`` for each vehicle.
+        room: size of one [bytes].
+        step_us: for how long; STAYS: as the slots say.
+    """
+    waits = False
+    for k in range(first, first + count):
+        slot = record_at(Slot, slots + k * SLOT_SIZE)
+        if step_us != STAYS:
+            slot.until_us = ints_at(vehicles + k * size, 1)[0] + step_us
+        call_unit(unit, vehicles, total, k, k + 1, slots, ranging + k * room)
+        waits = waits or slot.needs_shell != GOES_ON
+    return waits
