@@ -31,8 +31,25 @@ class Holding(NamedTuple):
     effort: float
     """What a mean squared action of 1 costs a step."""
     is_sparse: bool
+    far: float
+    """See ``Hold`` [m]."""
     seconds: float
     """Of a step [s]."""
+
+
+@law
+def sparse_worth(distance: float, radius: float, far: float) -> float:
+    """What a step at a distance from the target pays if rewards are sparse; see ``Hold`` for radius and ``far`` [m]."""
+    if distance < radius:
+        return 0.0
+    return -(0.5 + 0.5 * min(distance / far, 1.0)) if far > 0.0 else -1.0
+
+
+@law
+def sparse_worths(distances: Line, radius: float, far: float, out: Line) -> None:
+    """Write ``sparse_worth`` of many distances."""
+    for i in range(out.shape[0]):
+        out[i] = sparse_worth(distances[i], radius, far)
 
 
 @law
@@ -57,7 +74,7 @@ def judge_hold(
     for i in range(rewards.shape[0]):
         distance = distance_of(state, i, places, i, axes)
         if rule.is_sparse:
-            worth = 0.0 if distance < rule.radius else -1.0
+            worth = sparse_worth(distance, rule.radius, rule.far)
         else:
             worth = rule.seconds * nearness(distance, rule.scale, rule.half)
         rewards[i] += worth
@@ -85,7 +102,7 @@ def mean_square(rows: Table, i: int) -> float:
     return total / n
 
 
-_judge = Kernel(judge_hold)
+_judge, _worths = Kernel(judge_hold), Kernel(sparse_worths)
 _NONE = np.zeros((1, 1))
 """In place of actions without numbers."""
 
@@ -158,7 +175,8 @@ class Hold(PlacesTask):
             self.paid.pop("effort", None)
         rule = Holding(
             float(self.radius), float(self.hold - 1e-9), float(self.scale), float(self.half or 0.0),
-            float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, step.seconds,
+            float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, float(self.far),
+            step.seconds,
         )  # fmt: skip
         _judge.unchecked()(
             rule, self._table, self._spots, self.axes, actions, self._ends.crashed, self.since, self.success, rewards,
@@ -186,10 +204,10 @@ class Hold(PlacesTask):
         return self._worth(np.sqrt((way * way).sum(axis=-1)))
 
     def _worth(self, distance: Floats) -> Floats:
-        out: Floats = np.where(distance < self.radius, 0.0, -1.0)
-        if self.far > 0.0:
-            out *= 0.5 + 0.5 * np.minimum(distance / self.far, 1.0)
-        return out
+        given = np.ascontiguousarray(distance, np.float64)
+        out = np.empty(given.shape)
+        _worths.unchecked()(given.ravel(), float(self.radius), float(self.far), out.ravel())
+        return out if out.shape else out[()]
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
