@@ -51,3 +51,11 @@ def test_each_observation_by_camera_has_a_row(monkeypatch, capsys):
     assert all(int(rate.replace(",", "")) > 0 for _, *rates in rows for rate in rates)
     with pytest.raises(SystemExit):
         cameras.main(["--steps", "0"])
+
+
+def test_another_checkout_is_measured_beside_this_one(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["benchmarks.envs", "--repeats", "1", "--steps", "1024", "--beside", str(ROOT),
+                                      "--ids", "GazeboCircuitTurtlebotLIDAR-v0", "--vectors", "0", "16"])  # fmt: skip
+    benchmark.main()
+    rows = re.findall(r"^Gazebo\w+-v0, (\w+) +([\d.]+) +([\d.]+) +([\d.]+)$", capsys.readouterr().out, re.MULTILINE)
+    assert [row[0] for row in rows] == ["single", "16"] and all(float(row[3]) > 0.0 for row in rows)
