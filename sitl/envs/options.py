@@ -10,7 +10,7 @@ from sitl.errors import OptionError, did_you_mean
 
 COMMON = (
     "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",
-    "faults", "info", "judge",
+    "faults", "info", "clip_actions", "judge",
 )  # fmt: skip
 """Options that every environment takes besides "render_mode", whatever its robot."""
 

@@ -259,7 +259,8 @@ class NavigateVector(OfSubEnvironments):
         return self.observe(), infos
 
     def _take(self, actions: Any) -> None:
-        check, rows = self._session.action.check, self._session.actions
+        session = self._session
+        check, clip_all, rows = session.check, session.clip_all, session.actions
         try:
             count = len(actions)
         except TypeError:
@@ -268,6 +269,8 @@ class NavigateVector(OfSubEnvironments):
             raise gym.error.InvalidAction(f"actions {actions!r} are not {self.num_envs}, one for each robot")
         if isinstance(actions, np.ndarray) and self.action_space.contains(actions):
             rows[...] = actions
+            return
+        if clip_all is not None and isinstance(actions, np.ndarray) and clip_all(actions, rows):
             return
         for index in range(count):
             rows[index] = check(actions[index])
