@@ -161,7 +161,7 @@ class Navigate(gym.Env[Any, Any]):
             info: dict[str, Any] = {"crashed": terminated}
         else:
             rows = self._info().items()
-            info = {name: value[0].item() if value.ndim == 1 else value[0] for name, value in rows}
+            info = {name: value.item(0) if value.ndim == 1 else value[0].copy() for name, value in rows}
         truncated = self._over is not None and bool(self._over[0])
         if truncated:
             info["handed_over"] = session.robot.why_over()  # type: ignore[attr-defined]

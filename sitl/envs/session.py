@@ -15,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl import worlds
+from sitl.core.array_kernels import Flags, Kernel, Line
+from sitl.core.kernels import law
 from sitl.worlds import World, WorldError
 
 from . import robots
@@ -46,6 +48,16 @@ MAX_STEP_S = 3600.0
 RANDOMISE_STREAM, FAULTS_STREAM = 2 << 40, 3 << 40
 """Second words of the seeds of these random numbers. They have streams of their own, so that an episode with the same
 seed has the same start and task with and without them."""
+
+
+@law
+def write_crash_rewards(crashed: Flags, rewards: Line, out: Line) -> None:
+    """Write the rewards of steps that end in a crash, and 0 for others; shape (count,) each."""
+    for i in range(out.shape[0]):
+        out[i] = rewards[i] if crashed[i] else 0.0
+
+
+_tell = Kernel(write_crash_rewards)
 
 
 @dataclass(frozen=True)
@@ -192,6 +204,8 @@ class Session:
         """Says where robots are for the task; ``judge.by`` is "truth" or "estimate"."""
         self.step = Step(self.robot, self.seconds, self.judge)
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
+        self._crash_paid = np.zeros(count)
+        """What crashes were worth in the last step."""
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
         if isinstance(self.task, Task):
@@ -321,7 +335,7 @@ class Session:
 
     def info(self) -> dict[str, npt.NDArray[Any]]:
         """What the task tells of this step, what ``details`` names, and the number of the fault that has begun; a row a
-        robot."""
+        robot. The arrays are written anew by the next step."""
         found = self.task.info(self.step)
         if self.details:
             found |= self._told_in_detail()
@@ -332,16 +346,19 @@ class Session:
         found: dict[str, npt.NDArray[Any]] = {}
         step, crashed = self.step, self.step.crashed
         if "rewards" in self.details:
-            terms = step.terms or {}
-            found |= {f"reward_{name}": np.where(crashed, 0.0, term) for name, term in terms.items()}
-            found["reward_crash"] = np.where(crashed, self.rewards, 0.0)
+            for name, term in (step.terms or {}).items():
+                found[f"reward_{name}"] = np.where(crashed, 0.0, term)
+            for name, line in self.task.paid.items() if isinstance(self.task, Task) else ():
+                found[f"reward_{name}"] = line
+            found["reward_crash"] = self._crash_paid
+            _tell.unchecked()(np.ascontiguousarray(crashed), self.rewards, self._crash_paid)
         if self.judge.knows_truth:
             if "true_pose" in self.details:
-                found["true_pose"] = self.judge.state()[:, :4].copy()
+                found["true_pose"] = self.judge.state()[:, :4]
             if "estimate_error" in self.details:
                 found["estimate_error"] = self.judge.error()
         if "events" in self.details:
-            found |= {"touched": self.robot.collided != 0, "outside": step.outside.copy()}
+            found["touched"], found["outside"] = self.robot.collided != 0, step.outside
         return found
 
     def abandon(self, error: BaseException) -> None:

@@ -83,6 +83,9 @@ class AutopilotRobot:
         options: see ``AutopilotOptions``.
     """
 
+    arrays_stay = True
+    """See ``sitl.envs.senses.arrays_stay``."""
+
     def __init__(self, world: str | Path | World = "maze_erlerover", count: int = 1, **options: Any) -> None:
         for option in options:
             if option not in AutopilotOptions.names():
@@ -140,6 +143,10 @@ class AutopilotRobot:
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
         self._base_along = float(airframe.value("base_along"))
         self._states = [NOT_STARTED] * count
+        self._ready_for: tuple[str, int] = ("", 0)
+        """Kind of set-point and interval of telemetry [us] that vehicles of a fleet are ready for."""
+        self._unready = set(range(count))
+        """Those of them that are not, or whose episode has just begun."""
 
     def action(self, form: str, setpoint: Setpoint) -> Action:
         """The vehicle kind's actions: see ``kind``."""
@@ -188,6 +195,7 @@ class AutopilotRobot:
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
+        self._unready.add(index)
         try:
             self._states[index] = self._vehicles.begin(index, pose, seed)
         except LinkLostError:
@@ -252,14 +260,23 @@ class AutopilotRobot:
     ) -> None:
         """One step of many vehicles at once."""
         vehicles.check_open()
-        interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
-        for index in vehicles.rows(rows).tolist():
+        wanted = setpoint, interval_us = self._setpoint.name, math.gcd(ALIGN_US, us)
+        if wanted != self._ready_for:
+            self._ready_for, self._unready = wanted, set(range(self.count))
+        if self._unready:
+            self._make_ready(vehicles, vehicles.rows(rows).tolist(), setpoint, interval_us)
+        vehicles.step(rows, us, setpoint, self._commands, waits_us)
+
+    def _make_ready(self, vehicles: FleetVehicles, rows: list[int], setpoint: str, interval_us: int) -> None:
+        """Before the first step of episodes, and when another kind of set-point comes."""
+        states = self._states
+        for index in sorted(self._unready.intersection(rows)):
             now = states[index]
             if now.interval_us != interval_us or not (
                 now.setpoint == setpoint or self.kind.are_alike(now.setpoint, setpoint)
             ):
                 states[index] = vehicles.change(index, now, setpoint, interval_us)
-        vehicles.step(rows, us, setpoint, self._commands, waits_us)
+            self._unready.discard(index)
 
     def _step(self, index: int, us: int, wait_us: int = 0) -> None:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
@@ -468,6 +485,7 @@ class AutopilotRobot:
         """See ``Robot``."""
         if self._vehicles.has_snapshots and not isinstance(snapshot, EpisodeState):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of a vehicle")
+        self._unready.add(index)
         self._vehicles.restore(index, snapshot)
         self._states[index] = snapshot
         self.collided[index] = 0
