@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Goal-conditioned environments as ``gymnasium.make`` gives them: ``compute_reward`` is an attribute of what it returns.
+"""Goal-conditioned environments as ``gymnasium.make`` gives them: what it returns has ``compute_reward``.
 
 Wrappers of Gymnasium 1 do not pass attributes on, and libraries call ``env.compute_reward`` on the outermost one, as
 Gymnasium-Robotics once documented it; stable-baselines3's ``check_env`` does.

@@ -23,6 +23,19 @@ class EnvOptionError(OptionError):
     """An option of an environment that cannot be used; the message names it, its value and what is allowed."""
 
 
+class UnknownEnvOption(EnvOptionError, TypeError):
+    """An option that no environment or robot of this kind has: in Python's words, an unexpected keyword argument.
+
+    Libraries offer environments arguments of their own (TorchRL: ``frameskip``), and take them back when a
+    ``TypeError`` says so.
+    """
+
+
+def unknown_option(option: str, known: Iterable[str]) -> UnknownEnvOption:
+    """The error for an option by a name that is not among those known."""
+    return UnknownEnvOption(f"{unknown('option', option, known)} (unexpected keyword argument {option!r})")
+
+
 def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:
     """The error for a name that is not among those known: with all of them if they are few, and with the nearest."""
     names = list(known)

@@ -178,9 +178,7 @@ def test_skrl(tmp_path, name, options):
     class Policy(CategoricalMixin if discrete else GaussianMixin, Model):
         def __init__(self):
             Model.__init__(self, **where)
-            (CategoricalMixin if discrete else GaussianMixin).__init__(
-                self, **({} if discrete else {"clip_actions": True})
-            )
+            (CategoricalMixin if discrete else GaussianMixin).__init__(self)
             body(self, self.num_actions)
             self.log_std = torch.nn.Parameter(torch.full((self.num_actions,), -1.0))
 

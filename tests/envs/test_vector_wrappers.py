@@ -62,5 +62,5 @@ def test_vector_kwargs_are_of_gymnasiums_vectors_alone():
     for name in ("CartPole-v1", HOVER):
         with pytest.raises(gym.error.Error, match="can be passed arguments only through kwargs"):
             gym.make_vec(name, vectorization_mode="vector_entry_point", vector_kwargs={"autoreset_mode": "SameStep"})
-    with pytest.raises(EnvOptionError, match="autoreset_mode = 'SameStep': .* takes the mode in vector_kwargs"):
+    with pytest.raises(EnvOptionError, match=r"autoreset_mode = 'SameStep': .* takes the mode in vector_kwargs"):
         gym.make_vec(HOVER, vectorization_mode="sync", autoreset_mode="SameStep")

@@ -182,7 +182,8 @@ class SwarmEnv(ParallelEnv):
         """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives.
 
         Raises:
-            InvalidAction: an agent has no action or one that is not in its space (``clip_actions``), or there is no such agent.
+            InvalidAction: an agent has no action or one that is not in its space (``clip_actions``), or there is
+                no such agent.
             ResetNeeded: before the first ``reset``.
         """
         given = self.check(actions)
