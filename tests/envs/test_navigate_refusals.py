@@ -256,5 +256,5 @@ def test_a_misspelt_name_of_many_is_answered_with_the_one_that_is_meant() -> Non
 @pytest.mark.parametrize("robot", ["turtlebot", "erle_copter"])
 def test_an_unknown_option_is_an_unexpected_argument_in_pythons_words_too(robot):
     """TorchRL offers each environment a ``frameskip``, and goes without where this is what it hears."""
-    with pytest.raises(TypeError, match="option 'frameskip' is not known.*unexpected keyword argument 'frameskip'"):
+    with pytest.raises(TypeError, match=r"option 'frameskip' is not known.*unexpected keyword argument 'frameskip'"):
         gym.make("sitl/Navigate-v1", robot=robot, frameskip=1)
