@@ -41,7 +41,7 @@ class Goals(gym.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
         return found
 
     @property
-    def spec(self) -> EnvSpec | None:
+    def spec(self) -> EnvSpec | None:  # type: ignore[override]
         """That of the environment within, which makes this wrapper, too."""
         spec = copy(self.env.spec)  # the other one is kept by the wrapper within
         if spec is not None:

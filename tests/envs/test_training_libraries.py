@@ -156,6 +156,8 @@ def test_a_loop_in_one_file(name):
         ("GazeboMazeErleRoverLIDAR-v0", SCAN),
         ("sitl/CopterHoverDiscrete-v0", {}),
         ("sitl/CopterHover-v0", {}),
+        ("sitl/CopterReachGoal-v1", {}),
+        ("sitl/CopterHover-v1", {"observation": "camera+velocity"}),
     ],
 )
 def test_skrl(tmp_path, name, options):
