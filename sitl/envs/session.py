@@ -115,6 +115,8 @@ class NavigateOptions:
             "reward_NAME"; "true_pose", x, y, z [m], yaw [rad] as they really are (left out where nobody knows);
             "estimate_error", the estimate minus the truth in the same columns, likewise; "events", "touched" and
             "outside".
+        clip_actions: whether a number of an action in a box that is outside of its limits becomes the limit, as in
+            Gymnasium's own environments; False: it is refused. Numbers that are not finite are always refused.
         judge: by what rewards, success and ends of episodes go: "truth", where the robot really is, or "estimate",
             where it believes to be. The truth of a vehicle at a connection is unknown, which is judged by its estimate
             (``Session.judge``). Observations are the estimate in any case.
@@ -139,6 +141,7 @@ class NavigateOptions:
     latency: float = 0.0
     faults: Faults | None = None
     info: Sequence[str] = ()
+    clip_actions: bool = True
     judge: str = TRUTH
     costs: Any = ()
     robot_options: Mapping[str, Any] = field(default_factory=dict)
@@ -192,8 +195,16 @@ class Session:
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
+        if not isinstance(options.clip_actions, bool | np.bool_):
+            raise EnvOptionError(f"clip_actions = {options.clip_actions!r}; it must be True or False")
+        self.check: Callable[[Any], Any] = self.action.check
+        """One robot's action as a row of ``actions``; raises ``InvalidAction``."""
+        self.clip_all: Callable[[Any, Any], bool] | None = None
+        """The same for an array of actions: see ``Continuous.clip_all``; None: they are not clipped."""
+        if options.clip_actions and hasattr(self.action, "clip"):
+            self.check, self.clip_all = self.action.clip, getattr(self.action, "clip_all", None)
         self.actions = self.action.room(count)
-        """Actions of the next ``advance``, a row a robot, as ``action.check`` returns them."""
+        """Actions of the next ``advance``, a row a robot, as ``check`` returns them."""
         self.acted = np.zeros(count, np.bool_)
         """Whether each robot's episode has had an action, shape (count,)."""
         self.commands = np.zeros((count, self.action.setpoint.width))
