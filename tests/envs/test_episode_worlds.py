@@ -306,14 +306,14 @@ def test_a_function_draws_worlds_from_any_distribution():
 
 
 def test_a_curriculum_changes_the_worlds_of_later_episodes():
-    env = gym.make("sitl/Navigate-v0", world="rooms:seed=1..20,difficulty=0")
+    env = gym.make("sitl/Navigate-v1", world="rooms:seed=1..20,difficulty=0")
     env.reset(seed=1)
     before = env.unwrapped.world
     env.unwrapped.set_worlds("rooms:seed=1..20,difficulty=1")
     assert env.unwrapped.world is before
     assert "difficulty=0," in env.step(0)[4]["world"]
     assert "difficulty=1," in env.reset()[1]["world"]
-    vector = gym.make_vec("sitl/Navigate-v0", 2, world="maze")
+    vector = gym.make_vec("sitl/Navigate-v1", 2, world="maze")
     vector.reset(seed=0)
     vector.unwrapped.set_worlds(["rooms:seed=1"])
     assert set(vector.reset()[1]["world"]) == {worlds.load("rooms:seed=1").name}
