@@ -34,7 +34,7 @@ def fly(name: str) -> tuple[Any, Any, Any]:
     """The first episode that ``sitl rollout --seed 1000`` plays: the environment at its end, x, y, z and time of each
     step, shape (n, 4), and x, y, z of the target, shape (n, 3)."""
     found = learnt.load(baselines.file(spelling(name)))
-    env: Any = gym.make(f"sitl/{name}-v0", **found.config.env_options)
+    env: Any = gym.make(found.config.env, **found.config.env_options)  # the id and the worlds that it learnt in
     seed = environments.seed_of(SEED, 0)
     observation, _ = env.reset(seed=seed)
     found.policy.begin(seed)

@@ -18,20 +18,16 @@ from sitl.envs.actions import Discrete
 from sitl.envs.arena import Arena
 from sitl.envs.boxes import GoalConditioned
 from sitl.envs.ids import TASKS, camel_case
+from sitl.envs.presets import PRESETS
 from sitl.envs.targets.gates import Gates
 from sitl.envs.targets.landing import Land
 from sitl.envs.tasks_v1 import RECEIVERS
+from sitl.envs.worlds import TEST
 
 HERE = Path(__file__).parent / "envs"
 TITLES = {
     camel_case(preset): (task.title, task.aim.replace("info has", "`info` has")) for preset, task in TASKS.items()
 }
-OTHERS = {
-    "CopterForest": "forest:seed=7", "CopterRooms": "rooms:seed=7", "RoverSlalom": "slalom:seed=7",
-    "RoverLabyrinth": "labyrinth:seed=7,size=60,scale=3", "RoverRace": "track:seed=7",
-    "RoverParking": "car_park:seed=7",
-}  # fmt: skip
-"""Another world of the same sort."""
 MANY = 12
 """Columns of one kind beyond which a table has one row for all."""
 OUT_PAYS = {
@@ -156,13 +152,13 @@ def page(name: str) -> str:
         picture if (HERE / "images" / f"{name}.png").exists() else "", "",
         "| | |", "|---|---|",
         f"| robot | `{env.robot.name}`, with the whole autopilot |",
-        f"| world | `{env.world.name}`" + (f'; another one: `world="{OTHERS[name]}"`' if name in OTHERS else "") + " |",
+        f"| world | {world(spelling(name), env)} |",
         f"| action space | `{continuous.action_space}` or `{discrete.action_space}`: {setpoint} set-points |",
         f"| observation space | {space(continuous.observation_space)} |",
         f"| step | {number(env.step_time)} s ({number(1.0 / env.step_time)} Hz) |",
         f"| time limit | {spec.max_episode_steps} steps ({number(seconds)} s), then `truncated` |",
         f"| arena | x {number(box.low[0])} .. {number(box.high[0])}, y {number(box.low[1])} .. {number(box.high[1])}, "
-        f"z {number(box.low[2])} .. {number(box.high[2])} m |",
+        f"z {number(box.low[2])} .. {number(box.high[2])} m" + (" in the first world |" if env.session.varies else " |"),
         "", "## Observations", "",
         f"{frame[0].upper()}{frame[1:]}. Values are clipped to min and max; they are not normalised.",
         "`env.unwrapped.session.observation.columns` has the names.", "", *observations(env),
@@ -252,6 +248,17 @@ def versions(name: str, task: Any) -> list[str]:
     ]
 
 
+def world(preset: str, env: Any) -> str:
+    """Where it is."""
+    if preset not in TEST:
+        return f"`{env.world.name}`"
+    first = gym.spec(f"sitl/{camel_case(preset)}-v0").kwargs["preset"]
+    return (
+        f"each episode in one of `{env.session.worlds.text}`; policies are judged in others, "
+        f'`world=sitl.envs.worlds.TEST["{preset}"]`; in v0 always `{PRESETS[first]()["world"]}`'
+    )
+
+
 def space(of: Any) -> str:
     """A space without its bounds."""
     if isinstance(of, gym.spaces.Dict):
@@ -266,7 +273,7 @@ def index() -> str:
         "Each task has a continuous id, `sitl/NAME-v1`, and a discrete one, `sitl/NAMEDiscrete-v1`. The whole",
         "autopilot is in the loop. [Environments](../environments.md) explains what they have in common.",
         "*Trained policy* is the success rate of the [baseline](../baselines.md) of the continuous id in 200 episodes",
-        "of v0.",
+        "of v0. Tasks among solids are in another world in each episode of v1, and in one world in v0.",
         "[Rewards](../rewards.md) says how v1 differs from v0, and measures both.",
     ]
     for robot in ("Copter", "Rover"):

@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.agents import baselines, learnt
+from sitl.envs.ids import FIRST, NEW
+from sitl.envs.presets import PRESETS
 
 Rows = npt.NDArray[Any]
 Policy = Callable[[Any], Rows]
@@ -73,8 +75,10 @@ class Stage:
 
 
 def options_of(preset: str) -> dict[str, Any]:
-    """Options of the environment that the trained policy of a preset was trained with: how it observes."""
-    return dict(learnt.load(baselines.file(baselines.of_preset(preset))).config.env_options)
+    """Options of the environment that the trained policy of a preset was trained with: how it observes, and its worlds,
+    or it would be measured where it cannot do the task."""
+    config = learnt.load(baselines.file(baselines.of_preset(preset))).config
+    return {"world": PRESETS[(NEW | FIRST)[config.env].preset]()["world"], **config.env_options}
 
 
 def _constant(velocity: tuple[float, ...]) -> Callable[[Stage], Policy]:

@@ -24,6 +24,7 @@ from .targets.parking import Park
 from .targets.waypoints import Waypoints
 from .tasks import Task
 from .tasks_v1 import TRACK
+from .worlds import TRAINING
 
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
 ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
@@ -150,13 +151,15 @@ _FIRST = {**_CONTINUOUS, **{f"{preset}discrete": _discrete(preset) for preset in
 
 
 def _second(preset: str) -> Callable[[], dict[str, Any]]:
-    """Options of the id "-v1": the same robot, world, observations and actions, judged by the truth."""
+    """Options of the id "-v1": the same robot, observations and actions, judged by the truth. Among solids, each
+    episode has another world."""
     name = task_of(preset)
     receiver = {"sensors": tasks_v1.RECEIVERS[name]} if name in tasks_v1.RECEIVERS else {}
+    world = {"world": TRAINING[name]} if name in TRAINING else {}
     task = tasks_v1.MADE[name]
 
     def options() -> dict[str, Any]:
-        found = {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS, **receiver}
+        found = {**_FIRST[preset](), "task": task(), "judge": TRUTH, "info": DETAILS, **receiver, **world}
         del found["boots"]  # as many as usual
         return found
 
@@ -176,10 +179,23 @@ _OTHERS = ("connection", "robot", "frame")
 """Options with which a vehicle has receivers of its own."""
 
 
+_ONE_WORLD = ("connection", "autopilot", "gcs")
+"""Options with which a vehicle stays in one world."""
+
+
+def _stays(given: Mapping[str, Any]) -> bool:
+    """Whether options ask for a robot or a task that can be in one world only."""
+    vehicle = any(given.get(name) not in (None, "inprocess", "native") for name in _ONE_WORLD)
+    return vehicle or callable(given.get("robot")) or bool(getattr(given.get("task"), "is_of_one_world", False))
+
+
 def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """Options of a preset, with those that are given in their place; a box that is made for one kind of set-point
-    gives way to the usual one when another kind is asked for. A vehicle at a connection keeps its own wind."""
+    gives way to the usual one when another kind is asked for. A vehicle at a connection keeps its own wind, and what
+    belongs to one world is in that of the first version."""
     options = {**PRESETS[preset](), **given}
+    if "world" not in given and _stays(given):
+        options["world"] = PRESETS[preset.removesuffix("-v1")]()["world"]
     if options.get("connection", "inprocess") != "inprocess" and "randomise" not in given:
         options["randomise"] = None
     if "sensors" not in given and any(given.get(name, "inprocess") != "inprocess" for name in _OTHERS):

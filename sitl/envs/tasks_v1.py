@@ -42,8 +42,8 @@ GOAL = 20.0
 NEARBY = 12.0
 """Distance from which on progress counts, where a failure is near each success [m]: so a crash need not cost the whole
 arena's, and who has not learnt yet dares to try."""
-HALF = 0.7
-"""Of curves of nearness [m]."""
+HALF, HOVER_HALF = 0.7, 0.5
+"""Of curves of nearness [m]. Hovering has its radius of success, or circles just outside of it pay almost half."""
 FAR = 20.0
 """Of goal-conditioned tasks: see ``Hold`` [m]."""
 
@@ -75,10 +75,9 @@ def _sparse(offset: tuple[float, float], limit: float) -> Task:
     return Hold(offset, 1.0, is_sparse=True, far=FAR, out_ends=False, crash_reward=-limit, out_reward=0.0)
 
 
-_NEAR: dict[str, Any] = {"half": HALF, "floor_ends": True}
-_LOST: dict[str, Any] = {**_NEAR, "lost_reward": -10.0}
+_LOST: dict[str, Any] = {"half": HALF, "floor_ends": True, "lost_reward": -10.0}
 MADE: dict[str, Callable[[], Task]] = {
-    "copter-hover": lambda: Hold(**_NEAR),
+    "copter-hover": lambda: Hold(half=HOVER_HALF, floor_ends=True),
     "copter-reach-goal": lambda: _sparse((5.0, 2.0), TASKS["copter-reach-goal"].steps),
     "rover-reach-goal": lambda: _sparse((8.0, 0.0), TASKS["rover-reach-goal"].steps),
     "copter-waypoint": lambda: _waypoints("copter-waypoint", 1),

@@ -32,7 +32,7 @@ _KINDS = {
     "rover-parking": "car_park:seed={}",
 }
 TRAINING = {preset: text.format("1..200") for preset, text in _KINDS.items()}
-"""Preset -> worlds to learn in, as the option ``world`` takes them."""
+"""Preset -> worlds to learn in, as the option ``world`` takes them: those of ids "-v1"."""
 TEST = {preset: text.format("1001..1100") for preset, text in _KINDS.items()}
 """Preset -> worlds to be judged in."""
 _WORD = (1 << 64) - 1

@@ -24,7 +24,7 @@ STEPS = (0, 30, 60)
 
 def main() -> None:
     """Fly ahead, and draw what is seen on the way."""
-    env = gym.make("sitl.envs:sitl/CopterForest-v0", world="forest:seed=7", observation=CAMERAS)
+    env = gym.make("sitl.envs:sitl/CopterForest-v1", world="forest:seed=7", observation=CAMERAS)
     observation, _ = env.reset(seed=1)
     figure, rows = plt.subplots(len(CAMERAS), len(STEPS), figsize=(8, 4), layout="constrained")
     step = 0

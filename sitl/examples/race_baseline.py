@@ -36,7 +36,7 @@ def main() -> None:
     """Drive both, and draw the track."""
     found = learnt.load(baselines.file("rover-race"))
     found.policy.begin(SEED)
-    env = gym.make("sitl.envs:sitl/RoverRace-v0", **found.config.env_options)
+    env = gym.make("sitl.envs:sitl/RoverRace-v1", world="track:seed=1", **found.config.env_options)
     env.action_space.seed(SEED)
     figure, panels = plt.subplots(1, 2, figsize=(8, 4.2), sharey=True, layout="constrained")
     agents = {"random": lambda observation: env.action_space.sample(), "rover-race": found.policy.act}

@@ -16,7 +16,7 @@ try:
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is missing: pip install matplotlib") from None
 
-ID = "sitl.envs:sitl/CopterWaypoint-v0"
+ID = "sitl.envs:sitl/CopterWaypoint-v1"
 ROBOTS, STEPS = 64, 150
 
 

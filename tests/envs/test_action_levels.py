@@ -87,7 +87,7 @@ def test_it_is_refused_where_it_cannot_be():
     options = {"setpoint": "motors", "action": "normalised", "world": "open"}
     for others in ({"robot": "erle_rover"}, {"robot": "erle_copter", "connection": "udp:127.0.0.1:1"}):
         with pytest.raises(EnvOptionError, match="driven directly, past the autopilot, by no message of MAVLink"):
-            gym.make("sitl/Navigate-v0", **options, **others)
+            gym.make("sitl/Navigate-v1", **options, **others)
 
 
 def test_sticks_are_centred_at_zero_and_reach_their_ends():

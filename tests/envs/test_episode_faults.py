@@ -22,7 +22,7 @@ def shares(env: gym.Env[Any, Any]) -> tuple[float, float]:
 
 
 def test_one_is_drawn_and_begins_at_its_time() -> None:
-    env = gym.make("sitl/Navigate-v0", **ROVER, faults={"servo:1": (0.4, 1.4), "motor:3=0.5": 1.0, "": 0.0})
+    env = gym.make("sitl/Navigate-v1", **ROVER, faults={"servo:1": (0.4, 1.4), "motor:3=0.5": 1.0, "": 0.0})
     found: dict[int, set[int]] = {0: set(), 1: set(), 2: set()}
     for seed in range(12):
         env.reset(seed=seed)
@@ -42,7 +42,7 @@ def test_one_is_drawn_and_begins_at_its_time() -> None:
 
 def test_a_vector_environment_and_snapshots_have_the_same() -> None:
     options = {**ROVER, "faults": {"servo:1": (0.2, 1.4), "gps": (0.2, 0.6)}}
-    env, many = gym.make("sitl/Navigate-v0", **options), gym.make_vec("sitl/Navigate-v0", num_envs=3, **options)
+    env, many = gym.make("sitl/Navigate-v1", **options), gym.make_vec("sitl/Navigate-v1", num_envs=3, **options)
     many.reset(seed=5)
     rows = [many.step(np.zeros(3, np.int64)) for _ in range(8)]
     for index in range(3):
@@ -97,7 +97,7 @@ def test_the_task_is_the_same_with_and_without(options: dict[str, Any]) -> None:
 def test_amounts_are_drawn_for_each_episode() -> None:
     ranges = {"motor:3": (0.3, 0.9), "battery": lambda rng: float(rng.integers(10, 13)), "SIM_GPS1_NOISE": (1.0, 2.0)}
     options = {**ROVER, "randomise": ranges, "faults": {"gps/garbage": 0.0}}
-    env, many = gym.make("sitl/Navigate-v0", **options), gym.make_vec("sitl/Navigate-v0", num_envs=3, **options)
+    env, many = gym.make("sitl/Navigate-v1", **options), gym.make_vec("sitl/Navigate-v1", num_envs=3, **options)
 
     def seen(robot: Any, index: int = 0) -> tuple[float, ...]:
         v = robot.view(index)
@@ -148,7 +148,7 @@ def test_amounts_are_drawn_for_each_episode() -> None:
 )
 def test_what_cannot_be_is_said(options: dict[str, Any], why: str) -> None:
     with pytest.raises(EnvOptionError, match=why):
-        gym.make("sitl/Navigate-v0", **{**ROVER, **options})
+        gym.make("sitl/Navigate-v1", **{**ROVER, **options})
 
 
 OFFICE = "GazeboOfficeErleCopterLIDAR-v0"
@@ -180,8 +180,8 @@ def test_a_time_that_no_episode_reaches_is_told() -> None:
     options: dict[str, Any] = {**ROVER, "faults": {"servo:1": (5.0, 8.0), "gps": 0.4, "": 0.0}}
     late = r"faults: servo:1 begins at 5 s, and an episode of 25 steps ends at 5 s"
     with pytest.raises(EnvOptionError, match=late):
-        gym.make_vec("sitl/Navigate-v0", num_envs=2, max_episode_steps=25, **options)
-    gym.make_vec("sitl/Navigate-v0", num_envs=2, max_episode_steps=26, **options).close()
+        gym.make_vec("sitl/Navigate-v1", num_envs=2, max_episode_steps=25, **options)
+    gym.make_vec("sitl/Navigate-v1", num_envs=2, max_episode_steps=26, **options).close()
     env = gym.make("sitl/RoverCourse-v0", faults={"gps": 9000.0})
     with pytest.warns(UserWarning, match=r"gps begins at 9000 s, and an episode of \d+ steps ends at .* unless max_ep"):
         env.reset(seed=1)

@@ -12,9 +12,11 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.wrappers import TimeLimit
 
 from sitl import worlds
+from sitl.envs.ids import camel_case
 from sitl.envs.navigate import Navigate
 from sitl.envs.options import EnvOptionError
 from sitl.envs.page.source import EnvSource
+from sitl.envs.presets import PRESETS, options_of
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.envs.starts import ReachableCells
 from sitl.envs.targets.among import Among
@@ -304,14 +306,14 @@ def test_a_function_draws_worlds_from_any_distribution():
 
 
 def test_a_curriculum_changes_the_worlds_of_later_episodes():
-    env = gym.make("sitl/Navigate-v0", world="rooms:seed=1..20,difficulty=0")
+    env = gym.make("sitl/Navigate-v1", world="rooms:seed=1..20,difficulty=0")
     env.reset(seed=1)
     before = env.unwrapped.world
     env.unwrapped.set_worlds("rooms:seed=1..20,difficulty=1")
     assert env.unwrapped.world is before
     assert "difficulty=0," in env.step(0)[4]["world"]
     assert "difficulty=1," in env.reset()[1]["world"]
-    vector = gym.make_vec("sitl/Navigate-v0", 2, world="maze")
+    vector = gym.make_vec("sitl/Navigate-v1", 2, world="maze")
     vector.reset(seed=0)
     vector.unwrapped.set_worlds(["rooms:seed=1"])
     assert set(vector.reset()[1]["world"]) == {worlds.load("rooms:seed=1").name}
@@ -424,3 +426,26 @@ def test_frames_of_many_robots_have_their_worlds_side_by_side():
     assert drawn.solids[-1].centre == pytest.approx(solids[-1].centre + offsets[1])
     source.layout, source.chosen = "", 1
     assert source.frame(source.capture()).world is worlds.load("rooms:seed=1")
+
+
+AMONG = {"sitl/" + camel_case(preset): preset for preset in TRAINING}
+
+
+@pytest.mark.parametrize("name", AMONG)
+def test_tasks_among_solids_are_in_many_worlds_and_their_first_versions_in_one(name):
+    for form in ("", "Discrete"):
+        env = gym.make(f"{name}{form}-v1").unwrapped
+        assert env.session.worlds.text == TRAINING[AMONG[name]] and env.session.varies
+    with pytest.warns(DeprecationWarning, match="out of date"):
+        first = gym.make(f"{name}-v0").unwrapped
+    assert "seed=1" in first.world.name and not first.session.varies
+
+
+def test_what_belongs_to_one_world_is_in_that_of_the_first_version():
+    one = PRESETS["rover-parking"]()["world"]
+    there = {"connection": "udp:127.0.0.1:14551"}, {"autopilot": "ardupilot:x"}, {"gcs": "udpout:127.0.0.1:1"}
+    for given in (*there, {"task": Waypoints(places=[(1.0, 2.0, 0.0)])}, {"robot": lambda world, count: None}):
+        assert options_of("rover-parking-v1", given)["world"] == one, given
+        assert options_of("rover-parking-v1", {**given, "world": "maze"})["world"] == "maze"
+    for given in ({}, {"connection": "inprocess", "autopilot": "native", "gcs": None}, {"task": Among()}):
+        assert options_of("rover-parking-v1", given)["world"] == TRAINING["rover-parking"]

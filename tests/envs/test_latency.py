@@ -28,7 +28,7 @@ PULSES = {
 
 
 def turtlebot(**options):
-    return gym.make("sitl/Navigate-v0", action="continuous", observation="scan", **options).unwrapped
+    return gym.make("sitl/Navigate-v1", action="continuous", observation="scan", **options).unwrapped
 
 
 def poses(env, actions):
@@ -185,7 +185,7 @@ class Prompt:
 )
 def test_wrong_options_are_refused(options, text):
     with pytest.raises(EnvOptionError, match=text):
-        gym.make("sitl/Navigate-v0", **options)
+        gym.make("sitl/Navigate-v1", **options)
 
 
 def test_a_drawn_latency_that_cannot_be_is_refused():

@@ -19,7 +19,7 @@ from sitl.envs.rewards import ByAction, EachStep, Forward, Nearness, Turning
 from sitl.envs.tasks import ReachGoal, Task
 from sitl.vehicles.turtlebot import Lidar
 
-NAVIGATE = "sitl/Navigate-v0"
+NAVIGATE = "sitl/Navigate-v1"
 
 
 def make(**options):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ``sitl/Navigate-v0`` refuses: options, actions, starts and snapshots that cannot be, each by name."""
+"""What ``sitl/Navigate-v1`` refuses: options, actions, starts and snapshots that cannot be, each by name."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from sitl.envs.tasks import ReachGoal, Task
 from sitl.envs.vector import NavigateVector
 from sitl.vehicles.turtlebot import Lidar
 
-NAVIGATE = "sitl/Navigate-v0"
+NAVIGATE = "sitl/Navigate-v1"
 
 
 def make(**options):
@@ -163,7 +163,9 @@ def test_starts_inside_of_solids_are_refused():
 
 
 def test_reset_options_that_are_not_known_are_named():
-    with pytest.raises(EnvOptionError, match=r"reset: option 'psoe' is not known; it is one of pose; did you mean"):
+    with pytest.raises(
+        EnvOptionError, match=r"reset: option 'psoe' is not known; it is one of pose, world; did you mean"
+    ):
         make().reset(options={"psoe": (0.0, 0.0, 0.0)})
 
 

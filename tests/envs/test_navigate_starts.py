@@ -55,7 +55,7 @@ def test_a_table_of_actions_as_plain_data():
 
 
 def make(**options):
-    return gym.make("sitl/Navigate-v0", world="maze", action="continuous", **options)
+    return gym.make("sitl/Navigate-v1", world="maze", action="continuous", **options)
 
 
 @pytest.mark.parametrize("observation", ["digits+goal", "scan+goal", "scan+pose+goal"])
@@ -75,10 +75,10 @@ def test_distance_and_bearing() -> None:
 
 def test_a_vector_sees_each_robots_goal() -> None:
     options = {"world": "maze", "task": "goal", "observation": "scan+goal"}
-    robots = gym.make_vec("sitl/Navigate-v0", num_envs=3, vectorization_mode="vector_entry_point", **options)
+    robots = gym.make_vec("sitl/Navigate-v1", num_envs=3, vectorization_mode="vector_entry_point", **options)
     seen, _ = robots.reset(seed=5)
     for k in range(3):
-        one, _ = gym.make("sitl/Navigate-v0", **options).reset(seed=5 + k)
+        one, _ = gym.make("sitl/Navigate-v1", **options).reset(seed=5 + k)
         assert np.array_equal(seen["goal"][k], one["goal"])
 
 

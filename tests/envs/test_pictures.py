@@ -17,7 +17,7 @@ MAZE = {"robot": "turtlebot", "world": "maze", "action": "continuous", "start": 
 
 
 def make(observation, **options):
-    return gym.make("sitl/Navigate-v0", **{**MAZE, "observation": observation, **options})
+    return gym.make("sitl/Navigate-v1", **{**MAZE, "observation": observation, **options})
 
 
 def drive(env, steps, seed=1):
@@ -50,8 +50,8 @@ def test_depth_is_a_box_of_metres_that_the_lidar_agrees_with():
 )
 def test_vector_equals_singles_and_goes_on_from_snapshots_and_pickles(observation):
     options = {**MAZE, "observation": observation}
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=3, **options)
-    singles = gym.make_vec("sitl/Navigate-v0", num_envs=3, vectorization_mode="sync", **options)
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=3, **options)
+    singles = gym.make_vec("sitl/Navigate-v1", num_envs=3, vectorization_mode="sync", **options)
     assert vector.observation_space == singles.observation_space
     vector.action_space.seed(1)
     assert same(vector.reset(seed=3)[0], singles.reset(seed=3)[0])
@@ -141,6 +141,6 @@ def test_figures_that_cannot_be_are_refused(arguments, says):
 def test_a_vehicle_elsewhere_has_no_camera_here():
     with pytest.raises(EnvOptionError, match="shows no world to a camera"):
         gym.make(
-            "sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", observation="depth",
+            "sitl/Navigate-v1", robot="erle_rover", world="maze_erlerover", observation="depth",
             connection="udp:127.0.0.1:1",
         )  # fmt: skip

@@ -85,8 +85,8 @@ def test_by_udp_in_lockstep_with_lost_datagrams_it_is_the_same(tmp_path, monkeyp
     port = lockstep_vehicle.free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):
-        here = gym.make("sitl/Navigate-v0", **ROVER)
-        there = gym.make("sitl/Navigate-v0", **ROVER, connection=f"udp:127.0.0.1:{port}")
+        here = gym.make("sitl/Navigate-v1", **ROVER)
+        there = gym.make("sitl/Navigate-v1", **ROVER, connection=f"udp:127.0.0.1:{port}")
         a, b = here.reset(seed=5)[0], there.reset(seed=5)[0]
         link = there.unwrapped.robot.link(0)
         link.stream = link.endpoint.link = lossy = Lossy(link.stream, 5)
@@ -99,8 +99,8 @@ def test_by_udp_in_lockstep_with_lost_datagrams_it_is_the_same(tmp_path, monkeyp
 
 def test_what_a_robot_does_not_tell_is_refused_by_name():
     with pytest.raises(EnvOptionError, match="'turtlebot' sends no SYS_STATUS"):
-        gym.make("sitl/Navigate-v0", observation=["battery"])
+        gym.make("sitl/Navigate-v1", observation=["battery"])
     with pytest.raises(EnvOptionError, match="'erle_rover' has no range-finder"):
-        gym.make("sitl/Navigate-v0", **{**ROVER, "observation": ["range_finder"]})
+        gym.make("sitl/Navigate-v1", **{**ROVER, "observation": ["range_finder"]})
     with pytest.raises(NotReadyError, match="does not send WIND every 100 ms"):
-        gym.make("sitl/Navigate-v0", **{**ROVER, "observation": ["wind"]}).reset(seed=1)
+        gym.make("sitl/Navigate-v1", **{**ROVER, "observation": ["wind"]}).reset(seed=1)

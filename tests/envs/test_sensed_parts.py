@@ -71,7 +71,7 @@ def test_vector_equals_singles_and_goes_on_from_snapshots_and_pickles(robot):
     if robot == "copter":
         name, options = COPTER, {"observation": {"a": late, "b": Sensed("goal", latency=0.6)}, "step_time": 0.6}
     else:
-        name, options = "sitl/Navigate-v0", {"world": "maze", "observation": late, "start": "random"}
+        name, options = "sitl/Navigate-v1", {"world": "maze", "observation": late, "start": "random"}
     vector = gym.make_vec(name, num_envs=3, max_episode_steps=9, **options)
     singles = gym.make_vec(name, num_envs=3, max_episode_steps=9, vectorization_mode="sync", **options)
     vector.action_space.seed(1)
@@ -135,13 +135,13 @@ def test_what_cannot_be_is_refused_by_name(piece, says):
 @pytest.mark.parametrize("part", ["true_wind", "true_battery", "true_acceleration"])
 def test_a_turtlebot_has_no_such_truth(part):
     with pytest.raises(EnvOptionError, match=f"'{part}': robot 'turtlebot' has none"):
-        gym.make("sitl/Navigate-v0", observation=[part])
+        gym.make("sitl/Navigate-v1", observation=[part])
 
 
 @pytest.mark.parametrize("part", ["true_wind", "true_height", "true_pose"])
 def test_nobody_knows_the_truth_of_a_vehicle_elsewhere(part):
     with pytest.raises(EnvOptionError, match="udp:127"):
         gym.make(
-            "sitl/Navigate-v0", robot="erle_rover", world="maze_erlerover", observation=[part],
+            "sitl/Navigate-v1", robot="erle_rover", world="maze_erlerover", observation=[part],
             connection="udp:127.0.0.1:1",
         )  # fmt: skip

@@ -27,8 +27,8 @@ class Told(Task):
 
 CASES = {
     "digits": (CIRCUIT2, {"max_episode_steps": 40}),
-    "noise": ("sitl/Navigate-v0", {"start": "random", "randomise": {"range_noise": (0.0, 0.05)}, "latency": 0.3}),
-    "a dict, and a goal": ("sitl/Navigate-v0", {
+    "noise": ("sitl/Navigate-v1", {"start": "random", "randomise": {"range_noise": (0.0, 0.05)}, "latency": 0.3}),
+    "a dict, and a goal": ("sitl/Navigate-v1", {
         "world": "round", "action": "continuous", "observation": "scan+pose+goal", "task": ReachGoal((1.0, 2.0)),
         "start": "random", "max_episode_steps": 6,
     }),
@@ -76,7 +76,7 @@ def test_it_is_the_sync_vector_environment(case, mode):
 
 @pytest.mark.parametrize("mode", AutoresetMode)
 def test_infos_of_a_tasks_own_have_their_types(mode):
-    ours, theirs = both("sitl/Navigate-v0", mode, task=Told(), max_episode_steps=3, count=2)
+    ours, theirs = both("sitl/Navigate-v1", mode, task=Told(), max_episode_steps=3, count=2)
     assert_same(ours.reset(seed=1), theirs.reset(seed=1))
     for step in range(9):
         got, expected = ours.step(np.array([0, 1])), theirs.step(np.array([0, 1]))
@@ -90,7 +90,7 @@ def test_infos_of_a_tasks_own_have_their_types(mode):
 
 
 def test_the_last_observation_of_an_episode_is_kept():
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=2, autoreset_mode="SameStep", max_episode_steps=2)
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=2, autoreset_mode="SameStep", max_episode_steps=2)
     first, _ = vector.reset(seed=1)
     middle, *_ = vector.step(np.array([0, 0]))
     fresh, _, _, truncated, infos = vector.step(np.array([0, 0]))
@@ -126,7 +126,7 @@ def test_a_mask_without_a_robot_is_refused():
 
 
 @pytest.mark.parametrize("mode", [None, "vector_entry_point", "sync", "async"])
-@pytest.mark.parametrize("name", [*PAPER, "sitl/Navigate-v0"])
+@pytest.mark.parametrize("name", [*PAPER, "sitl/Navigate-v1"])
 def test_every_way_to_make_a_vector_gives_the_same(name, mode):
     vector = gym.make_vec(name, num_envs=2, vectorization_mode=mode, max_episode_steps=2)
     reference = gym.vector.SyncVectorEnv([lambda: gym.make(name, max_episode_steps=2)] * 2)

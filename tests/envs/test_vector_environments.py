@@ -21,7 +21,7 @@ CASES = [
         "GazeboMazeTurtlebotLIDAR-v0",
         {"observation": "scan", "start": "random", "randomise": {"range_noise": (0.0, 0.05)}},
     ),
-    ("sitl/Navigate-v0", {"world": "round", "action": "continuous", "observation": "scan+pose", "task": "goal"}),
+    ("sitl/Navigate-v1", {"world": "round", "action": "continuous", "observation": "scan+pose", "task": "goal"}),
 ]
 
 
@@ -63,7 +63,7 @@ def test_episodes_are_truncated_and_begin_anew():
 
 
 def test_some_robots_are_reset_and_the_others_go_on():
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=3, randomise={"range_noise": (0.01, 0.02)})
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=3, randomise={"range_noise": (0.01, 0.02)})
     vector.reset(seed=0)
     before = vector.step([0, 0, 0])[0]
     after, _ = vector.reset(options={"reset_mask": np.array([False, True, False])})
@@ -74,7 +74,7 @@ def test_some_robots_are_reset_and_the_others_go_on():
 
 
 def test_seeds_one_by_one():
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=2, start="random")
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=2, start="random")
     a, _ = vector.reset(seed=[5, 5])
     assert np.array_equal(a[0], a[1])
     with pytest.raises(ValueError, match="3 seeds"):
@@ -82,7 +82,7 @@ def test_seeds_one_by_one():
 
 
 def test_snapshot_and_pickle_go_on_bit_for_bit():
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=3, start="random", randomise={"range_noise": (0.01, 0.02)})
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=3, start="random", randomise={"range_noise": (0.01, 0.02)})
     vector.reset(seed=0)
     vector.step([0, 1, 2])
     kept, copy = vector.unwrapped.snapshot(), pickle.loads(pickle.dumps(vector))
@@ -115,8 +115,8 @@ def test_wrong_counts_are_refused(options):
 
 def test_goals_and_their_rewards_are_those_of_single_ones_to_the_last_bit():
     options = {"task": "goal", "start": "random", "max_episode_steps": 9}
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=4, **options)
-    singles = gym.vector.SyncVectorEnv([lambda: gym.make("sitl/Navigate-v0", **options) for _ in range(4)])
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=4, **options)
+    singles = gym.vector.SyncVectorEnv([lambda: gym.make("sitl/Navigate-v1", **options) for _ in range(4)])
     vector.reset(seed=5), singles.reset(seed=5)
     for step in range(60):
         actions = np.arange(step, step + 4) % 3
@@ -144,7 +144,7 @@ def test_a_tasks_own_arrays_stay_as_they_are():
         def info(self, step):
             return {"goal": self.goals}
 
-    vector = gym.make_vec("sitl/Navigate-v0", num_envs=2, task=Told((1.0, 2.0)), max_episode_steps=1).unwrapped
+    vector = gym.make_vec("sitl/Navigate-v1", num_envs=2, task=Told((1.0, 2.0)), max_episode_steps=1).unwrapped
     vector.reset(seed=1)
     vector.step(np.array([1, 1]))
     vector.step(np.array([1, 1]))

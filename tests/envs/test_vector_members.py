@@ -155,7 +155,7 @@ def test_wrappers_give_what_they_give_of_single_environments(name, mode):
 
 
 def test_observations_are_normalised_and_flattened():
-    made = both("sitl/Navigate-v0", world="maze", **NOISE)
+    made = both("sitl/Navigate-v1", world="maze", **NOISE)
     ours, theirs = (wrappers.FlattenObservation(wrappers.NormalizeObservation(vector)) for vector in made)
     assert ours.observation_space == theirs.observation_space
     assert same(ours.reset(seed=1), theirs.reset(seed=1))
