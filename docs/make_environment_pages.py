@@ -255,7 +255,7 @@ def world(preset: str, env: Any) -> str:
     first = gym.spec(f"sitl/{camel_case(preset)}-v0").kwargs["preset"]
     return (
         f"each episode in one of `{env.session.worlds.text}`; policies are judged in others, "
-        f"`world=sitl.envs.worlds.TEST[\"{preset}\"]`; in v0 always `{PRESETS[first]()['world']}`"
+        f'`world=sitl.envs.worlds.TEST["{preset}"]`; in v0 always `{PRESETS[first]()["world"]}`'
     )
 
 

@@ -163,7 +163,9 @@ def test_starts_inside_of_solids_are_refused():
 
 
 def test_reset_options_that_are_not_known_are_named():
-    with pytest.raises(EnvOptionError, match=r"reset: option 'psoe' is not known; it is one of pose, world; did you mean"):
+    with pytest.raises(
+        EnvOptionError, match=r"reset: option 'psoe' is not known; it is one of pose, world; did you mean"
+    ):
         make().reset(options={"psoe": (0.0, 0.0, 0.0)})
 
 
