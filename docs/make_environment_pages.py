@@ -158,7 +158,7 @@ def page(name: str) -> str:
         f"| step | {number(env.step_time)} s ({number(1.0 / env.step_time)} Hz) |",
         f"| time limit | {spec.max_episode_steps} steps ({number(seconds)} s), then `truncated` |",
         f"| arena | x {number(box.low[0])} .. {number(box.high[0])}, y {number(box.low[1])} .. {number(box.high[1])}, "
-        f"z {number(box.low[2])} .. {number(box.high[2])} m" + (" in the first world |" if env.session.varies else " |"),
+        f"z {number(box.low[2])} .. {number(box.high[2])} m{' in the first world' if env.session.varies else ''} |",
         "", "## Observations", "",
         f"{frame[0].upper()}{frame[1:]}. Values are clipped to min and max; they are not normalised.",
         "`env.unwrapped.session.observation.columns` has the names.", "", *observations(env),

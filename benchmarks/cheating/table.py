@@ -18,7 +18,8 @@ from .cheats import WRONG, Policy, Stage, baseline, cheats_of, nothing, options_
 SEED = 1000
 HALF = 0.5
 """No cheat may have this share of the baseline's score."""
-HIDE = "hide behind the estimate"
+HIDE, CIRCLE = "hide behind the estimate", "circle the goal"
+"""Cheats of which episodes without success count: one that overshoots into the goal has done the task."""
 SEEN = {"Gates", "Land"}
 """Tasks whose goal robots see, and do not know from their estimate: nothing can be hidden behind it."""
 
@@ -130,6 +131,7 @@ def row(name: str, episodes: int) -> Row:
     cheats, task = cheats_of(Stage(env, preset)), env.unwrapped.task
     env.close()
     played = {cheat: play(name, begin, episodes) for cheat, begin in cheats.items()}
+    played[CIRCLE] = played[CIRCLE].failed()
     if not SEEN.intersection(cls.__name__ for cls in type(task).__mro__):
         played[HIDE] = play(name, baseline, episodes, faults=WRONG, sensors="gps").failed()
     return Row(name, play(name, baseline, episodes), play(name, nothing, episodes), played)
@@ -140,7 +142,7 @@ def line(found: Row) -> str:
     best, score = found.best
     worst = "" if math.isinf(found.worst_honest) else f"{found.worst_honest:.1f}"
     early = "" if math.isinf(found.best_early) else f"{found.best_early:.1f}"
-    drawn, out, circle = (found.score(found.cheats[key]) for key in ("random", "fly out", "circle the goal"))
+    drawn, out, circle = (found.score(found.cheats[key]) for key in ("random", "fly out", CIRCLE))
     hide = f"{found.score(found.cheats[HIDE]):.2f}" if HIDE in found.cheats else ""
     return (
         f"| `{found.name.removeprefix('sitl/')}` | {found.baseline.mean:.1f} | {found.nothing.mean:.1f} | "

@@ -109,7 +109,7 @@ class Fence(_Limit):
     def __call__(self, step: Step) -> Floats:
         """See ``rewards.Term``."""
         place = state_of(step)[:, :3]
-        out: Floats = ((place < self._low) | (place > self._high)).any(axis=1).astype(np.float64)
+        out: Floats = np.asarray(((place < self._low) | (place > self._high)).any(axis=1), np.float64)
         return out
 
 

@@ -225,7 +225,7 @@ class PlacesTask(Task):
         """Whether each robot has done the task, shape (count,)."""
         self._table: Floats = np.zeros((count, 8))
         """Poses and velocities by which the present step is judged."""
-        self._ends = Ends(*np.zeros((3, count), np.bool_), np.zeros(count))
+        self._ends = Ends(*(np.zeros(count, np.bool_) for _ in range(3)), np.zeros(count))  # type: ignore[call-arg]
         self._paid_names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
         self._paid = np.zeros((len(self._paid_names), count))
         """Terms of the last rewards, by name, shape (terms, count)."""
@@ -357,7 +357,7 @@ class PlacesTask(Task):
         success = np.ascontiguousarray(self.success, np.bool_)
         outside = Outside(self._low, self._high, float(self.out_reward), self.out_ends, float(self.crash_reward))
         _end.unchecked()(outside, self._table, success, rewards, terminated, ends)
-        step.crashed, step.outside, step.reached = ends.crashed, ends.outside, ends.reached
+        step.crashed, step.outside, step.reached = ends[:3]  # type: ignore[assignment]  # laws' flags are booleans
 
     @abstractmethod
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
