@@ -64,8 +64,8 @@ MOCAP: dict[str, float] = {
     "baro_drift_time": 300.0,  # [s]
 }
 UWB: dict[str, float] = {
-    # Ultra-wideband beacons around the arena, as kits with two-way ranging give it in the line of sight: all figures are
-    # this project's estimates. They reach the autopilot as a receiver's fixes; height stays the barometer's.
+    # Ultra-wideband beacons around the arena, as kits with two-way ranging give it in the line of sight. All figures
+    # are this project's estimates. They reach the autopilot as a receiver's fixes; height stays the barometer's.
     "gps_rate": 10.0,  # [Hz]
     "gps_delay": 0.1,  # [s] ranging and solution (estimate)
     "gps_noise_horizontal": 0.05,  # [m] with the next: 0.10 m in the plane
