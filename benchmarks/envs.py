@@ -13,12 +13,15 @@ import time
 import timeit
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 
 from sitl import envs
+
+from .beside import IDS, PPO, compare
 
 CARTPOLE = "CartPole-v1"
 VECTORS = (16, 256, 1024)
@@ -111,9 +114,19 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=7, metavar="N", help="runs of each, of which the median counts")
     parser.add_argument("--steps", type=int, default=20_000, metavar="N", help="of a run")
     parser.add_argument("--copters", type=int, default=0, metavar="N", help="also a vector of N copters (256: 250 MB)")
+    parser.add_argument("--beside", type=Path, metavar="PATH", help="instead: ratios to this checkout's environments")
+    parser.add_argument("--ids", nargs="+", metavar="ID", help="with --beside; the default is one of each kind of task")
+    parser.add_argument(
+        "--vectors", nargs="+", default=[0, 64], metavar="N", type=lambda n: n if n == PPO else int(n),
+        help=f"with --beside: numbers of robots; 0: gymnasium.make; {PPO}: the share of a training",
+    )  # fmt: skip
     options = parser.parse_args()
     if options.repeats < 1 or options.steps < 1024:
         parser.error("--repeats must be 1 or more, --steps 1024 or more")
+    if options.beside is not None:
+        names = options.ids or [f"{name}-{version}" for name in IDS for version in ("v0", "v1")]
+        compare(options.beside, names, options.vectors, options.repeats, options.steps)
+        return
     rows: dict[str, tuple[Callable[[], float], float]] = {CARTPOLE: (single(CARTPOLE, options.steps), 0.02)}
     for name in envs.PAPER:
         seconds = gym.make(name).unwrapped.step_time  # type: ignore[attr-defined]

@@ -13,6 +13,9 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.error import InvalidAction
 
+from sitl.core.array_kernels import IntLine, Kernel, Line, NarrowLine, NarrowTable, Table
+from sitl.core.kernels import law
+
 from .options import EnvOptionError
 
 
@@ -84,6 +87,10 @@ class Action(Protocol):
             InvalidAction: it is not in the space.
         """
 
+    # def take(self, actions, out) -> bool: many at once, see ``Continuous.take``; without it each is checked alone.
+    # def clip(self, action), def clip_all(self, actions, out): see ``Continuous``; without them, and for the option
+    # ``clip_actions=False``, actions outside of the space are refused.
+
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """Write the set-points of the actions into ``out``, shape (count, setpoint.width), in the units of
         ``setpoint``."""
@@ -96,6 +103,33 @@ def _is_row(row: Any, width: int) -> bool:
     except (TypeError, ValueError):
         return False
     return numbers.shape == (width,) and bool(np.all(np.isfinite(numbers)))
+
+
+@law
+def take_boxed(actions: NarrowTable, low: NarrowLine, high: NarrowLine, out: Table) -> bool:
+    """Copy actions, shape (count, n), if all are within their bounds, shape (n,); tells whether they are."""
+    for i in range(actions.shape[0]):
+        for k in range(actions.shape[1]):
+            if not low[k] <= actions[i, k] <= high[k]:
+                return False
+    for i in range(actions.shape[0]):
+        for k in range(actions.shape[1]):
+            out[i, k] = float(actions[i, k])
+    return True
+
+
+@law
+def take_chosen(actions: IntLine, count: int, out: IntLine) -> bool:
+    """Copy numbers of actions if all are from 0 to below ``count``; tells whether they are."""
+    for i in range(actions.shape[0]):
+        if not 0 <= actions[i] < count:
+            return False
+    for i in range(actions.shape[0]):
+        out[i] = actions[i]
+    return True
+
+
+_take, _choose = Kernel(take_boxed), Kernel(take_chosen)
 
 
 class Discrete:
@@ -134,6 +168,12 @@ class Discrete:
         names = ", ".join(f"{k} {name}" for k, name in enumerate(self.names))
         raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
 
+    def take(self, actions: npt.NDArray[Any], out: npt.NDArray[np.int64]) -> bool:
+        """See ``Continuous.take``; actions of shape (count,)."""
+        if actions.dtype.kind not in "iu" or actions.shape != out.shape:
+            return False
+        return bool(_choose.unchecked()(np.ascontiguousarray(actions, np.int64), self._count, out))
+
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
         self.table.take(actions, 0, out, "clip")
@@ -161,6 +201,9 @@ class Continuous:
         self.columns = list(range(setpoint.width)) if columns is None else list(columns)
         if len(set(self.columns)) != len(self.columns) or not set(self.columns) <= set(range(setpoint.width)):
             raise EnvOptionError(f"columns {columns!r}: each must be another of 0 .. {setpoint.width - 1}")
+        first = self.columns[0] if self.columns else 0
+        together = self.columns == list(range(first, first + len(self.columns)))
+        self._place = slice(first, first + len(self.columns)) if together else self.columns
         if len(low) != len(self.columns) or len(high) != len(self.columns):
             raise EnvOptionError(f"limits {low!r} .. {high!r} are not {len(self.columns)} numbers each")
         if not all(a < b for a, b in zip(low, high)):
@@ -174,25 +217,77 @@ class Continuous:
 
     def check(self, action: Any) -> Any:
         """See ``Action``."""
+        numbers = self._within(action)
+        if numbers is not None:
+            return numbers
+        names = ", ".join(
+            f"{self.setpoint.columns[c]} {a:g} .. {b:g}" for c, a, b in zip(self.columns, self._low, self._high)
+        )
+        raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
+
+    def _within(self, action: Any) -> Any:
+        """The action as a row, if it is in the space."""
         try:
             numbers = np.asarray(action, np.float32).tolist()
             if len(numbers) == len(self._low) and all(a <= x <= b for a, x, b in zip(self._low, numbers, self._high)):
                 return numbers
         except (TypeError, ValueError):
             pass
-        names = ", ".join(
-            f"{self.setpoint.columns[c]} {a:g} .. {b:g}" for c, a, b in zip(self.columns, self._low, self._high)
-        )
-        raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
+        return None
+
+    def clip(self, action: Any) -> Any:
+        """As ``check``, but finite numbers outside of their limits become the limits."""
+        numbers = self._within(action)
+        if numbers is not None:
+            return numbers
+        row = np.empty((1, len(self.columns)))
+        try:
+            is_finite = self.clip_all(np.asarray(action, np.float64)[np.newaxis], row)
+        except (TypeError, ValueError):
+            is_finite = False
+        return row[0].tolist() if is_finite else self.check(action)
+
+    def clip_all(self, actions: npt.NDArray[Any], out: Floats) -> bool:
+        """``clip`` of an action for each row of ``out``; False: one of them is not finite, or they have another shape,
+        and nothing is written."""
+        if actions.shape != out.shape or actions.dtype.kind not in "fiu" or not np.isfinite(actions).all():
+            return False
+        out[...] = np.clip(actions.astype(np.float64), self._low, self._high).astype(np.float32)
+        return True
+
+    def take(self, actions: npt.NDArray[Any], out: Floats) -> bool:
+        """Write actions of many robots, shape (count, columns), as ``check`` gives them, into an array that ``room``
+        returned. False: an action is not in the space, or they are no such array; nothing is written."""
+        if actions.dtype.kind not in "fiu" or actions.shape != out.shape:
+            return False
+        return bool(_take.unchecked()(np.ascontiguousarray(actions, np.float32), self.space.low, self.space.high, out))
 
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
-        out[:, self.columns] = actions
+        out[:, self._place] = actions
 
     def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
         """The action whose set-point is nearest to one, of shape (setpoint.width,)."""
         wanted = np.asarray(command, np.float64)[self.columns].astype(np.float32)
         return np.clip(wanted, self.space.low, self.space.high)
+
+
+@law
+def scale_actions(actions: Table, columns: IntLine, middle: Line, half: Line, out: Table) -> None:
+    """Write set-points of actions within [-1, 1].
+
+    Args:
+        actions: shape (count, n).
+        columns: of ``out``, for each number of an action, shape (n,).
+        middle, half: middle and half of the range of each number, in its unit, shape (n,).
+        out: shape (count, width).
+    """
+    for i in range(actions.shape[0]):
+        for k in range(actions.shape[1]):
+            out[i, columns[k]] = middle[k] + half[k] * actions[i, k]
+
+
+_scale = Kernel(scale_actions)
 
 
 class Normalised(Continuous):
@@ -206,6 +301,7 @@ class Normalised(Continuous):
         super().__init__(box.setpoint, box.space.low.tolist(), box.space.high.tolist(), box.columns)
         low, high = box.space.low.astype(np.float64), box.space.high.astype(np.float64)
         self._middle, self._half = 0.5 * (low + high), 0.5 * (high - low)
+        self._numbers = np.array(self.columns, np.int64)
         self.limits = tuple(zip(self._low, self._high))
         """(Low, high) of each number in the set-point's unit."""
         self.space = gym.spaces.Box(-1.0, 1.0, (len(self.columns),), np.float32)
@@ -213,7 +309,7 @@ class Normalised(Continuous):
 
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
-        out[:, self.columns] = self._middle + self._half * actions
+        _scale.unchecked()(actions, self._numbers, self._middle, self._half, out)
 
     def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
         """See ``Continuous``."""

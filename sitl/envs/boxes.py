@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from itertools import pairwise
 from typing import Any
@@ -11,11 +11,13 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from .gathering import Gathering
 from .options import EnvOptionError
 from .parts import PARTS, Part, Surroundings, part_of
 from .robots.robot import Robot
 from .sensed import Sensed
-from .senses import FAR, reads_scan
+from .senses import FAR, arrays_stay, reads_scan
+from .tensors import rows
 
 
 class Parts:
@@ -40,12 +42,19 @@ class Parts:
         """Those of them that remember the last steps."""
         self.reads_scan = any(reads_scan(part) for part in self._parts)
 
+        self._written: tuple[tuple[Part, slice], ...] = ()
+        """Parts that no gathering writes, and where."""
+        self._gather: Callable[[Any], None] | None = None
+        """Writes the others."""
+
     def prepare(self, session: Surroundings) -> None:
         """Called once, when robot, action and task are there."""
+        self._session = session
         for part in self._parts:
             part.prepare(session)
         self.columns = tuple(column for part in self._parts for column in part.columns)
         """Name and unit of each number."""
+        self._width = len(self.columns)
         ends = np.cumsum([0, *(len(part.columns) for part in self._parts)]).tolist()
         self._places = [slice(a, b) for a, b in pairwise(ends)]
         self.slices = dict(zip(self.names, self._places))
@@ -59,10 +68,29 @@ class Parts:
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
-        out = np.empty((robot.count, len(self.columns)), np.float32)
+        out = rows(robot.count, self._width)
+        (self._gather or self._planned())(out)
+        for part, where in self._written:
+            mine = out[:, where]
+            part.write(mine)
+            np.clip(mine, self._low[where], self._high[where], out=mine)
+        return out
+
+    def _planned(self) -> Callable[[Any], None]:
+        """What one compiled call gathers, and what is left."""
+        plan, left = Gathering(self._session), []
+        gathers = arrays_stay(self._session.robot)
         for part, where in zip(self._parts, self._places):
-            part.write(out[:, where])
-        return np.clip(out, self._low, self._high, out=out)
+            if gathers and hasattr(part, "gather"):
+                plan.at(where.start)
+                part.gather(plan)
+            else:
+                left.append((part, where))
+        self._written, self._gather = tuple(left), plan.made(self._low, self._high) if gathers else _nothing
+        return self._gather
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_gather": None}  # the copy's arrays are others
 
 
 class NamedParts(Parts):
@@ -78,7 +106,7 @@ class NamedParts(Parts):
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         numbers = super().observe(robot)
-        return {name: numbers[:, where].copy() for name, where in self.slices.items()}
+        return {name: _narrow(numbers[:, where]) for name, where in self.slices.items()}
 
 
 class GoalConditioned(Parts):
@@ -102,9 +130,20 @@ class GoalConditioned(Parts):
         """See ``Observation``."""
         return {
             "observation": super().observe(robot),
-            "achieved_goal": self._task.achieved().astype(np.float32),
-            "desired_goal": self._task.targets.astype(np.float32),
+            "achieved_goal": _narrow(self._task.achieved()),
+            "desired_goal": _narrow(self._task.targets),
         }
+
+
+def _narrow(numbers: Any) -> Any:
+    """A copy as float32."""
+    out = rows(*numbers.shape)
+    out[:] = numbers
+    return out
+
+
+def _nothing(out: Any) -> None:
+    """Gather nothing."""
 
 
 def _chosen(part: str | Part | Mapping[str, Any]) -> Part:

@@ -8,13 +8,28 @@ from typing import Any
 
 import numpy as np
 
+from sitl.core.array_kernels import Kernel, Table
+from sitl.core.kernels import law
+
 from .options import unknown
 from .robots.robot import Floats, Robot
-from .senses import SensingRobot
+from .senses import SensingRobot, arrays_stay
 
 TRUTH, ESTIMATE = "truth", "estimate"
 JUDGES = (TRUTH, ESTIMATE)
 """Values of the option ``judge``."""
+
+
+@law
+def write_errors(pose: Table, truth: Table, out: Table) -> None:
+    """Write estimates minus truth: x, y, z [m], yaw [rad] within -pi .. pi, shape (count, 4 or more) each."""
+    for i in range(out.shape[0]):
+        for k in range(4):
+            out[i, k] = pose[i, k] - truth[i, k]
+        out[i, 3] = (out[i, 3] + math.pi) % math.tau - math.pi
+
+
+_errors = Kernel(write_errors)
 
 
 class Judge:
@@ -37,17 +52,33 @@ class Judge:
         self.by = TRUTH if asked == TRUTH and self.knows_truth else ESTIMATE
         """Of ``JUDGES``: what it goes by."""
         self._state: Floats | None = None
+        self._is_told = False
+        """Whether somebody says when robots move."""
+        self._stays = arrays_stay(robot)
         self._is_true = self.by == TRUTH
 
     def moved(self) -> None:
         """Robots have moved: what was known of them is old."""
-        self._state = None
+        self._state, self._is_told = None, True
 
     def state(self) -> Floats:
         """True states, as ``SensingRobot.true_state``; calculated once a step. To be read only."""
-        if self._state is None:
+        if self._state is None or not self._is_told:
             self._state = self._robot.true_state()
         return self._state
+
+    def table(self) -> Floats:
+        """Columns of ``pose`` and ``velocity``, and maybe more, in one piece, shape (count, 8 or more). To be read
+        only."""
+        if self._is_true:
+            return np.ascontiguousarray(self.state(), np.float64)
+        robot = self._robot
+        found: Floats = robot.state if self._stays else np.concatenate([robot.pose, robot.velocity], axis=1)
+        return found
+
+    def true_table(self) -> Floats:
+        """The same as it really is; where nobody knows, the estimate."""
+        return np.ascontiguousarray(self.state(), np.float64) if self.knows_truth else self.table()
 
     @property
     def pose(self) -> Floats:
@@ -63,8 +94,8 @@ class Judge:
 
     def error(self) -> Floats:
         """Estimate minus truth: x, y, z [m], yaw [rad] within -pi .. pi, shape (count, 4); where ``knows_truth``."""
-        out: Floats = self._robot.pose - self.state()[:, :4]
-        out[:, 3] = np.remainder(out[:, 3] + math.pi, math.tau) - math.pi
+        pose, out = np.ascontiguousarray(self._robot.pose), np.empty((self._robot.count, 4))
+        _errors.unchecked()(pose, self.true_table(), out)
         return out
 
     def __getstate__(self) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from sitl.core.kernels import law
 
 from .options import EnvOptionError
 from .robots.robot import Robot
+from .tensors import rows
 
 FAR = 10_000.0
 """Bound of coordinates in observation spaces [m]: that of world files."""
@@ -101,7 +102,7 @@ class Digits:
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         every, when_inf, highest, digits = self._plan
-        out = np.empty((robot.count, digits), np.int64)
+        out = rows(robot.count, digits, np.int64)
         _digits.unchecked()(robot.scan, every, when_inf, highest, out)
         return out
 
@@ -115,7 +116,7 @@ class Scan:
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
-        return np.minimum(robot.scan, np.float32(robot.range_max))
+        return np.minimum(robot.scan, np.float32(robot.range_max), out=rows(*robot.scan.shape))
 
 
 class WithPose:

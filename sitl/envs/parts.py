@@ -11,12 +11,18 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.core import elementary_arrays as arrays
+from sitl.core.array_kernels import Kernel, Line, Table
+from sitl.core.elementary import sincos
+from sitl.core.kernels import law
 
 from .actions import Discrete, Normalised
+from .gathering import ACTIONS, CHOSEN, SCAN, STATE, TRUTH, Gathering
+from .gathering import REPORTS as REPORTS_
+from .gathering import TRUE_REPORTS as TRUE_REPORTS_
 from .observations import Digits
 from .options import EnvOptionError, unknown
 from .pictures import PICTURES
-from .robots.robot import Robot, floors_of
+from .robots.robot import Floats, Robot, floors_of
 from .senses import FAR, REPORTS, SENSES, TRUE, TRUE_REPORTS, ReportingRobot, SensingRobot
 
 Narrow = npt.NDArray[np.float32]
@@ -60,6 +66,9 @@ class Part(Protocol):
     def write(self, out: Narrow) -> None:
         """Write the numbers of now, a row a robot, shape (count, columns)."""
 
+    # def gather(self, plan: Gathering) -> None: the same by a plan, for robots whose arrays stay in place. A part that
+    # does not have it is written by ``write``.
+
 
 class State:
     """Columns of the robot's state: "pose", "velocity", "attitude", "rates", and with "true_" as they really are."""
@@ -84,6 +93,37 @@ class State:
         state = self._robot.true_state() if self._is_true else self._robot.state
         out[:] = state[:, self._slice]
 
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        if self._is_true:
+            plan.before(self._robot.true_state)
+        plan.take(TRUTH if self._is_true else STATE, self._slice.start, len(self.columns))
+
+
+@law
+def write_headings(state: Table, out: Table, first: int) -> None:
+    """Write cosines and sines of headings.
+
+    Args:
+        state: of robots (``senses.SensingRobot``), shape (count, 12).
+        out: shape (count, n).
+        first: column of the cosine.
+    """
+    for i in range(out.shape[0]):
+        s, c = sincos(state[i, 3])
+        out[i, first], out[i, first + 1] = c, s
+
+
+@law
+def write_directions(angles: Line, out: Table, first: int) -> None:
+    """Write cosines and sines of angles [rad], shape (count,), as ``write_headings`` does."""
+    for i in range(out.shape[0]):
+        s, c = sincos(angles[i])
+        out[i, first], out[i, first + 1] = c, s
+
+
+_headings, _point = Kernel(write_headings), Kernel(write_directions)
+
 
 class Heading:
     """Cosine and sine of the heading, which do not jump at +-pi as the yaw of "pose" does."""
@@ -99,6 +139,11 @@ class Heading:
         """See ``Part``."""
         yaw = self._robot.pose[:, 3]
         out[:, 0], out[:, 1] = arrays.cos(yaw), arrays.sin(yaw)
+
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        robot: Any = self._robot
+        plan.compute(2, lambda table, first: _headings.bind(robot.state, table, first))
 
 
 class Told:
@@ -126,6 +171,10 @@ class Told:
         """See ``Part``."""
         out[:] = self._robot.reports[:, self._slice]
 
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        plan.take(REPORTS_, self._slice.start, len(self.columns))
+
 
 class TrueReport:
     """What a vehicle would tell by a message, as it really is: "true_acceleration", "true_battery", "true_wind"."""
@@ -149,6 +198,11 @@ class TrueReport:
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
         out[:] = self._robot.true_reports()[:, self._slice]
+
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        plan.before(self._robot.true_reports)
+        plan.take(TRUE_REPORTS_, self._slice.start, len(self.columns))
 
 
 class Height:
@@ -185,6 +239,10 @@ class Readings:
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
         out[:] = self._robot.scan
+
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        plan.take(SCAN, 0, len(self.columns))
 
 
 class DigitReadings:
@@ -228,6 +286,10 @@ class LastAction:
         out[:] = np.eye(self._rows, dtype=np.float32)[actions] if self._rows else actions
         out[~self._session.acted] = 0.0
 
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        plan.take(CHOSEN if self._rows else ACTIONS, 0, len(self.columns))
+
 
 WAY = ("ahead [m]", "to the left [m]", "above [m]")
 
@@ -257,6 +319,20 @@ class Path:
         """See ``Part``."""
         out[:] = self._task.ways(self.count).reshape(out.shape)
 
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        task, width = self._task, len(self.columns)
+        writes = getattr(task, "ways_writer", lambda count, table, first: None)
+
+        def maker(table: Floats, first: int) -> Callable[[], object]:
+            def copy() -> None:
+                table[:, first : first + width] = task.ways(self.count).reshape(-1, width)
+
+            found: Callable[[], object] | None = writes(self.count, table, first)
+            return found or copy
+
+        plan.compute(width, maker)
+
 
 class GoalHeading:
     """Difference between the heading that the task wants and the robot's."""
@@ -274,6 +350,15 @@ class GoalHeading:
         """See ``Part``."""
         turns = self._task.turns()
         out[:, 0], out[:, 1] = arrays.cos(turns), arrays.sin(turns)
+
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        task = self._task
+
+        def maker(table: Floats, first: int) -> Callable[[], object]:
+            return lambda: _point.unchecked()(np.ascontiguousarray(task.turns(), np.float64), table, first)
+
+        plan.compute(2, maker)
 
 
 PARTS: dict[str, Callable[[], Part]] = {

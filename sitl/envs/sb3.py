@@ -116,18 +116,28 @@ class Sb3VecEnv(VecEnv):
         return self.env_method("render")
 
 
+_ALL = np.ones(1, np.bool_)
+"""Of entries without a mask."""
+
+
 def _rows(infos: dict[str, Any], count: int) -> list[dict[str, Any]]:
     """Infos in Gymnasium's vector form as one dict for each robot."""
+    names = [name for name in infos if not (name.startswith("_") and name[1:] in infos)]
+    if all(isinstance(infos[name], np.ndarray) and infos.get("_" + name, _ALL).all() for name in names):
+        columns = [_each(infos[name]) for name in names]
+        return [dict(zip(names, row)) for row in zip(*columns)] if columns else [{} for _ in range(count)]
     rows: list[dict[str, Any]] = [{} for _ in range(count)]
-    for name, values in infos.items():
-        if name.startswith("_") and name[1:] in infos:
-            continue
-        if isinstance(values, dict):
-            each: Sequence[Any] = _rows(values, count)
-        else:
-            each = values.tolist() if values.ndim == 1 else values
+    for name in names:
+        values = infos[name]
+        each = _rows(values, count) if isinstance(values, dict) else _each(values)
         mask = infos.get("_" + name)
         for index, has in enumerate([True] * count if mask is None else mask.tolist()):
             if has:
                 rows[index][name] = each[index]
     return rows
+
+
+def _each(values: Any) -> Sequence[Any]:
+    """An array's value for each robot: Python's numbers, or rows."""
+    found: Sequence[Any] = values.tolist() if values.ndim == 1 else list(values)
+    return found

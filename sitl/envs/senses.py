@@ -147,3 +147,9 @@ def reads_scan(piece: Any) -> bool:
     """Whether an observation, a part of one, a task or a reward term needs lidar readings: its attribute
     ``reads_scan``; one that does not say may. Where none does, a vehicle at a connection need not send any."""
     return bool(getattr(piece, "reads_scan", True))
+
+
+def arrays_stay(robot: Any) -> bool:
+    """Whether a robot's ``state``, ``scan``, ``reports``, ``time`` and ``collided``, and what ``true_state`` and
+    ``true_reports`` return, are the same arrays in one piece each time: its attribute ``arrays_stay``."""
+    return bool(getattr(robot, "arrays_stay", False))

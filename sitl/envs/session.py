@@ -14,11 +14,14 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core.array_kernels import Flags, Kernel, Line
+from sitl.core.kernels import law
 from sitl.worlds import World
 
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
 from .arena import normalised
+from .costs import Costs
 from .faults import EpisodeFaults, Faults
 from .judge import TRUTH, Judge
 from .latency import LATENCY, Latency
@@ -46,6 +49,16 @@ MAX_STEP_S = 3600.0
 RANDOMISE_STREAM, FAULTS_STREAM = 2 << 40, 3 << 40
 """Second words of the seeds of these random numbers. They have streams of their own, so that an episode with the same
 seed has the same start and task with and without them."""
+
+
+@law
+def write_crash_rewards(crashed: Flags, rewards: Line, out: Line) -> None:
+    """Write the rewards of steps that end in a crash, and 0 for others; shape (count,) each."""
+    for i in range(out.shape[0]):
+        out[i] = rewards[i] if crashed[i] else 0.0
+
+
+_tell = Kernel(write_crash_rewards)
 
 
 @dataclass(frozen=True)
@@ -102,9 +115,14 @@ class NavigateOptions:
             "reward_NAME"; "true_pose", x, y, z [m], yaw [rad] as they really are (left out where nobody knows);
             "estimate_error", the estimate minus the truth in the same columns, likewise; "events", "touched" and
             "outside".
+        clip_actions: whether a number of an action in a box that is outside of its limits becomes the limit, as in
+            Gymnasium's own environments; False: it is refused. Numbers that are not finite are always refused.
         judge: by what rewards, success and ends of episodes go: "truth", where the robot really is, or "estimate",
             where it believes to be. The truth of a vehicle at a connection is unknown, which is judged by its estimate
             (``Session.judge``). Observations are the estimate in any case.
+        costs: what a step violates, for constrained learning: names of ``costs.COSTS``, objects of their classes,
+            functions of a step, or arguments by name ({"cost": "tilt", "angle": 0.3}). ``info`` has each as "cost_NAME"
+            and their sum as "cost"; ``safety.SafetyEnv`` returns it beside the reward. (): none.
         robot_options: further options of the robot's class, by name.
 
     Raises:
@@ -123,7 +141,9 @@ class NavigateOptions:
     latency: float = 0.0
     faults: Faults | None = None
     info: Sequence[str] = ()
+    clip_actions: bool = True
     judge: str = TRUTH
+    costs: Any = ()
     robot_options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -175,8 +195,16 @@ class Session:
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
+        if not isinstance(options.clip_actions, bool | np.bool_):
+            raise EnvOptionError(f"clip_actions = {options.clip_actions!r}; it must be True or False")
+        self.check: Callable[[Any], Any] = self.action.check
+        """One robot's action as a row of ``actions``; raises ``InvalidAction``."""
+        self.clip_all: Callable[[Any, Any], bool] | None = None
+        """The same for an array of actions: see ``Continuous.clip_all``; None: they are not clipped."""
+        if options.clip_actions and hasattr(self.action, "clip"):
+            self.check, self.clip_all = self.action.clip, getattr(self.action, "clip_all", None)
         self.actions = self.action.room(count)
-        """Actions of the next ``advance``, a row a robot, as ``action.check`` returns them."""
+        """Actions of the next ``advance``, a row a robot, as ``check`` returns them."""
         self.acted = np.zeros(count, np.bool_)
         """Whether each robot's episode has had an action, shape (count,)."""
         self.commands = np.zeros((count, self.action.setpoint.width))
@@ -186,6 +214,8 @@ class Session:
         """Says where robots are for the task; ``judge.by`` is "truth" or "estimate"."""
         self.step = Step(self.robot, self.seconds, self.judge)
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
+        self._crash_paid = np.zeros(count)
+        """What crashes were worth in the last step."""
         self.details = _checked_details(options.info)
         """See ``NavigateOptions.info``."""
         self.varies = False
@@ -195,6 +225,8 @@ class Session:
         if isinstance(self.task, Task):
             self.task.judge_of = self.judge
         self.task.prepare(self.robot)
+        self.costs = Costs(options.costs)
+        self.costs.prepare(self.robot, self.task)
         self._allow(self.worlds)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
@@ -206,7 +238,7 @@ class Session:
         self.remembers: tuple[Remembering, ...] = tuple(getattr(self.observation, "remembers", ()))
         """Pieces of the observation that remember the last steps."""
         if isinstance(self.robot, AskedRobot):
-            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
+            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task) or reads_scan(self.costs))
             if self.robot.is_live:
                 self._rehearse()
 
@@ -250,6 +282,7 @@ class Session:
         enter = getattr(self.task, "enter", None)
         if enter is not None:
             enter(index, self.robot)
+        self.costs.enter(index, self.robot, self.task)
 
     @property
     def judged_by(self) -> str:
@@ -377,10 +410,12 @@ class Session:
 
     def info(self) -> dict[str, npt.NDArray[Any]]:
         """What the task tells of this step, what ``details`` names, and the number of the fault that has begun; a row a
-        robot."""
+        robot. The arrays are written anew by the next step."""
         found = self.task.info(self.step)
         if self.details:
             found |= self._told_in_detail()
+        if self.costs:
+            found |= self.costs.of(self.step)
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
 
     def _told_in_detail(self) -> dict[str, npt.NDArray[Any]]:
@@ -388,16 +423,19 @@ class Session:
         found: dict[str, npt.NDArray[Any]] = {}
         step, crashed = self.step, self.step.crashed
         if "rewards" in self.details:
-            terms = step.terms or {}
-            found |= {f"reward_{name}": np.where(crashed, 0.0, term) for name, term in terms.items()}
-            found["reward_crash"] = np.where(crashed, self.rewards, 0.0)
+            for name, term in (step.terms or {}).items():
+                found[f"reward_{name}"] = np.where(crashed, 0.0, term)
+            for name, line in self.task.paid.items() if isinstance(self.task, Task) else ():
+                found[f"reward_{name}"] = line
+            found["reward_crash"] = self._crash_paid
+            _tell.unchecked()(np.ascontiguousarray(crashed), self.rewards, self._crash_paid)
         if self.judge.knows_truth:
             if "true_pose" in self.details:
-                found["true_pose"] = self.judge.state()[:, :4].copy()
+                found["true_pose"] = self.judge.state()[:, :4]
             if "estimate_error" in self.details:
                 found["estimate_error"] = self.judge.error()
         if "events" in self.details:
-            found |= {"touched": self.robot.collided != 0, "outside": step.outside.copy()}
+            found["touched"], found["outside"] = self.robot.collided != 0, step.outside
         return found
 
     def abandon(self, error: BaseException) -> None:

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -82,6 +83,8 @@ class Task:
         self.contact_ends = bool(contact_ends)
         self._range = 0.0
 
+    paid: Mapping[str, Floats] = MappingProxyType({})
+    """Terms of the last step's rewards that the task itself has written, by name, 0 where it ended in a crash."""
     sees_truth = False
     """Whether it goes by where robots really are, where anybody knows, whatever the option ``judge`` says."""
     judge_of: Judge | None = None
@@ -136,8 +139,8 @@ class Task:
         return self.judge_of.pose
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
-        """Entries of ``info`` for the step: arrays with a row a robot."""
-        return {"crashed": step.crashed.copy()}
+        """Entries of ``info`` for the step: arrays with a row a robot, which are copied before the next step."""
+        return {"crashed": step.crashed}
 
     def memory(self, index: int) -> Any:
         """The task's state of one robot's episode, for a snapshot; picklable."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
@@ -25,8 +25,11 @@ from .robots.robot import Robot
 from .session import NavigateOptions, Session, Snapshot
 from .sub_environment import OfSubEnvironments, row_of
 from .tasks import Task
+from .tensors import as_numpy, converter
 from .worlds import WorldOption
 
+_NUMBERS = {"b": np.bool_, "i": np.int64, "u": np.int64, "f": np.float64}
+"""Arrays of Python's numbers, by kind of type."""
 VECTOR_RENDER_MODES = ["rgb_array", "human"]
 Flags = npt.NDArray[np.bool_]
 
@@ -44,6 +47,9 @@ class NavigateVector(OfSubEnvironments):
         autoreset_mode: when a robot whose episode has ended is reset: "NextStep", by the next ``step``, which ignores
             its action; "SameStep", by the step that ended the episode, whose last observation and info are then
             ``infos["final_obs"]`` and ``infos["final_info"]``; "Disabled", by ``reset`` only.
+        array: what observations, rewards, and whether episodes have ended are: "numpy", "torch" or "jax", arrays of
+            these libraries on the same memory (JAX has float32 where it has no float64). Infos are NumPy's. Actions may
+            be any library's that has DLPack, in the processor's memory.
         tiled: whether ``render`` gives one image, a grid of all robots, and not an image of each.
         options: see ``NavigateOptions``.
     """
@@ -61,9 +67,11 @@ class NavigateVector(OfSubEnvironments):
         *,
         render_mode: str | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        array: str = "numpy",
         tiled: bool = False,
         **options: Any,
     ) -> None:
+        self._convert = converter(array)
         if num_envs < 1:
             raise EnvOptionError(f"num_envs = {num_envs}; it must be 1 or more")
         if max_episode_steps is not None and max_episode_steps < 1:
@@ -89,6 +97,7 @@ class NavigateVector(OfSubEnvironments):
         self._steps = np.zeros(num_envs, np.int64)
         self._ended, self._all = np.zeros(num_envs, np.bool_), np.ones(num_envs, np.bool_)
         self._over: Flags | None = getattr(session.robot, "over", None)
+        self._take_all: Callable[[Any, Any], bool] | None = getattr(session.action, "take", None)
         draws = render_mode == "rgb_array"
         if render_mode == "human":
             library.require()
@@ -133,10 +142,11 @@ class NavigateVector(OfSubEnvironments):
             ValueError: not as many seeds as robots.
         """
         try:
-            return self._reset(seed, options)
+            observations, infos = self._reset(seed, options)
         except BaseException as error:
             self._session.abandon(error)
             raise
+        return (observations if self._convert is None else self._convert(observations)), infos
 
     def _reset(
         self, seed: int | Sequence[int | None] | None, options: dict[str, Any] | None
@@ -215,10 +225,11 @@ class NavigateVector(OfSubEnvironments):
             ResetNeeded: before the first reset; without autoreset, when an episode has ended, too.
         """
         try:
-            return self._step(actions)
+            found = self._step(actions)
         except BaseException as error:
             self._session.abandon(error)
             raise
+        return found if self._convert is None else (*map(self._convert, found[:4]), found[4])  # type: ignore[return-value]
 
     def _step(self, actions: Any) -> tuple[Any, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         session, mode = self._session, self.autoreset_mode
@@ -278,15 +289,19 @@ class NavigateVector(OfSubEnvironments):
         return self.observe(), infos
 
     def _take(self, actions: Any) -> None:
-        check, rows = self._session.action.check, self._session.actions
+        session = self._session
+        check, clip_all, rows = session.check, session.clip_all, session.actions
+        if not isinstance(actions, np.ndarray):
+            actions = as_numpy(actions)
         try:
             count = len(actions)
         except TypeError:
             count = -1
         if count != self.num_envs:
             raise gym.error.InvalidAction(f"actions {actions!r} are not {self.num_envs}, one for each robot")
-        if isinstance(actions, np.ndarray) and self.action_space.contains(actions):
-            rows[...] = actions
+        if isinstance(actions, np.ndarray) and self._take_all is not None and self._take_all(actions, rows):
+            return
+        if clip_all is not None and isinstance(actions, np.ndarray) and clip_all(actions, rows):
             return
         for index in range(count):
             rows[index] = check(actions[index])
@@ -296,12 +311,12 @@ class NavigateVector(OfSubEnvironments):
         if rows is not self._all and not rows.any():
             return {}
         infos = self._worlds_of(rows)
+        others = None if rows is self._all else ~rows
         for name, value in self._session.info().items():
-            if value.ndim == 1:  # Gymnasium makes arrays of Python's numbers
-                masked = value.astype(type(value[0].item()))
-            else:
-                masked = np.array(value)  # a copy: the array belongs to the task
-            masked[~rows] = 0
+            # A copy, as the array belongs to the task; Gymnasium makes arrays of Python's numbers.
+            masked = value.astype(_NUMBERS.get(value.dtype.kind, value.dtype) if value.ndim == 1 else value.dtype)
+            if others is not None:
+                masked[others] = 0
             infos[name], infos["_" + name] = masked, rows.copy()
         return infos
 
@@ -342,7 +357,7 @@ class NavigateVector(OfSubEnvironments):
             raise EnvOptionError(f"{len(snapshots)} snapshots for num_envs = {self.num_envs}")
         for index, snapshot in enumerate(snapshots):
             self.restore_one(index, snapshot)
-        return self.observe()
+        return self.observe() if self._convert is None else self._convert(self.observe())
 
     def observe(self) -> Any:
         """The observations of now."""

@@ -41,7 +41,7 @@ from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import GUARDED, Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
-from ..options import COMMON, EnvOptionError, unknown
+from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .at_connection import SocketVehicles
 from .boots import check_boots
 from .foreign import ForeignVehicles
@@ -85,10 +85,13 @@ class AutopilotRobot:
         options: see ``AutopilotOptions``.
     """
 
+    arrays_stay = True
+    """See ``sitl.envs.senses.arrays_stay``."""
+
     def __init__(self, world: str | Path | World = "maze_erlerover", count: int = 1, **options: Any) -> None:
         for option in options:
             if option not in AutopilotOptions.names():
-                raise unknown("option", option, [*AutopilotOptions.names(), *COMMON, "render_mode"])
+                raise unknown_option(option, [*AutopilotOptions.names(), *COMMON, "render_mode"])
         self._given = {"world": world, "count": count, **options}
         self._options = chosen = AutopilotOptions(**options)
         if chosen.reset not in RESETS:
@@ -143,6 +146,10 @@ class AutopilotRobot:
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
         self._base_along = float(airframe.value("base_along"))
         self._states = [NOT_STARTED] * count
+        self._ready_for: tuple[str, int] = ("", 0)
+        """Kind of set-point and interval of telemetry [us] that vehicles of a fleet are ready for."""
+        self._unready = set(range(count))
+        """Those of them that are not, or whose episode has just begun."""
         self.floors = np.full(count, float(first.floor_z))
         """See ``TravellingRobot``."""
 
@@ -209,6 +216,7 @@ class AutopilotRobot:
 
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
+        self._unready.add(index)
         try:
             self._states[index] = self._vehicles.begin(index, pose, seed)
         except LinkLostError:
@@ -273,14 +281,23 @@ class AutopilotRobot:
     ) -> None:
         """One step of many vehicles at once."""
         vehicles.check_open()
-        interval_us, setpoint, states = math.gcd(ALIGN_US, us), self._setpoint.name, self._states
-        for index in vehicles.rows(rows).tolist():
+        wanted = setpoint, interval_us = self._setpoint.name, math.gcd(ALIGN_US, us)
+        if wanted != self._ready_for:
+            self._ready_for, self._unready = wanted, set(range(self.count))
+        if self._unready:
+            self._make_ready(vehicles, vehicles.rows(rows).tolist(), setpoint, interval_us)
+        vehicles.step(rows, us, setpoint, self._commands, waits_us)
+
+    def _make_ready(self, vehicles: FleetVehicles, rows: list[int], setpoint: str, interval_us: int) -> None:
+        """Before the first step of episodes, and when another kind of set-point comes."""
+        states = self._states
+        for index in sorted(self._unready.intersection(rows)):
             now = states[index]
             if now.interval_us != interval_us or not (
                 now.setpoint == setpoint or self.kind.are_alike(now.setpoint, setpoint)
             ):
                 states[index] = vehicles.change(index, now, setpoint, interval_us)
-        vehicles.step(rows, us, setpoint, self._commands, waits_us)
+            self._unready.discard(index)
 
     def _step(self, index: int, us: int, wait_us: int = 0) -> None:
         link, now, setpoint = self._vehicles.links[index], self._states[index], self._setpoint
@@ -489,6 +506,7 @@ class AutopilotRobot:
         """See ``Robot``."""
         if self._vehicles.has_snapshots and not isinstance(snapshot, EpisodeState):
             raise EnvOptionError(f"{snapshot!r} is no snapshot of a vehicle")
+        self._unready.add(index)
         self._vehicles.restore(index, snapshot)
         self._states[index] = snapshot
         self.collided[index] = 0

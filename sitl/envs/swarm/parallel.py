@@ -66,6 +66,7 @@ class SwarmEnv(ParallelEnv):
         boots: number of prepared boots of the whole swarm, 1 .. 1024, one of which each episode begins with, by its
             seed: the estimators' errors, receivers' slow ones among them, are those of that boot. 1: one boot, with
             which all episodes begin; these errors are then the same constants in all of them.
+        clip_actions: whether a finite number of an action outside of -1 .. 1 becomes -1 or 1; False: it is refused.
         options: as of ``sitl.Swarm``: params (wind), world, home ....
 
     Raises:
@@ -81,6 +82,7 @@ class SwarmEnv(ParallelEnv):
         steps: int = 200,
         observation: Any = "state",
         boots: int = 1,
+        clip_actions: bool = True,
         **options: Any,
     ) -> None:
         check_boots(boots)
@@ -95,8 +97,14 @@ class SwarmEnv(ParallelEnv):
             raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
         if not isinstance(steps, int | np.integer) or steps < 1:
             raise EnvOptionError(f"steps = {steps!r}; a whole number from 1 on is needed")
-        self._given = {"step": step, "steps": steps, "observation": observation, "boots": boots, **options}
         self._options, self.boots = options, boots
+        if not isinstance(clip_actions, bool):
+            raise EnvOptionError(f"clip_actions = {clip_actions!r}; it must be True or False")
+        self._given = {
+            "step": step, "steps": steps, "observation": observation, "boots": boots,
+            "clip_actions": clip_actions, **options,
+        }  # fmt: skip
+        self._clips = clip_actions
         self.task, self.step_us, self.steps = task, round(step * 1e6), steps
         self.metadata = {"name": "sitl_swarm_v0", "render_modes": [], "is_parallelizable": True}
         self.render_mode = None
@@ -212,7 +220,8 @@ class SwarmEnv(ParallelEnv):
         """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives.
 
         Raises:
-            InvalidAction: an agent has no action or one outside of its space, or there is no such agent.
+            InvalidAction: an agent has no action or one that is not in its space (``clip_actions``), or there is
+                no such agent.
             ResetNeeded: before the first ``reset``.
         """
         given = self.check(actions)
@@ -270,7 +279,10 @@ class SwarmEnv(ParallelEnv):
     def _checked(self, agent: str, action: Any) -> Sequence[float]:
         names = ("north", "east", "up")[: len(FASTEST[self._flies[self._number[agent]]])]
         try:
-            numbers: list[float] = np.asarray(action, np.float32).tolist()
+            row = np.asarray(action, np.float32)
+            if self._clips and np.isfinite(row).all():
+                row = np.clip(row, -1.0, 1.0)
+            numbers: list[float] = row.tolist()
             if len(numbers) == len(names) and all(-1.0 <= number <= 1.0 for number in numbers):
                 return numbers
         except (TypeError, ValueError):

@@ -62,14 +62,14 @@ class Among(Waypoints):
         self._left[index] = self._ways.lengths(self.judged_pose())[index]
 
     def _nearer(self, pose: Floats) -> Floats:
-        left = self._ways.lengths(pose).copy()
-        gain = self._left - left
-        self._left = left
-        return gain
+        left = self._ways.lengths(pose)
+        np.subtract(self._left, left, self._gain)
+        self._left[:] = left
+        return self._gain
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         super()._judge(step, rewards, terminated)
-        for index in np.flatnonzero(self._passed & ~self.success).tolist():
+        for index in np.flatnonzero(self._passed & ~self.success).tolist() if self._going else ():
             self._aim(index)
 
     def recall(self, index: int, memory: Any) -> None:

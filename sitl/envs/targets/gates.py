@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import Flags, IntLine, Kernel, Table
+from sitl.core.array_kernels import Flags, IntLine, Kernel, Line, Table
 from sitl.core.kernels import law
-from sitl.core.sums import lengths
 from sitl.worlds import World
 
 from ...core.elementary import sincos
@@ -43,7 +43,7 @@ def cross_gates(before: Table, now: Table, gates: Table, counts: IntLine, at: In
     """Which robots have passed their gate in its direction during a step.
 
     Args:
-        before, now: x, y, z of each robot at the step's ends [m], shape (count, 3).
+        before, now: x, y, z of each robot at the step's ends [m], shape (count, 3 or more).
         gates: rows of ``Gate``, one robot's after another's, each with as many, shape (count * most, 6).
         counts: how many of each robot's rows are gates, shape (count,).
         at: number of each robot's gate, shape (count,).
@@ -64,7 +64,63 @@ def cross_gates(before: Table, now: Table, gates: Table, counts: IntLine, at: In
             passed[i] = abs(aside) <= 0.5 * gates[row, 4] and abs(above) <= 0.5 * gates[row, 5]
 
 
-_cross = Kernel(cross_gates)
+class GatePrices(NamedTuple):
+    """What is paid."""
+
+    progress: float
+    """For each metre nearer to a gate's middle."""
+    gate: float
+    """For each gate."""
+    time: float
+    """For a step."""
+
+
+@law
+def pay_gates(
+    prices: GatePrices, before: Table, now: Table, places: Table, at: IntLine, laps: Table, counts: IntLine, last: int,
+    time: Line, passed: Flags, crashed: Flags, success: Flags, rewards: Line, terminated: Flags, paid: Table,
+) -> None:  # fmt: skip
+    """Pay for a step through gates.
+
+    Args:
+        prices: see ``GatePrices``.
+        before, now: x, y, z of each robot at the step's ends [m], shape (count, 3); ``before`` becomes ``now``.
+        places: middles of the gates of all laps, one robot after another [m], shape (count * n, 3).
+        at: number of each robot's gate; goes on where that is passed, shape (count,).
+        laps: when each robot's lap began, how long its last one took, and its shortest one [s], shape (count, 3).
+        counts: gates of a lap of each robot, shape (count,).
+        last: number of laps.
+        time: of each robot's episode [s], shape (count,).
+        passed: whether each robot has passed its gate, shape (count,).
+        crashed: robots whose terms are told as 0, shape (count,).
+        success, terminated: written, shape (count,).
+        rewards: added to, shape (count,).
+        paid: terms of the rewards: progress, gates, time; shape (3 or more, count).
+    """
+    per_robot = places.shape[0] // at.shape[0]
+    for i in range(rewards.shape[0]):
+        row = i * per_robot + min(at[i], per_robot - 1)
+        x, y, z = places[row, 0] - before[i, 0], places[row, 1] - before[i, 1], places[row, 2] - before[i, 2]
+        u, v, w = places[row, 0] - now[i, 0], places[row, 1] - now[i, 1], places[row, 2] - now[i, 2]
+        nearer = math.sqrt(x * x + y * y + z * z) - math.sqrt(u * u + v * v + w * w)
+        gain, gate = prices.progress * nearer, prices.gate if passed[i] else 0.0
+        rewards[i] += gain + gate + prices.time
+        paid[0, i], paid[1, i], paid[2, i] = gain, gate, prices.time
+        if crashed[i]:
+            paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
+        before[i, 0], before[i, 1], before[i, 2] = now[i, 0], now[i, 1], now[i, 2]
+        if passed[i]:
+            at[i] += 1
+            if at[i] % counts[i] == 0:
+                took = time[i] - laps[i, 0]
+                best = min(laps[i, 2], took) if laps[i, 2] > 0.0 else took
+                laps[i, 0], laps[i, 1], laps[i, 2] = time[i], took, best
+        success[i] = at[i] == last * counts[i]
+        if success[i]:
+            terminated[i] = True
+
+
+_cross, _pay = Kernel(cross_gates), Kernel(pay_gates)
 _HIGH = 4.0
 """Of gates that are marked on the floor [m]."""
 
@@ -160,6 +216,7 @@ class Gates(PlacesTask):
             self.places = np.concatenate(
                 (self.places, np.repeat(self.places[:, -1:], self.laps * more, axis=1)), axis=1
             )
+            self._link()
         self._rows[index, : len(gates)], self._rows[index, len(gates) :] = gates, gates[-1]
         self._counts[index] = len(gates)
 
@@ -174,7 +231,7 @@ class Gates(PlacesTask):
         self._counts = np.full(robot.count, len(gates))
         super().prepare(robot)
         self._sensing: SensingRobot = robot
-        self._before, self._now = np.zeros((robot.count, 3)), np.zeros((robot.count, 3))
+        self._before = np.zeros((robot.count, 3))
         self._passed = np.zeros(robot.count, np.bool_)
         self._lap = np.zeros((robot.count, 3))
         """When each robot's round began, how long its last one took, and its shortest one [s]."""
@@ -187,32 +244,28 @@ class Gates(PlacesTask):
         self.at[index], self.success[index], self._lap[index] = 0, False, 0.0
         self._before[index] = self._sensing.judged_state()[index, :3]
 
-    def ways(self, count: int) -> Floats:
-        """See ``PlacesTask``: by where the robot really is."""
-        return self.ways_from(self._sensing.judged_state()[:, :4], count)
+    def _from(self) -> Floats:
+        """See ``PlacesTask``: where the robot really is."""
+        return self._sensing.judged_state()
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        targets = self.targets
-        self._now[:] = self._sensing.judged_state()[:, :3]
-        _cross(self._before, self._now, self._rows.reshape(-1, 6), self._counts, self.at, self._passed)
-        nearer = lengths(targets - self._before) - lengths(targets - self._now)
-        gain, gates, time = self.progress * nearer, self.gate_reward * self._passed, self.each_second * step.seconds
-        rewards += gain + gates + time
-        step.note(progress=gain, gates=gates, time=time)
-        self._before[:] = self._now
-        self.at += self._passed
-        done = self._passed & (self.at % self._counts == 0)
-        if done.any():
-            took = step.robot.time - self._lap[:, 0]
-            best = np.where(self._lap[:, 2] > 0.0, np.minimum(self._lap[:, 2], took), took)
-            self._lap[done] = np.stack([step.robot.time, took, best], axis=1)[done]
-        self.success = self.at == self.laps * self._counts
-        terminated |= self.success
+        now = step.judge.true_table()
+        _cross.unchecked()(self._before, now, self._rows.reshape(-1, 6), self._counts, self.at, self._passed)
+        prices = GatePrices(float(self.progress), float(self.gate_reward), float(self.each_second * step.seconds))
+        _pay.unchecked()(
+            prices, self._before, now, self._spots, self.at, self._lap, self._counts, self.laps,
+            np.ascontiguousarray(step.robot.time), self._passed, self._ends.crashed, self.success, rewards, terminated,
+            self._paid,
+        )  # fmt: skip
+
+    def paid_names(self) -> tuple[str, ...]:
+        """See ``PlacesTask``."""
+        return "progress", "gates", "time"
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
-        laps = {"lap_time": self._lap[:, 1].copy(), "best_lap": self._lap[:, 2].copy()}
-        return {**super().info(step), "passed": self.at.copy(), **laps}
+        laps = {"lap_time": self._lap[:, 1], "best_lap": self._lap[:, 2]}
+        return {**super().info(step), "passed": self.at, **laps}
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -4,16 +4,107 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.kernels import law
 
 from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import PlacesTask, nearness
+from .places import PlacesTask, distance_of, nearness
+
+
+class Holding(NamedTuple):
+    """How ``Hold`` judges."""
+
+    radius: float
+    hold: float
+    """Time within the radius that is success [s]."""
+    scale: float
+    half: float
+    """See ``Hold``; 0: none [m]."""
+    effort: float
+    """What a mean squared action of 1 costs a step."""
+    is_sparse: bool
+    far: float
+    """See ``Hold`` [m]."""
+    seconds: float
+    """Of a step [s]."""
+
+
+@law
+def sparse_worth(distance: float, radius: float, far: float) -> float:
+    """What a step at a distance from the target pays if rewards are sparse; see ``Hold`` for radius and ``far`` [m]."""
+    if distance < radius:
+        return 0.0
+    return -(0.5 + 0.5 * min(distance / far, 1.0)) if far > 0.0 else -1.0
+
+
+@law
+def sparse_worths(distances: Line, radius: float, far: float, out: Line) -> None:
+    """Write ``sparse_worth`` of many distances."""
+    for i in range(out.shape[0]):
+        out[i] = sparse_worth(distances[i], radius, far)
+
+
+@law
+def judge_hold(
+    rule: Holding, state: Table, places: Table, axes: Line, actions: Table, crashed: Flags, since: Line,
+    success: Flags, rewards: Line, paid: Table,
+) -> None:  # fmt: skip
+    """Judge a step of robots that hold their places.
+
+    Args:
+        rule: see ``Holding``.
+        state: x, y, z [m] and more, shape (count, n).
+        places: [m], shape (count, 3).
+        axes: what x, y, z count in distances, shape (3,).
+        actions: the agent's, shape (count, m).
+        crashed: robots whose terms are told as 0, shape (count,).
+        since: how long each has been at its place [s]: of the step before, becomes that of now, shape (count,).
+        success: written, shape (count,).
+        rewards: added to, shape (count,).
+        paid: terms of the rewards: the goal's alone if they are sparse, else nearness and, if there is room, effort.
+    """
+    for i in range(rewards.shape[0]):
+        distance = distance_of(state, i, places, i, axes)
+        if rule.is_sparse:
+            worth = sparse_worth(distance, rule.radius, rule.far)
+        else:
+            worth = rule.seconds * nearness(distance, rule.scale, rule.half)
+        rewards[i] += worth
+        paid[0, i] = 0.0 if crashed[i] else worth
+        if not rule.is_sparse and rule.effort != 0.0:
+            effort = rule.effort * mean_square(actions, i)
+            rewards[i] -= effort
+            paid[1, i] = 0.0 if crashed[i] else -effort
+        since[i] = since[i] + rule.seconds if distance < rule.radius else 0.0
+        success[i] = since[i] >= rule.hold
+
+
+@law
+def mean_square(rows: Table, i: int) -> float:
+    """Mean of the squares in a row, in the order in which NumPy adds up to 8 numbers."""
+    n = rows.shape[1]
+    total = 0.0
+    if n == 8:
+        for k in range(2):
+            a, b, c, d = rows[i, 4 * k], rows[i, 4 * k + 1], rows[i, 4 * k + 2], rows[i, 4 * k + 3]
+            total += (a * a + b * b) + (c * c + d * d)
+    else:
+        for k in range(n):
+            total += rows[i, k] * rows[i, k]
+    return total / n
+
+
+_judge, _worths = Kernel(judge_hold), Kernel(sparse_worths)
+_NONE = np.zeros((1, 1))
+"""In place of actions without numbers."""
 
 
 class Hold(PlacesTask):
@@ -79,25 +170,22 @@ class Hold(PlacesTask):
         self.at[index], self.since[index], self.success[index] = 0, 0.0, False
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        way = self.axes * (self.places[:, 0] - step.pose[:, :3])
-        distance = np.sqrt((way * way).sum(axis=1))
-        if self.is_sparse:
-            paid = self._worth(distance)
-            rewards += paid
-            step.note(goal=paid)
-        else:
-            self._pay(step, rewards, distance)
-        self.since = np.where(distance < self.radius, self.since + step.seconds, 0.0)
-        self.success = self.since >= self.hold - 1e-9
+        actions = step.actions if step.actions.ndim == 2 else _NONE
+        if actions is _NONE:
+            self.paid.pop("effort", None)
+        rule = Holding(
+            float(self.radius), float(self.hold - 1e-9), float(self.scale), float(self.half or 0.0),
+            float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, float(self.far),
+            step.seconds,
+        )  # fmt: skip
+        _judge.unchecked()(
+            rule, self._table, self._spots, self.axes, actions, self._ends.crashed, self.since, self.success, rewards,
+            self._paid,
+        )  # fmt: skip
 
-    def _pay(self, step: Step, rewards: Floats, distance: Floats) -> None:
-        near = step.seconds * nearness(distance, self.scale, self.half)
-        rewards += near
-        step.note(nearness=near)
-        if self.effort and step.actions.ndim == 2:
-            effort = self.effort * step.seconds * (step.actions * step.actions).mean(axis=1)
-            rewards -= effort
-            step.note(effort=-effort)
+    def paid_names(self) -> tuple[str, ...]:
+        """See ``PlacesTask``."""
+        return ("goal",) if self.is_sparse else ("nearness", "effort") if self.effort else ("nearness",)
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
         """0 within ``radius``, -1 elsewhere (see ``far``): what a goal-conditioned step pays, of goals [m] of shape
@@ -116,10 +204,10 @@ class Hold(PlacesTask):
         return self._worth(np.sqrt((way * way).sum(axis=-1)))
 
     def _worth(self, distance: Floats) -> Floats:
-        out: Floats = np.where(distance < self.radius, 0.0, -1.0)
-        if self.far > 0.0:
-            out *= 0.5 + 0.5 * np.minimum(distance / self.far, 1.0)
-        return out
+        given = np.ascontiguousarray(distance, np.float64)
+        out = np.empty(given.shape)
+        _worths.unchecked()(given.ravel(), float(self.radius), float(self.far), out.ravel())
+        return out if out.shape else out[()]
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core import elementary_arrays as arrays
-from sitl.core.elementary import cos, sin
+from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.elementary import cos, hypot, sin, sincos
+from sitl.core.kernels import law
 from sitl.worlds import World
 
 from ..arena import Arena
@@ -18,7 +19,7 @@ from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot, floors_of, world_of
 from ..senses import LandingRobot, SensingRobot
-from .moving import MovingTask
+from .moving import MovingTask, end_lost, note_error
 
 SLOW, GENTLE = 0.5, 1.0
 """Greatest horizontal speed relative to the pad, and speed of sinking, of a landing that is success [m/s]."""
@@ -37,6 +38,111 @@ STANDS = 0.1
 
 It reports its landing seconds later, and its estimate of its position moves on by decimetres meanwhile.
 """
+
+
+class Landing(NamedTuple):
+    """How ``Land`` judges; lengths [m]."""
+
+    pad: float
+    progress: float
+    time: float
+    """What a step costs."""
+    success_reward: float
+    crash_reward: float
+    lost: float
+    lost_reward: float
+    settle: float
+    """Time at the start that does not count in the error [s]."""
+    lets_down: bool
+    """Whether the autopilot puts the robot down."""
+
+
+class SoFar(NamedTuple):
+    """What is known of robots before a step, a row each; becomes that of after it."""
+
+    velocity: Table
+    """Of the pads at first [m/s], shape (count, 3)."""
+    distance: Line
+    """From the pad [m]."""
+    sinking: Line
+    """[m/s]"""
+    touched: Table
+    """Way from where a robot touched the ground to the pad; as long as it flies, from where it is [m], (count, 3)."""
+    sums: Table
+    """See ``MovingTask.sums``."""
+    errors: Line
+    """See ``MovingTask.errors``."""
+
+
+@law
+def write_pads(velocity: Table, centre: Table, times: Table, out: Table) -> None:
+    """Write where pads are: 10 s there, 10 s back.
+
+    Args:
+        velocity: at first [m/s], shape (count, 3).
+        centre: where each begins [m], shape (count, 3).
+        times: [s], shape (count, k).
+        out: [m], shape (count * k, 3).
+    """
+    for i in range(times.shape[0]):
+        for k in range(times.shape[1]):
+            there = 10.0 - abs(times[i, k] % 20.0 - 10.0)
+            for axis in range(3):
+                out[i * times.shape[1] + k, axis] = centre[i, axis] + there * velocity[i, axis]
+
+
+@law
+def judge_land(
+    rule: Landing, state: Table, floors: Line, pads: Table, time: Line, landed: Flags, crashed: Flags, so_far: SoFar,
+    success: Flags, rewards: Line, terminated: Flags, paid: Table,
+) -> None:  # fmt: skip
+    """Judge a step of robots that land.
+
+    Args:
+        rule: see ``Landing``.
+        state: x, y, z [m], yaw [rad], forward, left, up [m/s] as they really are, shape (count, 8 or more).
+        floors: heights of the floors of the robots' worlds [m], shape (count,).
+        pads: where the pads are [m], shape (count, 3).
+        time: of each robot's episode [s], shape (count,).
+        landed: whether the autopilot says so, shape (count,).
+        crashed: robots whose terms are told as 0, shape (count,).
+        so_far: see ``SoFar``.
+        success, terminated: written, shape (count,).
+        rewards: added to, shape (count,).
+        paid: terms of the rewards: progress, time, landing and, if there is a price, the loss of the pad.
+    """
+    for i in range(rewards.shape[0]):
+        x, y, z = pads[i, 0] - state[i, 0], pads[i, 1] - state[i, 1], pads[i, 2] - state[i, 2]
+        squared = x * x + y * y + z * z
+        distance = math.sqrt(squared)
+        so_far.errors[i] = note_error(so_far.sums, i, squared, time[i] >= rule.settle)
+        gain = rule.progress * (so_far.distance[i] - distance)
+        rewards[i] += gain + rule.time
+        so_far.distance[i] = distance
+        height, climb = state[i, 2] - floors[i], state[i, 6]
+        down = ((height < DOWN and not rule.lets_down) or landed[i]) and not terminated[i]
+        turned = 1.0 if time[i] % 20.0 < 10.0 else -1.0
+        s, c = sincos(state[i, 3])
+        ahead, left = state[i, 4] * c - state[i, 5] * s, state[i, 4] * s + state[i, 5] * c
+        slip = hypot(ahead - turned * so_far.velocity[i, 0], left - turned * so_far.velocity[i, 1])
+        if climb < -STANDS or height > LET_DOWN or not rule.lets_down:
+            so_far.touched[i, 0], so_far.touched[i, 1], so_far.touched[i, 2] = x, y, z
+        on = hypot(so_far.touched[i, 0], so_far.touched[i, 1]) < rule.pad
+        success[i] = down and on and slip < SLOW and so_far.sinking[i] < GENTLE
+        landing = 0.0
+        if down:
+            landing = rule.success_reward if success[i] else rule.crash_reward
+            rewards[i] += landing
+            terminated[i] = True
+        paid[0, i], paid[1, i], paid[2, i] = gain, rule.time, landing
+        if crashed[i]:
+            paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
+        end_lost(i, distance > rule.lost, rule.lost_reward, crashed, rewards, terminated, paid, 3)
+        if height > LET_DOWN or not rule.lets_down:
+            so_far.sinking[i] = 0.0 - climb
+
+
+_pads, _land = Kernel(write_pads), Kernel(judge_land)
 
 
 class Land(MovingTask):
@@ -120,43 +226,33 @@ class Land(MovingTask):
 
     def along(self, time: Floats) -> Floats:
         """See ``MovingTask``: 10 s there, 10 s back."""
-        there = 10.0 - np.abs(time % 20.0 - 10.0)
-        out: Floats = self.centre[:, None] + there[..., None] * self._velocity[:, None]
-        return out
+        return self._along(time)
 
-    def ways(self, count: int) -> Floats:
-        """See ``PlacesTask``: by where the robot really is."""
-        return self.ways_from(self._sensing.judged_state()[:, :4], count)
+    def _write_along(self, times: Floats, out: Floats) -> None:
+        _pads.unchecked()(self._velocity, self.centre, times, out)
+
+    def _from(self) -> Floats:
+        """See ``PlacesTask``: where the robot really is."""
+        return self._sensing.judged_state()
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        time, state = step.robot.time, self._sensing.judged_state()
-        self.places[:, 0] = pad = self.along(time[:, None])[:, 0]
-        way = pad - state[:, :3]
-        squared = (way * way).sum(axis=1)
-        distance = np.sqrt(squared)
-        self._note_errors(time, squared)
-        gain, spent = self.progress * (self._distance - distance), self.each_second * step.seconds
-        rewards += gain + spent
-        self._distance = distance
-        height = state[:, 2] - floors_of(step.robot)
-        touches = (height < DOWN) & (not self._lets_down)
-        down = (touches | self._landing.has_landed()) & ~terminated
-        turned = np.where(time % 20.0 < 10.0, 1.0, -1.0)[:, None]
-        c, s = arrays.cos(state[:, 3]), arrays.sin(state[:, 3])
-        east = np.stack([state[:, 4] * c - state[:, 5] * s, state[:, 4] * s + state[:, 5] * c], axis=1)
-        slip = arrays.hypot(*(east - turned * self._velocity[:, :2]).T)
-        flies = (state[:, 6] < -STANDS) | (height > LET_DOWN) | (not self._lets_down)
-        self._touched[flies] = way[flies]
-        on = arrays.hypot(self._touched[:, 0], self._touched[:, 1]) < self.pad
-        self.success = down & on & (slip < SLOW) & (self._sinking < GENTLE)
-        rewards[self.success] += self.success_reward
-        rewards[down & ~self.success] += self.crash_reward
-        landing = self.success_reward * self.success + self.crash_reward * (down & ~self.success)
-        step.note(progress=gain, time=spent, landing=landing)
-        terminated |= down
-        self._end_lost(step, distance > self.lost, rewards, terminated)
-        is_agents = height > (LET_DOWN if self._lets_down else -math.inf)
-        self._sinking = np.where(is_agents, 0.0 - state[:, 6], self._sinking)
+        time = np.ascontiguousarray(step.robot.time)
+        floors = np.ascontiguousarray(np.broadcast_to(floors_of(step.robot), time.shape), np.float64)
+        self._write_along(time.reshape(-1, 1), self._spots)
+        rule = Landing(
+            float(self.pad), float(self.progress), float(self.each_second * step.seconds), float(self.success_reward),
+            float(self.crash_reward), float(self.lost), float(self.lost_reward), float(self.settle),
+            self._lets_down,
+        )  # fmt: skip
+        so_far = SoFar(self._velocity, self._distance, self._sinking, self._touched, self.sums, self.errors)
+        _land.unchecked()(
+            rule, step.judge.true_table(), floors, self._spots, time, np.ascontiguousarray(self._landing.has_landed()),
+            self._ends.crashed, so_far, self.success, rewards, terminated, self._paid,
+        )  # fmt: skip
+
+    def paid_names(self) -> tuple[str, ...]:
+        """See ``PlacesTask``."""
+        return "progress", "time", "landing", *(("lost",) if self.lost_reward else ())
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -5,22 +5,107 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core import elementary_arrays as arrays
+from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.elementary import cos, sin, sincos
+from sitl.core.kernels import law
 
 from ..noise import dirichlet
 from ..options import EnvOptionError, unknown
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import PlacesTask, nearness
+from .places import PlacesTask, nearness, write_ways_to
 
 AHEAD_S = 0.5
 """Time from one of the places that "path" tells to the next [s]."""
+
+
+class Following(NamedTuple):
+    """How ``MovingTask`` judges."""
+
+    radius: float
+    settle: float
+    """Time at the start that does not count [s]."""
+    scale: float
+    half: float
+    """See ``MovingTask``; 0: none [m]."""
+    lost: float
+    lost_reward: float
+    seconds: float
+    """Of a step [s]."""
+
+
+@law
+def spread_times(time: Line, apart: float, out: Table) -> None:
+    """Write times of robots, shape (count,), and so many seconds later each, shape (count, k)."""
+    for i in range(out.shape[0]):
+        for k in range(out.shape[1]):
+            out[i, k] = time[i] + apart * k
+
+
+@law
+def note_error(sums: Table, i: int, squared: float, counts: bool) -> float:
+    """Note the squared distance [m^2] of robot ``i`` if it counts; returns the root mean square [m]."""
+    if counts:
+        sums[i, 0] += squared
+        sums[i, 1] += 1.0
+    return math.sqrt(sums[i, 0] / max(sums[i, 1], 1.0))
+
+
+@law
+def judge_follow(
+    rule: Following, state: Table, places: Table, axes: Line, time: Line, crashed: Flags, sums: Table, errors: Line,
+    success: Flags, rewards: Line, terminated: Flags, paid: Table,
+) -> None:  # fmt: skip
+    """Judge a step of robots that follow targets.
+
+    Args:
+        rule: see ``Following``.
+        state: x, y, z [m] and more, shape (count, n).
+        places: of the targets [m], shape (count, 3).
+        axes: what x, y, z count in distances, shape (3,).
+        time: of each robot's episode [s], shape (count,).
+        crashed: robots whose terms are told as 0, shape (count,).
+        sums: see ``MovingTask.sums``; the step is added.
+        errors: written [m], shape (count,).
+        success, terminated: written, shape (count,).
+        rewards: added to, shape (count,).
+        paid: terms of the rewards: nearness and, if there is a price, the loss of the target.
+    """
+    for i in range(rewards.shape[0]):
+        x = axes[0] * (places[i, 0] - state[i, 0])
+        y = axes[1] * (places[i, 1] - state[i, 1])
+        z = axes[2] * (places[i, 2] - state[i, 2])
+        squared = x * x + y * y + z * z
+        distance = math.sqrt(squared)
+        near = rule.seconds * nearness(distance, rule.scale, rule.half)
+        rewards[i] += near
+        paid[0, i] = 0.0 if crashed[i] else near
+        counts = time[i] >= rule.settle
+        errors[i] = note_error(sums, i, squared, counts)
+        success[i] = counts and errors[i] < rule.radius
+        end_lost(i, distance > rule.lost, rule.lost_reward, crashed, rewards, terminated, paid, 1)
+
+
+@law
+def end_lost(
+    i: int, lost: bool, reward: float, crashed: Flags, rewards: Line, terminated: Flags, paid: Table, row: int
+) -> None:
+    """End the episode of robot ``i`` if it has lost its target; what that costs is told in a row of ``paid``."""
+    if reward != 0.0:
+        cost = reward if lost and not terminated[i] else 0.0
+        rewards[i] += cost
+        paid[row, i] = 0.0 if crashed[i] else cost
+    if lost:
+        terminated[i] = True
+
+
+_spread, _follow = Kernel(spread_times), Kernel(judge_follow)
 
 
 class MovingTask(PlacesTask):
@@ -57,6 +142,11 @@ class MovingTask(PlacesTask):
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         super().prepare(robot)
+        self.errors = np.zeros(robot.count)
+        """Root mean square distance of each robot from its target [m], shape (count,)."""
+        self._first = np.zeros(robot.count, np.int64)
+        self._ahead: dict[int, tuple[Floats, Floats]] = {}
+        """By number of places: times [s], shape (count, places), and places [m], shape (count * places, 3)."""
         self.sums = np.zeros((robot.count, 2))
         """Sum of the squared distances [m^2], and their number, shape (count, 2)."""
         self.centre = np.zeros((robot.count, 3))
@@ -77,57 +167,52 @@ class MovingTask(PlacesTask):
         """Where each robot's target is: x, y, z [m], shape (count, k, 3), at times of its episode [s], shape (count,
         k)."""
 
-    @property
-    def targets(self) -> Floats:
-        """See ``PlacesTask``."""
-        out: Floats = self.places[:, 0]
-        return out
-
-    def ways(self, count: int) -> Floats:
-        """See ``PlacesTask``: where the target is now, and after each further 0.5 s."""
-        return self.ways_from(self._robot.pose, count)
-
     def ways_from(self, pose: Floats, count: int) -> Floats:
-        """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
-        way = self.along(self._robot.time[:, None] + AHEAD_S * np.arange(count)) - pose[:, None, :3]
-        c, s = arrays.cos(pose[:, 3])[:, None], arrays.sin(pose[:, 3])[:, None]
-        return np.stack([way[..., 0] * c + way[..., 1] * s, way[..., 1] * c - way[..., 0] * s, way[..., 2]], axis=2)
+        """See ``PlacesTask``: to where the target is now, and after each further 0.5 s."""
+        out = np.empty((len(pose), 3 * count))
+        self._write_ways(np.ascontiguousarray(pose, np.float64), count, out, 0)
+        return out.reshape(len(out), count, 3)
+
+    def _write_ways(self, pose: Floats, count: int, out: Floats, first: int) -> None:
+        ahead = self._ahead.get(count)
+        if ahead is None:
+            rows = len(self.at)
+            ahead = self._ahead[count] = np.empty((rows, count)), np.empty((rows * count, 3))
+        times, places = ahead
+        _spread.unchecked()(np.ascontiguousarray(self._robot.time), AHEAD_S, times)
+        self._write_along(times, places)
+        write_ways_to.unchecked()(pose, places, self._first, count, count, out, first)
+
+    def _along(self, time: Floats) -> Floats:
+        """``along`` by ``_write_along``."""
+        times = np.ascontiguousarray(time, np.float64)
+        out = np.empty((times.size, 3))
+        self._write_along(times, out)
+        return out.reshape(*times.shape, 3)
+
+    def _write_along(self, times: Floats, out: Floats) -> None:
+        """Write ``along`` at times, shape (count, k), into ``out``, shape (count * k, 3)."""
+        out[:] = self.along(times).reshape(out.shape)
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        time = step.robot.time
-        self.places[:, 0] = self.along(time[:, None])[:, 0]
-        way = self.axes * (self.places[:, 0] - step.pose[:, :3])
-        squared = (way * way).sum(axis=1)
-        distance = np.sqrt(squared)
-        near = step.seconds * nearness(distance, self.scale, self.half)
-        rewards += near
-        step.note(nearness=near)
-        self.success = self._note_errors(time, squared) & (self._errors() < self.radius)
-        self._end_lost(step, distance > self.lost, rewards, terminated)
+        time = np.ascontiguousarray(step.robot.time)
+        self._write_along(time.reshape(-1, 1), self._spots)
+        rule = Following(
+            float(self.radius), float(self.settle), float(self.scale), float(self.half or 0.0), float(self.lost),
+            float(self.lost_reward), step.seconds,
+        )  # fmt: skip
+        _follow.unchecked()(
+            rule, self._table, self._spots, self.axes, time, self._ends.crashed, self.sums, self.errors, self.success,
+            rewards, terminated, self._paid,
+        )  # fmt: skip
 
-    def _end_lost(
-        self, step: Step, lost: npt.NDArray[np.bool_], rewards: Floats, terminated: npt.NDArray[np.bool_]
-    ) -> None:
-        """End the episodes of robots that have lost the target."""
-        if self.lost_reward:
-            paid = np.where(lost & ~terminated, self.lost_reward, 0.0)
-            rewards += paid
-            step.note(lost=paid)
-        terminated |= lost
-
-    def _note_errors(self, time: Floats, squared: Floats) -> npt.NDArray[np.bool_]:
-        """Note squared distances [m^2] for the error; tells for which robots they count."""
-        counts = time >= self.settle
-        self.sums[counts] += np.stack([squared, np.ones(len(squared))], axis=1)[counts]
-        return counts
-
-    def _errors(self) -> Floats:
-        out: Floats = np.sqrt(self.sums[:, 0] / np.maximum(self.sums[:, 1], 1.0))
-        return out
+    def paid_names(self) -> tuple[str, ...]:
+        """See ``PlacesTask``."""
+        return ("nearness", "lost") if self.lost_reward else ("nearness",)
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
-        return {**super().info(step), "error": self._errors()}
+        return {**super().info(step), "error": self.errors}
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
@@ -139,28 +224,67 @@ class MovingTask(PlacesTask):
         self.sums[index], self.centre[index] = memory[3:5]
 
 
+EIGHT, CIRCLE, HELIX = range(3)
+
+
 class Curve(NamedTuple):
     """A closed curve of size 1 about its beginning."""
 
-    points: Callable[[Floats], tuple[Floats, Floats, Floats]]
-    """Forward, left, up, each of the shape of the phases [rad]."""
+    number: int
     length: float
     """Of one round, horizontally."""
 
 
-def _eight(phase: Floats) -> tuple[Floats, Floats, Floats]:
-    return arrays.sin(phase), arrays.sin(phase) * arrays.cos(phase), np.zeros_like(phase)
+@law
+def write_curves(curve: int, size: float, up: float, drawn: Table, centre: Table, times: Table, out: Table) -> None:
+    """Write points on curves.
+
+    Args:
+        curve: ``EIGHT``, ``CIRCLE`` or ``HELIX``.
+        size: of the curve [m].
+        up: what heights count: 1, or 0 for robots that do not fly.
+        drawn: rate of the phase [rad/s] and direction [rad] of each robot's curve, shape (count, 2).
+        centre: where each begins [m], shape (count, 3).
+        times: [s], shape (count, k).
+        out: [m], shape (count * k, 3).
+    """
+    for i in range(times.shape[0]):
+        s, c = sincos(drawn[i, 1])
+        for k in range(times.shape[1]):
+            phase, row = drawn[i, 0] * times[i, k], i * times.shape[1] + k
+            ahead, cosine = sincos(phase)
+            left = ahead * cosine if curve == EIGHT else 1.0 - cosine
+            height = 0.5 * (1.0 - cos(phase / 3.0)) if curve == HELIX else 0.0
+            out[row, 0] = centre[i, 0] + size * (ahead * c - left * s)
+            out[row, 1] = centre[i, 1] + size * (ahead * s + left * c)
+            out[row, 2] = centre[i, 2] + size * (up * height)
 
 
-def _circle(phase: Floats) -> tuple[Floats, Floats, Floats]:
-    return arrays.sin(phase), 1.0 - arrays.cos(phase), np.zeros_like(phase)
+@law
+def write_waves(waves: Table, centre: Table, times: Table, out: Table) -> None:
+    """Write points that move as sums of sines.
+
+    Args:
+        waves: amplitude [m], rate [rad/s] and phase [rad] of each robot's waves along x, y, z, one after another, shape
+            (count, 9 * n).
+        centre: where each begins [m], shape (count, 3).
+        times: [s], shape (count, k).
+        out: [m], shape (count * k, 3).
+    """
+    n = waves.shape[1] // 9
+    for i in range(times.shape[0]):
+        for k in range(times.shape[1]):
+            for axis in range(3):
+                total = 0.0
+                for wave in range(n):
+                    at = 3 * (axis * n + wave)
+                    amplitude, rate, phase = waves[i, at], waves[i, at + 1], waves[i, at + 2]
+                    total += amplitude * (sin(rate * times[i, k] + phase) - sin(phase))
+                out[i * times.shape[1] + k, axis] = centre[i, axis] + total
 
 
-def _helix(phase: Floats) -> tuple[Floats, Floats, Floats]:
-    return arrays.sin(phase), 1.0 - arrays.cos(phase), 0.5 * (1.0 - arrays.cos(phase / 3.0))
-
-
-CURVES = {"eight": Curve(_eight, 6.097), "circle": Curve(_circle, math.tau), "helix": Curve(_helix, math.tau)}
+_curves, _waves = Kernel(write_curves), Kernel(write_waves)
+CURVES = {"eight": Curve(EIGHT, 6.097), "circle": Curve(CIRCLE, math.tau), "helix": Curve(HELIX, math.tau)}
 """A figure of eight (the lemniscate of Gerono), a circle, a helix that climbs for three rounds and comes down in as
 many."""
 
@@ -203,11 +327,11 @@ class Trajectory(MovingTask):
 
     def along(self, time: Floats) -> Floats:
         """See ``MovingTask``."""
-        rate, yaw = self._drawn[:, :1], self._drawn[:, 1:]
-        ahead, left, up = CURVES[self.curve].points(rate * time)
-        c, s = arrays.cos(yaw), arrays.sin(yaw)
-        up = up if self.flies else 0.0 * up
-        return self.centre[:, None] + self.size * np.stack([ahead * c - left * s, ahead * s + left * c, up], axis=2)
+        return self._along(time)
+
+    def _write_along(self, times: Floats, out: Floats) -> None:
+        curve, up = CURVES[self.curve].number, float(self.axes[2])
+        _curves.unchecked()(curve, float(self.size), up, self._drawn, self.centre, times, out)
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
@@ -254,10 +378,10 @@ class Follow(MovingTask):
 
     def along(self, time: Floats) -> Floats:
         """See ``MovingTask``."""
-        amplitude, rate, phase = np.moveaxis(self._waves, 3, 0)
-        now = arrays.sin(rate[:, None] * time[:, :, None, None] + phase[:, None]) - arrays.sin(phase)[:, None]
-        out: Floats = self.centre[:, None] + (amplitude[:, None] * now).sum(axis=3)
-        return out
+        return self._along(time)
+
+    def _write_along(self, times: Floats, out: Floats) -> None:
+        _waves.unchecked()(self._waves.reshape(len(self._waves), -1), self.centre, times, out)
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

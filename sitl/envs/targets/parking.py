@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.kernels import law
 from sitl.worlds import World
 
 from ..options import EnvOptionError
@@ -20,6 +22,71 @@ from .places import PlacesTask
 
 _NEAR = 4.0
 """Within about so far of the bay the heading counts [m]."""
+
+
+class Parking(NamedTuple):
+    """How ``Park`` judges."""
+
+    radius: float
+    angle: float
+    speed: float
+    progress: float
+    turn_progress: float
+    time: float
+    """What a step costs."""
+    success_reward: float
+
+
+@law
+def worth_of(
+    rule: Parking, x: float, y: float, yaw: float, to_x: float, to_y: float, to_yaw: float
+) -> tuple[float, float, float]:
+    """Distance from a bay [m], error of the heading [rad], and what is left to be paid for both."""
+    east, north = to_x - x, to_y - y
+    distance = math.sqrt(east * east + north * north)
+    error = abs((to_yaw - yaw + math.pi) % math.tau - math.pi)
+    share = distance / _NEAR
+    counts = 1.0 / (1.0 + share * share)
+    return distance, error, rule.progress * distance + rule.turn_progress * error * counts
+
+
+@law
+def judge_park(
+    rule: Parking, state: Table, places: Table, headings: Line, crashed: Flags, left: Line, away: Line, success: Flags,
+    rewards: Line, terminated: Flags, paid: Table,
+) -> None:  # fmt: skip
+    """Judge a step of robots that park.
+
+    Args:
+        rule: see ``Parking``.
+        state: x, y, z [m], yaw [rad], forward speed [m/s] and more, shape (count, n).
+        places: of the bays [m], shape (count, 3).
+        headings: of the bays [rad], shape (count,).
+        crashed: robots whose terms are told as 0, shape (count,).
+        left: what each robot's way is still worth: before the step, becomes that of now, shape (count,).
+        away: how far each robot is from its bay [m], likewise, shape (count,).
+        success, terminated: written, shape (count,).
+        rewards: added to, shape (count,).
+        paid: terms of the rewards: progress, turn, time, parked; shape (4 or more, count).
+    """
+    for i in range(rewards.shape[0]):
+        distance, error, worth = worth_of(
+            rule, state[i, 0], state[i, 1], state[i, 3], places[i, 0], places[i, 1], headings[i]
+        )
+        both, progress = left[i] - worth, rule.progress * (away[i] - distance)
+        rewards[i] += both + rule.time
+        left[i], away[i] = worth, distance
+        success[i] = distance < rule.radius and error < rule.angle and abs(state[i, 4]) < rule.speed
+        parked = rule.success_reward if success[i] else 0.0
+        rewards[i] += parked
+        paid[0, i], paid[1, i], paid[2, i], paid[3, i] = progress, both - progress, rule.time, parked
+        if crashed[i]:
+            paid[0, i], paid[1, i], paid[2, i], paid[3, i] = 0.0, 0.0, 0.0, 0.0
+        if success[i]:
+            terminated[i] = True
+
+
+_park = Kernel(judge_park)
 
 
 class Park(PlacesTask):
@@ -104,37 +171,31 @@ class Park(PlacesTask):
         x, y, yaw = bays[int(rng.integers(len(bays)))].tolist()
         self.places[index, 0] = x, y, self.judged_pose()[index, 2]
         self.headings[index], self.at[index], self.success[index] = yaw, 0, False
-        distance, _, left = self._worth(self.judged_pose())
-        self._distance[index], self._left[index] = distance[index], left[index]
+        assert self.judge_of is not None
+        row, place = self.judge_of.table()[index].tolist(), (x, y)
+        self._distance[index], _, self._left[index] = worth_of(self._rule(0.0), *row[:2], row[3], *place, yaw)
 
     def turns(self) -> Floats:
         """How far each robot has to turn to the bay's heading, counter-clockwise, within -pi .. pi [rad]."""
-        return self._turns_from(self._robot.pose)
-
-    def _turns_from(self, pose: Floats) -> Floats:
-        turn = self.headings - pose[:, 3]
+        turn = self.headings - self._robot.pose[:, 3]
         out: Floats = (turn + math.pi) % math.tau - math.pi
         return out
 
-    def _worth(self, pose: Floats) -> tuple[Floats, Floats, Floats]:
-        """Distance [m], error of the heading [rad], and what is left to be paid for both."""
-        way = self.places[:, 0, :2] - pose[:, :2]
-        distance = np.sqrt((way * way).sum(axis=1))
-        error = np.abs(self._turns_from(pose))
-        counts = 1.0 / (1.0 + np.square(distance / _NEAR))
-        return distance, error, self.progress * distance + self.turn_progress * error * counts
-
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        distance, error, left = self._worth(step.pose)
-        paid, time, gain = self._left - left, self.each_second * step.seconds, self._distance - distance
-        rewards += paid + time
-        self._left, self._distance = left, distance
-        stands = np.abs(step.velocity[:, 0]) < self.speed
-        self.success = (distance < self.radius) & (error < self.angle) & stands
-        rewards[self.success] += self.success_reward
-        progress, parked = self.progress * gain, self.success_reward * self.success
-        step.note(progress=progress, turn=paid - progress, time=time, parked=parked)
-        terminated |= self.success
+        _park.unchecked()(
+            self._rule(step.seconds), self._table, self._spots, self.headings, self._ends.crashed, self._left,
+            self._distance, self.success, rewards, terminated, self._paid,
+        )  # fmt: skip
+
+    def _rule(self, seconds: float) -> Parking:
+        return Parking(
+            float(self.radius), float(self.angle), float(self.speed), float(self.progress), float(self.turn_progress),
+            float(self.each_second * seconds), float(self.success_reward),
+        )  # fmt: skip
+
+    def paid_names(self) -> tuple[str, ...]:
+        """See ``PlacesTask``."""
+        return "progress", "turn", "time", "parked"
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import IntLine, Kernel, Table
+from sitl.core.array_kernels import Flags, IntColumn, IntLine, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
 from sitl.worlds import World
 
@@ -20,7 +21,8 @@ from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
-from ..tasks import Task
+from ..senses import arrays_stay
+from ..tasks import Task, count_crashes
 from ..worlds import PerWorld
 
 BEYOND = 5.0
@@ -30,7 +32,27 @@ ON_FLOOR = 0.12
 
 
 @law
-def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, out: Table) -> None:
+def distance_of(state: Table, i: int, places: Table, row: int, axes: Line) -> float:
+    """Distance of robot ``i`` from a place [m]."""
+    x = axes[0] * (places[row, 0] - state[i, 0])
+    y = axes[1] * (places[row, 1] - state[i, 1])
+    z = axes[2] * (places[row, 2] - state[i, 2])
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@law
+def nearness(distance: float, scale: float, half: float) -> float:
+    """What a second at a distance [m] from a target is worth: 1 there; 0 from ``scale`` [m] on, or, not linearly, one
+    half at ``half`` [m], if that is not 0: who keeps at some distance, or does nothing, gets little."""
+    if half == 0.0:
+        near = 1.0 - distance / scale
+        return 0.0 if near < 0.0 else near
+    share = distance / half
+    return 1.0 / (1.0 + share * share)
+
+
+@law
+def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, count: int, out: Table, first: int) -> None:
     """Write the ways from each robot to its next places; after the last place comes the last again.
 
     Args:
@@ -38,19 +60,110 @@ def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, out: Tab
         places: x, y, z [m] of all robots' places, one robot after another, shape (count * per_robot, 3).
         at: number of each robot's present place, shape (count,).
         per_robot: places of a robot.
-        out: forward, left, up [m] of each robot's heading, shape (count, 3 * k).
+        count: number of places that are told.
+        out: forward, left, up [m] of each robot's heading, one place after another, shape (robots, columns).
+        first: column of the first one.
     """
     for i in range(out.shape[0]):
         s, c = sincos(pose[i, 3])
-        for k in range(out.shape[1] // 3):
+        for k in range(count):
             row = i * per_robot + min(at[i] + k, per_robot - 1)
             x, y = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1]
-            out[i, 3 * k] = x * c + y * s
-            out[i, 3 * k + 1] = y * c - x * s
-            out[i, 3 * k + 2] = places[row, 2] - pose[i, 2]
+            to = first + 3 * k
+            out[i, to] = x * c + y * s
+            out[i, to + 1] = y * c - x * s
+            out[i, to + 2] = places[row, 2] - pose[i, 2]
 
 
-_ways = Kernel(write_ways)
+class Beginning(NamedTuple):
+    """What ends an episode whatever the task is."""
+
+    scan: NarrowTable
+    """Readings [m], shape (count, readings)."""
+    touched: IntColumn
+    """1 for robots that touched something, shape (count,)."""
+    crash_range: float
+    """A reading above 0 and below it is a crash [m]."""
+    contact_ends: bool
+    """Whether touching is a crash."""
+    floor: Line
+    """Below this height a robot has sunk to the floor [m], shape (count,)."""
+    floor_ends: bool
+    """Whether that is a crash."""
+
+
+@law
+def begin_step(by: Beginning, state: Table, rewards: Line, terminated: Flags, crashed: Flags) -> None:
+    """Begin to judge a step: nothing is paid yet, and robots that have crashed are marked; all of shape (count,).
+
+    Args:
+        by: see ``Beginning``.
+        state: x, y, z [m] and more, shape (count, n).
+        rewards: written.
+        terminated, crashed: written.
+    """
+    count_crashes(by.scan, by.crash_range, by.touched, by.contact_ends, terminated)
+    for i in range(rewards.shape[0]):
+        rewards[i] = 0.0
+        if by.floor_ends and state[i, 2] < by.floor[i]:
+            terminated[i] = True
+        crashed[i] = terminated[i]
+
+
+class Outside(NamedTuple):
+    """The end of the arena, and what ends cost."""
+
+    low: Table
+    high: Table
+    """x, y, z of each robot's arena [m], shape (count, 3)."""
+    reward: float
+    ends: bool
+    """Whether the end of the arena is the episode's."""
+    crash_reward: float
+
+
+class Ends(NamedTuple):
+    """How robots have ended, a row each."""
+
+    crashed: Flags
+    outside: Flags
+    """Written."""
+    reached: Flags
+    """Written: the task is done."""
+    paid: Line
+    """What leaving the arena was worth, written."""
+
+
+@law
+def end_step(by: Outside, state: Table, success: Flags, rewards: Line, terminated: Flags, ends: Ends) -> None:
+    """End to judge a step; all of shape (count,).
+
+    Args:
+        by: see ``Outside``.
+        state: x, y, z [m] and more, shape (count, n).
+        success: whether each robot has done the task.
+        rewards, terminated: what the task has given, and whether it has ended the episode.
+        ends: see ``Ends``.
+    """
+    low, high = by.low, by.high
+    for i in range(rewards.shape[0]):
+        if ends.crashed[i]:
+            rewards[i] = by.crash_reward
+        x, y, z = state[i, 0], state[i, 1], state[i, 2]
+        is_out = x < low[i, 0] or y < low[i, 1] or z < low[i, 2]
+        is_out = is_out or x > high[i, 0] or y > high[i, 1] or z > high[i, 2]
+        is_out = is_out and not terminated[i]
+        ends.outside[i] = is_out
+        ends.paid[i] = 0.0
+        if is_out and by.ends:
+            rewards[i] += by.reward
+            ends.paid[i] = by.reward
+            terminated[i] = True
+        ends.reached[i] = success[i] and not ends.crashed[i]
+
+
+write_ways_to = Kernel(write_ways)
+_begin, _end = Kernel(begin_step), Kernel(end_step)
 
 
 class Extent(NamedTuple):
@@ -110,6 +223,29 @@ class PlacesTask(Task):
         """Number of each robot's present place, shape (count,)."""
         self.success = np.zeros(count, np.bool_)
         """Whether each robot has done the task, shape (count,)."""
+        self._table: Floats = np.zeros((count, 8))
+        """Poses and velocities by which the present step is judged."""
+        self._ends = Ends(*np.zeros((3, count), np.bool_), np.zeros(count))
+        self._paid_names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
+        self._paid = np.zeros((len(self._paid_names), count))
+        """Terms of the last rewards, by name, shape (terms, count)."""
+        self._link()
+
+    def _link(self) -> None:
+        """Views of arrays: a copy of the task has its own."""
+        self._spots, self._per_robot = self.places.reshape(-1, 3), self.places.shape[1]
+        self.paid: dict[str, Floats] = dict(zip(self._paid_names, self._paid))
+        if self.out_ends:
+            self._ends = self._ends._replace(paid=self._paid[-1])
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        if "_paid" in state:
+            self._link()
+
+    def paid_names(self) -> tuple[str, ...]:
+        """Names of the terms that ``_judge`` writes into the rows of ``_paid``; valid after ``Task.prepare``."""
+        return ()
 
     @property
     def is_of_one_world(self) -> bool:  # type: ignore[override]
@@ -171,7 +307,9 @@ class PlacesTask(Task):
     @property
     def targets(self) -> Floats:
         """x, y, z of each robot's present place [m], shape (count, 3)."""
-        out: Floats = self.places[np.arange(len(self.at)), np.minimum(self.at, self.per_robot - 1)]
+        if self._per_robot == 1:
+            return self.places[:, 0]
+        out: Floats = self.places[np.arange(len(self.at)), np.minimum(self.at, self._per_robot - 1)]
         return out
 
     def achieved(self) -> Floats:
@@ -180,29 +318,46 @@ class PlacesTask(Task):
 
     def ways(self, count: int) -> Floats:
         """Ways to the next ``count`` places: forward, left, up [m] of the robot's heading, shape (robots, count, 3)."""
-        return self.ways_from(self._robot.pose, count)
+        return self.ways_from(self._from(), count)
+
+    def _from(self) -> Floats:
+        """Poses from which ways are told: x, y, z [m], yaw [rad] and maybe more, shape (robots, 4 or more)."""
+        found: Floats = self._robot.state if arrays_stay(self._robot) else self._robot.pose  # type: ignore[attr-defined]
+        return found
+
+    def ways_writer(self, count: int, out: Floats, first: int) -> Callable[[], object] | None:
+        """A function that writes ``ways`` into columns of a table, from the first one on, shape (robots, n). None: a
+        subclass has ways of its own."""
+        if type(self).ways is not PlacesTask.ways:
+            return None
+        return lambda: self._write_ways(np.ascontiguousarray(self._from()), count, out, first)
+
+    def _write_ways(self, pose: Floats, count: int, out: Floats, first: int) -> None:
+        write_ways_to.unchecked()(pose, self._spots, self.at, self._per_robot, count, out, first)
 
     def ways_from(self, pose: Floats, count: int) -> Floats:
         """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
         out = np.empty((len(self.at), 3 * count))
-        _ways(np.ascontiguousarray(pose), self.places.reshape(-1, 3), self.at, self.per_robot, out)
+        self._write_ways(np.ascontiguousarray(pose, np.float64), count, out, 0)
         return out.reshape(len(out), count, 3)
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """See ``Task``."""
-        super().judge(step, rewards, terminated)
-        if self._ends_on_floor:
-            terminated |= step.pose[:, 2] < self._floor
-        crashed = terminated.copy()
+        self._table, ends = step.judge.table(), self._ends
+        robot, floor = step.robot, self._floor
+        by = Beginning(robot.scan, robot.collided, self._range, self.contact_ends, floor, self._ends_on_floor)
+        if self.terms:
+            super().judge(step, rewards, terminated)
+            paid = rewards.copy()
+            _begin.unchecked()(by, self._table, rewards, terminated, ends.crashed)
+            rewards[:] = paid
+        else:
+            _begin.unchecked()(by, self._table, rewards, terminated, ends.crashed)
         self._judge(step, rewards, terminated)
-        rewards[crashed] = self.crash_reward
-        outside = ((step.pose[:, :3] < self._low) | (step.pose[:, :3] > self._high)).any(axis=1) & ~terminated
-        if self.out_ends:
-            rewards[outside] += self.out_reward
-            terminated |= outside
-            step.note(out=np.where(outside, self.out_reward, 0.0))
-        step.outside = outside
-        step.crashed, step.reached = crashed, self.success & ~crashed
+        success = np.ascontiguousarray(self.success, np.bool_)
+        outside = Outside(self._low, self._high, float(self.out_reward), self.out_ends, float(self.crash_reward))
+        _end.unchecked()(outside, self._table, success, rewards, terminated, ends)
+        step.crashed, step.outside, step.reached = ends.crashed, ends.outside, ends.reached
 
     @abstractmethod
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
@@ -210,7 +365,7 @@ class PlacesTask(Task):
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
-        return {**super().info(step), "is_success": step.reached.copy()}
+        return {"crashed": step.crashed, "is_success": step.reached}
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
@@ -222,12 +377,3 @@ class PlacesTask(Task):
             raise EnvOptionError("snapshot cannot be restored: it is of another task")
         self.places[index] = memory[0][-1]
         self.places[index, : self._held(index)], self.at[index], self.success[index] = memory[:3]
-
-
-def nearness(distance: Floats, scale: float, half: float | None) -> Floats:
-    """What a second at a distance [m] from a target is worth: 1 there; 0 from ``scale`` [m] on, or, not linearly, one
-    half at ``half`` [m]: who keeps at some distance, or does nothing, gets little."""
-    if half is None:
-        return np.maximum(1.0 - distance / scale, 0.0)
-    share = distance / half
-    return 1.0 / (1.0 + share * share)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -25,13 +25,14 @@ from .places import PlacesTask
 
 @law
 def pass_places(
-    pose: Table, places: Table, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
+    pose: Table, places: Table, up: float, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
 ) -> None:
     """Judge a step on the way along places.
 
     Args:
-        pose: x, y, z [m], yaw [rad], shape (count, 4).
+        pose: x, y, z [m] and more, shape (count, m).
         places: x, y, z [m], one robot after another, shape (count * n, 3).
+        up: what heights count: 1, or 0 for robots that do not fly.
         radius: distance at which a place is passed [m].
         at: number of each robot's present place; goes on where that is passed, shape (count,).
         distance: to each robot's present place [m]: of the step before, becomes that of now, shape (count,).
@@ -41,7 +42,7 @@ def pass_places(
     per_robot = places.shape[0] // at.shape[0]
     for i in range(at.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
-        x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
+        x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], up * (places[row, 2] - pose[i, 2])
         now = math.sqrt(x * x + y * y + z * z)
         gain[i] = distance[i] - now
         passed[i] = now < radius and at[i] < per_robot
@@ -50,11 +51,58 @@ def pass_places(
             at[i] += 1
             if at[i] < per_robot:
                 row += 1
-                x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], places[row, 2] - pose[i, 2]
+                x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], up * (places[row, 2] - pose[i, 2])
                 distance[i] = math.sqrt(x * x + y * y + z * z)
 
 
-_pass = Kernel(pass_places)
+class Prices(NamedTuple):
+    """What is paid."""
+
+    progress: float
+    """For each metre nearer."""
+    place: float
+    """For each place."""
+    time: float
+    """For a step."""
+
+
+@law
+def pay_places(
+    prices: Prices, nearer: Line, passed: Flags, at: IntLine, last: int, crashed: Flags, success: Flags, rewards: Line,
+    terminated: Flags, paid: Table,
+) -> int:  # fmt: skip
+    """Pay for a step on the way along places; all of shape (count,).
+
+    Args:
+        prices: see ``Prices``.
+        nearer: how much nearer each robot has come [m].
+        passed: whether each robot has passed a place.
+        at: number of each robot's present place.
+        last: number of places: who has passed all has done the task, and the episode ends.
+        crashed: robots whose terms are told as 0.
+        success, terminated: written.
+        rewards: added to.
+        paid: terms of the rewards: progress, places, time; shape (3 or more, count).
+
+    Returns:
+        How many have passed a place, and have others before them.
+    """
+    going = 0
+    for i in range(rewards.shape[0]):
+        gain, place = prices.progress * nearer[i], prices.place if passed[i] else 0.0
+        rewards[i] += gain + place + prices.time
+        paid[0, i], paid[1, i], paid[2, i] = gain, place, prices.time
+        if crashed[i]:
+            paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
+        success[i] = at[i] == last
+        if success[i]:
+            terminated[i] = True
+        elif passed[i]:
+            going += 1
+    return going
+
+
+_pass, _pay = Kernel(pass_places), Kernel(pay_places)
 
 
 class Waypoints(PlacesTask):
@@ -110,6 +158,8 @@ class Waypoints(PlacesTask):
         super().prepare(robot)
         self._distance, self._gain = np.zeros(robot.count), np.zeros(robot.count)
         self._passed = np.zeros(robot.count, np.bool_)
+        self._going = 0
+        """How many robots have passed a place in this step, and go on to another."""
         self._cells_in = PerWorld(self._cells) if self.reachable and self._fixed is None else None
         if self._cells_in is not None:
             self._cells_in(robot.world)
@@ -136,17 +186,19 @@ class Waypoints(PlacesTask):
         return out
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
-        pose = np.ascontiguousarray(step.pose)
-        places, judged = self.places.reshape(-1, 3), pose
-        if not self.flies:
-            places, judged = self.axes * places, np.append(self.axes, 1.0) * pose  # without heights
-        _pass(judged, places, self.radius, self.at, self._distance, self._gain, self._passed)
-        gain, places_paid = self.progress * self._nearer(pose), self.place_reward * self._passed
-        time = self.each_second * step.seconds
-        rewards += gain + places_paid + time
-        step.note(progress=gain, places=places_paid, time=time)
-        self.success = self.at == self._count
-        terminated |= self.success
+        state, up = self._table, float(self.axes[2])
+        _pass.unchecked()(
+            state, self._spots, up, float(self.radius), self.at, self._distance, self._gain, self._passed
+        )  # fmt: skip
+        prices = Prices(float(self.progress), float(self.place_reward), float(self.each_second * step.seconds))
+        self._going = _pay.unchecked()(
+            prices, self._nearer(state), self._passed, self.at, self._count, self._ends.crashed, self.success, rewards,
+            terminated, self._paid,
+        )  # fmt: skip
+
+    def paid_names(self) -> tuple[str, ...]:
+        """See ``PlacesTask``."""
+        return "progress", "places", "time"
 
     def _nearer(self, pose: Floats) -> Floats:
         """How much nearer each robot has come to its place [m], shape (count,)."""
@@ -154,7 +206,7 @@ class Waypoints(PlacesTask):
 
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
-        return {**super().info(step), "passed": self.at.copy()}
+        return {**super().info(step), "passed": self.at}
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
