@@ -204,7 +204,7 @@ class SwarmEnv(ParallelEnv):
             frames = [booted(each, each.airframe, seed + k) for k, each in enumerate(scenarios)]
             swarm = Swarm(
                 [replace(each, frame=airframe) for each, airframe in frames],
-                starts=[each.start for each in scenarios],
+                starts=[each.start for each in scenarios if each.start is not None],
                 **{**self._options, "seed": seed},
             )
             try:
