@@ -84,7 +84,8 @@ def policy(name: str, episodes: int = 4) -> Steps:
     taken, path = Steps(), tree.root() / f"sitl/agents/baselines/{name}.npz"
     found = tree.locate("rollout", "sitl.agents.rollout")(path, episodes=episodes, seed=1000)
     for taken.step, played in enumerate(found.episodes):
-        taken.add("episode", asdict(played))
+        # By what success was judged is no part of the flight, and has no bits that could differ.
+        taken.add("episode", {name: value for name, value in asdict(played).items() if name != "judge"})
     return taken
 
 

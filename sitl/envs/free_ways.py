@@ -130,8 +130,8 @@ _read = Kernel(read_ways)
 class Ground(NamedTuple):
     """A world's grid, seen from above."""
 
-    free: npt.NDArray[np.bool_]
-    """Where a way can lead, shape (rows, columns)."""
+    free: npt.NDArray[np.int64]
+    """1 where a way can lead, shape (rows, columns)."""
     nearest: npt.NDArray[np.int32]
     """Number of the nearest free cell of each cell."""
     beside: Floats
@@ -161,12 +161,13 @@ class FreeWays:
         self._grids[:, :2], self._grids[:, 4] = 2.0, 1.0
         self._fields = np.zeros((robot.count, size), np.float32)
         self._out = np.zeros(robot.count)
+        self._keys, self._items = np.empty(0), np.empty(0, np.int64)  # room for the heap
 
     def _ground(self, world: World) -> Ground:
         found = ReachableCells(self._robot, self._crash_range, CELLS, world)
         free = np.zeros(found.shape, np.bool_)
         free[found.cells[:, 0], found.cells[:, 1]] = True
-        return Ground(free, *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+        return Ground(free.astype(np.int64), *_nearest(free), found.low + 0.5 * found.cell, found.cell)
 
     def aim(self, index: int, x: float, y: float) -> None:
         """Give a robot its goal, x, y in the frame of its world [m]."""
@@ -178,8 +179,10 @@ class FreeWays:
         if beside > 0.0:
             row, column = divmod(int(ground.nearest[i, j]), columns)
         size = ground.free.size
-        keys, items, field = np.empty(4 * size + 9), np.empty(4 * size + 9, np.int64), np.empty(ground.free.shape)
-        _march(ground.free.astype(np.int64), float(row), float(column), keys, items, field)
+        if len(self._keys) < 4 * size + 9:
+            self._keys, self._items = np.empty(4 * size + 9), np.empty(4 * size + 9, np.int64)
+        field = np.empty(ground.free.shape)
+        _march(ground.free, float(row), float(column), self._keys, self._items, field)
         lengths = field.ravel()[ground.nearest] + ground.beside + beside
         if size > self._fields.shape[1]:
             more = np.zeros((len(self._fields), size - self._fields.shape[1]), np.float32)

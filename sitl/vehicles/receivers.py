@@ -25,16 +25,16 @@ class SensorSet:
 
 
 RTK: dict[str, float] = {
-    # u-blox ZED-F9P with a base station nearby, ambiguities fixed. Data sheet (UBX-17051259): 0.01 m + 1 ppm CEP
-    # horizontal, 0.01 m + 1 ppm vertical (half of all errors). That is 0.0085 m an axis and 0.015 m vertical, here half
-    # white and half correlated (estimate); velocity 0.05 m/s. The rest is as of UBLOX_M8.
+    # u-blox ZED-F9P with a base station nearby, ambiguities fixed. u-blox's manual (UBX-18010802): 0.01 m + 1 ppm CEP;
+    # data sheets of the F9 family say the same of the vertical median. That is 0.0085 m an axis and 0.015 m vertical,
+    # here half of the variance white and half correlated (estimate). The rest is as of UBLOX_M8.
     "gps_noise_horizontal": 0.006,  # [m]
     "gps_noise_vertical": 0.0105,  # [m]
     "gps_drift_horizontal": 0.006,  # [m]
     "gps_drift_vertical": 0.0105,  # [m]
     "gps_drift_time": 60.0,  # [s] multipath (estimate)
-    "gps_velocity_noise_horizontal": 0.05,  # [m/s] data sheet
-    "gps_velocity_noise_vertical": 0.05,  # [m/s] data sheet
+    "gps_velocity_noise_horizontal": 0.05,  # [m/s] data sheets of the F9 family (50 % at 30 m/s)
+    "gps_velocity_noise_vertical": 0.05,  # [m/s] (estimate)
     "gps_satellites": 20,
     "gps_hdop": 0.6,
     "gps_vdop": 0.9,
@@ -64,8 +64,8 @@ MOCAP: dict[str, float] = {
     "baro_drift_time": 300.0,  # [s]
 }
 UWB: dict[str, float] = {
-    # Ultra-wideband beacons around the arena. Decawave's DWM1001 data sheet: below 0.10 m in x and y, 10 Hz. They reach
-    # the autopilot as a receiver's fixes; height stays the barometer's.
+    # Ultra-wideband beacons around the arena, as kits with two-way ranging give it in the line of sight. All figures
+    # are this project's estimates. They reach the autopilot as a receiver's fixes; height stays the barometer's.
     "gps_rate": 10.0,  # [Hz]
     "gps_delay": 0.1,  # [s] ranging and solution (estimate)
     "gps_noise_horizontal": 0.05,  # [m] with the next: 0.10 m in the plane

@@ -44,10 +44,10 @@ UBLOX_M8: dict[str, float] = {
     "gps_fix_time": 9.8,  # [s] ArduPilot SITL's recording: receiver detected 9.8 s after boot
     "gps_noise_horizontal": 0.10,  # [m] white, each axis
     "gps_noise_vertical": 0.20,  # [m]
-    "gps_drift_horizontal": 0.40,  # [m] correlated, each axis (data sheet: 2.5 m CEP over a day)
+    "gps_drift_horizontal": 0.40,  # [m] correlated, each axis, over minutes (estimate)
     "gps_drift_vertical": 0.70,  # [m]
     "gps_drift_time": 120.0,  # [s]
-    "gps_velocity_noise_horizontal": 0.05,  # [m/s] data sheet: 0.05 m/s
+    "gps_velocity_noise_horizontal": 0.05,  # [m/s] (estimate)
     "gps_velocity_noise_vertical": 0.08,  # [m/s]
     "gps_satellites": 12,
     "gps_hdop": 0.8,

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401 - registers the ids
+from sitl import vehicles
+from sitl.autopilot.estimation.state import POS, VEL
 from sitl.core.algebra import euler_of
 from sitl.core.geodesy import offset_ne
 from sitl.core.scalars import wrap_pi
@@ -81,7 +83,7 @@ def test_the_estimate_does_not_jump_when_the_episode_goes_on(frame):
 
 def test_the_start_depends_on_the_seed_alone():
     seeds = [11, 4, 7, 30]
-    straight, turned = starts(made(COPTER), seeds), starts(made(COPTER), [99, *reversed(seeds)])
+    straight, turned = (starts(made(COPTER, boots=2), order) for order in (seeds, [99, *reversed(seeds)]))
     assert np.array_equal(straight, turned[:0:-1])
 
 
@@ -110,16 +112,37 @@ def test_other_numbers_are_refused(boots):
         made(COPTER, boots=boots)
 
 
+@pytest.mark.parametrize("walks", [False, True])
+def test_the_filter_is_consistent_where_the_receiver_does_not_walk(walks):
+    """Mean of squared errors over variances (NEES), within its 95 % band for horizontal position and velocity."""
+    still = {"gps_drift_horizontal": 0.0, "gps_drift_vertical": 0.0, "baro_drift": 0.0}
+    airframe, found = vehicles.load(COPTER).changed(**({} if walks else still)), []
+    robot = made(airframe, begin="boot")
+    for seed in range(100, 130):
+        robot.reset(0, (0.0, 0.0, 0.0, 0.0), seed)
+        p = robot.view(0).autopilot.ekf.P
+        found.append(
+            [
+                e * e / float(p[k, k])
+                for e, k in zip(error(robot), (POS, POS + 1, POS + 2, VEL, VEL + 1, VEL + 2), strict=False)
+            ]
+        )
+    place, velocity = np.mean(found, 0)[:2].mean(), np.mean(found, 0)[3:].mean()
+    assert 0.73 < velocity < 1.31  # chi-square of 90 numbers; the walk moves the receiver, slowly
+    assert place > 40.0 if walks else 0.67 < place < 1.39  # of 60 numbers
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("frame", [COPTER, ROVER])
 def test_a_thousand_seeds_are_distributed_as_real_boots(frame):
-    real = starts(made(frame, begin="boot"), range(10_000, 10_300), (0.0, 0.0, 0.0, 0.0))
+    real = starts(made(frame, begin="boot"), range(10_000, 10_200), (0.0, 0.0, 0.0, 0.0))
     drawn, boots = starts(made(frame), range(1000), (0.0, 0.0, 0.0, 0.0)), 64
     for k, name in enumerate(NAMES):
-        # Errors of two means and of two standard deviations, at four sigma: what is not drawn has 64 boots.
+        # Errors of two means and of two standard deviations, at four sigma: what is not drawn anew has 64 boots.
         a, b = real[:, k], drawn[:, k]
+        of_drawn = len(b) if name in ("north", "east") else boots
         tails = max(float(((a - a.mean()) ** 4).mean() / a.var() ** 2), 3.0)
-        spread = math.sqrt(a.var() * (1 / len(a) + 1 / boots))
-        of_spread = a.std() * math.sqrt((tails - 1) / 4 * (1 / len(a) + 1 / boots))
+        spread = math.sqrt(a.var() * (1 / len(a) + 1 / of_drawn))
+        of_spread = a.std() * math.sqrt((tails - 1) / 4 * (1 / len(a) + 1 / of_drawn))
         assert abs(a.mean() - b.mean()) < 4 * spread, name
         assert abs(a.std() - b.std()) < 4 * of_spread, name

@@ -206,3 +206,25 @@ def test_the_examples_of_the_page_run() -> None:
     scope: dict[str, Any] = {}
     exec(compile(example, "docs/swarm.md", "exec"), scope)
     assert not scope["env"].agents and set(scope["rewards"]) == set(scope["infos"]) != set()
+
+
+def start_errors(env: SwarmEnv, seed: int) -> Any:
+    """What vehicles say of their places minus true places, north and east [m], one after another."""
+    env.reset(seed=seed)
+    return (env._told - np.hstack((env._true_places(), np.zeros((len(env.swarm), 3)))))[:, :2].ravel()
+
+
+def test_episodes_begin_with_boots_of_their_own() -> None:
+    """With one boot, estimates err by the same in all episodes; what noise adds within the first step is small."""
+    one, many = (SwarmEnv("escort", boots=boots) for boots in (1, 2))
+    assert np.all(np.std([start_errors(one, seed) for seed in range(4)], 0) < 0.01)
+    drawn = [start_errors(many, seed) for seed in range(4)]
+    assert sorted(many.prepared) == [1, 2] and np.all(np.ptp(drawn, 0)[:4] > 0.02)  # the rover's receiver is ideal
+    assert np.array_equal(start_errors(many, 0), drawn[0])
+    one.close()
+    many.close()
+
+
+def test_a_number_of_boots_that_cannot_be_is_refused() -> None:
+    with pytest.raises(EnvOptionError, match=r"boots = 0; a whole number, 1 .. 1024, is needed"):
+        SwarmEnv(boots=0)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import gymnasium as gym
@@ -19,12 +20,14 @@ from gymnasium.error import InvalidAction, ResetNeeded
 
 from sitl.core.elementary import cos
 
+from ...client.client import Client
 from ...client.endpoint import Endpoint
 from ...client.session import RATES_HZ
 from ...client.swarm import clients_of
 from ...errors import MissingExtra
-from ...swarm import Swarm, SwarmSnapshot
+from ...swarm import MOST, Swarm, SwarmSnapshot
 from ..options import EnvOptionError
+from ..robots.boots import SINGLE, booted, check_boots, draw
 from .sight import SCAN_MESSAGE, Sight
 from .tasks import HEIGHT, TASKS, Floats, Scene, Task
 
@@ -60,6 +63,9 @@ class SwarmEnv(ParallelEnv):
         observation: "state", as above; "scan" (of the lidar [m], the last one of 10 a second), "depth", "camera",
             "grey" (``sitl.envs.pictures``); names joined by "+", or a dict of names and pictures, give a dict. Scans
             and pictures show the other vehicles, too.
+        boots: number of prepared boots of the whole swarm, 1 .. 1024, one of which each episode begins with, by its
+            seed: the estimators' errors, receivers' slow ones among them, are those of that boot. 1: one boot, with
+            which all episodes begin; these errors are then the same constants in all of them.
         clip_actions: whether a finite number of an action outside of -1 .. 1 becomes -1 or 1; False: it is refused.
         options: as of ``sitl.Swarm``: params (wind), world, home ....
 
@@ -75,9 +81,11 @@ class SwarmEnv(ParallelEnv):
         step: float = 0.2,
         steps: int = 200,
         observation: Any = "state",
+        boots: int = 1,
         clip_actions: bool = True,
         **options: Any,
     ) -> None:
+        check_boots(boots)
         if isinstance(task, str):
             if task not in TASKS:
                 raise EnvOptionError(f"task {task!r} is none of {', '.join(TASKS)}")
@@ -89,10 +97,12 @@ class SwarmEnv(ParallelEnv):
             raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
         if not isinstance(steps, int | np.integer) or steps < 1:
             raise EnvOptionError(f"steps = {steps!r}; a whole number from 1 on is needed")
+        self._options, self.boots = options, boots
         if not isinstance(clip_actions, bool):
             raise EnvOptionError(f"clip_actions = {clip_actions!r}; it must be True or False")
         self._given = {
-            "step": step, "steps": steps, "observation": observation, "clip_actions": clip_actions, **options,
+            "step": step, "steps": steps, "observation": observation, "boots": boots,
+            "clip_actions": clip_actions, **options,
         }  # fmt: skip
         self._clips = clip_actions
         self.task, self.step_us, self.steps = task, round(step * 1e6), steps
@@ -114,6 +124,8 @@ class SwarmEnv(ParallelEnv):
             self.swarm.close()
             raise
         self._ready: SwarmSnapshot | None = None
+        self.prepared: dict[int, SwarmSnapshot] = {}
+        """States after other boots than the first one, by their numbers; swarms that are made alike may share them."""
         self._rng = np.random.default_rng()
 
     @functools.cache  # noqa: B019 - the interface wants the same object each time
@@ -141,8 +153,8 @@ class SwarmEnv(ParallelEnv):
             self._rng = np.random.default_rng(seed)
         if self._ready is None:
             self._ready = self._prepared()
-        self.swarm.restore(self._ready)
         noise = int(self._rng.integers(1 << 31))
+        self.swarm.restore(self._booted(draw(self.boots, noise).boot))
         self.swarm.reseed(noise)
         for endpoint in self._ends:
             endpoint.link.receive()
@@ -157,8 +169,15 @@ class SwarmEnv(ParallelEnv):
         return self._observe(self._goals), {agent: {} for agent in self.agents}
 
     def _prepared(self) -> SwarmSnapshot:
-        """All of them ready to be flown."""
-        clients = clients_of(self.swarm)
+        """All of them ready to be flown, after the first boot."""
+        clients = self._prepare(self.swarm)
+        self._ends: list[Endpoint] = [client.connection.endpoint for client in clients]
+        self._told: Floats = np.zeros((len(clients), 6))
+        return self.swarm.snapshot()
+
+    def _prepare(self, swarm: Swarm) -> list[Client]:
+        """Bring all vehicles of a swarm that boots to where episodes begin."""
+        clients = clients_of(swarm)
         for flies, client in zip(self._flies, clients, strict=True):
             client.wait_ready()
             if flies:
@@ -166,15 +185,34 @@ class SwarmEnv(ParallelEnv):
             else:
                 client.set_mode("GUIDED")
                 client.arm()
-        self._ends: list[Endpoint] = [client.connection.endpoint for client in clients]
-        self._told: Floats = np.zeros((len(clients), 6))
         for client in clients:
             for name in RATES_HZ:
                 client.set_rate(name, TELEMETRY_HZ if name == TELEMETRY else 1)
             if self._sight.reads_scan:
                 client.set_rate(SCAN_MESSAGE, SCAN_HZ)
-        self.swarm.advance(5.0)
-        return self.swarm.snapshot()
+        swarm.advance(5.0)
+        return clients
+
+    def _booted(self, number: int) -> SwarmSnapshot:
+        """The state after a boot; calculated on first use."""
+        if number == SINGLE:
+            assert self._ready is not None
+            return self._ready
+        if number not in self.prepared:
+            scenarios = self.swarm.scenarios
+            seed = scenarios[0].seed_or_default + MOST * number  # no vehicle has the seed of another one in any boot
+            frames = [booted(each, each.airframe, seed + k) for k, each in enumerate(scenarios)]
+            swarm = Swarm(
+                [replace(each, frame=airframe) for each, airframe in frames],
+                starts=[each.start for each in scenarios if each.start is not None],
+                **{**self._options, "seed": seed},
+            )
+            try:
+                self._prepare(swarm)
+                self.prepared[number] = swarm.snapshot()
+            finally:
+                swarm.close()
+        return self.prepared[number]
 
     def step(
         self, actions: dict[str, Narrow]

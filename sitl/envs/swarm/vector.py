@@ -62,6 +62,8 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             raise EnvOptionError(f"task {task!r} remembers one episode: {swarms} swarms need a task's name")
         self.swarms = [SwarmEnv(task, count, **options) for _ in range(swarms)]
         first = self.swarms[0]
+        for swarm in self.swarms:
+            swarm.prepared = first.prepared
         agents = first.possible_agents
         self.agents = tuple(agents)
         """Names of the agents of each swarm."""
