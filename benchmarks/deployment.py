@@ -20,11 +20,12 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.baselines import Z, share
+from benchmarks.baselines.shipped import share
 from sitl import vehicles
 from sitl.agents import baselines, environments, learnt
 from sitl.agents.deploy import Deployed, deploy, fly, neutral
 from sitl.agents.learnt import Learnt
+from sitl.agents.report.statistics import Z
 from sitl.client import Client
 from sitl.client.connection import connect
 from sitl.foreign.process import free_tcp_run

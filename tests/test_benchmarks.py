@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import cameras
 from benchmarks import envs as benchmark
 from sitl import envs
 from sitl.simulation import Core, load_core
@@ -40,6 +41,16 @@ def test_every_environment_has_a_row(monkeypatch, capsys):
         assert row, f"no row of {name} in\n{out}"
         assert float(row[2].replace(",", "")) > 0.0 and float(row[3]) > 0.0
     assert re.search(r", reset +[\d.]+ us", out)
+
+
+def test_each_observation_by_camera_has_a_row(monkeypatch, capsys):
+    monkeypatch.setattr(cameras, "ROBOTS", 2)
+    cameras.main(["--repeats", "1", "--steps", "20"])
+    rows = re.findall(r"^\| (.+) \| ([\d,]+) \| ([\d,]+) \|$", capsys.readouterr().out, re.M)
+    assert [name for name, *_ in rows] == list(cameras.observations())
+    assert all(int(rate.replace(",", "")) > 0 for _, *rates in rows for rate in rates)
+    with pytest.raises(SystemExit):
+        cameras.main(["--steps", "0"])
 
 
 def test_another_checkout_is_measured_beside_this_one(monkeypatch, capsys):

@@ -26,6 +26,7 @@ from sitl.bridge.links.faults import OPTIONS
 from sitl.cli import parser
 from sitl.cli.commands import COMMANDS
 from sitl.core import compile as compiler
+from sitl.envs.costs import COSTS
 from sitl.envs.observations import OBSERVATIONS
 from sitl.envs.tasks import TASKS
 from sitl.simulation import Core
@@ -307,6 +308,22 @@ def test_the_examples_of_environments_run(example):
     if "stable_baselines3" in example:
         pytest.importorskip("stable_baselines3", reason="this example needs the extra 'rl'")
     exec(compile(example, "docs/environments.md", "exec"), {})
+
+
+SETUPS = DOCS / "learning-setups.md"
+
+
+@pytest.mark.parametrize("example", blocks(SETUPS, "python"), ids=lambda text: text.split('"')[1])
+def test_the_examples_of_learning_setups_run(example, capsys):
+    exec(compile(example, str(SETUPS), "exec"), {})
+    if "session.observation.columns" in example:
+        assert capsys.readouterr().out == "the last reading arrived [0, 1]\n"
+
+
+def test_each_cost_is_on_the_page():
+    page = SETUPS.read_text(encoding="utf-8")
+    for name in COSTS:
+        assert f"\n| `{name}` |" in page, name
 
 
 def test_the_page_of_environments_names_every_one_and_every_piece():

@@ -13,7 +13,10 @@ import gymnasium as gym
 import numpy as np
 
 import sitl
+from sitl.envs.costs import TOTAL
+from sitl.envs.navigate import Navigate
 from sitl.envs.options import EnvOptionError
+from sitl.envs.senses import SENSES, SensingRobot
 from sitl.errors import MissingExtra
 
 from . import baselines, environments
@@ -23,6 +26,10 @@ from .policies import RANDOM
 
 BASELINE = "baseline"
 """The expert that is the shipped policy of the environment."""
+ESTIMATE, TRUTH = "estimate", "truth"
+"""``infos`` of an episode: the robot's state as it believes and as it is, shape (steps + 1, 12), from the reset on."""
+COLUMNS = [column for sense in SENSES.values() for column in sense.columns]
+"""Name and unit of each number of a state."""
 
 
 class Recorded(NamedTuple):
@@ -71,9 +78,13 @@ def record(
     Every step is the environment's: reset with an episode's seed and given its actions, the environment gives the
     same observations and rewards again. The same arguments give the same dataset, bit for bit.
 
+    ``infos`` of its episodes has a row for the reset and one for each step: "is_success"; the robot's state by the
+    estimate and by the truth (``ESTIMATE``, ``TRUTH``), where they are known; "cost" and "cost_NAME" where the option
+    ``costs`` names some.
+
     Args:
         env: id of the environment.
-        dataset: id of the dataset, "namespace/name-v0"; None: "sitl/ENV/EXPERT-v0".
+        dataset: id of the dataset, "namespace/name-v0"; None: "sitl/ENV/EXPERT-vN" of the environment "ENV-vN".
         expert: "guided", "auto", "pilot" (see ``experts``), "baseline" (the policy that comes with the program),
             "random", the folder of a run, or the file of a policy.
         episodes: how many.
@@ -94,7 +105,7 @@ def record(
     made = _made(env, dict(options or {}), max_steps)
     try:
         chosen = _expert(expert, made)
-        name = dataset or f"sitl/{env.rpartition('/')[2].removesuffix('-v0')}/{chosen.name}-v0"
+        name = dataset or name_of(env, chosen.name)
         try:
             taken = name in minari.list_local_datasets()
             minari.dataset.minari_dataset.parse_dataset_id(name)
@@ -128,6 +139,7 @@ def record(
                 "seed": seed,
                 "episode_seeds": json.dumps([environments.seed_of(seed, k) for k in range(episodes)]),
                 "successes": successes,
+                "state_columns": json.dumps(COLUMNS),
                 "mean_reward": float(np.mean(rewards)),
                 "versions": json.dumps({"gym-sitl": sitl.__version__, "gymnasium": gym.__version__}),
             }
@@ -135,6 +147,12 @@ def record(
     finally:
         made.close()
     return Recorded(written, tuple(rewards), successes, sum(len(flight.rewards) for flight in flights))
+
+
+def name_of(env: str, expert: str) -> str:
+    """What the dataset of an expert's flights in an environment is called unless told otherwise."""
+    name, _, version = env.rpartition(":")[2].rpartition("/")[2].rpartition("-v")
+    return f"sitl/{name}/{expert}-v{version}" if name and version.isdigit() else f"sitl/{env}/{expert}-v0"
 
 
 def _made(env: str, options: dict[str, Any], max_steps: int | None) -> gym.Env[Any, Any]:
@@ -172,7 +190,8 @@ def _flown(env: gym.Env[Any, Any], expert: Expert, number: int, seed: int) -> An
 
     observation, _ = env.reset(seed=seed)
     expert.begin(seed)
-    seen, actions, rewards, terminations, truncations, successes = [observation], [], [], [], [], [False]
+    seen, actions, rewards, terminations, truncations = [observation], [], [], [], []
+    told: list[dict[str, Any]] = [_told(env, {})]
     ended = False
     while not ended:
         actions.append(expert.act(observation))
@@ -181,12 +200,25 @@ def _flown(env: gym.Env[Any, Any], expert: Expert, number: int, seed: int) -> An
         rewards.append(float(reward))
         terminations.append(terminated)
         truncations.append(truncated)
-        successes.append(bool(info.get("is_success", False)))
+        told.append(_told(env, info))
         ended = terminated or truncated
+    for name in told[-1]:
+        told[0].setdefault(name, 0.0)  # a reset costs nothing
     observations = {name: [row[name] for row in seen] for name in seen[0]} if isinstance(seen[0], dict) else seen
-    return EpisodeBuffer(
-        number, seed, None, observations, actions, rewards, terminations, truncations, {"is_success": successes}
-    )
+    infos = {name: np.array([row[name] for row in told]) for name in told[-1]}
+    return EpisodeBuffer(number, seed, None, observations, actions, rewards, terminations, truncations, infos)
+
+
+def _told(env: gym.Env[Any, Any], info: dict[str, Any]) -> dict[str, Any]:
+    """What a dataset keeps of a moment besides observation and reward."""
+    found: dict[str, Any] = {"is_success": bool(info.get("is_success", False))}
+    found |= {name: float(cost) for name, cost in info.items() if name == TOTAL or name.startswith(f"{TOTAL}_")}
+    navigate = env.unwrapped
+    if isinstance(navigate, Navigate) and isinstance(navigate.robot, SensingRobot):
+        found[ESTIMATE] = navigate.robot.state[0].copy()
+        if getattr(navigate.robot, "knows_truth", False):
+            found[TRUTH] = navigate.robot.true_state()[0].copy()
+    return found
 
 
 def where() -> Path:

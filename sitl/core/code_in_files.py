@@ -35,7 +35,7 @@ _SETTINGS = re.compile(rf"(\w+={_NUMBER}(,\w+={_NUMBER})*)?")
 
 
 def is_name(value: Any) -> bool:
-    """Whether a value is a name that a table of this package knows, or "KIND:settings" of a world that is made, and
+    """Whether a value is a name that a table of this package knows, or "KIND:settings" of worlds that are made, and
     neither a file nor an address."""
     if not isinstance(value, str):
         return False
@@ -85,9 +85,9 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "world": lambda value: value is None or are_worlds(value),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "faults", "home", "info", "judge", "latency", "max_episode_steps",
-         "observation", "patience", "randomise", "robot", "setpoint", "start", "step_time", "take_off", "task", "tiled",
-         "wait"), _is_free,
+        ("action", "autoreset_mode", "begin", "boots", "faults", "home", "info", "judge", "latency",
+         "max_episode_steps", "observation", "patience", "randomise", "robot", "sensors", "setpoint", "start",
+         "step_time", "take_off", "task", "tiled", "wait"), _is_free,
     ),
 }  # fmt: skip
 """All that a file may say of an environment of this package: name of the option -> whether a value is taken.

@@ -11,7 +11,8 @@ import gymnasium as gym
 
 from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
-from .ids import FIRST, MAX_EPISODE_STEPS, NEW, PAPER, Listed
+from .goals import WRAPPER, ForSingle
+from .ids import FIRST, GOAL_CONDITIONED, MAX_EPISODE_STEPS, NEW, PAPER, Listed, task_of
 from .options import EnvOptionError
 
 __all__ = [
@@ -43,6 +44,7 @@ def register() -> None:
             entry_point="sitl.envs.presets:PresetNavigate",
             vector_entry_point="sitl.envs.vector:PresetNavigateVector",
             max_episode_steps=steps,
+            additional_wrappers=ForSingle((WRAPPER,)) if task_of(preset) in GOAL_CONDITIONED else (),
             kwargs={"preset": preset},
         )
 

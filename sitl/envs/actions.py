@@ -88,6 +88,8 @@ class Action(Protocol):
         """
 
     # def take(self, actions, out) -> bool: many at once, see ``Continuous.take``; without it each is checked alone.
+    # def clip(self, action), def clip_all(self, actions, out): see ``Continuous``; without them, and for the option
+    # ``clip_actions=False``, actions outside of the space are refused.
 
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """Write the set-points of the actions into ``out``, shape (count, setpoint.width), in the units of
@@ -215,16 +217,43 @@ class Continuous:
 
     def check(self, action: Any) -> Any:
         """See ``Action``."""
+        numbers = self._within(action)
+        if numbers is not None:
+            return numbers
+        names = ", ".join(
+            f"{self.setpoint.columns[c]} {a:g} .. {b:g}" for c, a, b in zip(self.columns, self._low, self._high)
+        )
+        raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
+
+    def _within(self, action: Any) -> Any:
+        """The action as a row, if it is in the space."""
         try:
             numbers = np.asarray(action, np.float32).tolist()
             if len(numbers) == len(self._low) and all(a <= x <= b for a, x, b in zip(self._low, numbers, self._high)):
                 return numbers
         except (TypeError, ValueError):
             pass
-        names = ", ".join(
-            f"{self.setpoint.columns[c]} {a:g} .. {b:g}" for c, a, b in zip(self.columns, self._low, self._high)
-        )
-        raise InvalidAction(f"action {action!r} is not in {self.space}: {names}")
+        return None
+
+    def clip(self, action: Any) -> Any:
+        """As ``check``, but finite numbers outside of their limits become the limits."""
+        numbers = self._within(action)
+        if numbers is not None:
+            return numbers
+        row = np.empty((1, len(self.columns)))
+        try:
+            is_finite = self.clip_all(np.asarray(action, np.float64)[np.newaxis], row)
+        except (TypeError, ValueError):
+            is_finite = False
+        return row[0].tolist() if is_finite else self.check(action)
+
+    def clip_all(self, actions: npt.NDArray[Any], out: Floats) -> bool:
+        """``clip`` of an action for each row of ``out``; False: one of them is not finite, or they have another shape,
+        and nothing is written."""
+        if actions.shape != out.shape or actions.dtype.kind not in "fiu" or not np.isfinite(actions).all():
+            return False
+        out[...] = np.clip(actions.astype(np.float64), self._low, self._high).astype(np.float32)
+        return True
 
     def take(self, actions: npt.NDArray[Any], out: Floats) -> bool:
         """Write actions of many robots, shape (count, columns), as ``check`` gives them, into an array that ``room``

@@ -71,6 +71,8 @@ TASKS = {
     "rover-parking": Described(300, "Park in a bay", "Park in a free bay between cars, by lidar."),
 }
 """Flight and driving tasks by the name of their presets."""
+GOAL_CONDITIONED = ("copter-reach-goal", "rover-reach-goal")
+"""Those whose observation has the goal, for hindsight replay."""
 
 
 def camel_case(preset: str) -> str:

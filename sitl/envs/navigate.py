@@ -30,7 +30,7 @@ class Navigate(gym.Env[Any, Any]):
         render_mode: "rgb_array"; "human": the browser view if the extra ``view`` is installed, else a window;
             "window"; or None.
         options: see ``NavigateOptions``: robot, world, task, observation, action, setpoint, step_time, start,
-            randomise, latency, faults, info, and options of the robot's class.
+            randomise, latency, faults, info, judge, costs, and options of the robot's class.
 
     ``reset`` takes ``options={"pose": (x, y, yaw)}``, the start pose [m, rad], and "world", the episode's world.
     ``info`` has "crashed", the task's entries (``Task.info``), and those that the option ``info`` names.
@@ -44,6 +44,11 @@ class Navigate(gym.Env[Any, Any]):
     def __init__(self, *, render_mode: str | None = None, **options: Any) -> None:
         if render_mode is not None and render_mode not in RENDER_MODES:
             raise unknown("render_mode", render_mode, RENDER_MODES)
+        if "autoreset_mode" in options:
+            raise EnvOptionError(
+                f"autoreset_mode = {options['autoreset_mode']!r}: a single environment is reset by reset(); "
+                'gymnasium.make_vec with vectorization_mode="sync" or "async" takes the mode in vector_kwargs'
+            )
         self._session = session = Session(1, NavigateOptions.of(options))
         self.observation_space = session.observation_space
         self.action_space = session.action.space
@@ -58,9 +63,10 @@ class Navigate(gym.Env[Any, Any]):
     def _bind(self) -> None:
         """Look up once what every step needs."""
         session = self._session
-        self._check, self._actions, self._advance = session.action.check, session.actions, session.advance
+        self._check, self._actions, self._advance = session.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.info
-        self._plain_info = type(session.task).info is Task.info and session.faults is None and not session.details
+        told = session.faults is not None or session.details or session.costs
+        self._plain_info = type(session.task).info is Task.info and not told
         self._over = getattr(session.robot, "over", None)
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 
@@ -147,7 +153,8 @@ class Navigate(gym.Env[Any, Any]):
         a vehicle at a connection: ``info["handed_over"]`` says why.
 
         Raises:
-            InvalidAction: the action is not in the space.
+            InvalidAction: the action is not in the space: a number that is not finite, another shape, without
+                ``clip_actions`` a number outside of its limits, too.
             ResetNeeded: before the first ``reset``.
         """
         try:

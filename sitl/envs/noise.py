@@ -41,3 +41,26 @@ def dirichlet(rng: np.random.Generator, count: int, parts: int) -> npt.NDArray[n
         drawn.reshape(-1)[k] = EXPONENTIAL_TAIL - log(1.0 - rng.random())
     out: npt.NDArray[np.float64] = drawn * (1.0 / drawn.sum(axis=1))[:, None]
     return out
+
+
+_WORDS = np.array([0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB], np.uint64)
+_SHIFTS = np.array([30, 27, 31, 11], np.uint64)
+
+
+def uniform(seeds: npt.NDArray[np.int64], numbers: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+    """Uniform deviates within [0, 1), one for each pair of a seed and a number: without state, for many robots at once.
+
+    Source: the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA
+    2014), of the seed and then of the number.
+    """
+    out = _mixed(_mixed(seeds.astype(np.uint64)) + numbers.astype(np.uint64))
+    found: npt.NDArray[np.float64] = (out >> _SHIFTS[3]).astype(np.float64) * 2.0**-53
+    return found
+
+
+def _mixed(words: npt.NDArray[np.uint64]) -> npt.NDArray[np.uint64]:
+    words = words + _WORDS[0]
+    words = (words ^ words >> _SHIFTS[0]) * _WORDS[1]
+    words = (words ^ words >> _SHIFTS[1]) * _WORDS[2]
+    out: npt.NDArray[np.uint64] = words ^ words >> _SHIFTS[2]
+    return out

@@ -10,7 +10,7 @@ from sitl.errors import OptionError, did_you_mean
 
 COMMON = (
     "robot", "world", "task", "observation", "action", "setpoint", "step_time", "start", "randomise", "latency",
-    "faults", "info", "judge",
+    "faults", "info", "clip_actions", "judge", "costs",
 )  # fmt: skip
 """Options that every environment takes besides "render_mode", whatever its robot."""
 
@@ -21,6 +21,19 @@ LISTED, LISTED_BESIDE = 100, 30
 
 class EnvOptionError(OptionError):
     """An option of an environment that cannot be used; the message names it, its value and what is allowed."""
+
+
+class UnknownEnvOption(EnvOptionError, TypeError):
+    """An option that no environment or robot of this kind has: in Python's words, an unexpected keyword argument.
+
+    Libraries offer environments arguments of their own (TorchRL: ``frameskip``), and take them back when a
+    ``TypeError`` says so.
+    """
+
+
+def unknown_option(option: str, known: Iterable[str]) -> UnknownEnvOption:
+    """The error for an option by a name that is not among those known."""
+    return UnknownEnvOption(f"{unknown('option', option, known)} (unexpected keyword argument {option!r})")
 
 
 def unknown(option: str, value: Any, known: Iterable[str]) -> EnvOptionError:

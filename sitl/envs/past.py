@@ -8,8 +8,12 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from .losses import Kept, Losses, LossRates
 from .options import EnvOptionError
 from .robots.robot import Floats
+
+LATENCY_STREAM = 1 << 41
+"""Second word of the seeds of latencies."""
 
 
 class Film(NamedTuple):
@@ -20,6 +24,8 @@ class Film(NamedTuple):
     seed: int
     rows: Floats
     """Of the last steps, shape (steps kept, width)."""
+    kept: Kept | None = None
+    """What arrived last; None: nothing is lost."""
 
 
 class Remembering(Protocol):
@@ -54,19 +60,28 @@ class Past:
         width: numbers in a row.
         seconds: duration of a step [s].
         rate: rows that are taken a second [Hz], whole steps apart; None: one each step.
-        latency: age of a row when it is seen [s], whole steps.
+        latency: age of a row when it is seen [s], whole steps; or (least, greatest), of which each episode draws one,
+            all whole steps in between being equally likely.
+        losses: how often rows are lost; None: never.
 
     Raises:
         EnvOptionError: rate or latency are not whole steps.
     """
 
-    def __init__(self, who: str, count: int, width: int, seconds: float, rate: float | None, latency: float) -> None:
+    def __init__(
+        self, who: str, count: int, width: int, seconds: float, rate: float | None,
+        latency: float | tuple[float, float], losses: LossRates | None = None,
+    ) -> None:  # fmt: skip
         self._who = who
         self._every = self._steps("1 / rate", 1.0 / rate, seconds) if rate else 1
-        self._age = self._steps("latency", latency, seconds) if latency else 0
-        self._rows = np.zeros((count, self._every + self._age, width))
+        ends = latency if isinstance(latency, tuple) else (latency, latency)
+        self._least, self._most = (self._steps("latency", end, seconds) if end else 0 for end in ends)
+        self._ages = np.full(count, self._least, np.int64)
+        """Of each robot's rows when they are seen [steps]."""
+        self._rows = np.zeros((count, self._every + self._most, width))
         """Of the ends of steps: that of step k of an episode is at k % (number that is kept)."""
         self._count, self._seeds = np.zeros((2, count), np.int64)
+        self._losses = None if losses is None else Losses(losses, count, width)
 
     def _steps(self, what: str, wanted: float, seconds: float) -> int:
         steps = round(wanted / seconds)
@@ -79,27 +94,48 @@ class Past:
     def start(self, index: int, seed: int) -> None:
         """An episode of one robot begins; ``begin`` follows."""
         self._count[index], self._seeds[index] = 0, seed
+        self._draw(index, seed)
+
+    def _draw(self, index: int, seed: int) -> None:
+        if self._most > self._least:
+            rng = np.random.default_rng((seed, LATENCY_STREAM))
+            self._ages[index] = rng.integers(self._least, self._most + 1)
 
     def begin(self, rows: npt.NDArray[Any], which: npt.NDArray[np.bool_] | None) -> None:
         """First rows of the episodes of these robots (None: all), shape (count, width); before them was the same."""
         robots = slice(None) if which is None else which
         self._rows[robots] = rows[robots, None]
+        if self._losses is not None:
+            self._losses.begin(rows, which)
 
     def note(self, rows: npt.NDArray[Any], which: npt.NDArray[np.bool_] | None) -> None:
         """These robots (None: all) have gone on by a step; ``rows`` has a row for each robot, shape (count, width)."""
         robots = np.arange(len(self._count)) if which is None else np.flatnonzero(which)
         self._count[robots] += 1
         self._rows[robots, self._count[robots] % self._rows.shape[1]] = rows[robots]
+        if self._losses is not None:
+            self._losses.receive(self._newest(), self._due(), self._seeds, robots)
+
+    def _due(self) -> npt.NDArray[np.int64]:
+        found: npt.NDArray[np.int64] = np.maximum((self._count - self._ages) // self._every * self._every, 0)
+        return found
 
     def taken(self) -> npt.NDArray[np.int64]:
         """Step of each robot's episode of which the row is that is seen now, shape (count,)."""
-        found: npt.NDArray[np.int64] = np.maximum((self._count - self._age) // self._every * self._every, 0)
-        return found
+        return self._due() if self._losses is None else self._losses.steps
+
+    @property
+    def arrives(self) -> npt.NDArray[np.bool_]:
+        """Whether the last row of each robot has arrived, shape (count,)."""
+        return np.ones(len(self._count), np.bool_) if self._losses is None else ~self._losses.lost
 
     def seen(self) -> Floats:
         """The rows that are seen now, a copy, shape (count, width)."""
+        return self._newest() if self._losses is None else self._losses.rows.copy()
+
+    def _newest(self) -> Floats:
         robots = np.arange(len(self._count))
-        return np.ascontiguousarray(self._rows[robots, self.taken() % self._rows.shape[1]])
+        return np.ascontiguousarray(self._rows[robots, self._due() % self._rows.shape[1]])
 
     def generators(self) -> list[np.random.Generator]:
         """Of each robot, for the noise of the row that is seen now: it is the same as long as that row is."""
@@ -107,14 +143,18 @@ class Past:
 
     def memory(self, index: int) -> Film:
         """For a snapshot of one robot."""
-        return Film(int(self._count[index]), int(self._seeds[index]), self._rows[index].copy())
+        kept = None if self._losses is None else self._losses.memory(index)
+        return Film(int(self._count[index]), int(self._seeds[index]), self._rows[index].copy(), kept)
 
     def recall(self, index: int, film: Any) -> None:
         """Go on as from a ``memory``.
 
         Raises:
-            EnvOptionError: it is of another rate or latency.
+            EnvOptionError: it is of another rate, latency or dropout.
         """
-        if np.shape(film.rows) != self._rows[index].shape:
-            raise EnvOptionError(f"snapshot cannot be restored: {self._who!r} had another rate or latency")
-        self._count[index], self._seeds[index], self._rows[index] = film
+        if np.shape(film.rows) != self._rows[index].shape or (film.kept is None) != (self._losses is None):
+            raise EnvOptionError(f"snapshot cannot be restored: {self._who!r} had another rate, latency or dropout")
+        self._count[index], self._seeds[index], self._rows[index] = film.steps, film.seed, film.rows
+        self._draw(index, film.seed)
+        if self._losses is not None and film.kept is not None:
+            self._losses.recall(index, film.kept)

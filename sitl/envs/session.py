@@ -21,6 +21,7 @@ from sitl.worlds import World
 from . import robots
 from .actions import SETPOINTS, Action, Discrete
 from .arena import normalised
+from .costs import Costs
 from .faults import EpisodeFaults, Faults
 from .judge import TRUTH, Judge
 from .latency import LATENCY, Latency
@@ -114,9 +115,14 @@ class NavigateOptions:
             "reward_NAME"; "true_pose", x, y, z [m], yaw [rad] as they really are (left out where nobody knows);
             "estimate_error", the estimate minus the truth in the same columns, likewise; "events", "touched" and
             "outside".
+        clip_actions: whether a number of an action in a box that is outside of its limits becomes the limit, as in
+            Gymnasium's own environments; False: it is refused. Numbers that are not finite are always refused.
         judge: by what rewards, success and ends of episodes go: "truth", where the robot really is, or "estimate",
             where it believes to be. The truth of a vehicle at a connection is unknown, which is judged by its estimate
             (``Session.judge``). Observations are the estimate in any case.
+        costs: what a step violates, for constrained learning: names of ``costs.COSTS``, objects of their classes,
+            functions of a step, or arguments by name ({"cost": "tilt", "angle": 0.3}). ``info`` has each as "cost_NAME"
+            and their sum as "cost"; ``safety.SafetyEnv`` returns it beside the reward. (): none.
         robot_options: further options of the robot's class, by name.
 
     Raises:
@@ -135,7 +141,9 @@ class NavigateOptions:
     latency: float = 0.0
     faults: Faults | None = None
     info: Sequence[str] = ()
+    clip_actions: bool = True
     judge: str = TRUTH
+    costs: Any = ()
     robot_options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -187,8 +195,16 @@ class Session:
             isinstance(term, ByAction) for term in getattr(self.task, "terms", ())
         ):
             raise EnvOptionError('task: a reward by action (as "paper" has) needs a table of actions, as "discrete"')
+        if not isinstance(options.clip_actions, bool | np.bool_):
+            raise EnvOptionError(f"clip_actions = {options.clip_actions!r}; it must be True or False")
+        self.check: Callable[[Any], Any] = self.action.check
+        """One robot's action as a row of ``actions``; raises ``InvalidAction``."""
+        self.clip_all: Callable[[Any, Any], bool] | None = None
+        """The same for an array of actions: see ``Continuous.clip_all``; None: they are not clipped."""
+        if options.clip_actions and hasattr(self.action, "clip"):
+            self.check, self.clip_all = self.action.clip, getattr(self.action, "clip_all", None)
         self.actions = self.action.room(count)
-        """Actions of the next ``advance``, a row a robot, as ``action.check`` returns them."""
+        """Actions of the next ``advance``, a row a robot, as ``check`` returns them."""
         self.acted = np.zeros(count, np.bool_)
         """Whether each robot's episode has had an action, shape (count,)."""
         self.commands = np.zeros((count, self.action.setpoint.width))
@@ -209,6 +225,8 @@ class Session:
         if isinstance(self.task, Task):
             self.task.judge_of = self.judge
         self.task.prepare(self.robot)
+        self.costs = Costs(options.costs)
+        self.costs.prepare(self.robot, self.task)
         self._allow(self.worlds)
         watch = getattr(self.observation, "watch", None)
         if watch is not None:
@@ -220,7 +238,7 @@ class Session:
         self.remembers: tuple[Remembering, ...] = tuple(getattr(self.observation, "remembers", ()))
         """Pieces of the observation that remember the last steps."""
         if isinstance(self.robot, AskedRobot):
-            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task))
+            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task) or reads_scan(self.costs))
             if self.robot.is_live:
                 self._rehearse()
 
@@ -264,6 +282,7 @@ class Session:
         enter = getattr(self.task, "enter", None)
         if enter is not None:
             enter(index, self.robot)
+        self.costs.enter(index, self.robot, self.task)
 
     @property
     def judged_by(self) -> str:
@@ -395,6 +414,8 @@ class Session:
         found = self.task.info(self.step)
         if self.details:
             found |= self._told_in_detail()
+        if self.costs:
+            found |= self.costs.of(self.step)
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
 
     def _told_in_detail(self) -> dict[str, npt.NDArray[Any]]:

@@ -39,23 +39,30 @@ WHOLE_TIME = 5.0
 """What an episode pays for all of its time."""
 GOAL = 20.0
 """For reaching it."""
+NEARBY = 12.0
+"""Distance from which on progress counts, where a failure is near each success [m]: so a crash need not cost the whole
+arena's, and who has not learnt yet dares to try."""
 HALF = 0.7
 """Of curves of nearness [m]."""
 FAR = 20.0
 """Of goal-conditioned tasks: see ``Hold`` [m]."""
 
 
-def _price(preset: str, progress: float, fail: float, **others: Any) -> dict[str, Any]:
-    """Arguments of a task in which a goal is to be reached."""
+def _price(preset: str, progress: float, fail: float, whole: float = WHOLE_TIME, **others: Any) -> dict[str, Any]:
+    """Arguments of a task in which a goal is to be reached; ``whole``: what the whole time costs."""
     step = COPTER_STEP if preset.startswith("copter") else ROVER_STEP
     return {
-        "progress": progress, "each_second": -WHOLE_TIME / (step * TASKS[preset].steps), "crash_reward": fail,
+        "progress": progress, "each_second": -whole / (step * TASKS[preset].steps), "crash_reward": fail,
         "out_reward": fail, "floor_ends": True, **others,
     }  # fmt: skip
 
 
 def _waypoints(preset: str, count: int) -> Task:
     return Waypoints(count, place_reward=GOAL, **_price(preset, 0.5, -30.0))
+
+
+def _land(preset: str, **others: Any) -> Task:
+    return Land(far=NEARBY, success_reward=GOAL, **{**_price(preset, 1.0, -16.0, 2.0), "floor_ends": False}, **others)
 
 
 def _among(preset: str, progress: float, fail: float, **others: Any) -> Task:
@@ -80,16 +87,14 @@ MADE: dict[str, Callable[[], Task]] = {
     "copter-race": lambda: Gates(TRACK, laps=3, **_price("copter-race", 0.5, -40.0)),
     "copter-trajectory": lambda: Trajectory("eight", speed=(1.0, 3.0), **_LOST),
     "copter-follow": lambda: Follow(**_LOST),
-    "copter-land": lambda: Land(success_reward=GOAL, **{**_price("copter-land", 0.5, -30.0), "floor_ends": False}),
-    "copter-land-moving": lambda: Land(
-        speed=0.5, success_reward=GOAL, **{**_price("copter-land-moving", 0.5, -30.0), "floor_ends": False}
-    ),
+    "copter-land": lambda: _land("copter-land"),
+    "copter-land-moving": lambda: _land("copter-land-moving", speed=0.5),
     "copter-forest": lambda: _among("copter-forest", 0.5, -50.0, ceiling=3.0),
     "copter-rooms": lambda: _among("copter-rooms", 0.5, -40.0, ceiling=3.0),
     "rover-waypoint": lambda: _waypoints("rover-waypoint", 1),
     "rover-course": lambda: _waypoints("rover-course", 4),
     "rover-labyrinth": lambda: _among("rover-labyrinth", 0.2, -40.0),
-    "rover-slalom": lambda: Gates(**_price("rover-slalom", 0.5, -50.0)),
+    "rover-slalom": lambda: Gates(far=NEARBY, **_price("rover-slalom", 1.0, -16.0, 2.0)),
     "rover-race": lambda: Gates(laps=2, **_price("rover-race", 0.5, -40.0)),
     "rover-parking": lambda: Park(success_reward=GOAL, turn_progress=1.0, **_price("rover-parking", 0.5, -40.0)),
 }
@@ -115,6 +120,7 @@ def worst_of(task: Any, seconds: float) -> float:
     time, per_metre = float(getattr(task, "each_second", 0.0)), float(getattr(task, "progress", 0.0))
     (x0, y0, z0), (x1, y1, z1) = task._limits
     width = math.hypot(x1 - x0, y1 - y0, (z1 - max(z0, 0.0)) if task.flies else 0.0)
+    width = min(width, float(getattr(task, "far", math.inf)))
     turn = math.pi * float(getattr(task, "turn_progress", 0.0))
     effort = float(getattr(task, "effort", 0.0)) * seconds
     return time * seconds - per_metre * width - turn - effort

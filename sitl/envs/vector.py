@@ -289,7 +289,8 @@ class NavigateVector(OfSubEnvironments):
         return self.observe(), infos
 
     def _take(self, actions: Any) -> None:
-        check, rows = self._session.action.check, self._session.actions
+        session = self._session
+        check, clip_all, rows = session.check, session.clip_all, session.actions
         if not isinstance(actions, np.ndarray):
             actions = as_numpy(actions)
         try:
@@ -299,6 +300,8 @@ class NavigateVector(OfSubEnvironments):
         if count != self.num_envs:
             raise gym.error.InvalidAction(f"actions {actions!r} are not {self.num_envs}, one for each robot")
         if isinstance(actions, np.ndarray) and self._take_all is not None and self._take_all(actions, rows):
+            return
+        if clip_all is not None and isinstance(actions, np.ndarray) and clip_all(actions, rows):
             return
         for index in range(count):
             rows[index] = check(actions[index])

@@ -51,6 +51,8 @@ EXAMPLES = {
     "q_learning": Example("python examples/q_learning.py", ("matplotlib",)),
     "vector_env": Example("python examples/vector_env.py", ("matplotlib",)),
     "race_baseline": Example("python examples/race_baseline.py", ("matplotlib",)),
+    "privileged_critic": Example("python examples/privileged_critic.py", ("torch",)),
+    "residual_rates": Example("python examples/residual_rates.py", ("stable-baselines3",)),
     "pettingzoo_swarm": Example("python examples/pettingzoo_swarm.py", ("matplotlib", "pettingzoo")),
     "regression": Example("pytest examples/regression", ("pytest",)),
 }

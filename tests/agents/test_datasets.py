@@ -117,6 +117,41 @@ def test_a_policy_that_copies_the_expert_is_better_than_drawn_actions():
     assert reward > drawn + 10.0 and successes > lucky + 4
 
 
+def test_truth_estimate_and_costs_are_beside_the_observations():
+    """A row for the reset, and one for each step."""
+    costs = ["energy", {"cost": "speed", "speed": 1.0}]
+    made = datasets.record("sitl/CopterWaypoint-v1", episodes=2, seed=4, options={"costs": costs}).dataset
+    assert made.id == "sitl/CopterWaypoint/guided-v1"
+    dataset = minari.load_dataset(made.id)
+    columns = json.loads(dataset.storage.metadata["state_columns"])
+    assert columns[:4] == ["x [m]", "y [m]", "z [m]", "yaw [rad]"] and len(columns) == 12
+    env = dataset.recover_environment()
+    for k, episode in enumerate(dataset.iterate_episodes()):
+        told, count = episode.infos, len(episode.rewards) + 1
+        assert told["truth"].shape == told["estimate"].shape == (count, 12)
+        env.reset(seed=environments.seed_of(4, k))
+        robot = env.unwrapped.robot
+        for step, action in enumerate([None, *episode.actions]):
+            info = {} if action is None else env.step(action)[4]
+            assert np.array_equal(told["truth"][step], robot.true_state()[0])
+            assert np.array_equal(told["estimate"][step], robot.state[0])
+            for name in ("cost", "cost_energy", "cost_speed"):
+                assert told[name][step] == info.get(name, 0.0)
+        assert 0.0 < np.abs(told["truth"] - told["estimate"])[:, :3].max() < 3.0
+        assert told["cost_speed"].any() and not told["cost_speed"].all()
+    env.close()
+
+
+def test_names_of_datasets_have_the_version_of_the_environment():
+    for env, name in (
+        ("sitl/CopterWaypoint-v1", "sitl/CopterWaypoint/guided-v1"),
+        ("sitl.envs:sitl/CopterWaypoint-v0", "sitl/CopterWaypoint/guided-v0"),
+        ("GazeboMazeTurtlebotLIDAR-v0", "sitl/GazeboMazeTurtlebotLIDAR/guided-v0"),
+    ):
+        assert datasets.name_of(env, "guided") == name
+        minari.dataset.minari_dataset.parse_dataset_id(name)
+
+
 def test_the_command_records(capsys, folder):
     assert main(["dataset", "record", ID, "--episodes", "1", "--seed", "3", "--name", "mine/flights-v1"]) == 0
     assert "mine/flights-v1: 1 episodes" in capsys.readouterr().out

@@ -58,6 +58,26 @@ def test_an_interrupted_and_resumed_run_equals_an_uninterrupted_one(tmp_path, al
     assert checkpoint.score_of(parts.path / BEST) == checkpoint.score_of(whole.path / BEST)
 
 
+def test_a_run_that_has_learnt_enough_ends(tmp_path, monkeypatch):
+    """Two checks in a row with every episode solved; the second and third are."""
+    whole, solved = Checks.score, iter([1, 2, 2, 2])
+
+    def score(self, model):
+        found = whole(self, model)
+        self.solved = next(solved)
+        return found
+
+    monkeypatch.setattr(Checks, "score", score)
+    run = new(tmp_path / "run", steps=5000, settings={"enough": 2})
+    train(run, episodes=1)
+    assert not is_done(run)
+    train(RunFolder(run.path))
+    steps = sum(row.steps for row in run.episodes.rows())
+    assert is_done(run) and steps < 1000 and next(solved) == 2
+    train(RunFolder(run.path))
+    assert sum(row.steps for row in run.episodes.rows()) == steps
+
+
 def test_another_seed_is_another_run_and_a_done_one_stays_as_it_is(tmp_path):
     one, same, other = (new(tmp_path / str(k), seed=seed) for k, seed in enumerate((1, 1, 2)))
     for run in (one, same, other):

@@ -129,6 +129,16 @@ def test_names_of_worlds_are_no_files():
         worlds.load_all(name)
 
 
+@pytest.mark.parametrize("world", ["rooms:seed=1..100", ["maze", "labyrinth:size=60,seed=5..9"], []])
+def test_nor_are_lists_of_worlds(world):
+    assert code_in_files.code_of_options({"world": world}) == []
+
+
+@pytest.mark.parametrize("world", ["rooms:seed=1..x", "/etc:seed=1..2", ["maze", "./mine.toml"], "rooms:seed=1...2"])
+def test_a_list_with_a_file_in_it_is_one(world):
+    assert code_in_files.code_of_options({"world": world})
+
+
 @pytest.mark.parametrize(
     "options", [{"num_envs": 10**9}, {"vector_kwargs": None}, {"disable_env_checker": True}, {"self": 1}]
 )

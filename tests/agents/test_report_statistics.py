@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 
 import numpy as np
@@ -20,7 +21,10 @@ from sitl.agents.report.statistics import (
     mean_interval,
     profile,
     profile_interval,
+    suite_interval,
     t_quantile,
+    trained_interval,
+    wilson,
 )
 from sitl.errors import MissingExtra
 
@@ -134,3 +138,39 @@ def test_means_of_blocks_and_moving_means():
     rewards = np.arange(10.0)[None]
     assert block_means(rewards, 4).tolist() == [[1.5, 5.5, 8.5]]
     assert moving_mean(rewards, 3)[0, [0, 1, 2, 9]].tolist() == [0.0, 0.5, 1.0, 8.0]
+
+
+def test_wilsons_interval():
+    assert wilson(50, 100) == pytest.approx((0.4038, 0.5962), abs=1e-4)
+    assert wilson(200, 200)[1] == 1.0 and wilson(0, 10)[0] == 0.0
+
+
+def test_the_interval_over_trainings_sees_that_they_differ():
+    """A bootstrap that draws other trainings for each episode averages the differences away."""
+    rng = np.random.default_rng(0)
+    rates = np.array([0.59, 0.25, 0.02, 0.03, 0.82])
+    figures = (rng.uniform(size=(5, 200)) < rates[:, None]).astype(float)
+    value, low, high = trained_interval(figures)
+    assert value == pytest.approx(np.sort(figures.mean(axis=1))[1:4].mean())
+    assert low < 0.1 and high > 0.6
+    alike = (rng.uniform(size=(5, 200)) < 0.5).astype(float)
+    _, low, high = trained_interval(alike)
+    assert 0.05 < high - low < 0.15 and low < 0.5 < high
+
+
+def test_it_sees_that_episodes_differ():
+    same = np.tile((np.arange(200) < 100).astype(float), (5, 1))
+    value, low, high = trained_interval(same)
+    assert value == 0.5 and high - low == pytest.approx(2 * 1.96 * math.sqrt(0.25 / 200), rel=0.1)
+
+
+def test_one_training_has_no_interval():
+    value, low, high = trained_interval(np.array([[1.0, 0.0]]))
+    assert value == 0.5 and math.isnan(low) and math.isnan(high)
+
+
+def test_the_interval_over_tasks_draws_trainings_within_each():
+    scores = np.array([[0.0] * 5, [1.0] * 5, [0.5] * 5, [0.5] * 5])
+    assert suite_interval(scores) == (0.5, 0.5, 0.5)  # tasks differ, trainings of a task do not
+    value, low, high = suite_interval(np.array([[0.0, 1.0, 0.0, 1.0, 0.5]] * 4))
+    assert value == 0.5 and low < 0.4 and high > 0.6

@@ -259,7 +259,9 @@ def test_actions_outside_the_space_are_refused(name, action):
     env.reset()
     with pytest.raises(InvalidAction, match="forward"):
         env.step(action)
-    env = gym.make(name, task="wander", action="continuous", setpoint="velocity", disable_env_checker=True)
+    env = gym.make(
+        name, task="wander", action="continuous", setpoint="velocity", clip_actions=False, disable_env_checker=True
+    )
     env.reset()
     with pytest.raises(InvalidAction, match="forward"):
         env.step(np.full(env.action_space.shape, 9.0))

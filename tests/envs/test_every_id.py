@@ -59,7 +59,7 @@ def test_gymnasiums_checker_takes_it(env):
 
 def test_stable_baselines3s_checker_takes_it(env):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
-    checker.check_env(env.unwrapped, warn=False)
+    checker.check_env(env, warn=False)  # as gymnasium.make gives it: its wrappers, too
 
 
 def test_it_repeats_bit_for_bit_and_pickles_in_the_middle(env):

@@ -37,7 +37,7 @@ def test_actions_outside_of_a_table_are_refused(action):
         env.step(action)
 
 
-@pytest.mark.parametrize("action", [[0.4, 0.0], [0.1], [math.nan, 0.0], 1, "ab", None, [0.1, 0.1, 0.1]])
+@pytest.mark.parametrize("action", [[0.1], [math.nan, 0.0], 1, "ab", None, [0.1, 0.1, 0.1]])
 def test_actions_outside_of_a_box_are_refused(action):
     env = make(action="continuous")
     env.reset()
@@ -251,3 +251,10 @@ def test_a_misspelt_name_of_many_is_answered_with_the_one_that_is_meant() -> Non
     assert str(error.value) == "randomise: figure 'wind_sped' is not known; did you mean 'wind_speed'?"
     with pytest.raises(EnvOptionError, match=r"'zzz' is not known; it is one of .*wind_speed"):
         gym.make("GazeboOfficeErleCopterLIDAR-v0", randomise={"zzz": (0.0, 5.0)})
+
+
+@pytest.mark.parametrize("robot", ["turtlebot", "erle_copter"])
+def test_an_unknown_option_is_an_unexpected_argument_in_pythons_words_too(robot):
+    """TorchRL offers each environment a ``frameskip``, and goes without where this is what it hears."""
+    with pytest.raises(TypeError, match=r"option 'frameskip' is not known.*unexpected keyword argument 'frameskip'"):
+        gym.make("sitl/Navigate-v1", robot=robot, frameskip=1)

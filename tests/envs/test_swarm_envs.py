@@ -165,7 +165,7 @@ NAN = np.array([0.0, np.nan, 0.0], np.float32)
     ],
 )
 def test_actions_that_cannot_be_are_refused_and_nothing_moves(changed: dict[str, Any], why: str) -> None:
-    env = SwarmEnv("escort")
+    env = SwarmEnv("escort", clip_actions=False)
     env.reset(seed=1)
     still = {agent: np.zeros(env.action_space(agent).shape, np.float32) for agent in env.agents}
     time = env.swarm.time_us
@@ -173,6 +173,19 @@ def test_actions_that_cannot_be_are_refused_and_nothing_moves(changed: dict[str,
         env.step({**still, **changed})
     assert env.swarm.time_us == time
     env.close()
+
+
+def test_actions_outside_of_their_box_are_clipped_unless_they_are_no_numbers() -> None:
+    env = SwarmEnv("formation", count=2)
+    env.reset(seed=1)
+    given = {"copter_0": [2.0, -7.0, 0.5], "copter_1": [0.0, 0.0, 0.0]}
+    assert env.check(given) == {"copter_0": [1.0, -1.0, 0.5], "copter_1": [0.0, 0.0, 0.0]}
+    for number in (np.nan, np.inf):
+        with pytest.raises(InvalidAction, match="agent 'copter_0'"):
+            env.check({**given, "copter_0": [number, 0.0, 0.0]})
+    env.close()
+    with pytest.raises(EnvOptionError, match="clip_actions = 'no'; it must be True or False"):
+        SwarmEnv("formation", clip_actions="no")  # type: ignore[arg-type]
 
 
 def test_each_agent_needs_an_action_and_the_first_step_a_reset() -> None:

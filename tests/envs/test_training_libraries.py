@@ -156,6 +156,8 @@ def test_a_loop_in_one_file(name):
         ("GazeboMazeErleRoverLIDAR-v0", SCAN),
         ("sitl/CopterHoverDiscrete-v0", {}),
         ("sitl/CopterHover-v0", {}),
+        ("sitl/CopterReachGoal-v1", {}),
+        ("sitl/CopterHover-v1", {"observation": "camera+velocity"}),
     ],
 )
 def test_skrl(tmp_path, name, options):
@@ -178,9 +180,7 @@ def test_skrl(tmp_path, name, options):
     class Policy(CategoricalMixin if discrete else GaussianMixin, Model):
         def __init__(self):
             Model.__init__(self, **where)
-            (CategoricalMixin if discrete else GaussianMixin).__init__(
-                self, **({} if discrete else {"clip_actions": True})
-            )
+            (CategoricalMixin if discrete else GaussianMixin).__init__(self)
             body(self, self.num_actions)
             self.log_std = torch.nn.Parameter(torch.full((self.num_actions,), -1.0))
 
@@ -287,3 +287,46 @@ def test_tianshou(name):
     algorithm.run_training(plan)
     assert has_learnt(before, weights(algorithm))
     envs.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("sitl/CopterHover-v1", {}),
+        ("sitl/CopterHoverDiscrete-v1", {}),
+        ("sitl/CopterReachGoal-v1", {}),
+        ("sitl/CopterHover-v1", {"observation": "camera+velocity"}),
+    ],
+)
+def test_torchrl(name, options):
+    """By the id alone; it asks for a ``frameskip`` first."""
+    gyms = pytest.importorskip("torchrl.envs", reason="needs torchrl")
+    env = gyms.GymEnv(f"sitl.envs:{name}", **options)
+    gyms.check_env_specs(env)
+    played = env.rollout(20, break_when_any_done=False)
+    assert played.shape == (20,) and np.isfinite(played["next", "reward"].numpy()).all()
+    env.close()
+
+
+def test_torchrl_takes_vectors():
+    gyms = pytest.importorskip("torchrl.envs", reason="needs torchrl")
+    robots = gym.make_vec("sitl/CopterHover-v1", num_envs=4, max_episode_steps=5, autoreset_mode="SameStep")
+    env = gyms.GymWrapper(robots)
+    played = env.rollout(12, break_when_any_done=False)
+    assert played.shape == (4, 12) and played["next", "truncated"].sum() == 8
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("algorithm", "name"), [("SACConfig", "sitl/CopterHover-v1"), ("DQNConfig", "sitl/CopterHoverDiscrete-v1")]
+)
+def test_d3rlpy(algorithm, name):
+    library = pytest.importorskip("d3rlpy", reason="needs d3rlpy")
+    env = gym.make(name, max_episode_steps=20)
+    agent = getattr(library.algos, algorithm)(batch_size=16).create(device="cpu")
+    buffer = library.dataset.create_fifo_replay_buffer(limit=200, env=env)
+    silent = library.logging.NoopAdapterFactory()
+    agent.fit_online(env, buffer, n_steps=50, n_steps_per_epoch=50, update_start_step=45, show_progress=False,
+                     logger_adapter=silent)  # fmt: skip
+    assert buffer.transition_count >= 40
+    env.close()

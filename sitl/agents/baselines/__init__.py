@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from sitl.envs.ids import task_of
+
 from .. import recipes
 
 _FOLDER = Path(__file__).parent
@@ -33,8 +35,8 @@ def file(name: str) -> Path:
 
 def of_preset(preset: str) -> str:
     """What the policy of an environment is called, by the environment's preset (``sitl.envs.ids``), of any version."""
-    form, preset = DISCRETE.removeprefix("-"), preset.removesuffix("-v1")
-    return preset.removesuffix(form) + DISCRETE if preset.endswith(form) else preset
+    task = task_of(preset)
+    return task + DISCRETE if f"{task}{DISCRETE.removeprefix('-')}" in preset else task
 
 
 def recipe_of(name: str) -> tuple[recipes.Recipe, str]:

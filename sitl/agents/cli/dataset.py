@@ -36,7 +36,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     record.add_argument(
         "--max-steps", type=positive, metavar="N", help="time limit of an episode in steps (default: that of the id)"
     )
-    record.add_argument("--name", metavar="DATASET", help="id of the dataset (default: sitl/ENV/EXPERT-v0)")
+    record.add_argument("--name", metavar="DATASET", help="id of the dataset (default: sitl/ENV/EXPERT-vN of ENV-vN)")
     record.add_argument(
         "--option",
         type=env_option,

@@ -55,16 +55,19 @@ class Checks:
             path.unlink(missing_ok=True)
         self._env: gym.vector.VectorEnv[Any, Any, Any] | None = None
         self._poses: list[Pose] | None = None
+        self.solved = 0
+        """Episodes of the last check that solved the task."""
 
     def _next(self, steps: int) -> float:
         """Number of steps after which the next check is due."""
         return (steps // self._every + 1) * self._every if self._every else np.inf
 
-    def after(self, model: Any, done: bool = False) -> None:
-        """Called after rounds of learning; ``done``: after the last one. Checks the network when it is due."""
+    def after(self, model: Any, done: bool = False) -> bool | None:
+        """Called after rounds of learning; ``done``: after the last one. Checks the network when it is due; then it
+        returns whether every episode solved the task."""
         steps = model.num_timesteps
         if steps < self._due and not (done and self._every):
-            return
+            return None
         self._due = self._next(steps)
         score = self.score(model)
         if score > self._best:
@@ -72,11 +75,12 @@ class Checks:
             assert self._env is not None
             spaces = (self._env.single_observation_space, self._env.single_action_space)
             checkpoint.save_best(self._path, model, spaces, score)
+        return self.solved == self._count
 
     def score(self, model: Any) -> checkpoint.Score:
         """Score of the model: all episodes are played at once. It is -inf after more crashes than the best model had:
         then the rest is not played."""
-        env = self._made()
+        env, self.solved = self._made(), 0
         features = Features(env.single_observation_space, self._figures.sectors)
         frames = Frames(self._count, self._figures.frames, features.width)
         actions = Actions(env.single_action_space, self._config.algorithm)
@@ -89,10 +93,12 @@ class Checks:
                 return (-np.inf,)
             seen: Any = features.by_name(rows) if by_goal else rows
             chosen, _ = model.predict(seen, deterministic=True)
-            observations, reward, terminated, truncated, _ = env.step(actions.to_environment(chosen))
+            observations, reward, terminated, truncated, infos = env.step(actions.to_environment(chosen))
             rewards[playing] += reward[playing]
             crashes += int(np.count_nonzero(terminated & playing))
-            playing &= ~(terminated | truncated)
+            ended = playing & (terminated | truncated)
+            self.solved += int(np.count_nonzero(ended & np.asarray(infos.get("is_success", False), np.bool_)))
+            playing &= ~ended
             rows = frames.push(features(observations))
         mean = float(rewards.mean())
         return (-float(crashes), mean) if by_crashes else (mean,)

@@ -47,6 +47,8 @@ class Settings:
     check_by: str = "reward"
     """Criterion of the best network: "reward", the highest mean reward; "crashes", the fewest episodes that ended by
     themselves (the highest mean reward decides between equals)."""
+    enough: int = 0
+    """The run ends after so many checks in a row in which every episode solved the task. 0: never."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -134,6 +136,7 @@ _LIMITS: dict[str, tuple[float, float]] = {
     "entropy_start": (1e-6, 10.0),
     "hindsight": (0, 64),
     "check_every": (0, math.inf),
+    "enough": (0, math.inf),
 }
 _OF = {"dqn": Dqn, "ppo": Ppo, "sac": Sac}
 

@@ -19,7 +19,7 @@ from .. import environments
 from ..errors import AgentError
 from ..runs.config import RunConfig
 from ..runs.episodes import Episode
-from ..runs.folder import RunFolder
+from ..runs.folder import ENOUGH, RunFolder
 from ..runs.watch import Watch
 from . import checkpoint, models
 from .actions import Actions
@@ -44,6 +44,8 @@ class Tally:
         """Episodes."""
         self.done_steps = 0
         """Steps of the finished episodes."""
+        self.solved_checks = 0
+        """Checks in a row, up to the last one, in which every episode solved the task."""
         self.epsilon = float("nan")
         """Probability of exploring now."""
         self._steps = np.zeros(count, np.int64)
@@ -78,11 +80,15 @@ class Tally:
 
     def memory(self) -> dict[str, Any]:
         """State for ``recall``."""
-        return {"done": self.done, "done_steps": self.done_steps, "steps": self._steps, "rewards": self._rewards}
+        return {
+            "done": self.done, "done_steps": self.done_steps, "steps": self._steps, "rewards": self._rewards,
+            "solved_checks": self.solved_checks,
+        }  # fmt: skip
 
     def recall(self, memory: dict[str, Any]) -> None:
         """Restore the state that ``memory`` returned."""
         self.done, self.done_steps = memory["done"], memory["done_steps"]
+        self.solved_checks = memory.get("solved_checks", 0)  # models of earlier versions do not have it
         self._steps, self._rewards = memory["steps"].copy(), memory["rewards"].copy()
 
 
@@ -177,7 +183,12 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
             unwritten.extend(rows)
         done = config.episodes is not None and tally.done >= config.episodes
         done = done or (config.steps is not None and tally.done_steps >= config.steps)
-        checks.after(model, done)  # before the model is kept: one that is gone on with has been checked
+        solved = checks.after(model, done)  # before the model is kept: one that is gone on with has been checked
+        if solved is not None:
+            tally.solved_checks = tally.solved_checks + 1 if solved else 0
+        if figures.enough and tally.solved_checks >= figures.enough:
+            (folder.path / ENOUGH).touch()
+            done = True
         if time.monotonic() - last > max(_PERIOD_S, _SHARE * spent):
             save()
         return done or watch.stop

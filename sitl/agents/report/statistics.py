@@ -143,3 +143,64 @@ def profile_interval(
     if len(scores) < 2:
         return fractions, np.full_like(fractions, math.nan), np.full_like(fractions, math.nan)
     return fractions, *_interval(lambda drawn, axis: profile(drawn, levels), (scores,), seed, resamples)
+
+
+Z = 1.96
+"""Quantile of the normal distribution for an interval of 95 %."""
+
+
+def wilson(count: int, of: int) -> tuple[float, float]:
+    """Ends of the 95 % interval of a share, 0 .. 1, of ``count`` in ``of`` independent trials.
+
+    Source: Wilson, "Probable inference, the law of succession, and statistical inference", JASA 22, 1927.
+    """
+    p, n = count / of, float(of)
+    middle, half = p + Z * Z / (2 * n), Z * math.sqrt(p * (1 - p) / n + Z * Z / (4 * n * n))
+    low, high = ((middle + sign * half) / (1 + Z * Z / n) for sign in (-1, 1))
+    return max(low, 0.0), min(high, 1.0)
+
+
+def trained_interval(figures: Floats, seed: int = 0, resamples: int = 2000) -> tuple[float, float, float]:
+    """Interquartile mean over trainings of their mean over episodes, and the ends of its 95 % bootstrap interval.
+
+    All trainings play the same episodes, so both are drawn anew, with replacement and independently of each other:
+    Owen, "The pigeonhole bootstrap", Annals of Applied Statistics 1, 2007. rliable's bootstrap would take the episodes
+    for tasks and draw other trainings for each of them, which hides that trainings differ.
+
+    Args:
+        figures: of each episode, shape (trainings, episodes).
+        seed: seed of the resampling.
+        resamples: number of resamples.
+
+    Returns:
+        (interquartile mean, low end, high end); nan for the ends of a single training.
+    """
+    value = float(interquartile_mean(figures.mean(axis=1)))
+    trainings, episodes = figures.shape
+    if trainings < 2:
+        return value, math.nan, math.nan
+    rng = np.random.default_rng(seed)
+    rows = rng.integers(trainings, size=(resamples, trainings))
+    weights = rng.multinomial(episodes, np.full(episodes, 1.0 / episodes), size=resamples) / episodes
+    means = np.take_along_axis(weights @ figures.T, rows, axis=1)
+    low, high = np.percentile(interquartile_mean(means), (2.5, 97.5))
+    return value, float(low), float(high)
+
+
+def suite_interval(scores: Floats, seed: int = 0, resamples: int = RESAMPLES) -> tuple[float, float, float]:
+    """Interquartile mean over all tasks and trainings, and the ends of its 95 % stratified bootstrap interval: the
+    trainings of each task are drawn anew by themselves, as rliable does.
+
+    Args:
+        scores: one a training, shape (tasks, trainings).
+        seed: seed of the resampling.
+        resamples: number of resamples.
+    """
+    tasks, trainings = scores.shape
+    value = float(interquartile_mean(scores.ravel()))
+    if trainings < 2:
+        return value, math.nan, math.nan
+    rng = np.random.default_rng(seed)
+    drawn = np.take_along_axis(scores[None], rng.integers(trainings, size=(resamples, tasks, trainings)), axis=2)
+    low, high = np.percentile(interquartile_mean(drawn.reshape(resamples, -1)), (2.5, 97.5))
+    return value, float(low), float(high)

@@ -22,6 +22,8 @@ from .files import make_folder
 from .watch import Watch
 
 CONFIG = "config.json"
+ENOUGH = "enough"
+"""File that is there when a run has ended before its length, because it had learnt enough."""
 
 
 class RunFolder:

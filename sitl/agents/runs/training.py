@@ -10,7 +10,7 @@ from typing import Any
 
 from .. import algorithms
 from .episodes import Episode
-from .folder import RunFolder
+from .folder import ENOUGH, RunFolder
 from .local import OnProgress, SendProgress, Stopped, each
 from .watch import Shows, Watch
 
@@ -62,7 +62,9 @@ def _without_repeats(on_progress: OnProgress) -> OnProgress:
 
 
 def is_done(folder: RunFolder) -> bool:
-    """Whether a run has reached its length."""
+    """Whether a run has reached its length, or has ended before, because it had learnt enough."""
+    if (folder.path / ENOUGH).exists():
+        return True
     config, rows = folder.config, folder.episodes.rows()
     if config.episodes is not None and len(rows) >= config.episodes:
         return True

@@ -10,7 +10,7 @@ from typing import Any
 
 from sitl.worlds import World
 
-from ..options import COMMON, EnvOptionError, unknown
+from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .robot import Robot
 
 ROBOTS = {
@@ -64,5 +64,5 @@ def load(robot: str | Callable[..., Robot], world: World, count: int, options: M
         for option in options:
             if option not in parameters:
                 own = [p for p in parameters if p not in ("world", "count")]
-                raise unknown("option", option, [*own, *COMMON, "render_mode"])
+                raise unknown_option(option, [*own, *COMMON, "render_mode"])
     return made(world=world, count=count, **options)

@@ -41,7 +41,7 @@ from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import GUARDED, Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
-from ..options import COMMON, EnvOptionError, unknown
+from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .at_connection import SocketVehicles
 from .boots import check_boots
 from .foreign import ForeignVehicles
@@ -91,7 +91,7 @@ class AutopilotRobot:
     def __init__(self, world: str | Path | World = "maze_erlerover", count: int = 1, **options: Any) -> None:
         for option in options:
             if option not in AutopilotOptions.names():
-                raise unknown("option", option, [*AutopilotOptions.names(), *COMMON, "render_mode"])
+                raise unknown_option(option, [*AutopilotOptions.names(), *COMMON, "render_mode"])
         self._given = {"world": world, "count": count, **options}
         self._options = chosen = AutopilotOptions(**options)
         if chosen.reset not in RESETS:

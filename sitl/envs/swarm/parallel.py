@@ -60,6 +60,7 @@ class SwarmEnv(ParallelEnv):
         observation: "state", as above; "scan" (of the lidar [m], the last one of 10 a second), "depth", "camera",
             "grey" (``sitl.envs.pictures``); names joined by "+", or a dict of names and pictures, give a dict. Scans
             and pictures show the other vehicles, too.
+        clip_actions: whether a finite number of an action outside of -1 .. 1 becomes -1 or 1; False: it is refused.
         options: as of ``sitl.Swarm``: params (wind), world, home ....
 
     Raises:
@@ -74,6 +75,7 @@ class SwarmEnv(ParallelEnv):
         step: float = 0.2,
         steps: int = 200,
         observation: Any = "state",
+        clip_actions: bool = True,
         **options: Any,
     ) -> None:
         if isinstance(task, str):
@@ -87,7 +89,12 @@ class SwarmEnv(ParallelEnv):
             raise EnvOptionError(f"step = {step!r}; a multiple of 0.0025 s above 0 is needed")
         if not isinstance(steps, int | np.integer) or steps < 1:
             raise EnvOptionError(f"steps = {steps!r}; a whole number from 1 on is needed")
-        self._given = {"step": step, "steps": steps, "observation": observation, **options}
+        if not isinstance(clip_actions, bool):
+            raise EnvOptionError(f"clip_actions = {clip_actions!r}; it must be True or False")
+        self._given = {
+            "step": step, "steps": steps, "observation": observation, "clip_actions": clip_actions, **options,
+        }  # fmt: skip
+        self._clips = clip_actions
         self.task, self.step_us, self.steps = task, round(step * 1e6), steps
         self.metadata = {"name": "sitl_swarm_v0", "render_modes": [], "is_parallelizable": True}
         self.render_mode = None
@@ -175,7 +182,8 @@ class SwarmEnv(ParallelEnv):
         """Velocities of the agents for a step; what PettingZoo's parallel ``step`` gives.
 
         Raises:
-            InvalidAction: an agent has no action or one outside of its space, or there is no such agent.
+            InvalidAction: an agent has no action or one that is not in its space (``clip_actions``), or there is
+                no such agent.
             ResetNeeded: before the first ``reset``.
         """
         given = self.check(actions)
@@ -233,7 +241,10 @@ class SwarmEnv(ParallelEnv):
     def _checked(self, agent: str, action: Any) -> Sequence[float]:
         names = ("north", "east", "up")[: len(FASTEST[self._flies[self._number[agent]]])]
         try:
-            numbers: list[float] = np.asarray(action, np.float32).tolist()
+            row = np.asarray(action, np.float32)
+            if self._clips and np.isfinite(row).all():
+                row = np.clip(row, -1.0, 1.0)
+            numbers: list[float] = row.tolist()
             if len(numbers) == len(names) and all(-1.0 <= number <= 1.0 for number in numbers):
                 return numbers
         except (TypeError, ValueError):

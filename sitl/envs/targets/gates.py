@@ -21,7 +21,7 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..senses import SensingRobot
 from ..worlds import PerWorld
-from .places import PlacesTask
+from .places import PlacesTask, checked_far
 
 
 class Gate(NamedTuple):
@@ -69,6 +69,8 @@ class GatePrices(NamedTuple):
 
     progress: float
     """For each metre nearer to a gate's middle."""
+    far: float
+    """Distances from there on count as this one [m]."""
     gate: float
     """For each gate."""
     time: float
@@ -102,7 +104,8 @@ def pay_gates(
         row = i * per_robot + min(at[i], per_robot - 1)
         x, y, z = places[row, 0] - before[i, 0], places[row, 1] - before[i, 1], places[row, 2] - before[i, 2]
         u, v, w = places[row, 0] - now[i, 0], places[row, 1] - now[i, 1], places[row, 2] - now[i, 2]
-        nearer = math.sqrt(x * x + y * y + z * z) - math.sqrt(u * u + v * v + w * w)
+        was, left = math.sqrt(x * x + y * y + z * z), math.sqrt(u * u + v * v + w * w)
+        nearer = min(was, prices.far) - min(left, prices.far)
         gain, gate = prices.progress * nearer, prices.gate if passed[i] else 0.0
         rewards[i] += gain + gate + prices.time
         paid[0, i], paid[1, i], paid[2, i] = gain, gate, prices.time
@@ -139,6 +142,7 @@ class Gates(PlacesTask):
         gates: gates in order; None: the world's markings "gate 1", "gate 2", ...
         laps: number of laps.
         progress: reward for each metre nearer to the centre of the next gate.
+        far: distance from which on nearer is worth nothing, and farther costs nothing [m].
         gate_reward: reward for each gate passed.
         each_second: reward per second.
         others: further arguments of ``PlacesTask``.
@@ -158,6 +162,7 @@ class Gates(PlacesTask):
         progress: float = 1.0,
         gate_reward: float = 5.0,
         each_second: float = -0.5,
+        far: float = math.inf,
         **others: Any,
     ) -> None:
         super().__init__(**others)
@@ -165,6 +170,7 @@ class Gates(PlacesTask):
         if not 1 <= laps <= 100:
             raise EnvOptionError(f"Gates(laps={laps}); it must be 1 .. 100")
         self.laps, self.progress, self.gate_reward, self.each_second = laps, progress, gate_reward, each_second
+        self.far = checked_far(self, far)
 
     def _gates_of(self, world: World) -> Floats:
         """Rows of ``Gate`` of a world, shape (gates, 6)."""
@@ -251,7 +257,9 @@ class Gates(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         now = step.judge.true_table()
         _cross.unchecked()(self._before, now, self._rows.reshape(-1, 6), self._counts, self.at, self._passed)
-        prices = GatePrices(float(self.progress), float(self.gate_reward), float(self.each_second * step.seconds))
+        prices = GatePrices(
+            float(self.progress), float(self.far), float(self.gate_reward), float(self.each_second * step.seconds)
+        )
         _pay.unchecked()(
             prices, self._before, now, self._spots, self.at, self._lap, self._counts, self.laps,
             np.ascontiguousarray(step.robot.time), self._passed, self._ends.crashed, self.success, rewards, terminated,

@@ -20,6 +20,7 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, floors_of, world_of
 from ..senses import LandingRobot, SensingRobot
 from .moving import MovingTask, end_lost, note_error
+from .places import checked_far
 
 SLOW, GENTLE = 0.5, 1.0
 """Greatest horizontal speed relative to the pad, and speed of sinking, of a landing that is success [m/s]."""
@@ -45,6 +46,8 @@ class Landing(NamedTuple):
 
     pad: float
     progress: float
+    far: float
+    """Distances from there on count as this one in progress."""
     time: float
     """What a step costs."""
     success_reward: float
@@ -116,7 +119,7 @@ def judge_land(
         squared = x * x + y * y + z * z
         distance = math.sqrt(squared)
         so_far.errors[i] = note_error(so_far.sums, i, squared, time[i] >= rule.settle)
-        gain = rule.progress * (so_far.distance[i] - distance)
+        gain = rule.progress * (min(so_far.distance[i], rule.far) - min(distance, rule.far))
         rewards[i] += gain + rule.time
         so_far.distance[i] = distance
         height, climb = state[i, 2] - floors[i], state[i, 6]
@@ -162,6 +165,7 @@ class Land(MovingTask):
         pad: radius of the pad [m].
         speed: speed of the pad, in a random direction that reverses every 10 s [m/s].
         progress: reward for each metre nearer.
+        far: distance from which on nearer is worth nothing, and farther costs nothing [m].
         each_second: reward per second.
         success_reward: reward for a landing on the pad.
         lost: distance from the pad beyond which the episode ends [m]; infinite: the arena alone ends it.
@@ -181,6 +185,7 @@ class Land(MovingTask):
         each_second: float = -0.2,
         success_reward: float = 20.0,
         lost: float = math.inf,
+        far: float = math.inf,
         **others: Any,
     ) -> None:
         super().__init__(**others, lost=lost)
@@ -188,6 +193,7 @@ class Land(MovingTask):
             raise EnvOptionError(f"Land(offset={offset}, pad={pad}, speed={speed}); none below 0, pad above 0")
         self.offset, self.pad, self.speed = offset, pad, speed
         self.progress, self.each_second, self.success_reward = progress, each_second, success_reward
+        self.far = checked_far(self, far)
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -240,8 +246,9 @@ class Land(MovingTask):
         floors = np.ascontiguousarray(np.broadcast_to(floors_of(step.robot), time.shape), np.float64)
         self._write_along(time.reshape(-1, 1), self._spots)
         rule = Landing(
-            float(self.pad), float(self.progress), float(self.each_second * step.seconds), float(self.success_reward),
-            float(self.crash_reward), float(self.lost), float(self.lost_reward), float(self.settle),
+            float(self.pad), float(self.progress), float(self.far), float(self.each_second * step.seconds),
+            float(self.success_reward), float(self.crash_reward), float(self.lost), float(self.lost_reward),
+            float(self.settle),
             self._lets_down,
         )  # fmt: skip
         so_far = SoFar(self._velocity, self._distance, self._sinking, self._touched, self.sums, self.errors)

@@ -379,3 +379,14 @@ class PlacesTask(Task):
             raise EnvOptionError("snapshot cannot be restored: it is of another task")
         self.places[index] = memory[0][-1]
         self.places[index, : self._held(index)], self.at[index], self.success[index] = memory[:3]
+
+
+def checked_far(task: Task, far: float) -> float:
+    """The argument ``far`` of a task.
+
+    Raises:
+        EnvOptionError: it is not above 0 m.
+    """
+    if not far > 0.0:
+        raise EnvOptionError(f"{type(task).__name__}(far={far}); it must be above 0 m")
+    return float(far)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is missing, in the order in which it is done: after any stop the tables are as complete as they can be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import entries
+from .conditions import ARDUPILOT, MAIN, NOMINAL, ROBUST, WORLDS, named, of_group, program_of
+from .entries import MANY_WORLDS, Entry
+from .records import Record, Records
+from .references import References
+from .shipped import kept
+from .work import Job
+
+STEP_S = {"ppo": 2.2e-4, "sac": 5e-3, "dqn": 2.5e-3}
+"""Processor time of a step of training where none was measured [s]."""
+EPISODE_S, REAL_S = 0.1, 5.0
+"""That of an episode of an evaluation; of one of another autopilot [s]."""
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Baselines, results, and what is wanted of them.
+
+    Args:
+        chosen: the baselines.
+        records: results that there are.
+        references: plays of the environments.
+        runs: folder of runs and policies.
+        seeds: number of trainings of each.
+        programs: of other autopilots.
+    """
+
+    chosen: Sequence[Entry]
+    records: Records
+    references: References
+    runs: Path
+    seeds: int = 5
+    programs: tuple[Path, ...] = ()
+
+    # ------------------------------------------------------------------ results
+
+    def training(self, entry: Entry, seed: int) -> Record | None:
+        """The result of a training, when it is up to date."""
+        return self.records.get(entry.training_key(seed, self.references.digest(entry.plain)))
+
+    def episodes(self, entry: Entry, seed: int | str, what: str) -> Record | None:
+        """That of an evaluation, when it is up to date, and of the policy that the training gave."""
+        found = self.records.get(entry.playing_key(seed, what, self.references.digest(entry.plain)))
+        if found is None or isinstance(seed, str):
+            return found
+        training = self.training(entry, seed)
+        return found if training is not None and training["policy"] == found["policy"] else None
+
+    def wanted_keys(self) -> Iterator[str]:
+        """Keys of all results that are up to date."""
+        for entry in self.chosen:
+            for seed in range(self.seeds):
+                yield entry.training_key(seed, self.references.digest(entry.plain))
+            for number in ("random", *range(self.seeds)):
+                for what in (*of_group(MAIN, entry.plain), *_elsewhere(entry), ARDUPILOT):
+                    yield entry.playing_key(number, what, self.references.digest(entry.plain))
+
+    # ------------------------------------------------------------------ work
+
+    def stages(self) -> list[tuple[str, list[Job]]]:
+        """What is missing: title of a stage -> its jobs, the shortest first."""
+        plain = [entry for entry in self.chosen if not entry.is_variant]
+        variants = [entry for entry in self.chosen if entry.is_variant]
+        found = [
+            ("random policy", self._jobs(plain, None, lambda entry: (NOMINAL,))),
+            ("training, seed 0", self._jobs(plain, 0, _main)),
+            ("robustness, seed 0", self._jobs(plain, 0, _elsewhere)),
+            ("variants, seed 0", self._jobs(variants, 0, _all)),
+            ("another autopilot, seed 0", self._jobs(self.chosen, 0, self._real)),
+        ]
+        later = range(1, self.seeds)
+        found += [(f"training, seed {seed}", self._jobs(plain, seed, _main)) for seed in later]
+        found += [(f"robustness, seed {seed}", self._jobs(plain, seed, _elsewhere)) for seed in later]
+        found += [(f"variants, seed {seed}", self._jobs(variants, seed, _all)) for seed in later]
+        return [(title, jobs) for title, jobs in found if jobs]
+
+    def _real(self, entry: Entry) -> tuple[str, ...]:
+        return (ARDUPILOT,) if program_of(entry.name, self.programs) else ()
+
+    def _jobs(self, some: Sequence[Entry], seed: int | None, wanted: Callable[[Entry], tuple[str, ...]]) -> list[Job]:
+        jobs = []
+        for entry in some:
+            number = "random" if seed is None else seed
+            missing = tuple(what for what in wanted(entry) if self.episodes(entry, number, what) is None)
+            if missing:
+                train = seed is not None and self.training(entry, seed) is None
+                env = self.references.digest(entry.plain)
+                jobs.append(
+                    Job(entry.name, seed, missing, train, env, self.runs, programs=self.programs, steps=entry.steps)
+                )
+        return sorted(jobs, key=lambda job: sum(self.seconds(job)))
+
+    # ------------------------------------------------------------------ times
+
+    def seconds(self, job: Job) -> tuple[float, float]:
+        """Estimated processor time of a job's training, and of its evaluations [s]."""
+        trains = job.seed is not None and not job.policy.exists()
+        return self.expected(job.entry, None) if trains else 0.0, sum(
+            self.expected(job.entry, what) for what in job.whats
+        )
+
+    def expected(self, entry: Entry, what: str | None) -> float:
+        """Estimated processor time of a training (None), or of an evaluation [s]: as the last time, else by what is
+        known of others."""
+        if what is None:
+            return self._training_s(entry)
+        before = [one["took_s"] / len(one["reached"]) for one in self.records.all()
+                  if one["name"] == entry.name and one.get("what") == what and "reached" in one]  # fmt: skip
+        usual = REAL_S if what == ARDUPILOT else EPISODE_S
+        return float(before[-1] if before else usual) * named(what).episodes
+
+    def _training_s(self, entry: Entry) -> float:
+        steps = float(entry.steps or entry.recipe.steps or 0)
+        for one in self.records.all():
+            if one["kind"] == "training" and one["name"] == entry.name and one["steps"]:
+                return float(one["took_s"]) * steps / float(one["steps"])
+        row = kept().get(entry.plain, {})
+        if row.get("learnt_s") and row.get("steps"):
+            return float(row["learnt_s"]) * steps / float(row["steps"])
+        return steps * STEP_S.get(entry.recipe.algorithm, STEP_S["ppo"])
+
+    def left(self, stages: Sequence[tuple[str, Sequence[Job]]]) -> float:
+        """Estimated processor time of all jobs of some stages [s]; a training that two need counts once."""
+        counted, total = set(), 0.0
+        for job in (job for _, jobs in stages for job in jobs):
+            training, playing = self.seconds(job)
+            total += playing + (training if (job.name, job.seed) not in counted else 0.0)
+            counted.add((job.name, job.seed))
+        return total
+
+
+def _main(entry: Entry) -> tuple[str, ...]:
+    return (NOMINAL,) if entry.is_variant else of_group(MAIN, entry.plain)
+
+
+def _elsewhere(entry: Entry) -> tuple[str, ...]:
+    robust = () if entry.name.endswith(MANY_WORLDS) else of_group(ROBUST, entry.plain)
+    worlds = () if entry.name.endswith(entries.ROBUST) else of_group(WORLDS, entry.plain)
+    return (*robust, *worlds)
+
+
+def _all(entry: Entry) -> tuple[str, ...]:
+    return (*_main(entry), *_elsewhere(entry))
+
+
+def campaign(
+    names: Sequence[str], folder: Path, runs: Path, seeds: int, programs: tuple[Path, ...], steps: int | None
+) -> Campaign:
+    """Of baselines by their names."""
+    chosen = [entries.load(name, steps) for name in names]
+    return Campaign(chosen, Records(folder), References(folder), runs, seeds, programs)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What baselines are evaluated under: as they were trained, and in worse or other conditions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from sitl.agents import baselines, environments
+from sitl.agents.rehearsal.change import scaled
+from sitl.agents.runs.config import RunConfig
+from sitl.envs import ids
+from sitl.envs.options import COMMON
+from sitl.envs.presets import PRESETS
+from sitl.envs.robots.vehicles import AutopilotOptions
+
+MAIN, ROBUST, WORLDS, REAL = "main", "robustness", "worlds", "autopilot"
+"""Groups: each is a table."""
+NOMINAL, ESTIMATE, ARDUPILOT = "nominal", "estimate", "ardupilot"
+EPISODES, ROBUST_EPISODES, WORLD_EPISODES, REAL_EPISODES = 200, 50, 100, 10
+SEED = 1000
+"""Of the episodes: episode k is the one that ``sitl rollout --seed 1000`` plays as number k."""
+KINDS = ("copter", "rover")
+WIND = {"wind_direction": (0.0, 360.0), "wind_turbulence": (0.0, 1.0)}
+SENSORS = {"gps": "own GPS", "uwb": "beacons (UWB)", "rtk": "RTK", "mocap": "motion capture"}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One of them."""
+
+    title: str
+    """In a table."""
+    group: str = ROBUST
+    episodes: int = ROBUST_EPISODES
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Of the environment, in place of its own."""
+    scale: Mapping[str, float] = field(default_factory=dict)
+    """Figure of the robot -> factor."""
+    draw: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Figure of the robot -> range that it is drawn from."""
+    kinds: tuple[str, ...] = KINDS
+    """Kinds of vehicle that have it."""
+    seeds: tuple[int, int] | None = None
+    """First and last seed of the worlds, in place of the one that the id has."""
+
+    def fits(self, name: str) -> bool:
+        """Whether a baseline (without variant) is evaluated under it: the vehicle has it, the environment knows its
+        options, and its world is one of many."""
+        known = set(self.options) <= {*COMMON, *AutopilotOptions.names()}
+        return name.partition("-")[0] in self.kinds and known and (self.seeds is None or world_of(name) is not None)
+
+    def config(self, plain: RunConfig) -> RunConfig:
+        """The run in whose environment it is.
+
+        Args:
+            plain: of the baseline, without any of this.
+        """
+        options = {**plain.env_options, **self.options}
+        if self.seeds is not None:
+            options["world"] = worlds_of(preset_of(plain.env), *self.seeds)
+        if self.scale or self.draw:
+            env = environments.make(plain)
+            try:
+                session: Any = env.unwrapped.session  # type: ignore[attr-defined]
+                drawn = dict(session.randomisation.ranges)
+                for figure, factor in self.scale.items():
+                    value = scaled(session.robot, figure, factor)
+                    drawn[figure] = (value, value)
+            finally:
+                env.close()
+            options["randomise"] = {**drawn, **self.draw}
+        return plain.with_(env_options=options)
+
+    def described(self) -> Any:
+        """What results depend on, as JSON."""
+        return {"options": dict(self.options), "scale": dict(self.scale), "draw": dict(self.draw), "seeds": self.seeds}
+
+
+def preset_of(env: str) -> str:
+    """The preset of an id."""
+    return ids.NEW[env].preset
+
+
+@cache
+def world_of(name: str) -> str | None:
+    """The world of a baseline's id where a seed makes it ("rooms:seed=1"); None: it is the only one of its sort."""
+    task = name.removesuffix(baselines.DISCRETE)
+    world = PRESETS[f"{task}-v1"]()["world"]
+    return world if isinstance(world, str) and "seed=" in world else None
+
+
+def worlds_of(preset: str, first: int, last: int) -> str:
+    """Worlds of an id's sort, for the option ``world``: "rooms:seed=1..100"."""
+    world = world_of(ids.task_of(preset))
+    assert world is not None
+    return re.sub(r"seed=\d+", f"seed={first}..{last}", world)
+
+
+CONDITIONS: dict[str, Condition] = {
+    NOMINAL: Condition("as trained", MAIN, EPISODES),
+    ESTIMATE: Condition("judged by the estimate", MAIN, EPISODES, {"judge": "estimate"}),
+    **{f"latency-{seconds}": Condition(f"latency {seconds} s", options={"latency": seconds})
+       for seconds in (0.1, 0.2, 0.3, 0.4)},
+    **{f"wind-{speed}": Condition(f"wind {speed} m/s", draw={"wind_speed": (float(speed), float(speed)), **WIND},
+                                  kinds=("copter",)) for speed in (4, 8, 12)},
+    "mass-80": Condition("mass -20 %", scale={"mass": 0.8}),
+    "mass-120": Condition("mass +20 %", scale={"mass": 1.2}),
+    "worlds-trained": Condition("worlds 1 .. 100", WORLDS, WORLD_EPISODES, seeds=(1, 100)),
+    "worlds-unseen": Condition("unseen worlds", WORLDS, WORLD_EPISODES, seeds=(1001, 1100)),
+    "motor-80": Condition("a motor at 80 %", options={"faults": {"motor:2=0.8": 0.0}}, kinds=("copter",)),
+    **{f"sensors-{sensors}": Condition(title, options={"sensors": sensors}) for sensors, title in SENSORS.items()},
+    "boots-1": Condition("one boot", options={"boots": 1}),
+}  # fmt: skip
+"""Name -> condition, in the order of tables."""
+
+
+def named(name: str) -> Condition:
+    """A condition, or that of a program of another autopilot."""
+    return CONDITIONS[name] if name != ARDUPILOT else Condition("ArduPilot", REAL, REAL_EPISODES)
+
+
+def program_of(name: str, programs: tuple[Path, ...]) -> Path | None:
+    """The one of some programs that flies a baseline: "arducopter" those of copters."""
+    kind = name.partition("-")[0]
+    return next((path for path in programs if kind in path.name), None)
+
+
+def of_group(group: str, name: str) -> tuple[str, ...]:
+    """Names of the conditions of a group that a baseline is evaluated under."""
+    return tuple(key for key, one in CONDITIONS.items() if one.group == group and one.fits(name))
