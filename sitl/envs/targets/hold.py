@@ -204,10 +204,10 @@ class Hold(PlacesTask):
         return self._worth(np.sqrt((way * way).sum(axis=-1)))
 
     def _worth(self, distance: Floats) -> Floats:
-        given = np.ascontiguousarray(distance, np.float64)
+        given = np.ascontiguousarray(distance, np.float64).ravel()
         out = np.empty(given.shape)
-        _worths.unchecked()(given.ravel(), float(self.radius), float(self.far), out.ravel())
-        return out if out.shape else out[()]
+        _worths.unchecked()(given, float(self.radius), float(self.far), out)
+        return out.reshape(np.shape(distance))
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""

@@ -172,8 +172,8 @@ class Park(PlacesTask):
         self.places[index, 0] = x, y, self.judged_pose()[index, 2]
         self.headings[index], self.at[index], self.success[index] = yaw, 0, False
         assert self.judge_of is not None
-        row = self.judge_of.table()[index].tolist()
-        self._distance[index], _, self._left[index] = worth_of(self._rule(0.0), row[0], row[1], row[3], x, y, yaw)
+        here, there, _, heading, *_ = self.judge_of.table()[index].tolist()
+        self._distance[index], _, self._left[index] = worth_of(self._rule(0.0), here, there, heading, x, y, yaw)
 
     def turns(self) -> Floats:
         """How far each robot has to turn to the bay's heading, counter-clockwise, within -pi .. pi [rad]."""

@@ -225,7 +225,8 @@ class PlacesTask(Task):
         """Whether each robot has done the task, shape (count,)."""
         self._table: Floats = np.zeros((count, 8))
         """Poses and velocities by which the present step is judged."""
-        self._ends = Ends(*(np.zeros(count, np.bool_) for _ in range(3)), np.zeros(count))  # type: ignore[call-arg]
+        flags: Any = np.zeros((3, count), np.bool_)
+        self._ends = Ends(flags[0], flags[1], flags[2], np.zeros(count))
         self._paid_names = (*self.paid_names(), *(("out",) if self.out_ends else ()))
         self._paid = np.zeros((len(self._paid_names), count))
         """Terms of the last rewards, by name, shape (terms, count)."""
@@ -343,7 +344,8 @@ class PlacesTask(Task):
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """See ``Task``."""
-        self._table, ends = step.judge.table(), self._ends
+        self._table = step.judge.table()
+        ends: Any = self._ends
         robot, floor = step.robot, self._floor
         by = Beginning(robot.scan, robot.collided, self._range, self.contact_ends, floor, self._ends_on_floor)
         if self.terms:
