@@ -118,8 +118,8 @@ def worst_of(task: Any, seconds: float) -> float:
     """
     time, per_metre = float(getattr(task, "each_second", 0.0)), float(getattr(task, "progress", 0.0))
     (x0, y0, z0), (x1, y1, z1) = task._limits
-    width = math.hypot(x1 - x0, y1 - y0, (z1 - max(z0, 0.0)) if task.flies else 0.0)
-    width = min(width, float(getattr(task, "far", math.inf)))
+    x, y, z = x1 - x0, y1 - y0, (z1 - max(z0, 0.0)) if task.flies else 0.0
+    width = min(math.sqrt(x * x + y * y + z * z), float(getattr(task, "far", math.inf)))
     turn = math.pi * float(getattr(task, "turn_progress", 0.0))
     effort = float(getattr(task, "effort", 0.0)) * seconds
     return time * seconds - per_metre * width - turn - effort

@@ -12,6 +12,7 @@ import numpy as np
 from sitl.scenario import Scenario
 from sitl.vehicles import Airframe
 
+from ..noise import standard_normal
 from ..options import EnvOptionError
 
 MOST = 1024
@@ -41,7 +42,7 @@ def draw(boots: int, seed: int) -> Drawn:
     if boots == 1:
         return Drawn(SINGLE, None)
     random = np.random.default_rng((_STREAM, seed & 0xFFFF_FFFF_FFFF_FFFF))
-    north, east = random.standard_normal(2).tolist()
+    north, east = standard_normal(random, 2).tolist()
     return Drawn(1 + int(random.integers(boots)), (north, east))
 
 
@@ -51,6 +52,7 @@ def booted(scenario: Scenario, airframe: Airframe, seed: int) -> tuple[Scenario,
         return scenario, airframe
     if airframe.has("mag_offset"):
         random = np.random.default_rng((_COMPASS, seed & 0xFFFF_FFFF_FFFF_FFFF))
-        size = math.hypot(*airframe.value("mag_offset") or (0.0,)) / math.sqrt(3.0)
-        airframe = airframe.changed(mag_offset=tuple((size * random.standard_normal(3)).tolist()))
+        x, y, z = airframe.value("mag_offset") or (0.0, 0.0, 0.0)
+        size = math.sqrt((x * x + y * y + z * z) / 3.0)
+        airframe = airframe.changed(mag_offset=tuple((size * standard_normal(random, 3)).tolist()))
     return replace(scenario, seed=seed), airframe
