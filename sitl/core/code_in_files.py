@@ -85,9 +85,9 @@ FREE: Mapping[str, Callable[[Any], bool]] = {
     "world": lambda value: value is None or are_worlds(value),
     # what is numbers, or names that are looked up in tables
     **dict.fromkeys(
-        ("action", "autoreset_mode", "begin", "boots", "faults", "home", "info", "judge", "latency",
-         "max_episode_steps", "observation", "patience", "randomise", "robot", "sensors", "setpoint", "start",
-         "step_time", "take_off", "task", "tiled", "wait"), _is_free,
+        ("action", "autoreset_mode", "begin", "boots", "clip_actions", "costs", "faults", "home", "info", "judge",
+         "latency", "max_episode_steps", "observation", "patience", "randomise", "robot", "sensors", "setpoint",
+         "start", "step_time", "take_off", "task", "tiled", "wait"), _is_free,
     ),
 }  # fmt: skip
 """All that a file may say of an environment of this package: name of the option -> whether a value is taken.

@@ -14,7 +14,7 @@ import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, ids
 from sitl.envs.judge import ESTIMATE, TRUTH, Judge
 from sitl.envs.targets.places import nearness
-from sitl.envs.tasks_v1 import HALF, worst_of
+from sitl.envs.tasks_v1 import HOVER_HALF, worst_of
 
 CONTINUOUS = [name for name in ids.NEW if "Discrete" not in name]
 
@@ -38,7 +38,7 @@ def test_rewards_go_by_the_truth_unless_the_estimate_is_asked_for(judge):
     assert info["estimate_error"][0] > 2.0
     pose = info["true_pose"] if judge == TRUTH else inner.robot.pose[0]
     distance = np.linalg.norm(pose[:3] - inner.task.targets[0])
-    assert info["reward_nearness"] == pytest.approx(0.1 * nearness(distance, 1.0, HALF), abs=1e-9)
+    assert info["reward_nearness"] == pytest.approx(0.1 * nearness(distance, 1.0, HOVER_HALF), abs=1e-9)
     env.close()
 
 
