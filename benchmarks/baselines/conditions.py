@@ -95,10 +95,10 @@ def world_of(name: str) -> str | None:
 
 
 def worlds_of(preset: str, first: int, last: int) -> str:
-    """Worlds of an id's sort, for the option ``world``: "rooms:seed=1..100"."""
+    """Worlds of an id's kind, for the option ``world``: "rooms:seed=1..100"."""
     world = world_of(ids.task_of(preset))
     assert world is not None
-    return re.sub(r"seed=\d+", f"seed={first}..{last}", world)
+    return re.sub(r"seed=\d+(\.\.\d+)?", f"seed={first}..{last}", world)
 
 
 CONDITIONS: dict[str, Condition] = {

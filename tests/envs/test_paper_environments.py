@@ -133,7 +133,7 @@ def test_importing_the_package_loads_no_compiler():
     code = f"import sys, sitl.envs; print(sorted({heavy}), sorted(m for m in sys.modules if m.startswith('sitl')))"
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     out = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
-    ours = ["sitl", "sitl.envs", "sitl.envs.ids", "sitl.envs.options", "sitl.errors"]
+    ours = ["sitl", "sitl.envs", "sitl.envs.goals", "sitl.envs.ids", "sitl.envs.options", "sitl.errors"]
     assert out.stdout == f"[] {ours}\n", out.stderr
 
 

@@ -85,7 +85,7 @@ def test_by_udp_in_lockstep_with_lost_datagrams_it_is_the_same(tmp_path, monkeyp
     port = lockstep_vehicle.free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):
-        here = gym.make("sitl/Navigate-v1", **ROVER)
+        here = gym.make("sitl/Navigate-v1", **ROVER, boots=1)  # the vehicle over there has booted with seed 0
         there = gym.make("sitl/Navigate-v1", **ROVER, connection=f"udp:127.0.0.1:{port}")
         a, b = here.reset(seed=5)[0], there.reset(seed=5)[0]
         link = there.unwrapped.robot.link(0)
