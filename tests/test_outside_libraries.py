@@ -19,6 +19,7 @@ ENGINES = ("physics/pybullet", "physics/jsbsim")
 ALLOWED = {
     "fastcrc": "check sums: whole numbers",
     "gymnasium": "spaces, and the seeds of generators",
+    "jax": "the form of arrays that are given away, and that actions have",
     "llvmlite": "writes and reads machine code (tests/core/test_machine_code.py)",
     "matplotlib": "draws worlds",
     "numba": "compiles laws (tests/core/test_machine_code.py)",
@@ -28,6 +29,7 @@ ALLOWED = {
     "pygame": "shows pictures",
     "pymavlink": "the fields of messages",
     "stable_baselines3": "the interface of vector environments",
+    "torch": "the form of arrays that are given away, and that actions have",
 }
 
 

@@ -28,6 +28,7 @@ KERNEL_MODULES = (
     "sitl.agents.ways",
     "sitl.core.elementary_kernels",
     "sitl.envs.actions",
+    "sitl.envs.costs",
     "sitl.envs.free_ways",
     "sitl.envs.gathering",
     "sitl.envs.judge",

@@ -207,7 +207,7 @@ def test_the_examples_of_the_page_work() -> None:
     page = PAGE.read_text(encoding="utf-8")
     (yard,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     assert len(parse(yard, "yard.toml").solids) == 3
-    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    (example,) = [block for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "readings" in block]
     scope: dict[str, Any] = {}
     exec(example, scope)
     assert [int(r) for r in scope["readings"][::4]] == [0, 4, 1, 1, 0]
