@@ -303,14 +303,15 @@ class Fleet:
             run, slots = self._run_unit, self._slots_at
             self._parts = [partial(run, k, k + 1, slots, worlds.ranging(k)) for k in range(count)]
             return worlds
-        run_part, vehicles = run_in_worlds, self.records.ctypes.data
+        run_part = run_in_worlds
+        vehicles = wire_worlds.Vehicles(self._unit_at, self.records.ctypes.data, size, count)
         self._parts = [
-            cast(Any, partial(run_part.bind(self._unit_at, vehicles, size, count, first, last - first, *at), STAYS))
+            cast(Any, partial(run_part.bind(vehicles, first, last - first, *at), STAYS))
             for first, last in pairwise(parts)
             if first < last
         ]
         if threads == 1:
-            self._run_alone = run_part.bind(self._unit_at, vehicles, size, count, 0, count, *at)
+            self._run_alone = run_part.bind(vehicles, 0, count, *at)
         return worlds
 
     # ------------------------------------------------------------------ states

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,24 +17,43 @@ STATE, TRUTH, REPORTS, TRUE_REPORTS, COMPUTED, SCAN, ACTIONS, CHOSEN = range(8)
 Floats = npt.NDArray[np.float64]
 
 
+class Known(NamedTuple):
+    """Where numbers are taken from, a row a robot."""
+
+    state: Table
+    """Shape (count, 12)."""
+    truth: Table
+    """Shape (count, 12)."""
+    reports: Table
+    """Shape (count, 10)."""
+    true_reports: Table
+    """Shape (count, 9)."""
+    computed: Table
+    """What has been computed for this observation, shape (count, m)."""
+    scan: NarrowTable
+    """Readings [m], shape (count, readings)."""
+
+
+class Last(NamedTuple):
+    """The last actions, a row a robot."""
+
+    actions: Table
+    """Of boxes, shape (count, columns)."""
+    chosen: IntLine
+    """Of tables, shape (count,)."""
+    acted: Flags
+    """Whether there was one; else its columns are 0; shape (count,)."""
+
+
 @law
-def gather(
-    blocks: IntTable, state: Table, truth: Table, reports: Table, true_reports: Table, computed: Table,
-    scan: NarrowTable, actions: Table, chosen: IntLine, acted: Flags, low: NarrowLine, high: NarrowLine,
-    out: NarrowTable,
-) -> None:  # fmt: skip
+def gather(blocks: IntTable, known: Known, last: Last, low: NarrowLine, high: NarrowLine, out: NarrowTable) -> None:
     """Write numbers of robots, a row a robot, within their bounds; NaN stays.
 
     Args:
         blocks: what is written: where from (``STATE`` ...), first column there, first column of ``out``, how many;
             shape (n, 4). Of ``CHOSEN``, a column is 1 for the action of this number, 0 for others.
-        state, truth: shape (count, 12).
-        reports, true_reports: shape (count, 10), (count, 9).
-        computed: what has been computed for this observation, shape (count, m).
-        scan: readings [m], shape (count, readings).
-        actions: the last ones, of boxes, shape (count, columns).
-        chosen: the last ones, of tables, shape (count,).
-        acted: whether there was one; else its columns are 0; shape (count,).
+        known: see ``Known``.
+        last: see ``Last``.
         low, high: bounds of each column of ``out``, shape (columns,).
         out: shape (count, columns).
     """
@@ -44,20 +63,20 @@ def gather(
             for k in range(blocks[b, 3]):
                 value = 0.0
                 if source == STATE:
-                    value = state[i, first + k]
+                    value = known.state[i, first + k]
                 elif source == TRUTH:
-                    value = truth[i, first + k]
+                    value = known.truth[i, first + k]
                 elif source == REPORTS:
-                    value = reports[i, first + k]
+                    value = known.reports[i, first + k]
                 elif source == TRUE_REPORTS:
-                    value = true_reports[i, first + k]
+                    value = known.true_reports[i, first + k]
                 elif source == COMPUTED:
-                    value = computed[i, first + k]
+                    value = known.computed[i, first + k]
                 elif source == SCAN:
-                    value = float(scan[i, first + k])
+                    value = float(known.scan[i, first + k])
                 elif source == ACTIONS:
-                    value = actions[i, first + k] if acted[i] else 0.0
-                elif chosen[i] == first + k and acted[i]:
+                    value = last.actions[i, first + k] if last.acted[i] else 0.0
+                elif last.chosen[i] == first + k and last.acted[i]:
                     value = 1.0
                 out[i, to + k] = value
                 narrow = out[i, to + k]
@@ -127,10 +146,15 @@ class Gathering:
 
         write = _gather.bind(
             np.array(self._blocks, np.int64).reshape(-1, 4),
-            used(STATE, lambda: robot.state), used(TRUTH, lambda: robot.true_state()),
-            used(REPORTS, lambda: robot.reports), used(TRUE_REPORTS, lambda: robot.true_reports()),
-            computed, robot.scan, used(ACTIONS, lambda: session.actions),
-            used(CHOSEN, lambda: session.actions, none_chosen), session.acted, low, high,
+            Known(
+                used(STATE, lambda: robot.state), used(TRUTH, lambda: robot.true_state()),
+                used(REPORTS, lambda: robot.reports), used(TRUE_REPORTS, lambda: robot.true_reports()),
+                computed, robot.scan,
+            ),
+            Last(
+                used(ACTIONS, lambda: session.actions), used(CHOSEN, lambda: session.actions, none_chosen),
+                session.acted,
+            ), low, high,
         )  # fmt: skip
         if not before:
             return write

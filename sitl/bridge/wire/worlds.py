@@ -3,24 +3,35 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ...core.kernels import law
 from ...core.memory import call_unit, ints_at, record_at
 from .fleet import GOES_ON, SLOT_SIZE, STAYS, Slot
 
 
+class Vehicles(NamedTuple):
+    """The vehicles of a fleet."""
+
+    unit: int
+    """Address of ``run_all`` of their kind."""
+    records: int
+    """Address of their records, whose first number is the time since boot."""
+    size: int
+    """Of a record [bytes]."""
+    total: int
+    """Their number."""
+
+
 @law
 def run_in_worlds(
-    unit: int, vehicles: int, size: int, total: int, first: int, count: int, slots: int, ranging: int, room: int,
-    step_us: int,
-) -> bool:  # fmt: skip
+    vehicles: Vehicles, first: int, count: int, slots: int, ranging: int, room: int, step_us: int
+) -> bool:
     """Let vehicles ``first`` .. ``first + count`` - 1 of a fleet go on, in one thread; whether any of them needs the
     shell.
 
     Args:
-        unit: address of ``run_all`` of their kind.
-        vehicles: address of the fleet's records, whose first number is the time since boot.
-        size: of a record [bytes].
-        total: of the fleet's vehicles.
+        vehicles: of the fleet.
         first, count: of those that go on.
         slots: address of one ``Slot`` for each vehicle.
         ranging: address of one ``Ranging`` for each vehicle.
@@ -31,7 +42,7 @@ def run_in_worlds(
     for k in range(first, first + count):
         slot = record_at(Slot, slots + k * SLOT_SIZE)
         if step_us != STAYS:
-            slot.until_us = ints_at(vehicles + k * size, 1)[0] + step_us
-        call_unit(unit, vehicles, total, k, k + 1, slots, ranging + k * room)
+            slot.until_us = ints_at(vehicles.records + k * vehicles.size, 1)[0] + step_us
+        call_unit(vehicles.unit, vehicles.records, vehicles.total, k, k + 1, slots, ranging + k * room)
         waits = waits or slot.needs_shell != GOES_ON
     return waits

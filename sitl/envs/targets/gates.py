@@ -21,7 +21,7 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..senses import SensingRobot
 from ..worlds import PerWorld
-from .places import PlacesTask, checked_far
+from .places import Outcome, PlacesTask, checked_far
 
 
 class Gate(NamedTuple):
@@ -77,28 +77,43 @@ class GatePrices(NamedTuple):
     """For a step."""
 
 
+class Course(NamedTuple):
+    """What robots fly or drive through."""
+
+    places: Table
+    """Middles of the gates of all laps, one robot after another [m], shape (count * n, 3)."""
+    counts: IntLine
+    """Gates of a lap of each robot, shape (count,)."""
+    laps: int
+
+
+class Runs(NamedTuple):
+    """How far robots are, a row each."""
+
+    at: IntLine
+    """Number of each robot's gate; goes on where that is passed."""
+    laps: Table
+    """When each robot's lap began, how long its last one took, and its shortest one [s], shape (count, 3)."""
+    passed: Flags
+    """Whether each robot has passed its gate."""
+
+
 @law
 def pay_gates(
-    prices: GatePrices, before: Table, now: Table, places: Table, at: IntLine, laps: Table, counts: IntLine, last: int,
-    time: Line, passed: Flags, crashed: Flags, success: Flags, rewards: Line, terminated: Flags, paid: Table,
-) -> None:  # fmt: skip
+    prices: GatePrices, before: Table, now: Table, course: Course, time: Line, runs: Runs, outcome: Outcome
+) -> None:
     """Pay for a step through gates.
 
     Args:
         prices: see ``GatePrices``.
         before, now: x, y, z of each robot at the step's ends [m], shape (count, 3); ``before`` becomes ``now``.
-        places: middles of the gates of all laps, one robot after another [m], shape (count * n, 3).
-        at: number of each robot's gate; goes on where that is passed, shape (count,).
-        laps: when each robot's lap began, how long its last one took, and its shortest one [s], shape (count, 3).
-        counts: gates of a lap of each robot, shape (count,).
-        last: number of laps.
+        course: see ``Course``.
         time: of each robot's episode [s], shape (count,).
-        passed: whether each robot has passed its gate, shape (count,).
-        crashed: robots whose terms are told as 0, shape (count,).
-        success, terminated: written, shape (count,).
-        rewards: added to, shape (count,).
-        paid: terms of the rewards: progress, gates, time; shape (3 or more, count).
+        runs: see ``Runs``.
+        outcome: see ``Outcome``; terms of the rewards: progress, gates, time.
     """
+    places, counts, at, laps, passed = course.places, course.counts, runs.at, runs.laps, runs.passed
+    success, rewards, paid = outcome.success, outcome.rewards, outcome.paid
     per_robot = places.shape[0] // at.shape[0]
     for i in range(rewards.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
@@ -109,7 +124,7 @@ def pay_gates(
         gain, gate = prices.progress * nearer, prices.gate if passed[i] else 0.0
         rewards[i] += gain + gate + prices.time
         paid[0, i], paid[1, i], paid[2, i] = gain, gate, prices.time
-        if crashed[i]:
+        if outcome.crashed[i]:
             paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
         before[i, 0], before[i, 1], before[i, 2] = now[i, 0], now[i, 1], now[i, 2]
         if passed[i]:
@@ -118,9 +133,9 @@ def pay_gates(
                 took = time[i] - laps[i, 0]
                 best = min(laps[i, 2], took) if laps[i, 2] > 0.0 else took
                 laps[i, 0], laps[i, 1], laps[i, 2] = time[i], took, best
-        success[i] = at[i] == last * counts[i]
+        success[i] = at[i] == course.laps * counts[i]
         if success[i]:
-            terminated[i] = True
+            outcome.terminated[i] = True
 
 
 _cross, _pay = Kernel(cross_gates), Kernel(pay_gates)
@@ -261,9 +276,9 @@ class Gates(PlacesTask):
             float(self.progress), float(self.far), float(self.gate_reward), float(self.each_second * step.seconds)
         )
         _pay.unchecked()(
-            prices, self._before, now, self._spots, self.at, self._lap, self._counts, self.laps,
-            np.ascontiguousarray(step.robot.time), self._passed, self._ends.crashed, self.success, rewards, terminated,
-            self._paid,
+            prices, self._before, now, Course(self._spots, self._counts, self.laps),
+            np.ascontiguousarray(step.robot.time), Runs(self.at, self._lap, self._passed),
+            self._outcome(rewards, terminated),
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:

@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.array_kernels import Kernel, Line, Table
 from sitl.core.kernels import law
 
 from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import PlacesTask, distance_of, nearness
+from .places import Outcome, PlacesTask, distance_of, nearness
 
 
 class Holding(NamedTuple):
@@ -54,9 +54,8 @@ def sparse_worths(distances: Line, radius: float, far: float, out: Line) -> None
 
 @law
 def judge_hold(
-    rule: Holding, state: Table, places: Table, axes: Line, actions: Table, crashed: Flags, since: Line,
-    success: Flags, rewards: Line, paid: Table,
-) -> None:  # fmt: skip
+    rule: Holding, state: Table, places: Table, axes: Line, actions: Table, since: Line, outcome: Outcome
+) -> None:
     """Judge a step of robots that hold their places.
 
     Args:
@@ -65,12 +64,11 @@ def judge_hold(
         places: [m], shape (count, 3).
         axes: what x, y, z count in distances, shape (3,).
         actions: the agent's, shape (count, m).
-        crashed: robots whose terms are told as 0, shape (count,).
         since: how long each has been at its place [s]: of the step before, becomes that of now, shape (count,).
-        success: written, shape (count,).
-        rewards: added to, shape (count,).
-        paid: terms of the rewards: the goal's alone if they are sparse, else nearness and, if there is room, effort.
+        outcome: see ``Outcome``; terms of the rewards: the goal's alone if they are sparse, else nearness and, if
+            there is room, effort.
     """
+    crashed, success, rewards, paid = outcome.crashed, outcome.success, outcome.rewards, outcome.paid
     for i in range(rewards.shape[0]):
         distance = distance_of(state, i, places, i, axes)
         if rule.is_sparse:
@@ -179,8 +177,7 @@ class Hold(PlacesTask):
             step.seconds,
         )  # fmt: skip
         _judge.unchecked()(
-            rule, self._table, self._spots, self.axes, actions, self._ends.crashed, self.since, self.success, rewards,
-            self._paid,
+            rule, self._table, self._spots, self.axes, actions, self.since, self._outcome(rewards, terminated)
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:

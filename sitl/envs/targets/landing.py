@@ -20,7 +20,7 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, floors_of, world_of
 from ..senses import LandingRobot, SensingRobot
 from .moving import MovingTask, end_lost, note_error
-from .places import checked_far
+from .places import Outcome, checked_far
 
 SLOW, GENTLE = 0.5, 1.0
 """Greatest horizontal speed relative to the pad, and speed of sinking, of a landing that is success [m/s]."""
@@ -60,6 +60,17 @@ class Landing(NamedTuple):
     """Whether the autopilot puts the robot down."""
 
 
+class Grounds(NamedTuple):
+    """What robots land on, and whether they have."""
+
+    floors: Line
+    """Heights of the floors of the robots' worlds [m], shape (count,)."""
+    pads: Table
+    """Where the pads are [m], shape (count, 3)."""
+    landed: Flags
+    """Whether the autopilots say so, shape (count,)."""
+
+
 class SoFar(NamedTuple):
     """What is known of robots before a step, a row each; becomes that of after it."""
 
@@ -95,25 +106,21 @@ def write_pads(velocity: Table, centre: Table, times: Table, out: Table) -> None
 
 
 @law
-def judge_land(
-    rule: Landing, state: Table, floors: Line, pads: Table, time: Line, landed: Flags, crashed: Flags, so_far: SoFar,
-    success: Flags, rewards: Line, terminated: Flags, paid: Table,
-) -> None:  # fmt: skip
+def judge_land(rule: Landing, state: Table, grounds: Grounds, time: Line, so_far: SoFar, outcome: Outcome) -> None:
     """Judge a step of robots that land.
 
     Args:
         rule: see ``Landing``.
         state: x, y, z [m], yaw [rad], forward, left, up [m/s] as they really are, shape (count, 8 or more).
-        floors: heights of the floors of the robots' worlds [m], shape (count,).
-        pads: where the pads are [m], shape (count, 3).
+        grounds: see ``Grounds``.
         time: of each robot's episode [s], shape (count,).
-        landed: whether the autopilot says so, shape (count,).
-        crashed: robots whose terms are told as 0, shape (count,).
         so_far: see ``SoFar``.
-        success, terminated: written, shape (count,).
-        rewards: added to, shape (count,).
-        paid: terms of the rewards: progress, time, landing and, if there is a price, the loss of the pad.
+        outcome: see ``Outcome``; terms of the rewards: progress, time, landing and, if there is a price, the
+            loss of the pad.
     """
+    pads, success, rewards, terminated, paid = (
+        grounds.pads, outcome.success, outcome.rewards, outcome.terminated, outcome.paid
+    )  # fmt: skip
     for i in range(rewards.shape[0]):
         x, y, z = pads[i, 0] - state[i, 0], pads[i, 1] - state[i, 1], pads[i, 2] - state[i, 2]
         squared = x * x + y * y + z * z
@@ -122,8 +129,8 @@ def judge_land(
         gain = rule.progress * (min(so_far.distance[i], rule.far) - min(distance, rule.far))
         rewards[i] += gain + rule.time
         so_far.distance[i] = distance
-        height, climb = state[i, 2] - floors[i], state[i, 6]
-        down = ((height < DOWN and not rule.lets_down) or landed[i]) and not terminated[i]
+        height, climb = state[i, 2] - grounds.floors[i], state[i, 6]
+        down = ((height < DOWN and not rule.lets_down) or grounds.landed[i]) and not terminated[i]
         turned = 1.0 if time[i] % 20.0 < 10.0 else -1.0
         s, c = sincos(state[i, 3])
         ahead, left = state[i, 4] * c - state[i, 5] * s, state[i, 4] * s + state[i, 5] * c
@@ -138,9 +145,9 @@ def judge_land(
             rewards[i] += landing
             terminated[i] = True
         paid[0, i], paid[1, i], paid[2, i] = gain, rule.time, landing
-        if crashed[i]:
+        if outcome.crashed[i]:
             paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
-        end_lost(i, distance > rule.lost, rule.lost_reward, crashed, rewards, terminated, paid, 3)
+        end_lost(i, distance > rule.lost, rule.lost_reward, outcome, 3)
         if height > LET_DOWN or not rule.lets_down:
             so_far.sinking[i] = 0.0 - climb
 
@@ -251,10 +258,10 @@ class Land(MovingTask):
             float(self.settle),
             self._lets_down,
         )  # fmt: skip
+        grounds = Grounds(floors, self._spots, np.ascontiguousarray(self._landing.has_landed()))
         so_far = SoFar(self._velocity, self._distance, self._sinking, self._touched, self.sums, self.errors)
         _land.unchecked()(
-            rule, step.judge.true_table(), floors, self._spots, time, np.ascontiguousarray(self._landing.has_landed()),
-            self._ends.crashed, so_far, self.success, rewards, terminated, self._paid,
+            rule, step.judge.true_table(), grounds, time, so_far, self._outcome(rewards, terminated)
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.array_kernels import Kernel, Line, Table
 from sitl.core.elementary import cos, sin, sincos
 from sitl.core.kernels import law
 
@@ -19,7 +19,7 @@ from ..noise import dirichlet
 from ..options import EnvOptionError, unknown
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import PlacesTask, nearness, write_ways_to
+from .places import Outcome, PlacesTask, nearness, write_ways_to
 
 AHEAD_S = 0.5
 """Time from one of the places that "path" tells to the next [s]."""
@@ -38,6 +38,15 @@ class Following(NamedTuple):
     lost_reward: float
     seconds: float
     """Of a step [s]."""
+
+
+class Noted(NamedTuple):
+    """Errors of robots so far."""
+
+    sums: Table
+    """See ``MovingTask.sums``."""
+    errors: Line
+    """Root mean square distances to the targets, written [m], shape (count,)."""
 
 
 @law
@@ -59,9 +68,8 @@ def note_error(sums: Table, i: int, squared: float, counts: bool) -> float:
 
 @law
 def judge_follow(
-    rule: Following, state: Table, places: Table, axes: Line, time: Line, crashed: Flags, sums: Table, errors: Line,
-    success: Flags, rewards: Line, terminated: Flags, paid: Table,
-) -> None:  # fmt: skip
+    rule: Following, state: Table, places: Table, axes: Line, time: Line, noted: Noted, outcome: Outcome
+) -> None:
     """Judge a step of robots that follow targets.
 
     Args:
@@ -70,13 +78,12 @@ def judge_follow(
         places: of the targets [m], shape (count, 3).
         axes: what x, y, z count in distances, shape (3,).
         time: of each robot's episode [s], shape (count,).
-        crashed: robots whose terms are told as 0, shape (count,).
-        sums: see ``MovingTask.sums``; the step is added.
-        errors: written [m], shape (count,).
-        success, terminated: written, shape (count,).
-        rewards: added to, shape (count,).
-        paid: terms of the rewards: nearness and, if there is a price, the loss of the target.
+        noted: see ``Noted``; the step is added.
+        outcome: see ``Outcome``; terms of the rewards: nearness and, if there is a price, the loss of the target.
     """
+    crashed, success, rewards, paid, errors = (
+        outcome.crashed, outcome.success, outcome.rewards, outcome.paid, noted.errors
+    )  # fmt: skip
     for i in range(rewards.shape[0]):
         x = axes[0] * (places[i, 0] - state[i, 0])
         y = axes[1] * (places[i, 1] - state[i, 1])
@@ -87,22 +94,20 @@ def judge_follow(
         rewards[i] += near
         paid[0, i] = 0.0 if crashed[i] else near
         counts = time[i] >= rule.settle
-        errors[i] = note_error(sums, i, squared, counts)
+        errors[i] = note_error(noted.sums, i, squared, counts)
         success[i] = counts and errors[i] < rule.radius
-        end_lost(i, distance > rule.lost, rule.lost_reward, crashed, rewards, terminated, paid, 1)
+        end_lost(i, distance > rule.lost, rule.lost_reward, outcome, 1)
 
 
 @law
-def end_lost(
-    i: int, lost: bool, reward: float, crashed: Flags, rewards: Line, terminated: Flags, paid: Table, row: int
-) -> None:
+def end_lost(i: int, lost: bool, reward: float, outcome: Outcome, row: int) -> None:
     """End the episode of robot ``i`` if it has lost its target; what that costs is told in a row of ``paid``."""
     if reward != 0.0:
-        cost = reward if lost and not terminated[i] else 0.0
-        rewards[i] += cost
-        paid[row, i] = 0.0 if crashed[i] else cost
+        cost = reward if lost and not outcome.terminated[i] else 0.0
+        outcome.rewards[i] += cost
+        outcome.paid[row, i] = 0.0 if outcome.crashed[i] else cost
     if lost:
-        terminated[i] = True
+        outcome.terminated[i] = True
 
 
 _spread, _follow = Kernel(spread_times), Kernel(judge_follow)
@@ -202,8 +207,8 @@ class MovingTask(PlacesTask):
             float(self.lost_reward), step.seconds,
         )  # fmt: skip
         _follow.unchecked()(
-            rule, self._table, self._spots, self.axes, time, self._ends.crashed, self.sums, self.errors, self.success,
-            rewards, terminated, self._paid,
+            rule, self._table, self._spots, self.axes, time, Noted(self.sums, self.errors),
+            self._outcome(rewards, terminated),
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core.array_kernels import Flags, Kernel, Line, Table
+from sitl.core.array_kernels import Kernel, Line, Table
 from sitl.core.kernels import law
 from sitl.worlds import World
 
@@ -18,7 +18,7 @@ from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..worlds import PerWorld
-from .places import PlacesTask
+from .places import Outcome, PlacesTask
 
 _NEAR = 4.0
 """Within about so far of the bay the heading counts [m]."""
@@ -52,9 +52,8 @@ def worth_of(
 
 @law
 def judge_park(
-    rule: Parking, state: Table, places: Table, headings: Line, crashed: Flags, left: Line, away: Line, success: Flags,
-    rewards: Line, terminated: Flags, paid: Table,
-) -> None:  # fmt: skip
+    rule: Parking, state: Table, places: Table, headings: Line, left: Line, away: Line, outcome: Outcome
+) -> None:
     """Judge a step of robots that park.
 
     Args:
@@ -62,13 +61,11 @@ def judge_park(
         state: x, y, z [m], yaw [rad], forward speed [m/s] and more, shape (count, n).
         places: of the bays [m], shape (count, 3).
         headings: of the bays [rad], shape (count,).
-        crashed: robots whose terms are told as 0, shape (count,).
         left: what each robot's way is still worth: before the step, becomes that of now, shape (count,).
         away: how far each robot is from its bay [m], likewise, shape (count,).
-        success, terminated: written, shape (count,).
-        rewards: added to, shape (count,).
-        paid: terms of the rewards: progress, turn, time, parked; shape (4 or more, count).
+        outcome: see ``Outcome``; terms of the rewards: progress, turn, time, parked.
     """
+    success, rewards, paid = outcome.success, outcome.rewards, outcome.paid
     for i in range(rewards.shape[0]):
         distance, error, worth = worth_of(
             rule, state[i, 0], state[i, 1], state[i, 3], places[i, 0], places[i, 1], headings[i]
@@ -80,10 +77,10 @@ def judge_park(
         parked = rule.success_reward if success[i] else 0.0
         rewards[i] += parked
         paid[0, i], paid[1, i], paid[2, i], paid[3, i] = progress, both - progress, rule.time, parked
-        if crashed[i]:
+        if outcome.crashed[i]:
             paid[0, i], paid[1, i], paid[2, i], paid[3, i] = 0.0, 0.0, 0.0, 0.0
         if success[i]:
-            terminated[i] = True
+            outcome.terminated[i] = True
 
 
 _park = Kernel(judge_park)
@@ -183,8 +180,8 @@ class Park(PlacesTask):
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         _park.unchecked()(
-            self._rule(step.seconds), self._table, self._spots, self.headings, self._ends.crashed, self._left,
-            self._distance, self.success, rewards, terminated, self._paid,
+            self._rule(step.seconds), self._table, self._spots, self.headings, self._left, self._distance,
+            self._outcome(rewards, terminated),
         )  # fmt: skip
 
     def _rule(self, seconds: float) -> Parking:

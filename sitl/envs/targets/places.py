@@ -122,6 +122,21 @@ class Outside(NamedTuple):
     crash_reward: float
 
 
+class Outcome(NamedTuple):
+    """What a task's own rule judges of a step, a row a robot."""
+
+    crashed: Flags
+    """Robots whose terms are told as 0."""
+    success: Flags
+    """Written."""
+    rewards: Line
+    """Added to."""
+    terminated: Flags
+    """Written where the task ends an episode."""
+    paid: Table
+    """Terms of the rewards by number, written, shape (terms or more, count)."""
+
+
 class Ends(NamedTuple):
     """How robots have ended, a row each."""
 
@@ -360,6 +375,10 @@ class PlacesTask(Task):
         outside = Outside(self._low, self._high, float(self.out_reward), self.out_ends, float(self.crash_reward))
         _end.unchecked()(outside, self._table, success, rewards, terminated, ends)
         step.crashed, step.outside, step.reached = ends[:3]  # type: ignore[assignment]  # laws' flags are booleans
+
+    def _outcome(self, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> Outcome:
+        """What ``_judge`` writes to."""
+        return Outcome(self._ends.crashed, self.success, rewards, terminated, self._paid)
 
     @abstractmethod
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:

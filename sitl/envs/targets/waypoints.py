@@ -20,13 +20,22 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..starts import ReachableCells
 from ..worlds import PerWorld
-from .places import PlacesTask
+from .places import Outcome, PlacesTask
+
+
+class Nearing(NamedTuple):
+    """How robots come to their places, shape (count,)."""
+
+    distance: Line
+    """To each robot's present place [m]: of the step before, becomes that of now."""
+    gain: Line
+    """How much nearer each robot has come [m], written."""
+    passed: Flags
+    """Whether each robot has passed a place, written."""
 
 
 @law
-def pass_places(
-    pose: Table, places: Table, up: float, radius: float, at: IntLine, distance: Line, gain: Line, passed: Flags
-) -> None:
+def pass_places(pose: Table, places: Table, up: float, radius: float, at: IntLine, nearing: Nearing) -> None:
     """Judge a step on the way along places.
 
     Args:
@@ -35,10 +44,9 @@ def pass_places(
         up: what heights count: 1, or 0 for robots that do not fly.
         radius: distance at which a place is passed [m].
         at: number of each robot's present place; goes on where that is passed, shape (count,).
-        distance: to each robot's present place [m]: of the step before, becomes that of now, shape (count,).
-        gain: how much nearer each robot has come [m], written, shape (count,).
-        passed: whether each robot has passed a place, written, shape (count,).
+        nearing: see ``Nearing``.
     """
+    distance, gain, passed = nearing.distance, nearing.gain, nearing.passed
     per_robot = places.shape[0] // at.shape[0]
     for i in range(at.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
@@ -67,10 +75,7 @@ class Prices(NamedTuple):
 
 
 @law
-def pay_places(
-    prices: Prices, nearer: Line, passed: Flags, at: IntLine, last: int, crashed: Flags, success: Flags, rewards: Line,
-    terminated: Flags, paid: Table,
-) -> int:  # fmt: skip
+def pay_places(prices: Prices, nearer: Line, passed: Flags, at: IntLine, last: int, outcome: Outcome) -> int:
     """Pay for a step on the way along places; all of shape (count,).
 
     Args:
@@ -79,24 +84,22 @@ def pay_places(
         passed: whether each robot has passed a place.
         at: number of each robot's present place.
         last: number of places: who has passed all has done the task, and the episode ends.
-        crashed: robots whose terms are told as 0.
-        success, terminated: written.
-        rewards: added to.
-        paid: terms of the rewards: progress, places, time; shape (3 or more, count).
+        outcome: see ``Outcome``; terms of the rewards: progress, places, time.
 
     Returns:
         How many have passed a place, and have others before them.
     """
+    success, rewards, paid = outcome.success, outcome.rewards, outcome.paid
     going = 0
     for i in range(rewards.shape[0]):
         gain, place = prices.progress * nearer[i], prices.place if passed[i] else 0.0
         rewards[i] += gain + place + prices.time
         paid[0, i], paid[1, i], paid[2, i] = gain, place, prices.time
-        if crashed[i]:
+        if outcome.crashed[i]:
             paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
         success[i] = at[i] == last
         if success[i]:
-            terminated[i] = True
+            outcome.terminated[i] = True
         elif passed[i]:
             going += 1
     return going
@@ -188,12 +191,11 @@ class Waypoints(PlacesTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         state, up = self._table, float(self.axes[2])
         _pass.unchecked()(
-            state, self._spots, up, float(self.radius), self.at, self._distance, self._gain, self._passed
+            state, self._spots, up, float(self.radius), self.at, Nearing(self._distance, self._gain, self._passed)
         )  # fmt: skip
         prices = Prices(float(self.progress), float(self.place_reward), float(self.each_second * step.seconds))
         self._going = _pay.unchecked()(
-            prices, self._nearer(state), self._passed, self.at, self._count, self._ends.crashed, self.success, rewards,
-            terminated, self._paid,
+            prices, self._nearer(state), self._passed, self.at, self._count, self._outcome(rewards, terminated)
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:
