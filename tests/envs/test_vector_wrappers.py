@@ -32,7 +32,7 @@ def played(robots, wrapper, given):
     actions = np.random.default_rng(0).uniform(-1.0, 1.0, (STEPS, *robots.action_space.shape)).astype(np.float32)
     try:
         env = wrapper(robots, **given)
-    except ValueError as error:
+    except (ValueError, AssertionError) as error:  # before Gymnasium 1.4 without words
         robots.close()
         return str(error)
     told = [env.reset(seed=3), *(env.step(action.copy()) for action in actions)]

@@ -31,8 +31,6 @@ class Holding(NamedTuple):
     effort: float
     """What a mean squared action of 1 costs a step."""
     is_sparse: bool
-    far: float
-    """See ``Hold`` [m]."""
     seconds: float
     """Of a step [s]."""
 
@@ -65,14 +63,14 @@ def judge_hold(
         axes: what x, y, z count in distances, shape (3,).
         actions: the agent's, shape (count, m).
         since: how long each has been at its place [s]: of the step before, becomes that of now, shape (count,).
-        outcome: see ``Outcome``; terms of the rewards: the goal's alone if they are sparse, else nearness and, if
-            there is room, effort.
+        outcome: see ``Outcome``; terms of the rewards: the goal's alone if they are sparse, already there; else
+            nearness and, if there is room, effort.
     """
     crashed, success, rewards, paid = outcome.crashed, outcome.success, outcome.rewards, outcome.paid
     for i in range(rewards.shape[0]):
         distance = distance_of(state, i, places, i, axes)
         if rule.is_sparse:
-            worth = sparse_worth(distance, rule.radius, rule.far)
+            worth = paid[0, i]
         else:
             worth = rule.seconds * nearness(distance, rule.scale, rule.half)
         rewards[i] += worth
@@ -173,12 +171,24 @@ class Hold(PlacesTask):
             self.paid.pop("effort", None)
         rule = Holding(
             float(self.radius), float(self.hold - 1e-9), float(self.scale), float(self.half or 0.0),
-            float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, float(self.far),
-            step.seconds,
+            float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, step.seconds,
         )  # fmt: skip
+        if self.is_sparse:
+            self._paid[0] = self._goal_rewards()
         _judge.unchecked()(
             rule, self._table, self._spots, self.axes, actions, self.since, self._outcome(rewards, terminated)
         )  # fmt: skip
+
+    def _goal_rewards(self) -> Floats:
+        """What goals pay now. Those of rewards that tell distances are as an agent observes them, in float32: so a
+        library gets the same reward from them, to the last bit."""
+        goals = self.achieved(), self.targets
+        errors = None
+        if self.judge_of is not None and self.judge_of.by == TRUTH:
+            errors = {"estimate_error": self.judge_of.error()}
+        if self.far:
+            goals = goals[0].astype(np.float32), goals[1].astype(np.float32)
+        return self.compute_reward(*goals, errors)
 
     def paid_names(self) -> tuple[str, ...]:
         """See ``PlacesTask``."""
