@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from itertools import pairwise
-from typing import Any
+from typing import Any, cast
 
 import gymnasium as gym
 import numpy as np
 
-from .gathering import Gathering
+from .gathering import Gathering, stands_for
 from .options import EnvOptionError
-from .parts import PARTS, Part, Surroundings, part_of
+from .parts import PARTS, GatheredPart, Part, Surroundings, part_of
 from .robots.robot import Robot
 from .sensed import Sensed
 from .senses import FAR, arrays_stay, reads_scan
@@ -81,9 +81,9 @@ class Parts:
         plan, left = Gathering(self._session), []
         gathers = arrays_stay(self._session.robot)
         for part, where in zip(self._parts, self._places):
-            if gathers and hasattr(part, "gather"):
+            if gathers and stands_for(part, "gather", "write"):
                 plan.at(where.start)
-                part.gather(plan)
+                cast(GatheredPart, part).gather(plan)
             else:
                 left.append((part, where))
         self._written, self._gather = tuple(left), plan.made(self._low, self._high) if gathers else _nothing

@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 
 from sitl.envs.boxes import Parts
+from sitl.envs.parts import Path
+from sitl.envs.targets.hold import Hold
+from sitl.envs.targets.moving import Follow
 
 ALL = [
     "pose", "velocity", "attitude", "rates", "true_pose", "true_velocity", "heading", "acceleration", "true_wind",
@@ -68,3 +71,49 @@ def test_numbers_beyond_their_bounds_are_clipped_and_nan_stays():
     session.robot.state[:, 4] = 1e3, -1e3, np.nan
     found = env.unwrapped.observe()[:, at]
     assert found[:2].tolist() == [50.0, -50.0] and np.isnan(found[2])
+
+
+class FromTheTruth(Path):
+    """A part of one's own on one of ours."""
+
+    def write(self, out):
+        out[:] = self._task.ways_from(self.robot.true_state(), 1).reshape(out.shape)
+
+    def prepare(self, session):
+        super().prepare(session)
+        self.robot = session.robot
+
+
+def test_a_part_with_a_write_of_its_own_is_written_by_it():
+    env = gym.make("sitl/CopterHover-v1", observation=[FromTheTruth(1), "goal"]).unwrapped
+    env.reset(seed=1)
+    row = env.step(np.zeros(4, np.float32))[0]
+    way = env.session.task.targets[0] - env.session.robot.true_state()[0, :3]
+    assert np.linalg.norm(row[:3]) == pytest.approx(np.linalg.norm(way), abs=1e-5)
+    assert (row[:3] != row[3:]).all()
+
+
+class HigherGoals(Hold):
+    def ways_from(self, pose, count):
+        return super().ways_from(pose, count) + (0.0, 0.0, 100.0)
+
+
+class Standing(Follow):
+    def along(self, time):
+        return self.centre[:, None] + np.zeros((*time.shape, 3))
+
+
+def test_a_task_with_ways_of_its_own_is_asked_for_them():
+    env = gym.make("sitl/CopterHover-v1", task=HigherGoals(), observation=["goal"]).unwrapped
+    env.reset(seed=1)
+    assert env.step(np.zeros(4, np.float32))[0][2] > 90.0
+
+
+def test_a_target_moves_as_its_class_says():
+    env = gym.make("sitl/CopterFollow-v1", task=Standing(), observation=["path"]).unwrapped
+    env.reset(seed=1)
+    task = env.session.task
+    for _ in range(10):
+        row = env.step(np.zeros(4, np.float32))[0]
+        assert (task.targets == task.centre).all()
+        assert row.reshape(3, 3) == pytest.approx(row[:3] * np.ones((3, 1)))

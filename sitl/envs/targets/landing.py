@@ -251,7 +251,7 @@ class Land(MovingTask):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = np.ascontiguousarray(step.robot.time)
         floors = np.ascontiguousarray(np.broadcast_to(floors_of(step.robot), time.shape), np.float64)
-        self._write_along(time.reshape(-1, 1), self._spots)
+        self._place(time)
         rule = Landing(
             float(self.pad), float(self.progress), float(self.far), float(self.each_second * step.seconds),
             float(self.success_reward), float(self.crash_reward), float(self.lost), float(self.lost_reward),

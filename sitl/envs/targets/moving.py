@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from sitl.core.array_kernels import Kernel, Line, Table
 from sitl.core.elementary import cos, sin, sincos
 from sitl.core.kernels import law
 
+from ..gathering import stands_for
 from ..noise import dirichlet
 from ..options import EnvOptionError, unknown
 from ..rewards import Floats, Step
@@ -167,6 +169,11 @@ class MovingTask(PlacesTask):
     def _draw(self, index: int, rng: np.random.Generator) -> None:
         """Draw what is random in one robot's episode."""
 
+    @property
+    def _writer(self) -> Callable[[Floats, Floats], None]:
+        fast = stands_for(self, "_write_along", "along")
+        return self._write_along if fast else partial(MovingTask._write_along, self)
+
     @abstractmethod
     def along(self, time: Floats) -> Floats:
         """Where each robot's target is: x, y, z [m], shape (count, k, 3), at times of its episode [s], shape (count,
@@ -185,7 +192,7 @@ class MovingTask(PlacesTask):
             ahead = self._ahead[count] = np.empty((rows, count)), np.empty((rows * count, 3))
         times, places = ahead
         _spread.unchecked()(np.ascontiguousarray(self._robot.time), AHEAD_S, times)
-        self._write_along(times, places)
+        self._writer(times, places)
         write_ways_to.unchecked()(pose, places, self._first, count, count, out, first)
 
     def _along(self, time: Floats) -> Floats:
@@ -199,9 +206,13 @@ class MovingTask(PlacesTask):
         """Write ``along`` at times, shape (count, k), into ``out``, shape (count * k, 3)."""
         out[:] = self.along(times).reshape(out.shape)
 
+    def _place(self, time: Floats) -> None:
+        """Put each target where it is at a time of its episode [s], shape (count,)."""
+        self._writer(time.reshape(-1, 1), self._spots)
+
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = np.ascontiguousarray(step.robot.time)
-        self._write_along(time.reshape(-1, 1), self._spots)
+        self._place(time)
         rule = Following(
             float(self.radius), float(self.settle), float(self.scale), float(self.half or 0.0), float(self.lost),
             float(self.lost_reward), step.seconds,

@@ -17,6 +17,7 @@ from sitl.worlds import World
 
 from ...core.elementary import sincos
 from ..arena import REACH, Arena, arena_of, flies
+from ..gathering import stands_for
 from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
@@ -344,7 +345,7 @@ class PlacesTask(Task):
     def ways_writer(self, count: int, out: Floats, first: int) -> Callable[[], object] | None:
         """A function that writes ``ways`` into columns of a table, from the first one on, shape (robots, n). None: a
         subclass has ways of its own."""
-        if type(self).ways is not PlacesTask.ways:
+        if not all(stands_for(self, "_write_ways", own) for own in ("ways", "ways_from", "_from")):
             return None
         return lambda: self._write_ways(np.ascontiguousarray(self._from()), count, out, first)
 
