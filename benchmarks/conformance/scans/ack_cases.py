@@ -14,11 +14,11 @@ RANGES = (
     (420, 420), (500, 500), (510, 512), (519, 522), (525, 534), (600, 601), (611, 611), (1000, 1001), (2000, 2005), (2010, 2010),
     (2500, 2505), (2510, 2511), (2520, 2520), (2600, 2600), (2800, 2800), (3000, 3001), (4000, 4001), (4501, 4501),
     (5000, 5004), (5100, 5100), (5200, 5200), (10001, 10001), (10151, 10151), (30001, 30002),
-    (31000, 31009), (31012, 31014), (32000, 32000), (42000, 42000), (42004, 42007), (42424, 42429), (42501, 42503), (42505, 42505),
+    (31000, 31009), (31012, 31014), (32000, 32000), (42000, 42000), (42004, 42005), (42007, 42007), (42425, 42429), (42501, 42503), (42505, 42505),
     (42600, 42600), (42650, 42651), (42700, 42703), (43000, 43003), (43005, 43006),
 )  # fmt: skip
 """Numbers of MAV_CMD; without 31010 and 31011, which ``sitl run --lockstep`` has for itself, and 5300, which may switch
-motors off in flight, and the buttons of a Solo, which arm and take off."""
+motors off in flight, 42006 and 42424, which calibrate compasses there, and the buttons of a Solo, which arm and take off."""
 HERE = (-35.363262, 149.165237)
 """The start of the programs [deg]."""
 RELATIVE = 3
@@ -79,14 +79,20 @@ _PLAIN: dict[str, tuple[tuple[float, ...], ...]] = {
     "IMAGE_START_CAPTURE": ((0, 1, 2), (1, 1, 2), (2, 1, 2)),
     "DO_SET_CAM_TRIGG_DIST": ((5,), (-1,)),
     "PREFLIGHT_CALIBRATION": ((0, 1), (0, 0, 0, 1), (0, 0, 0, 0, 3), (0, 0, 0, 0, 0, 0, 1)),
-    "PREFLIGHT_STORAGE": ((0,), (1,), (2,), (3,)),
+    "PREFLIGHT_STORAGE": ((0,), (1,), (3,)),
     "PREFLIGHT_REBOOT_SHUTDOWN": ((0,), (2,), (4,)),
     "CONTROL_HIGH_LATENCY": ((0,), (1,), (2,)),
     "REQUEST_AUTOPILOT_CAPABILITIES": ((1,), (2,)),
     "DO_SEND_BANNER": ((0,),),
     "DO_FOLLOW": ((0,), (2,)),
     "RUN_PREARM_CHECKS": ((1,),),
-    "SCRIPTING": ((0,), (1,)),
+    "SCRIPTING": ((0,), (1,), (2,), (9,)),
+    "SET_CAMERA_FOCUS": ((0, 1), (1, 1), (2, 50), (3, 1), (4,), (9,)),
+    "SET_CAMERA_ZOOM": ((1, 1), (2, 50)),
+    "SET_CAMERA_SOURCE": ((1, 1),),
+    "CAN_FORWARD": ((1,),),
+    "AIRFRAME_CONFIGURATION": ((0, 1),),
+    "VIDEO_START_CAPTURE": ((1,),),
     "DO_ADSB_OUT_IDENT": ((0,),),
     "NAV_TAKEOFF": ((0, 0, 0, 0, 0, 0, -1),),
 }
@@ -97,6 +103,7 @@ _ON_THE_GROUND: dict[str, tuple[tuple[float, ...], ...]] = {
         (1, 0, 5, 0.1, 2), (1, 0, 5, 0.1, 5), (1, 0, 5, 0.1, 1, 2), (1.5, 0, 5, 0.1),
     ),
     "FIXED_MAG_CAL_YAW": ((0, 1),),
+    "PREFLIGHT_STORAGE": ((2,),),
     "SET_EKF_SOURCE_SET": ((2,), (3,), (4,), (0,), (1,)),
     "DO_SET_SAFETY_SWITCH_STATE": ((0,), (1,), (2,)),
 }  # fmt: skip

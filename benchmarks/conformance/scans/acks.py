@@ -20,7 +20,8 @@ from .program import Program, Programs
 RESULTS = ("ACCEPTED", "TEMPORARILY_REJECTED", "DENIED", "UNSUPPORTED", "FAILED", "IN_PROGRESS")
 Value = str | dict[str, str]
 MOTOR_TEST = 209
-"""Ends with disarming."""
+DISARMING = (MOTOR_TEST, 400)
+"""In failsafe nothing is armed again."""
 HEIGHT_M = 50.0
 """High enough for LAND to last as long as the scan of it."""
 MODES = {
@@ -139,7 +140,7 @@ def armed(scanned: Scanned) -> None:
     """On the ground, with the motors idling."""
     program = scanned.program
     program.be_armed()
-    scanned.scan("armed", "GUIDED", [case for case in (*EVERY, *BY_MODE) if case.number != MOTOR_TEST])
+    scanned.scan("armed", "GUIDED", [c for c in (*EVERY, *BY_MODE) if c.number != MOTOR_TEST])
 
 
 def in_flight(scanned: Scanned) -> None:
@@ -162,7 +163,7 @@ def in_failsafe(scanned: Scanned) -> None:
     program.release_rc()
     program.params["SIM_RC_FAIL"] = 1.0
     program.wait_mode("RTL")
-    scanned.scan("failsafe", "RTL", (*EVERY, *BY_MODE))
+    scanned.scan("failsafe", "RTL", [c for c in (*EVERY, *BY_MODE) if c.number not in DISARMING])
 
 
 def be_high(program: Program) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 from sitl import vehicles
 from sitl.client import Client
 from sitl.client.connection import Connection
+from sitl.client.errors import CommandRefusedError
 from sitl.missions.manoeuvres import executable
 from sitl.missions.manoeuvres.__main__ import FRAMES, HOME
 from sitl.simulation import Simulation, load_core
@@ -82,6 +83,13 @@ class Program(Client):
         """On the ground, armed in a mode."""
         self.be_ready()
         self.set_mode(mode)
+        for patience in (5.0, 20.0, 60.0):  # its log is opened in wall time
+            try:
+                return self.arm()
+            except CommandRefusedError:
+                if self.is_ours:
+                    raise
+                self.delay(patience)
         self.arm()
 
     def be_flying(self, altitude: float = HEIGHT_M) -> None:

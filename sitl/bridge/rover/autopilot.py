@@ -75,6 +75,9 @@ class RoverAutopilot(BaseAutopilot):
         """``speed`` [m/s]; airspeed (0) is ground speed (1), there are no others."""
         return bool(set_mode.change_speed(self._v, speed))
 
+    def change_reposition_speed(self, speed: float) -> bool:
+        return self.change_speed(1, speed)
+
     def set_reversed(self, backward: bool) -> None:
         """Drive paths backwards, until the mode changes."""
         ap = self._v.autopilot

@@ -179,7 +179,10 @@ class StreamService(Service):
         return ACCEPTED if known else FAILED
 
     def request_message(self, channel: Channel, command: Command) -> int:
-        """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all)."""
+        """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all), of the
+        message for MESSAGE_INTERVAL."""
+        if int(command.p1) == INTERVAL.id:
+            return self.get_interval(channel, command._replace(p1=command.p2))
         if int(command.p1) == AVAILABLE_MODES.id:
             return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
         result = self.bridge.send_after_answer(channel, int(command.p1))
