@@ -131,7 +131,8 @@ def test_local_frames(v: Copter, frame: int, pos: Any, vel: Any) -> None:
     local(ONLY_ACCELERATION | 0x200), local(ONLY_ACCELERATION | 0x200, a=NAN3),  # a force
     local(ONLY_VELOCITY, vel=(0, 0, 1001)), local(POS_VEL, vel=(-1001, 0, 0)),
     attitude(7 | 64), attitude(64), attitude(1), attitude(2), attitude(3), attitude(4), attitude(0x84),
-    attitude(0, (0, 0, 0, 0)), attitude(7, (1.01, 0, 0, 0)), attitude(7, (0, 2, 0, 0)), attitude(0, (math.nan, 0, 0, 0)),
+    attitude(0, (0, 0, 0, 0)), attitude(7, (1.01, 0, 0, 0)), attitude(7, (0, 2, 0, 0)),
+    attitude(0, (math.nan, 0, 0, 0)),
     attitude(0, (math.inf, 0, 0, 0)), attitude(7, thrust=math.inf), attitude(7, thrust=math.nan),
 ])  # fmt: skip
 def test_what_cannot_be_flown_stops(v: Copter, message: Any) -> None:

@@ -6,22 +6,24 @@ from __future__ import annotations
 import itertools
 from typing import NamedTuple
 
+from sitl.bridge.docs import NEWER
 from sitl.client.commands import command_name, command_number
 
 RANGES = (
     (16, 25), (30, 36), (80, 85), (92, 95), (112, 115), (159, 159), (176, 198), (200, 218), (220, 224), (240, 243),
     (245, 246), (252, 252), (260, 260), (262, 262), (300, 300), (310, 311), (400, 401), (405, 406), (410, 410),
-    (420, 420), (500, 500), (510, 512), (519, 522), (525, 534), (600, 601), (611, 611), (1000, 1001), (2000, 2005), (2010, 2010),
-    (2500, 2505), (2510, 2511), (2520, 2520), (2600, 2600), (2800, 2800), (3000, 3001), (4000, 4001), (4501, 4501),
-    (5000, 5004), (5100, 5100), (5200, 5200), (10001, 10001), (10151, 10151), (30001, 30002),
-    (31000, 31009), (31012, 31014), (32000, 32000), (42000, 42000), (42004, 42005), (42007, 42007), (42425, 42429), (42501, 42503), (42505, 42505),
-    (42600, 42600), (42650, 42651), (42700, 42703), (43000, 43003), (43005, 43006),
+    (420, 420), (500, 500), (510, 512), (519, 522), (525, 534), (600, 601), (611, 611), (1000, 1001), (2000, 2005),
+    (2010, 2010), (2500, 2505), (2510, 2511), (2520, 2520), (2600, 2600), (2800, 2800), (3000, 3001), (4000, 4001),
+    (4501, 4501), (5000, 5004), (5100, 5100), (5200, 5200), (10001, 10001), (10151, 10151), (30001, 30002),
+    (31000, 31009), (31012, 31014), (32000, 32000), (42000, 42000), (42004, 42005), (42007, 42007), (42425, 42429),
+    (42501, 42503), (42505, 42505), (42600, 42600), (42650, 42651), (42700, 42703), (43000, 43003), (43005, 43006),
 )  # fmt: skip
-"""Numbers of MAV_CMD; without 31010 and 31011, which ``sitl run --lockstep`` has for itself, and 5300, which may switch
-motors off in flight, 42006 and 42424, which calibrate compasses there, and the buttons of a Solo, which arm and take off."""
+"""Numbers of MAV_CMD, without some: 31010 and 31011, which ``sitl run --lockstep`` has for itself; 5300, which may
+switch motors off in flight; 42006 and 42424, which calibrate compasses there; the buttons of a Solo, which take off."""
 HERE = (-35.363262, 149.165237)
 """The start of the programs [deg]."""
 RELATIVE = 3
+SET_GLOBAL_ORIGIN = next(number for number, name in NEWER.items() if name == "DO_SET_GLOBAL_ORIGIN")
 
 
 class Case(NamedTuple):
@@ -37,7 +39,7 @@ class Case(NamedTuple):
     @property
     def name(self) -> str:
         """As "DO_CHANGE_SPEED 1 5"."""
-        words = [command_name(self.number), *(f"{x:g}" for x in self.params)]
+        words = [NEWER.get(self.number) or command_name(self.number), *(f"{x:g}" for x in self.params)]
         return " ".join([*words, f"frame {self.frame}"] if self.frame != RELATIVE else words)
 
 
@@ -54,8 +56,25 @@ _PLAIN: dict[str, tuple[tuple[float, ...], ...]] = {
     "DO_JUMP_TAG": ((1,), (0,), (-1,)),
     "MISSION_START": ((1, 0), (0, 1), (1, 1)),
     "SET_MESSAGE_INTERVAL": (
-        (30, -1), (30, -2), (30, 0), (30, 1), (30, 999), (30, 1000), (30, 2500), (30, 3000), (30, 3125), (30, 4000),
-        (30, 20000), (30, 24000), (30, 25000), (30, 1e6), (30, 6e7), (30, 7e7), (30, 1e5, 1), (9999, 1e5), (-1, 1e5),
+        (30, -1),
+        (30, -2),
+        (30, 0),
+        (30, 1),
+        (30, 999),
+        (30, 1000),
+        (30, 2500),
+        (30, 3000),
+        (30, 3125),
+        (30, 4000),
+        (30, 20000),
+        (30, 24000),
+        (30, 25000),
+        (30, 1e6),
+        (30, 6e7),
+        (30, 7e7),
+        (30, 1e5, 1),
+        (9999, 1e5),
+        (-1, 1e5),
     ),
     "GET_MESSAGE_INTERVAL": ((0,), (30,), (9999,), (-1,)),
     "REQUEST_MESSAGE": ((0,), (148,), (9999,), (-1,), (244, 30), (244, 9999)),
@@ -98,8 +117,8 @@ _PLAIN: dict[str, tuple[tuple[float, ...], ...]] = {
 }
 _ON_THE_GROUND: dict[str, tuple[tuple[float, ...], ...]] = {
     "DO_MOTOR_TEST": (
-        (0, 0, 5, 0.1), (1, 0, 5, 0.1), (5, 0, 5, 0.1), (1, 1, 1100, 0.1), (1, 1, 500, 0.1), (1, 2, 0, 0.1),
-        (1, 3, 5, 0.1), (1, 0, 101, 0.1), (1, 0, -1, 0.1),
+        (3, 0, 5, 0.1), (4, 0, 5, 0.1), (1, 1, 2201, 0.1), (0, 0, 5, 0.1), (1, 0, 5, 0.1), (5, 0, 5, 0.1),
+        (1, 1, 1100, 0.1), (1, 1, 500, 0.1), (1, 2, 0, 0.1), (1, 3, 5, 0.1), (1, 0, 101, 0.1), (1, 0, -1, 0.1),
         (1, 0, 5, 0.1, 2), (1, 0, 5, 0.1, 5), (1, 0, 5, 0.1, 1, 2), (1.5, 0, 5, 0.1),
     ),
     "FIXED_MAG_CAL_YAW": ((0, 1),),
@@ -107,9 +126,6 @@ _ON_THE_GROUND: dict[str, tuple[tuple[float, ...], ...]] = {
     "SET_EKF_SOURCE_SET": ((2,), (3,), (4,), (0,), (1,)),
     "DO_SET_SAFETY_SWITCH_STATE": ((0,), (1,), (2,)),
 }  # fmt: skip
-
-
-SET_GLOBAL_ORIGIN = 611  # newer than some dialects
 
 
 def _places(command: str | int, first: tuple[tuple[float, ...], ...], z: float = 10.0) -> list[Case]:
@@ -120,7 +136,9 @@ def _places(command: str | int, first: tuple[tuple[float, ...], ...], z: float =
         for four, frame in itertools.product(first, (RELATIVE, 0, 1, 2, 5, 6, 10, 11))
         if frame == RELATIVE or four == first[0]
     ]
-    bad = [Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_place=True) for place in ((91.0, 0.0, z), (0.0, 181.0, z))]
+    bad = [
+        Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_place=True) for place in ((91.0, 0.0, z), (0.0, 181.0, z))
+    ]
     return [*good, *bad]
 
 
@@ -130,7 +148,7 @@ def _cases(table: dict[str, tuple[tuple[float, ...], ...]]) -> list[Case]:
 
 CASES = (
     *_cases(_PLAIN),
-    *_places("DO_REPOSITION", ((-1, 1), (-1, 0), (3, 1), (0, 1), (-1, 2))),
+    *_places("DO_REPOSITION", ((3, 1), (-1, 0), (0, 1), (-1, 1), (-1, 2))),
     *_places("DO_SET_ROI", ((0,),)),
     *_places("DO_SET_ROI_LOCATION", ((0,),)),
     *_places("DO_SET_HOME", ((0,), (2,)), 584.0),
@@ -144,6 +162,9 @@ _BY_MODE = (
 )  # fmt: skip
 BY_MODE = (
     *(case for case in CASES if command_name(case.number) in _BY_MODE),
-    *_places("DO_REPOSITION", ((-1, 1), (-1, 0), (3, 1)))[:3],
+    *(
+        Case(command_number("DO_REPOSITION"), (*speed_and_flags, 0, 0, *HERE, 10.0), is_place=True)
+        for speed_and_flags in ((3, 1), (-1, 0), (-1, 1))
+    ),
 )
 """Those whose results hang on the mode."""

@@ -53,9 +53,10 @@ class Scanned:
 
     def _result(self, mode: str, case: Case, by_int: bool) -> str:
         with tried(self.program, mode):
-            result = ask(self.program, case, by_int)
-            if result == "ACCEPTED" and not self.program.is_ours:
-                self.program.delay(0.3)  # the next HEARTBEAT tells whether the mode is another one
+            program = self.program
+            result, now = ask(program, case, by_int), program.now
+            if result == "ACCEPTED" and not program.is_ours:  # the next HEARTBEATs tell whether it is in another mode
+                program.passes(lambda: program.telemetry.heartbeat_at > now + 0.15, 3.0)
             return result
 
     def rows(self) -> dict[str, Value]:
@@ -147,7 +148,10 @@ def in_flight(scanned: Scanned) -> None:
     """Flying, in every mode that it can be in for a while."""
     program = scanned.program
     be_high(program)
-    scanned.scan("flying", "GUIDED", (*EVERY, *CASES))
+    program.set_mode(MODES[program.of][0])
+    program.set_mode("GUIDED")  # it has no target
+    tested = () if program.of == "copter" else (MOTOR_TEST,)  # a rover is disarmed by a test
+    scanned.scan("flying", "GUIDED", [case for case in (*EVERY, *CASES) if case.number not in tested])
     cases = (*scanned.supported("flying"), *BY_MODE)
     for mode in MODES[program.of]:
         go_back(program)

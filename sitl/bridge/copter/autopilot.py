@@ -19,7 +19,6 @@ from ...autopilot.copter.modes import (
     set_mode,
     simple,
     systemid,
-    table,
     throw,
     zigzag,
 )

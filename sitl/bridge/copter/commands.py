@@ -15,6 +15,7 @@ from ..services import command_table
 from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry, is_on_earth
 from ..services.command_table import set_mode
 from ..services.mount import MountService
+from ..services.other_commands import move_landing_gear
 from ..services.parachute import ParachuteService
 from ..services.service import ACCEPTED, DENIED, FAILED
 from ..services.winch import WinchService
@@ -54,7 +55,7 @@ BOARD_ORDER = 2.0
 
 
 def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p6 order. One motor at a time (p5 0, 1)."""
+    """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p6 order. One motor (p5 0 or 1)."""
     kind = int(command.p2)
     if command.p5 not in (0.0, 1.0):
         return FAILED
@@ -80,7 +81,7 @@ def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """115: in any mode; p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 0 absolute, 1 relative."""
+    """115: p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 1 relative. Taken in any mode."""
     if not 0.0 <= command.p1 <= 360.0 or command.p4 not in (0.0, 1.0):
         return FAILED
     direction = (command.p3 > 0.0) - (command.p3 < 0.0)
@@ -177,5 +178,6 @@ COMMANDS: dict[int, Entry] = {
     201: Entry(set_roi, required=(5, 6, 7), place=True, off_earth=True),
     208: Entry(release_parachute, required=(1,)),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
+    2520: Entry(move_landing_gear),
     42600: Entry(winch),
 }

@@ -336,7 +336,9 @@ def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         mount.look_ahead()
     else:
-        alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
+        alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
+        if alt is None:
+            return FAILED
         mount.look_at(command.lat, command.lon, alt)
     return ACCEPTED
 
@@ -379,7 +381,9 @@ def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
         return DENIED
     if command.p1 != 0.0 or not is_on_earth(command.lat, command.lon):
         return FAILED
-    alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
+    alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
+    if alt is None:
+        return FAILED
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
 

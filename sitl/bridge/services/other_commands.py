@@ -107,7 +107,6 @@ COMMANDS: dict[int, Entry] = {
     534: Entry(choose_camera_source),
     2500: Entry(record_video),
     2501: Entry(record_video),
-    2520: Entry(move_landing_gear),
     5300: Entry(switch_safety),
     10001: Entry(identify),
     32000: Entry(forward_can),
