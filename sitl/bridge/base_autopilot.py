@@ -115,6 +115,10 @@ class BaseAutopilot:
     def set_roi(self, place: Vector | None) -> None:
         """Keep the nose on a point, NED [m], or (None) no longer: not in vehicles that steer with it."""
 
+    def change_reposition_speed(self, speed: float) -> bool:
+        """DO_REPOSITION's speed [m/s]: means nothing to most."""
+        return True
+
     # ------------------------------------------------------------------ home, origin, parameters
 
     def set_home_here(self) -> bool:

@@ -66,6 +66,14 @@ class Places:
         rise = self._ground(lat, lon) if frame in FRAMES_TERRAIN else 0.0
         return None if rise is None else _vector(local_place(self._autopilot, lat, lon, z + rise, frame))
 
+    def alt(self, lat: int, lon: int, z: float, frame: int) -> float | None:
+        """Altitude [m above sea level] of a place [degE7, m in a MAV_FRAME]; None above ground whose height is not
+        known."""
+        if frame in FRAMES_AMSL:
+            return z
+        rise = self._ground(lat, lon) if frame in FRAMES_TERRAIN else 0.0
+        return None if rise is None else self.home_alt() + rise + z
+
     def over_origin(self, north: float, east: float, alt: float) -> Vector | None:
         """NED [m] of a point at ``alt`` [m above sea level]; None before there is an origin."""
         return _vector(over_origin(self._autopilot.estimate, north, east, alt))

@@ -63,7 +63,8 @@ def test_modes(bench: Bench) -> None:
     answers = bench.ask(ask)
     assert [m.text for m in answers if m.get_type() == "STATUSTEXT"] == ["No such mode 99"]
     assert [m.result for m in answers if m.get_type() == "COMMAND_ACK"] == [FAILED]
-    assert bench.command(176, 1, 4.5) == FAILED
+    assert bench.command(176, 1, 4.5) == ACCEPTED and bench.autopilot.mode() == 4
+    assert bench.command(176, 1, -1) == FAILED
     for number, mode in ((17, 5), (20, 6), (21, 9)):
         assert bench.command(number, 0, 0, 0, math.nan) == ACCEPTED
         assert bench.autopilot.mode() == mode
@@ -97,7 +98,7 @@ def test_reposition(bench: Bench) -> None:
 def test_speed_yaw_pause(bench: Bench) -> None:
     assert bench.command(178, 1, 3, -1) == ACCEPTED
     assert bench.command(178, 1, -5, -1) == DENIED
-    assert bench.command(178, 9, 3, -1) == DENIED
+    assert bench.command(178, 4, 3, -1) == DENIED, "the end of SPEED_TYPE"
     assert bench.command(115, 90, 30, -1, 1) == ACCEPTED
     assert bench.command(115, 361, 30, -1, 1) == FAILED
     assert bench.command(193, 0) == ACCEPTED
@@ -139,7 +140,10 @@ def test_system_commands(bench: Bench) -> None:
     assert bench.command(401) == TEMPORARILY_REJECTED
     assert bench.command(241, 1) == FAILED
     assert bench.command(410) == FAILED
+    assert bench.command(246, 0) == FAILED, "armed is said first"
     assert bench.command(520, 1) == ACCEPTED
+    assert bench.command(520, 0) == FAILED
+    assert [bench.command(2600, x) for x in (0, 1, 2)] == [ACCEPTED, ACCEPTED, FAILED]
 
 
 def test_mission_commands(bench: Bench) -> None:
@@ -147,6 +151,38 @@ def test_mission_commands(bench: Bench) -> None:
     assert bench.command(300, 1, 2) == DENIED
     assert bench.command(224, 1) == DENIED
     assert bench.command(224, 1.5) == DENIED
+    bench.autopilot.ok = False
+    assert bench.command(224, 0) == FAILED, "there is no mission"
+
+
+def test_the_interval_of_a_message_may_be_requested_as_a_message(bench: Bench) -> None:
+    bench.command(511, 30, 40_000)
+    ask = mavlink.MAVLink_command_long_message(1, 1, 512, 0, 244, 30, 0, 0, 0, 0, 0)
+    assert bench.ask(ask, "MESSAGE_INTERVAL")[0].interval_us == 40_000
+    assert bench.command(512, 244, 9999) == FAILED
+
+
+def test_the_other_vehicle_is_chosen(bench: Bench) -> None:
+    assert [bench.command(32, number) for number in (7, 0, 256)] == [ACCEPTED, DENIED, DENIED]
+    assert bench.vehicle.parameters["FOLL_SYSID"] == 7.0
+
+
+@pytest.mark.parametrize(("number", "params", "result"), [
+    (500, (), ACCEPTED), (2520, (0, 1), ACCEPTED), (10001, (), FAILED), (32000, (0,), ACCEPTED), (32000, (1,), FAILED),
+    (42700, (32451,), DENIED), (42701, (0,), DENIED), (42701, (2,), ACCEPTED), (42701, (9,), UNSUPPORTED),
+    (5300, (1,), ACCEPTED), (5300, (2,), DENIED), (532, (0,), DENIED), (532, (4,), FAILED), (534, (1,), DENIED),
+    (2500, (), FAILED), (2501, (), FAILED), (43003, (), UNSUPPORTED),
+])  # fmt: skip
+def test_parts_that_are_not_there(bench: Bench, number: int, params: tuple[float, ...], result: int) -> None:
+    assert bench.command(number, *params) == result
+
+
+def test_a_place_that_is_too_high_or_not_on_earth(bench: Bench) -> None:
+    bench.vehicle.locate()
+    place = (HOME[0] + 1000, HOME[1])
+    assert command_int(bench, 201, 3, *place, 83_001.0) == DENIED
+    assert command_int(bench, 201, 3, 910_000_000, 0, 10.0) == FAILED
+    assert command_int(bench, 179, 3, *place, 10.0, 2) == FAILED, "neither here nor there"
 
 
 def test_a_repeated_command_is_answered_again(bench: Bench) -> None:
@@ -173,14 +209,15 @@ def test_a_version_1_client_is_answered_in_version_1(bench: Bench) -> None:
 GUIDED = 15
 
 
-@pytest.mark.parametrize("number", [17, 21, 22, 115, 185, 193])
+@pytest.mark.parametrize("number", [17, 21, 22, 115, 185, 193, 213, 2520])
 def test_what_only_copters_do_is_unsupported(rover_bench: Bench, number: int) -> None:
     assert rover_bench.command(number, 1) == UNSUPPORTED
     assert rover_bench.autopilot.calls == []
 
 
 def test_origin(bench: Bench) -> None:
-    for frame, x, y in ((0, 0, 0), (0, 1, 2_140_000_000), (3, 1, 1)):
+    assert bench.command(611) == UNSUPPORTED, "single precision cannot say where"
+    for frame, x, y in ((0, 0, 0), (0, 1, 2_140_000_000), (3, 1, 1), (1, 1, 1)):
         assert command_int(bench, 611, frame, x, y, 0.0) == DENIED
     assert bench.autopilot.calls == []
     assert command_int(bench, 611, 5, -233223320, 1234567800, 23.67) == ACCEPTED
@@ -191,10 +228,11 @@ def test_origin(bench: Bench) -> None:
 
 def test_a_battery_is_reset(rover_bench: Bench) -> None:
     assert rover_bench.command(42651, 65535, 56) == ACCEPTED
-    for mask, left in ((0, 56), (1, 101), (1, -1)):
-        assert rover_bench.command(42651, mask, left) == DENIED
-    assert rover_bench.command(42651, 2, 56) == FAILED
-    assert rover_bench.autopilot.calls == [("set_battery_left", 56.0)]
+    assert [rover_bench.command(42651, mask, 56) for mask in (0, 2, 65536)] == [ACCEPTED] * 3, "no other is there"
+    assert [rover_bench.command(42651, 1, left) for left in (101, -1)] == [ACCEPTED] * 2
+    assert rover_bench.autopilot.calls == [("set_battery_left", left) for left in (56.0, 100.0, 0.0)]
+    rover_bench.autopilot.ok = False
+    assert rover_bench.command(42651, 1, 56) == FAILED
 
 
 def test_the_banner_and_calibrations_of_compasses_that_are_not_there(bench: Bench) -> None:
@@ -212,7 +250,7 @@ def test_vertical_take_off_and_landing_are_the_copters_own(bench: Bench) -> None
 def test_speed(rover_bench: Bench) -> None:
     for kind in (0, 1):
         assert rover_bench.command(178, kind, 3) == ACCEPTED
-    for kind in (2, 3, 9, 0.5):
+    for kind in (2, 3, 4):
         assert rover_bench.command(178, kind, 3) == DENIED
     assert rover_bench.command(178, 1, math.nan) == DENIED
     rover_bench.autopilot.ok = False
@@ -227,24 +265,21 @@ def test_reverse(rover_bench: Bench) -> None:
     assert rover_bench.autopilot.calls == [("set_reversed", True), ("set_reversed", False)]
 
 
-def test_heading_and_speed(rover_bench: Bench) -> None:
-    assert rover_bench.command(213, 90, 1.5, 0) == ACCEPTED
-    assert rover_bench.command(213, -45, -1, 1) == ACCEPTED
-    rover_bench.autopilot.ok = False
-    assert rover_bench.command(213, 90, 1.5, 0) == FAILED
-    ahead, change, _ = rover_bench.autopilot.calls
-    assert ahead == ("guided_heading", pytest.approx(math.pi / 2), 1.5)
-    assert change == ("guided_heading_change", pytest.approx(-math.pi / 4), -1.0)
-
-
 def test_motor_test(rover_bench: Bench) -> None:
     assert rover_bench.command(209, 1, 0, 20, 2) == ACCEPTED
     assert rover_bench.command(209, 2, 1, 1700, 5) == ACCEPTED
     asked = list(rover_bench.autopilot.calls)
     assert asked == [("test_motor", 1, 0.2, 0, 2.0), ("test_motor", 2, 0.0, 1700, 5.0)]
-    for refused in ((1, 2, 20, 2), (1.5, 0, 20, 2), (1, 1, 1e9, 2)):
+    for refused in ((1, 3, 20, 2), (5, 0, 20, 2), (1, 1, 1e9, 2), (1, 0, 101, 2)):
         assert rover_bench.command(209, *refused) == FAILED
     assert rover_bench.autopilot.calls == asked
+
+
+def test_no_function_of_a_switch_is_one(bench: Bench, rover_bench: Bench) -> None:
+    """For rovers alone, as ArduPilot has it."""
+    assert rover_bench.command(218, 0, 0) == ACCEPTED and rover_bench.command(218, 0, 3) == DENIED
+    bench.autopilot.ok = False
+    assert bench.command(218, 0, 0) == FAILED
 
 
 def test_modes_of_a_rover(rover_bench: Bench) -> None:
@@ -270,7 +305,8 @@ def test_reposition_of_a_rover(rover_bench: Bench) -> None:
 
     assert go(0) == DENIED
     assert go(1, speed=1.5) == ACCEPTED and rover_bench.autopilot.mode() == GUIDED
-    assert [c[0] for c in rover_bench.autopilot.calls] == ["set_mode", "guided_position", "change_speed"]
+    calls = ["set_mode", "change_reposition_speed", "guided_position"]
+    assert [c[0] for c in rover_bench.autopilot.calls] == calls
 
 
 def test_manual_control_steers_with_y_and_drives_with_z(rover_bench: Bench) -> None:

@@ -78,18 +78,36 @@ def test_motor_test_by_pulse_ends_with_a_disarming(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize(
-    "p", [(0, 0, 10, 1), (5, 0, 10, 1), (1, 0, 101, 1), (1, 0, -1, 1), (1, 1, 900, 1), (1, 2, 10, 1), (1, 0, 10, 1, 4),
-          (1, 0, 10, -1), (1, 0, 10, 601)],
+    "p", [(0, 0, 10, 1), (5, 0, 10, 1), (1, 0, 101, 1), (1, 0, -1, 1), (1, 1, 900, 1), (1, 3, 10, 1)],
 )  # fmt: skip
-def test_motor_test_refuses(bench: Bench, p: tuple[float, ...]) -> None:
-    assert bench.command(MOTOR_TEST, *p) == FAILED
+def test_a_motor_test_that_cannot_be_ends_as_it_begins(bench: Bench, p: tuple[float, ...]) -> None:
+    """ArduCopter takes it, and gives it up at its first look."""
+    assert bench.command(MOTOR_TEST, *p) == ACCEPTED
+    bench.wait(0.1)
+    assert not bench.armed and bench.pwm[:4] == [1000] * 4
+    said = [t for t in bench.texts if "otor" in t]
+    assert (said[0], said[-1]) == ("starting motor test", "finished motor test")
+    assert ("Motor Test: cancelled" in said) == (p[0] in (0, 5))
+
+
+def test_a_motor_is_tested_by_the_throttle_stick(bench: Bench) -> None:
+    bench.simulation.v.autopilot.rc.channels[2] = 1400
+    assert bench.command(MOTOR_TEST, 1, 2, 0, 1, 1, 2) == ACCEPTED
+    bench.wait(0.1)
+    assert bench.pwm[0] == 1400
+
+
+def test_several_motors_in_turn_are_refused(bench: Bench) -> None:
+    assert bench.command(MOTOR_TEST, 1, 0, 10, 1, 4) == FAILED
     assert not bench.armed
 
 
-def test_no_motor_test_while_armed(bench: Bench) -> None:
+def test_a_motor_test_disarms_who_was_armed_and_waits_for_who_flies(bench: Bench) -> None:
     bench.wait(20.0)
     assert bench.command(400, 1) == ACCEPTED
-    assert bench.command(MOTOR_TEST, 1, 0, 10, 1) == FAILED
+    assert bench.command(MOTOR_TEST, 1, 0, 10, 1) == ACCEPTED
+    bench.wait(1.2)
+    assert not bench.armed
     bench.simulation.v.autopilot.arming.landed = 0
     assert bench.command(MOTOR_TEST, 1, 0, 10, 1) == FAILED
     assert "Motor Test: vehicle not landed" in bench.texts

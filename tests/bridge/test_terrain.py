@@ -134,3 +134,26 @@ def test_a_rover_asks_nobody() -> None:
     bench.client.send(mavlink.MAVLink_terrain_check_message(*HOME[:2]))
     bench.run(6.0)
     assert not bench.client.receive("TERRAIN_REQUEST", "TERRAIN_REPORT")
+
+
+def test_a_home_above_the_ground_needs_the_ground_there() -> None:
+    bench = Ground()
+
+    def set_home() -> int:
+        place = (HOME[0] + 300_000, HOME[1], 5.0)
+        bench.client.receive()
+        bench.client.send(mavlink.MAVLink_command_int_message(1, 1, 10, 179, 0, 0, 0, 0, 0, 0, *place))
+        bench.bridge.receive()
+        return int(bench.client.receive("COMMAND_ACK")[-1].result)
+
+    bench.run(2.0)
+    assert set_home() == 4, "nothing is known of it"
+    here = block_of(HOME[0], HOME[1], 100.0)
+    for m in bench.requests(18.0):
+        bench.answer(m, height=600 if (m.lat, m.lon) == (here.lat, here.lon) else 650)
+    bench.run(1.0)
+    assert set_home() == 0
+    lat, lon, alt = next(call for call in bench.autopilot.calls if call[0] == "set_home")[1:]
+    ground = bench.bridge.get(TerrainService).rise(lat, lon)
+    assert ground == 50.0
+    assert alt == bench.bridge.places.home_alt() + ground + 5.0

@@ -286,6 +286,7 @@ def test_motor_test(core: Core, frame: str, motor: int, output: int) -> None:
 
 @pytest.mark.parametrize(("frame", "motor"), [("erle_rover", 3), ("skid_rover", 1), ("skid_rover", 5)])
 def test_motor_test_of_a_motor_that_is_not_there(core: Core, frame: str, motor: int) -> None:
+    """One that is on other rovers is taken, and the test is over at once."""
     d = Driver(core, frame).ready()
-    assert d.ask(209, motor, 0, 30, 3) == REFUSED
+    assert d.ask(209, motor, 0, 30, 3) == (REFUSED if motor == 5 else 0)
     assert not d.armed

@@ -185,18 +185,6 @@ def test_share_of_the_speed_by_attitude_target(core: Core, frame: str) -> None:
     assert angle(d.heading, 30.0) < 4.0
 
 
-def test_yaw_and_speed_command(core: Core) -> None:
-    """NAV_SET_YAW_SPEED: a heading, then one relative to it."""
-    d = Driver(core, "skid_rover", estimator="truth").armed_in()
-    assert d.ask(213, 90, 0.5, 0) == 0
-    d.fly(2.8)
-    assert d.ask(213, -30, 0.5, 1) == 0
-    d.fly(2.8)
-    assert angle(d.heading, 60.0) < 4.0 and d.speed == pytest.approx(0.5, rel=0.05)
-    assert d.set_mode(rover.HOLD)
-    assert d.ask(213, 90, 0.5, 0) == 4
-
-
 @ALL
 def test_speed_is_changed_on_the_way(core: Core, frame: str) -> None:
     """DO_CHANGE_SPEED counts for the place under way."""

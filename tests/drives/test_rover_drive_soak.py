@@ -19,7 +19,7 @@ ALL = pytest.mark.parametrize("frame", AIRFRAMES)
 
 MASKS = (0xDF8, 0xDC7, 0x9C7, 0x5C7, 0x9FF, 0x5FF, 0xDC0, 0xFFF, 0x1C7)
 """Place; velocity; with yaw, with yaw rate; yaw, yaw rate alone; place and velocity; nothing; both yaws."""
-MISSION_CURRENT, YAW_AND_SPEED, REBOOT, MOTOR_TEST = 224, 213, 246, 209
+MISSION_CURRENT, REBOOT, MOTOR_TEST = 224, 246, 209
 OFF = 3.0
 """Estimate to truth [m] while it stands; GPS comes late."""
 
@@ -142,7 +142,6 @@ class RoverSoak(ByDice, Driver):
         d, v = self.dice, self.cruise
         number, params = d.choice(
             ((c.DO_CHANGE_SPEED, (d.choice((0, 1, 2)), d.uniform(-0.5, 2.0 * v))),
-             (YAW_AND_SPEED, (d.uniform(-180, 360), d.uniform(-v, v), d.choice((0, 1)))),
              (c.DO_SET_REVERSE, (d.choice((0, 1)),)),
              (ARM, (d.choice((0, 1, 1)),)),
              (MISSION_CURRENT, (d.randint(0, 5),)),

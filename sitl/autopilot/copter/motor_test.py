@@ -8,6 +8,7 @@ aside. The test ends by itself, or with a disarming.
 from __future__ import annotations
 
 from ...core.kernels import inlined
+from ...core.scalars import constrain
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, emit
 from ..state import Arming
@@ -20,40 +21,34 @@ LONGEST_S = 600.0
 # Answers of start()
 OK = 0
 NOT_LANDED = 1
-ARMED = 2
-BAD_MOTOR = 3
-BAD_THROTTLE = 4
-BAD_TIME = 5
+BAD_MOTOR = 2
+BAD_THROTTLE = 3
 
 
-def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float, seconds: float) -> int:
+def refusal(motors: MotorsState, arming: Arming, motor: int, throttle: float) -> int:
     """OK, or why motor 0 .. is not turned so."""
     if not arming.landed:
         return NOT_LANDED
-    if arming.armed and motors.test_motor == 0:
-        return ARMED
     if motor < 0 or motor >= motors.count:
         return BAD_MOTOR
-    if not 0.0 <= throttle <= 1.0:
-        return BAD_THROTTLE
-    return OK if 0.0 <= seconds <= LONGEST_S else BAD_TIME
+    return OK if 0.0 <= throttle <= 1.0 else BAD_THROTTLE
 
 
 def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
-    """Turn motor 0 .. at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``. OK, or why not.
+    """Turn motor 0 .. at ``throttle`` (0 .. 1 of the pulse range) for ``seconds``, at most 600. OK, or why not.
 
-    A test under way goes on with the new motor, throttle and time.
+    A test under way goes on with the new motor, throttle and time; a vehicle that was armed is disarmed afterwards.
     """
     ap = v.autopilot
     motors = ap.control.motors
-    cause = refusal(motors, ap.arming, motor, throttle, seconds)
+    cause = refusal(motors, ap.arming, motor, throttle)
     if cause != OK:
         return cause
     if motors.test_motor == 0:
         emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor + 1))
     motors.test_motor = motor + 1
     motors.test_actuator = throttle
-    motors.test_until_us = v.time_us + int(seconds * 1e6)
+    motors.test_until_us = v.time_us + int(constrain(seconds, 0.0, LONGEST_S) * 1e6)
     ap.arming.armed = True
     ap.arming.armed_us = v.time_us
     return OK

@@ -8,6 +8,7 @@ As in ArduRover the vehicle is armed for it, with all arming checks, and radio, 
 from __future__ import annotations
 
 from ...core.kernels import law
+from ...core.scalars import constrain
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import MOTOR_TEST, Events, emit
 from ..state import Arming
@@ -25,17 +26,17 @@ OK = 0
 NOT_ARMABLE = 1
 BAD_MOTOR = 2
 BAD_THROTTLE = 3
-BAD_TIME = 4
+STEERING = 2
 
 
 @law
-def refusal(skid: bool, motor: int, throttle: float, pulse: int, seconds: float) -> int:
+def refusal(skid: bool, motor: int, throttle: float, pulse: int) -> int:
     """OK, or why no vehicle, skid-steered or not, can be tested so."""
     if motor < TEST_THROTTLE or motor > TEST_RIGHT or skid != (motor > 2):
         return BAD_MOTOR
     if not -1.0 <= throttle <= 1.0 or (pulse != 0 and not PULSE_MIN <= pulse <= PULSE_MAX):
         return BAD_THROTTLE
-    return OK if seconds >= 0.0 else BAD_TIME
+    return OK
 
 
 def start(v: Vehicle, motor: int, throttle: float, pulse: int, seconds: float) -> int:
@@ -50,17 +51,18 @@ def start(v: Vehicle, motor: int, throttle: float, pulse: int, seconds: float) -
     """
     ap = v.autopilot
     motors = ap.control.motors
-    cause = refusal(is_skid(ap.params), motor, throttle, pulse, seconds)
+    if not is_running(motors) and not ap.arming.armed and try_arm(v, BY_MOTOR_TEST, False) != 0:
+        return NOT_ARMABLE
+    cause = refusal(is_skid(ap.params), motor, throttle, pulse)
     if cause != OK:
+        set_disarmed(ap.arming, ap.events, v.time_us, BY_MOTOR_TEST)
         return cause
     if not is_running(motors):
-        if not ap.arming.armed and try_arm(v, BY_MOTOR_TEST, False) != 0:
-            return NOT_ARMABLE
         emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor))
     motors.test_motor = motor
     motors.test_value = throttle
     motors.test_pulse = pulse
-    motors.test_until_us = v.time_us + int(min(seconds, SECONDS_MAX) * 1e6)
+    motors.test_until_us = v.time_us + int(constrain(seconds, 0.0, SECONDS_MAX) * 1e6)
     return OK
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot import arming_checks, events, smart_rtl_path
+from ...autopilot import arming_checks, events, radio, smart_rtl_path
 from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
@@ -19,13 +19,15 @@ from ...autopilot.copter.modes import (
     set_mode,
     simple,
     systemid,
-    table,
     throw,
     zigzag,
 )
 from ...autopilot.copter.modes.acro import ACRO
 from ...autopilot.copter.modes.auto_yaw import Turn
 from ...autopilot.copter.modes.flip import FLIP
+from ...autopilot.copter.modes.guided import GUIDED, GUIDED_NOGPS
+from ...autopilot.copter.modes.rtl import RTL as RTL_MODE
+from ...autopilot.copter.modes.smart_rtl import SMART_RTL
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
 from ...autopilot.mission.notes import ParametersFound, Text
@@ -39,6 +41,8 @@ from ..base_autopilot import BY_GROUND_STATION, CRITICAL, EMERGENCY, INFO, WARNI
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
 _BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
+SPEED_MODES = (auto.AUTO, GUIDED, GUIDED_NOGPS, RTL_MODE, SMART_RTL)
+"""In which DO_CHANGE_SPEED is taken."""
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 _INSTEAD = {failsafe.DO_RTL: "Trying RTL Mode", failsafe.DO_LAND: "Using Land Mode"}
@@ -115,7 +119,11 @@ class CopterAutopilot(BaseAutopilot):
         return int(commands.take_off(self._v.autopilot, altitude)) == 0
 
     def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
-        """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front."""
+        """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front.
+
+        Only a vehicle that flies refuses it. A test of a motor that is not there, or at a throttle that is none, ends
+        as it begins.
+        """
         motor = position - 1
         order = frames.order(self._v.autopilot.params)
         if in_order and 0 <= motor < len(order):
@@ -123,7 +131,17 @@ class CopterAutopilot(BaseAutopilot):
         answer = int(motor_test.start(self._v, motor, throttle, seconds))
         if answer == motor_test.NOT_LANDED:
             self._say(CRITICAL, ["Motor Test: vehicle not landed"])
-        return answer == motor_test.OK
+            return False
+        if answer == motor_test.BAD_MOTOR:
+            self._say(INFO, ["starting motor test", "Motor Test: cancelled", "finished motor test"])
+        elif answer == motor_test.BAD_THROTTLE:
+            self._say(INFO, ["starting motor test", "finished motor test"])
+        return True
+
+    def throttle_pulse(self) -> int:
+        """Of the throttle stick [us]."""
+        ap = self._v.autopilot
+        return int(ap.rc.channels[radio.stick_channel(ap.params.RCMAP, radio.THROTTLE)])
 
     def set_servo(self, number: int, pulse: int) -> bool:
         """Outputs without a motor are free; no pulse (0) is a control of 0."""
@@ -173,9 +191,9 @@ class CopterAutopilot(BaseAutopilot):
         return int(guided_setpoints.set_position(self._v, Vec3(*place), guided_setpoints.NO_YAW)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
-        """SPEED_TYPE of MAVLink, ``speed`` [m/s]; refused in modes that do not navigate."""
+        """SPEED_TYPE of MAVLink, ``speed`` [m/s]; refused in modes that fly to no place."""
         kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
-        if not table.requires_position(self.mode()):
+        if self.mode() not in SPEED_MODES or not 0 <= kind < len(kinds):
             return False
         if self.mode() == auto.AUTO:
             return bool(self._sequencer().change_speed(self._v, kind, speed))
@@ -201,8 +219,8 @@ class CopterAutopilot(BaseAutopilot):
 
     def pause(self, on: bool) -> bool:
         done = commands.set_paused(self._v.autopilot.modes, on) == 0
-        if on and not done:
-            self._say(INFO, ["Failed to pause"])
+        if not done:
+            self._say(INFO, ["Failed to pause" if on else "Failed to resume"])
         return done
 
     def set_roi(self, place: Vector | None) -> None:

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, cast
 from ...autopilot.navigation.state import BY_LANDING, BY_PATH
 from ..channel import Channel
 from ..services import command_table
-from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry
+from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry, is_on_earth
 from ..services.command_table import set_mode
 from ..services.mount import MountService
+from ..services.other_commands import move_landing_gear
 from ..services.parachute import ParachuteService
 from ..services.service import ACCEPTED, DENIED, FAILED
 from ..services.winch import WinchService
@@ -47,34 +48,40 @@ def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if _copter(bridge).takeoff(command.z) else FAILED
 
 
-PERCENT, PULSE = 0.0, 1.0
+PERCENT, PULSE, PILOT = range(3)
 """MOTOR_TEST_THROTTLE_TYPE"""
 BOARD_ORDER = 2.0
 """MOTOR_TEST_ORDER: by motor number; the others go clockwise from the front."""
 
 
 def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """209: p1 motor, p2 0 percent or 1 pulse, p3 throttle, p4 seconds, p6 order. One motor at a time (p5 0 or 1)."""
-    if command.p2 not in (PERCENT, PULSE) or command.p5 not in (0.0, 1.0) or command.p1 != int(command.p1):
+    """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p6 order. One motor (p5 0 or 1)."""
+    kind = int(command.p2)
+    if command.p5 not in (0.0, 1.0):
         return FAILED
-    throttle = command.p3 * 0.01
-    if command.p2 == PULSE:
+    throttle = command.p3 * 0.01 if kind == PERCENT else -1.0
+    if kind in (PULSE, PILOT):
         least, most = bridge.parameter("MOT_PWM_MIN") or 0.0, bridge.parameter("MOT_PWM_MAX") or 0.0
-        throttle = (command.p3 - least) / (most - least) if most > least else -1.0
+        pulse = command.p3 if kind == PULSE else _copter(bridge).throttle_pulse()
+        throttle = (pulse - least) / (most - least) if most > least else -1.0
     ok = _copter(bridge).test_motor(int(command.p1), command.p6 != BOARD_ORDER, throttle, command.p4)
     bridge.say_pending()
     return ACCEPTED if ok else FAILED
 
 
+KINDS_OF_SPEED = 4
+"""SPEED_TYPE's end."""
+
+
 def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 horizontal, 2 climb, 3 descent; p2 speed [m/s]."""
-    if command.p2 <= 0.0 or command.p1 not in (0.0, 1.0, 2.0, 3.0):
+    if command.p2 <= 0.0 or int(command.p1) == KINDS_OF_SPEED:
         return DENIED
     return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
 
 
 def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """115: p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 0 absolute, 1 relative."""
+    """115: p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 1 relative. Taken in any mode."""
     if not 0.0 <= command.p1 <= 360.0 or command.p4 not in (0.0, 1.0):
         return FAILED
     direction = (command.p3 > 0.0) - (command.p3 < 0.0)
@@ -84,9 +91,9 @@ def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 def pause_continue(bridge: Bridge, channel: Channel, command: Command) -> int:
     """193: p1 0 pause, 1 continue, in GUIDED and AUTO; FAILED, with a text, in other modes and where AUTO has none."""
-    if command.p1 not in (0.0, 1.0):
+    if int(command.p1) not in (0, 1):
         return DENIED
-    ok = _copter(bridge).pause(command.p1 == 0.0)
+    ok = _copter(bridge).pause(int(command.p1) == 0)
     bridge.say_pending()
     return ACCEPTED if ok else FAILED
 
@@ -95,6 +102,8 @@ def set_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
     """195, 201: point the nose at a place, or the gimbal if it has a yaw axis; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return DENIED
+    if not is_on_earth(command.lat, command.lon):
+        return FAILED
     mount: MountService = bridge.get(MountService)
     if mount.turns_by_itself:
         return command_table.look_at(bridge, channel, command)
@@ -164,10 +173,11 @@ COMMANDS: dict[int, Entry] = {
     188: Entry(return_path),
     189: Entry(landing_sequence),
     193: Entry(pause_continue, required=(1,)),
-    195: Entry(set_roi, required=(5, 6, 7), place=True),
+    195: Entry(set_roi, required=(5, 6, 7), place=True, off_earth=True),
     197: Entry(no_roi),
-    201: Entry(set_roi, required=(5, 6, 7), place=True),
+    201: Entry(set_roi, required=(5, 6, 7), place=True, off_earth=True),
     208: Entry(release_parachute, required=(1,)),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
+    2520: Entry(move_landing_gear),
     42600: Entry(winch),
 }

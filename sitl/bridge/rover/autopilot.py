@@ -38,8 +38,16 @@ class RoverAutopilot(BaseAutopilot):
     # ------------------------------------------------------------------ outputs
 
     def test_motor(self, motor: int, throttle: float, pulse: int, seconds: float) -> bool:
-        """Drive an output: 1 throttle, 2 steering, 3 left, 4 right; at -1 .. 1, or with a pulse [us] that is not 0."""
-        return int(motor_test.start(self._v, motor, throttle, pulse, seconds)) == motor_test.OK
+        """Drive an output: 1 throttle, 2 steering, 3 left, 4 right; at -1 .. 1, or with a pulse [us] that is not 0.
+
+        Only a vehicle that cannot be armed refuses it; a test of an output that it does not have ends as it begins.
+        """
+        return int(motor_test.start(self._v, motor, throttle, pulse, seconds)) != motor_test.NOT_ARMABLE
+
+    def stick(self, motor: int) -> float:
+        """The stick of a motor, -1 .. 1."""
+        pilot = self._modes.pilot
+        return float(pilot.steering if motor == motor_test.STEERING else pilot.throttle)
 
     def set_servo(self, number: int, pulse: int) -> bool:
         """Outputs without a function (SERVOn_FUNCTION 0) are free."""
@@ -61,19 +69,12 @@ class RoverAutopilot(BaseAutopilot):
         """Drive to a place; its height means nothing to a rover."""
         return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
 
-    def guided_heading(self, heading: float, speed: float) -> bool:
-        """Drive at a heading [rad] and a speed [m/s]."""
-        return int(guided_setpoints.set_heading_and_speed(self._modes, self._v.time_us, heading, speed)) == 0
-
-    def guided_heading_change(self, change: float, speed: float) -> bool:
-        """Turn by an angle [rad] from the heading asked for last."""
-        yaw = self._v.autopilot.estimate.yaw
-        code = guided_setpoints.set_heading_change_and_speed(self._modes, self._v.time_us, yaw, change, speed)
-        return int(code) == 0
-
     def change_speed(self, kind: int, speed: float) -> bool:
         """``speed`` [m/s]; airspeed (0) is ground speed (1), there are no others."""
         return bool(set_mode.change_speed(self._v, speed))
+
+    def change_reposition_speed(self, speed: float) -> bool:
+        return self.change_speed(1, speed)
 
     def set_reversed(self, backward: bool) -> None:
         """Drive paths backwards, until the mode changes."""

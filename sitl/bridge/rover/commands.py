@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Commands that only the rover knows, or in its own way: speed, reverse, headings, motors.
+"""Commands that only the rover knows, or in its own way: speed, reverse, motors.
 
 Results as ArduRover gives them; what is the copter's (take-off, landing, yaw, pause, termination) is UNSUPPORTED.
 """
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, cast
 
+from ...autopilot.rover.motor_test import PULSE_MAX
 from ..channel import Channel
 from ..services import command_table
 from ..services.command import Command, Entry
-from ..services.service import ACCEPTED, DENIED, FAILED
+from ..services.service import ACCEPTED, CRITICAL, DENIED, FAILED
+from ..services.statustext import StatusTextService
 
 if TYPE_CHECKING:
     from ..bridge import Bridge
@@ -23,9 +24,13 @@ def _rover(bridge: Bridge) -> RoverAutopilot:
     return cast("RoverAutopilot", bridge.autopilot)
 
 
+UP_AND_DOWN = (2, 3, 4)
+"""SPEED_TYPE of climb and descent, and its end."""
+
+
 def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """178: p1 0 or 1 (else DENIED), p2 speed [m/s]; FAILED in a mode without a speed target."""
-    if command.p1 not in (0.0, 1.0):
+    """178: p1 0 or 1 (DENIED: climb, descent), p2 speed [m/s]; FAILED in a mode without a speed target."""
+    if int(command.p1) in UP_AND_DOWN:
         return DENIED
     return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
 
@@ -36,24 +41,43 @@ def set_reverse(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-PERCENT, PULSE = 0.0, 1.0
+PERCENT, PULSE, PILOT = range(3)
 """MOTOR_TEST_THROTTLE_TYPE"""
+LAST_MOTOR = 4
 
 
 def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """209: p1 1 throttle, 2 steering, 3 left, 4 right, p2 0 percent, 1 pulse, p3 how much, p4 seconds (to 30). Arms."""
-    if command.p2 not in (PERCENT, PULSE) or command.p1 != int(command.p1) or abs(command.p3) > 10_000.0:
+    """209: p1 1 throttle, 2 steering, 3 left, 4 right, p2 0 percent, 1 pulse, 2 stick, p3 how much, p4 seconds (to 30).
+
+    Arms.
+    """
+    motor, kind = int(command.p1), int(command.p2)
+    why = _why_no_test(motor, kind, command.p3)
+    if why:
+        bridge.get(StatusTextService).say(CRITICAL, f"Motor Test: {why}")
         return FAILED
-    throttle, pulse = (command.p3 * 0.01, 0) if command.p2 == PERCENT else (0.0, int(command.p3))
-    ok = _rover(bridge).test_motor(int(command.p1), throttle, pulse, command.p4)
+    rover = _rover(bridge)
+    throttle = rover.stick(motor) if kind == PILOT else max(command.p3 * 0.01, -1.0) if kind == PERCENT else 0.0
+    ok = rover.test_motor(motor, throttle, int(command.p3) if kind == PULSE else 0, command.p4)
     bridge.say_pending()
     return ACCEPTED if ok else FAILED
 
 
-def yaw_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """213: in GUIDED (else FAILED): p1 heading [deg], p2 speed [m/s], p3 1 adds p1 to the last target heading."""
-    turn = _rover(bridge).guided_heading_change if command.p3 > 0.0 else _rover(bridge).guided_heading
-    return ACCEPTED if turn(math.radians(command.p1), command.p2) else FAILED
+def _why_no_test(motor: int, kind: int, how_much: float) -> str:
+    if not 0 <= motor <= LAST_MOTOR:
+        return f"invalid motor ({motor})"
+    if kind not in (PERCENT, PULSE, PILOT):
+        return f"invalid throttle type: {kind}"
+    if kind == PULSE and how_much > PULSE_MAX:
+        return f"pwm ({how_much:.0f}) too high"
+    return f"percentage ({how_much:.0f}) too high" if kind == PERCENT and how_much > 100.0 else ""
+
+
+def aux_function(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """218: p1 function of a switch (0 none), p2 0 low, 1 middle, 2 high."""
+    if int(command.p1) == 0:
+        return ACCEPTED if command.p2 <= 2.0 else DENIED
+    return command_table.aux_function(bridge, channel, command)
 
 
 COMMANDS: dict[int, Entry] = {
@@ -61,5 +85,5 @@ COMMANDS: dict[int, Entry] = {
     178: Entry(change_speed, required=(1, 2)),
     194: Entry(set_reverse, required=(1,)),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
-    213: Entry(yaw_speed, required=(1, 2)),
+    218: Entry(aux_function, required=(1, 2)),
 }

@@ -41,6 +41,10 @@ class Command(NamedTuple):
     """System and component."""
 
 
+HIGHEST_M = 83_000.0
+"""ArduPilot keeps no altitude of a place that is further from zero."""
+
+
 class Entry(NamedTuple):
     """How a command is carried out."""
 
@@ -63,7 +67,7 @@ class Entry(NamedTuple):
 def from_long(fields: Any, entry: Entry) -> Command | None:
     """Command of a COMMAND_LONG, or None when a parameter is infinite, a required one NaN.
 
-    Or the place not on Earth.
+    Or the place not on Earth, or too high.
     """
     values = (
         fields.param1,
@@ -80,7 +84,7 @@ def from_long(fields: Any, entry: Entry) -> Command | None:
     p1, p2, p3, p4, p5, p6, p7 = clean
     lat = lon = 0
     if entry.place:
-        if not entry.off_earth and not (abs(p5) <= 90.0 and abs(p6) <= 180.0):
+        if abs(p7) > HIGHEST_M or (not entry.off_earth and not (abs(p5) <= 90.0 and abs(p6) <= 180.0)):
             return None
         lat, lon = round(p5 * 1e7), round(p6 * 1e7)
     return Command(fields.command, p1, p2, p3, p4, lat, lon, p7, entry.long_frame, p5, p6)
@@ -106,7 +110,7 @@ def from_int(fields: Any, entry: Entry) -> Command | None:
     if clean is None:
         return None
     p1, p2, p3, p4, p5, p6, p7 = clean
-    if entry.place and not entry.off_earth and not is_on_earth(fields.x, fields.y):
+    if entry.place and (abs(p7) > HIGHEST_M or (not entry.off_earth and not is_on_earth(fields.x, fields.y))):
         return None
     return Command(fields.command, p1, p2, p3, p4, fields.x, fields.y, p7, fields.frame, p5, p6)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ...autopilot.aux_switch import LOW
 from ...autopilot.fence.checks import ALL, kinds, switch_by_user
+from ...core.scalars import constrain
 from ..autopilot_api import LONGEST_US
 from ..channel import Channel
 from ..dialect import message
@@ -26,6 +27,7 @@ from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService
 from .mount import MountService
+from .other_commands import COMMANDS as OTHERS
 from .outputs import OutputService
 from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
 from .sprayer import SprayerService
@@ -40,7 +42,7 @@ HOME_POSITION, AUTOPILOT_VERSION = message("HOME_POSITION").id, message("AUTOPIL
 
 
 def set_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """511: p1 message, p2 interval [us]: -1 stops, 0 default. DENIED with a text: unknown, or above SCHED_LOOP_RATE."""
+    """511: p1 message, p2 interval [us]: -1 stops, 0 default. DENIED: unknown, too fast."""
     return int(bridge.get(StreamService).set_interval(channel, command))
 
 
@@ -55,7 +57,9 @@ def request_message(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def control_high_latency(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """2600: p1 1 sends HIGH_LATENCY2 on links of high latency, 0 does not."""
+    """2600: p1 1 sends HIGH_LATENCY2 on links of high latency, 0 does not; else FAILED."""
+    if command.p1 not in (0.0, 1.0):
+        return FAILED
     bridge.get(HighLatencyService).switch(command.p1 != 0.0)
     return ACCEPTED
 
@@ -68,9 +72,9 @@ def get_home(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def request_version(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """520 (old): p1 must be 1; answers AUTOPILOT_VERSION."""
+    """520 (old): p1 must be 1, else FAILED; answers AUTOPILOT_VERSION."""
     if command.p1 != 1.0:
-        return UNSUPPORTED
+        return FAILED
     return bridge.send_after_answer(channel, AUTOPILOT_VERSION)
 
 
@@ -88,10 +92,10 @@ FORCE_REBOOT = 20190226.0
 
 def reboot(bridge: Bridge, channel: Channel, command: Command) -> int:
     """246: p1 1 or 3 reboots the autopilot, when disarmed or when p6 is 20190226."""
-    if command.p1 not in (1.0, 3.0):
-        return UNSUPPORTED
     if bridge.autopilot.armed() and command.p6 != FORCE_REBOOT:
         return FAILED
+    if command.p1 not in (1.0, 3.0):
+        return UNSUPPORTED
     bridge.vehicle.request_reboot()
     return ACCEPTED
 
@@ -162,10 +166,13 @@ def send_banner(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def reset_battery(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """42651: p1 bits of batteries, p2 charge left [%]; FAILED when there is no such battery."""
-    if not (0.0 < command.p1 <= 65535.0 and 0.0 <= command.p2 <= 100.0):
-        return DENIED
-    return ACCEPTED if int(command.p1) & 1 and bridge.autopilot.set_battery_left(command.p2) else FAILED
+    """42651: p1 bits of batteries, p2 charge left [%], within 0 .. 100; FAILED when that battery counts no current.
+
+    Bits of batteries that are not there have no effect.
+    """
+    if int(command.p1) & 1 == 0:
+        return ACCEPTED
+    return ACCEPTED if bridge.autopilot.set_battery_left(constrain(command.p2, 0.0, 100.0)) else FAILED
 
 
 def inject_failure(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -201,7 +208,7 @@ def do_set_mode(bridge: Bridge, channel: Channel, command: Command) -> int:
     """176: p1 must have MAV_MODE_FLAG_CUSTOM_MODE_ENABLED (else DENIED), p2 is the mode's number (else FAILED)."""
     if not 0.0 <= command.p1 < 256.0 or not int(command.p1) & 1:
         return DENIED
-    if not (0.0 <= command.p2 < 2.0**32 and command.p2 == int(command.p2)):
+    if not 0.0 <= command.p2 < 2.0**32:
         return FAILED
     return set_mode(bridge, int(command.p2))
 
@@ -323,11 +330,15 @@ def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
     """195, 201: the gimbal points at a place; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return DENIED
+    if not is_on_earth(command.lat, command.lon):
+        return FAILED
     mount = bridge.get(MountService)
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         mount.look_ahead()
     else:
-        alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
+        alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
+        if alt is None:
+            return FAILED
         mount.look_at(command.lat, command.lon, alt)
     return ACCEPTED
 
@@ -339,9 +350,10 @@ def look_ahead(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """192: go to a place in GUIDED; p1 speed, p2 bit 1 changes to GUIDED first (else DENIED in another mode).
+    """192: go to a place in GUIDED; p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
-    The place is refused before the mode is changed.
+    The place is refused before the mode is changed. p1 is the speed [m/s] of a rover that drives to a place already
+    (FAILED to one that stands or is steered), and nothing to a copter.
     """
     if command.frame not in GLOBAL_FRAMES:
         bridge.get(StatusTextService).say(WARNING, f"Unknown mavlink coordinate frame {command.frame}")
@@ -356,29 +368,33 @@ def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
         return FAILED
     if not in_guided and set_mode(bridge, bridge.profile.guided) != ACCEPTED:
         return FAILED
-    if not bridge.autopilot.guided_position(place):
+    if command.p1 > 0.0 and not bridge.autopilot.change_reposition_speed(command.p1):
         return FAILED
-    if command.p1 > 0.0:  # after the target: a new kind of set-point begins with the default speed
-        bridge.autopilot.change_speed(1, command.p1)
-    return ACCEPTED
+    return ACCEPTED if bridge.autopilot.guided_position(place) else FAILED
 
 
 def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
     """179: p1 1 (or latitude and longitude zero): here; else the place given."""
     if command.p1 == 1.0 or (command.lat == 0 and command.lon == 0):
         return _home_result(bridge, bridge.autopilot.set_home_here())
-    if command.p1 != 0.0 or command.frame not in GLOBAL_FRAMES:
+    if command.frame not in GLOBAL_FRAMES and command.p1 == 0.0:
         return DENIED
-    if not is_on_earth(command.lat, command.lon):
+    if command.p1 != 0.0 or not is_on_earth(command.lat, command.lon):
         return FAILED
-    alt = command.z if command.frame in FRAMES_AMSL else bridge.places.home_alt() + command.z
+    alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
+    if alt is None:
+        return FAILED
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
 
 def set_origin(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """611: the estimator's origin, altitude above mean sea level; FAILED when it has one already."""
-    if command.frame not in FRAMES_AMSL or (command.lat == 0 and command.lon == 0):
+    """611: the estimator's origin; FAILED when it has one already."""
+    if command.frame not in GLOBAL_FRAMES or not is_on_earth(command.lat, command.lon):
         return DENIED
+    if bridge.vehicle.v.autopilot.estimate.origin_set:
+        return FAILED
+    if command.frame not in FRAMES_AMSL or (command.lat == 0 and command.lon == 0):
+        return DENIED  # a height over what is not known yet, or a place that nobody means
     return _home_result(bridge, bridge.autopilot.set_origin(command.lat, command.lon, command.z))
 
 
@@ -412,12 +428,14 @@ def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """224: p1 number of the item (0: the first); in AUTO p2 1 runs a complete mission again; DENIED without it."""
-    if not 0.0 <= command.p1 <= 65535.0:
+    """224: p1 number of the item (0: the first); in AUTO p2 1 runs a complete mission again; DENIED without it, FAILED
+    where there is no mission."""
+    seq, count = int(command.p1), len(bridge.autopilot.mission_items())
+    if not 0 <= seq < max(count, 1):
         return DENIED
-    ok = bridge.autopilot.set_current_item(int(command.p1), command.p2 == 1.0)
+    ok = bridge.autopilot.set_current_item(seq, command.p2 == 1.0)
     bridge.say_pending()
-    return ACCEPTED if ok else DENIED
+    return ACCEPTED if ok else FAILED
 
 
 def choose_sources(bridge: Bridge, channel: Channel, command: Command) -> int:
@@ -463,10 +481,10 @@ COMMANDS: dict[int, Entry] = {
     202: Entry(configure_camera),
     203: Entry(control_camera),
     206: Entry(set_camera_distance, required=(1,)),
-    195: Entry(look_at, place=True),
+    195: Entry(look_at, place=True, off_earth=True),
     197: Entry(look_ahead),
     198: Entry(follow_system),
-    201: Entry(look_at, place=True),
+    201: Entry(look_at, place=True, off_earth=True),
     204: Entry(configure_mount),
     205: Entry(control_mount),
     207: Entry(enable_fence, required=(1,)),
@@ -476,5 +494,6 @@ COMMANDS: dict[int, Entry] = {
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),
     400: Entry(arm_disarm, required=(1,)),
-    611: Entry(set_origin, required=(5, 6, 7), place=True, long_frame=0),
+    611: Entry(set_origin, required=(5, 6, 7), place=True, int_only=True),
+    **OTHERS,
 }

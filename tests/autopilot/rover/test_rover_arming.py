@@ -159,21 +159,26 @@ def test_needs_the_arming_checks() -> None:
 
 
 @pytest.mark.parametrize(
-    ("motor", "throttle", "seconds", "answer"),
+    ("motor", "throttle", "answer"),
     [
-        (0, 0.2, 1.0, motor_test.BAD_MOTOR),
-        (LEFT, 0.2, 1.0, motor_test.BAD_MOTOR),
-        (THROTTLE, 1.1, 1.0, motor_test.BAD_THROTTLE),
-        (THROTTLE, math.nan, 1.0, motor_test.BAD_THROTTLE),
-        (THROTTLE, 0.2, -1.0, motor_test.BAD_TIME),
-        (THROTTLE, 0.2, math.nan, motor_test.BAD_TIME),
+        (0, 0.2, motor_test.BAD_MOTOR),
+        (LEFT, 0.2, motor_test.BAD_MOTOR),
+        (THROTTLE, 1.1, motor_test.BAD_THROTTLE),
+        (THROTTLE, math.nan, motor_test.BAD_THROTTLE),
     ],
 )
-def test_refusals_change_nothing(motor: int, throttle: float, seconds: float, answer: int) -> None:
+def test_a_test_that_cannot_be_leaves_it_disarmed(motor: int, throttle: float, answer: int) -> None:
     rover = Rover()
-    before = bytes(rover.v._bytes)
-    assert motor_test.start(rover.v, motor, throttle, 0, seconds) == answer
-    assert bytes(rover.v._bytes) == before
+    assert motor_test.start(rover.v, motor, throttle, 0, 1.0) == answer
+    assert not rover.ap.arming.armed and not motor_test.is_running(rover.ap.control.motors)
+
+
+@pytest.mark.parametrize("seconds", [-1.0, 0.0])
+def test_a_test_without_time_is_over_at_once(seconds: float) -> None:
+    rover = Rover()
+    assert motor_test.start(rover.v, THROTTLE, 0.2, 0, seconds) == motor_test.OK
+    rover.run(0.1)
+    assert not rover.ap.arming.armed
 
 
 def test_disarming_ends_it() -> None:

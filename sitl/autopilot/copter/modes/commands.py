@@ -6,6 +6,8 @@ Each function returns OK, or says why it left the record as it was.
 
 from __future__ import annotations
 
+from math import trunc
+
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ..control import altitude_start, position_start
@@ -15,7 +17,7 @@ from ..state import Autopilot
 from . import auto, auto_yaw, guided, takeoff
 from .auto import AUTO
 from .auto_yaw import Turn
-from .guided import GUIDED
+from .guided import GUIDED, GUIDED_NOGPS
 from .rtl import RTL
 from .state import Modes
 from .table import has_climb_stick
@@ -62,7 +64,7 @@ def take_off(ap: Autopilot, height: float) -> int:
     if mode != GUIDED and not has_climb_stick(mode):
         return WRONG_MODE
     target_d = ap.home.pos.z - height
-    if target_d >= ap.estimate.pos.z:
+    if height <= trunc(100.0 * (ap.home.pos.z - ap.estimate.pos.z)) / 100.0:  # in centimetres, as ArduPilot has it
         return TOO_LOW
     if not ap.arming.landed:  # repeated in the climb: a client that missed the acknowledgement
         ap.modes.takeoff.target_d = target_d
@@ -70,7 +72,6 @@ def take_off(ap: Autopilot, height: float) -> int:
     control, est, p = ap.control, ap.estimate, ap.params
     if mode == GUIDED:
         ap.modes.guided.submode = guided.TAKEOFF
-        ap.modes.guided.paused = False
         auto_yaw.set_mode(ap.modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
         takeoff.begin(ap.modes.takeoff, target_d, True, control, est, p)
     else:
@@ -80,11 +81,9 @@ def take_off(ap: Autopilot, height: float) -> int:
 
 
 def condition_yaw(ap: Autopilot, turn: Turn) -> int:
-    """MAV_CMD_CONDITION_YAW in GUIDED and AUTO."""
+    """MAV_CMD_CONDITION_YAW: in modes that turn the nose by themselves, until the next one; nothing in others."""
     if not (is_usable(turn.angle) and is_usable(turn.rate)):
         return NOT_FINITE
-    if ap.modes.number != GUIDED and ap.modes.number != AUTO:
-        return WRONG_MODE
     if turn.rate < 0.0:
         return OUT_OF_RANGE
     start = ap.control.attitude.target_euler.yaw
@@ -129,8 +128,8 @@ def change_speed(control: Control, p: Parameters, kind: int, speed: float) -> in
 
 
 def set_paused(modes: Modes, paused: bool) -> int:
-    """MAV_CMD_DO_PAUSE_CONTINUE in GUIDED and AUTO: stop and hold, or go on."""
-    if modes.number == GUIDED:
+    """MAV_CMD_DO_PAUSE_CONTINUE in GUIDED and AUTO: stop and hold, or go on; GUIDED_NOGPS takes it and flies on."""
+    if modes.number in (GUIDED, GUIDED_NOGPS):
         modes.guided.paused = paused
     elif modes.number == AUTO and paused and not auto.is_on_a_way(modes.nav):
         return NOT_ON_A_WAY

@@ -87,16 +87,6 @@ def set_heading_and_speed(modes: Modes, time_us: int, heading: float, speed: flo
 
 
 @law
-def set_heading_change_and_speed(modes: Modes, time_us: int, yaw: float, change: float, speed: float) -> int:
-    """Turn by an angle [rad] from the heading under way (from the nose, ``yaw``, when there is none) and drive."""
-    code = refusal(modes, change, speed)
-    if code != OK:
-        return code
-    now = modes.guided.heading if modes.guided.submode == HEADING_AND_SPEED else yaw
-    return set_heading_and_speed(modes, time_us, now + change, speed)
-
-
-@law
 def set_turn_rate_and_speed(modes: Modes, time_us: int, turn_rate: float, speed: float) -> int:
     """Turn steadily and drive."""
     guided = modes.guided

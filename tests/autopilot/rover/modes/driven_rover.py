@@ -178,12 +178,6 @@ def set_heading(v: Any, heading: float, speed: float) -> int:
     return guided_setpoints.set_heading_and_speed(v.autopilot.modes, v.time_us, heading, speed)
 
 
-def change_heading(v: Any, change: float, speed: float) -> int:
-    """An angle to turn by [rad] and a speed [m/s] for GUIDED."""
-    ap = v.autopilot
-    return guided_setpoints.set_heading_change_and_speed(ap.modes, v.time_us, ap.estimate.euler.yaw, change, speed)
-
-
 def set_turn_rate(v: Any, rate: float, speed: float) -> int:
     """A turn rate [rad/s] and a speed [m/s] for GUIDED."""
     return guided_setpoints.set_turn_rate_and_speed(v.autopilot.modes, v.time_us, rate, speed)

@@ -16,7 +16,6 @@ from sitl.autopilot.rover.modes.set_mode import change_speed
 from sitl.autopilot.rover.modes.table import NAMES
 from tests.autopilot.rover.modes.driven_rover import (
     Rover,
-    change_heading,
     drive_to,
     set_heading,
     set_steering,
@@ -29,7 +28,6 @@ SETTERS = (
     drive_to,
     set_velocity,
     set_heading,
-    change_heading,
     set_turn_rate,
     set_steering,
     lambda v, x, y: guided_setpoints.set_limits(v.autopilot.modes.guided, x, y),

@@ -15,7 +15,6 @@ from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
 from tests.autopilot.rover.modes.driven_rover import (
     Rover,
-    change_heading,
     drive_to,
     set_heading,
     set_steering,
@@ -115,12 +114,6 @@ def test_heading_and_speed(rover: Rover) -> None:
     stream(rover, 6.0, set_heading, 2.0, 1.5)
     assert rover.speed == pytest.approx(1.5, abs=0.05)
     assert rover.heading == pytest.approx(2.0, abs=0.05)
-
-
-def test_heading_change_counts_from_the_one_under_way(rover: Rover) -> None:
-    assert change_heading(rover.v, 0.5, 1.0) == OK
-    assert change_heading(rover.v, 0.5, 1.0) == OK
-    assert rover.ap.modes.guided.heading == pytest.approx(1.0)
 
 
 def test_backwards(rover: Rover) -> None:

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Commands to parts that a simulated vehicle does not have: answered as ArduPilot answers where the part is missing.
+
+A command to a part that no such vehicle can have is UNSUPPORTED; these are about parts that are only not connected.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ..channel import Channel
+from .command import FRAMES_AMSL, Command, Entry
+from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED
+
+if TYPE_CHECKING:
+    from ..bridge import Bridge
+
+
+def follow(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """32: p1 system id of the vehicle that FOLLOW follows, 1 .. 255."""
+    if not 0.0 < command.p1 <= 255.0:
+        return DENIED
+    bridge.vehicle.parameters["FOLL_SYSID"] = float(int(command.p1))
+    return ACCEPTED
+
+
+def pair_receiver(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """500: the receiver is paired already."""
+    return ACCEPTED
+
+
+def move_landing_gear(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """2520: the landing gear, which is fixed, stays as it is."""
+    return ACCEPTED
+
+
+def identify(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """10001: there is no ADS-B transmitter."""
+    return FAILED
+
+
+def forward_can(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """32000: p1 0 forwards no CAN bus to this link; others: there is none."""
+    return ACCEPTED if int(command.p1) == 0 else FAILED
+
+
+def trap(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42700: no debugger is called."""
+    return DENIED
+
+
+STOP_SCRIPTS, RESTART_SCRIPTS = 2, 3
+"""SCRIPTING_CMD; 0 and 1 are of an interpreter on the link."""
+
+
+def script(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """42701: p1 2 stops, 3 restarts scripts on board, of which there are none."""
+    number = int(command.p1)
+    if number in (STOP_SCRIPTS, RESTART_SCRIPTS):
+        return ACCEPTED
+    return DENIED if number in (0, 1) else UNSUPPORTED
+
+
+DANGEROUS, SAFE = 1, 0
+"""SAFETY_SWITCH_STATE"""
+
+
+def switch_safety(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """5300: p1 1: there is no safety switch that keeps the outputs off, 0 FAILED."""
+    number = int(command.p1)
+    if number == DANGEROUS:
+        return ACCEPTED
+    return FAILED if number == SAFE else DENIED
+
+
+FOCUS_TYPES = (1, 2, 4, 5, 6)
+"""SET_FOCUS_TYPE: continuous, range, automatic ones"""
+
+
+def focus(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """532: p1 SET_FOCUS_TYPE; no camera here has a focus."""
+    return FAILED if int(command.p1) in FOCUS_TYPES else DENIED
+
+
+def choose_camera_source(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """534: no camera here has several sources."""
+    return DENIED
+
+
+def record_video(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """2500, 2501: no camera here records videos."""
+    return FAILED
+
+
+def external_position(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """43003: in a frame without altitude (p7 NaN); the estimator, which has a receiver, does not take it."""
+    if command.frame not in FRAMES_AMSL or not math.isnan(command.z):
+        return DENIED
+    return FAILED
+
+
+COMMANDS: dict[int, Entry] = {
+    32: Entry(follow),
+    500: Entry(pair_receiver),
+    532: Entry(focus),
+    534: Entry(choose_camera_source),
+    2500: Entry(record_video),
+    2501: Entry(record_video),
+    5300: Entry(switch_safety),
+    10001: Entry(identify),
+    32000: Entry(forward_can),
+    42700: Entry(trap),
+    42701: Entry(script),
+    43003: Entry(external_position, place=True, int_only=True, takes_nan=True),
+}
