@@ -8,7 +8,10 @@ from .params.table import Values
 
 MISSION_OPTIONS, CLEARED_AT_BOOT = "MIS_OPTIONS", 1
 
+MODE_BLOCK = "FLTMODE_GCSBLOCK"
+
 MEANINGS = {
+    MODE_BLOCK: "Bits of modes that ground stations may not choose; switches and failsafes may",
     MISSION_OPTIONS: "Bits: 1 a boot clears the mission",
     **relays.MEANINGS,
     **camera.MEANINGS,

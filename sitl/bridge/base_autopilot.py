@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..autopilot import battery, events, home
+from ..autopilot import battery, events, home, modes
 from ..autopilot.arming_checks import BY_MAVLINK, refusal
 from ..autopilot.estimation import aiding, sources
 from ..autopilot.failsafe_checks import CRITICAL as MOST_SEVERE
@@ -18,6 +18,7 @@ from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
+from ..autopilot.shell_parameters import MODE_BLOCK
 from .autopilot_api import Note, Vector, Vehicle
 
 EMERGENCY, CRITICAL, WARNING, INFO = 0, 2, 4, 6
@@ -37,6 +38,8 @@ class BaseAutopilot:
     """and of changing the mode."""
     _auto: int
     """Number of the mode that runs missions."""
+    _block_order: Sequence[int] = ()
+    """Numbers of the modes in the order of the bits of FLTMODE_GCSBLOCK."""
 
     def __init__(self, vehicle: Any) -> None:
         self._vehicle: Vehicle = vehicle
@@ -102,7 +105,17 @@ class BaseAutopilot:
         return list(self._arming.texts(v, self._arming.check(v), prefix))
 
     def set_mode(self, number: int) -> bool:
+        if number != modes.shown(self._v.autopilot.modes) and self._is_blocked(number):
+            return False
         return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events
+
+    def _is_blocked(self, number: int) -> bool:
+        """Whether FLTMODE_GCSBLOCK keeps ground stations from choosing a mode; tells of it."""
+        order, v = self._block_order, self._v
+        blocked = number in order and modes.is_blocked(number, order, self._vehicle.parameters[MODE_BLOCK])
+        if blocked:
+            events.emit(v.autopilot.events, v.time_us, events.MODE_REFUSED, float(number), float(modes.GCS_BLOCKED))
+        return blocked
 
     def run_aux_function(self, number: int, position: int) -> bool:
         ok, notes = self._aux().run(number, position)

@@ -49,6 +49,7 @@ class CopterAutopilot(BaseAutopilot):
 
     _arming, _failsafe, _set_mode = arming, failsafe, set_mode
     _auto = auto.AUTO
+    _block_order = table.GCS_BLOCK
 
     def __init__(self, vehicle: Any) -> None:
         super().__init__(vehicle)
@@ -106,6 +107,8 @@ class CopterAutopilot(BaseAutopilot):
 
     def go_back(self, way: int) -> bool:
         """AUTO_RTL by a return path (BY_PATH) or a landing sequence (BY_LANDING)."""
+        if self.mode() != auto.AUTO and self._is_blocked(auto.AUTO):
+            return False
         return int(set_mode.go_back(self._v, way, BY_GROUND_STATION)) == 0
 
     # ------------------------------------------------------------------ take-off and motors
