@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arming checks of the radio: its throttle, the calibration of its channels, switches, and sticks at rest.
+"""Arming checks of the radio: its throttle, the calibration of its channels, and sticks at rest.
 
 What is wrong with which channel is asked of the parameters again when the texts are made: the bits of failed checks
 say only that something is.
@@ -23,11 +23,10 @@ THROTTLE_FAILSAFE = 4096
 OFF_CENTRE = {ROLL: 1 << 25, PITCH: 1 << 56, THROTTLE: 1 << 24, YAW: 1 << 57}
 """A stick that is not at rest."""
 CALIBRATION = 1 << 58
-SAME_FUNCTION = 1 << 59
+PARAMETERS = 1 << 59
+"""Parameters of any kind: their texts are those of ``parameter_checks``."""
 
 STICK_NAMES = {ROLL: "Roll", PITCH: "Pitch", THROTTLE: "Throttle", YAW: "Yaw"}
-SAME_FUNCTION_TEXT = "Duplicate Aux Switch Options"
-
 HIGHEST_MIN, LOWEST_MAX = 1300.0, 1700.0
 """Calibrated sticks reach these pulses at least [us]."""
 
@@ -36,7 +35,7 @@ HIGHEST_MIN, LOWEST_MAX = 1300.0, 1700.0
 def receiver(rc: Radio, rcmap: RcMap, throttle_min: float) -> int:
     """Failed checks of the receiver, which is lost when the throttle is below ``throttle_min`` [us]."""
     if not rc.receiver_ok:
-        return RC_MISSING
+        return RC_MISSING if rc.receiver_us == 0 else 0  # one that was there and is lost is a failsafe
     return THROTTLE_FAILSAFE if radio.stick_pulse(rc, rcmap, THROTTLE) < throttle_min else 0
 
 
@@ -62,9 +61,6 @@ def channels(params: Parameters, sticks: int) -> int:
     for k in range(RC_INPUTS):
         if is_outside(params.RC[k]):
             failed |= CALIBRATION
-        for other in range(k):
-            if params.RC[k].OPTION > 0.0 and params.RC[k].OPTION == params.RC[other].OPTION:
-                failed |= SAME_FUNCTION
     return failed
 
 
@@ -86,7 +82,6 @@ def texts(failed: int, params: Parameters, sticks: Mapping[int, str]) -> list[st
             channel = params.RC[number - 1]
             said += [f"RC{number}_MIN is greater than RC{number}_TRIM"] if channel.MIN > channel.TRIM else []
             said += [f"RC{number}_MAX is less than RC{number}_TRIM"] if channel.MAX < channel.TRIM else []
-    said += [SAME_FUNCTION_TEXT] if failed & SAME_FUNCTION else []
     for stick, bit in OFF_CENTRE.items():
         if failed & bit:
             said.append(f"{STICK_NAMES[stick]} (RC{radio.stick_channel(params.RCMAP, stick) + 1}) is not neutral")

@@ -28,7 +28,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
         return 0
     failed = 0
     if not force:
-        failed = check(v) | method_checks(ap.modes, ap.rc, method, ap.params)
+        failed = check(v) | method_checks(ap.modes, ap.rc, method, ap.params, ap.calibrated.state)
     if failed != 0:
         refuse(ap.events, v.time_us, failed, method)
         return failed
