@@ -312,15 +312,12 @@ def obstacle_text(found: int) -> str:
     return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
 
 
-def texts(
-    failed: int, params: Parameters, sticks: Mapping[int, str], prefix: str = "", own: Mapping[int, str] | None = None
-) -> list[str]:
+def texts(failed: int, params: Parameters, prefix: str = "", own: Mapping[int, str] | None = None) -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks.
 
     Args:
         failed: their bits.
         params: the vehicle's parameters.
-        sticks: how the firmware calls the sticks that must be calibrated.
         prefix: "PreArm: " or "Arm: ".
         own: texts of the firmware's own checks, in place of another one's.
     """
@@ -328,7 +325,7 @@ def texts(
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
     said = [text for bit, text in {**TEXTS, **(own or {})}.items() if shown & bit]
-    said += radio_checks.texts(failed, params, sticks)
+    said += radio_checks.texts(failed, params)
     fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
     said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])
     return [prefix + text for text in said]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..core.algebra import norm, rotate
+from ..core.algebra import by_component, norm, rotate
 from ..core.border import RC_INPUTS
 from ..core.vectors import Vec3
 from .arming_checks import (
@@ -22,12 +22,13 @@ from .arming_checks import (
     CHECK_PARAMETERS,
     CHECK_RANGEFINDER,
     CHECK_RC,
+    GYRO_DIFFERENCE,
     battery_checks,
     compass_checks,
     wants,
 )
 from .params.table import Values
-from .sensor_calibration import field_of
+from .sensor_calibration import shown_field
 
 ALWAYS, ANY = -1, 0
 """In place of a bit of ARMING_CHECK: the check counts even when that is 0, or unless it is 0."""
@@ -146,7 +147,7 @@ def compasses(s: Subject) -> Iterable[str]:
 def _field(s: Subject) -> Iterable[str]:
     """The first compass shows a field that cannot be here."""
     ap, limit = s.v.autopilot, s.values["ARMING_MAGTHRESH"]
-    shown = 1e3 * field_of(0, s.v.sensors, ap.params)
+    shown = 1e3 * shown_field(0, s.v.sensors, ap.params.COMPASS)
     size = norm(shown)
     if not COMPASS_LEAST <= size <= COMPASS_MOST:
         yield f"Check mag field: {size:4.0f}, max {COMPASS_MOST:.0f}, min {COMPASS_LEAST:.0f}"
@@ -164,16 +165,32 @@ def _field(s: Subject) -> Iterable[str]:
             yield f"Check mag field (z diff:{down:.0f}>{2.0 * limit:.0f})"
 
 
+def _axes(values: Values, name: str) -> Vec3:
+    return Vec3(*(values[f"{name}_{axis}"] for axis in "XYZ"))
+
+
+def _difference(s: Subject) -> str:
+    """Two IMUs that show the same, corrected by parameters of their own: where these make them differ."""
+    values, shown = s.values, s.v.sensors.acc
+    first, second = (
+        by_component(shown - _axes(values, f"INS_ACC{k}OFFS"), _axes(values, f"INS_ACC{k}SCAL")) for k in ("", "2")
+    )
+    if norm(first - second) > values["ARMING_ACCTHRESH"]:
+        return "Accels inconsistent"
+    apart = norm(_axes(values, "INS_GYROFFS") - _axes(values, "INS_GYR2OFFS"))
+    return "Gyros inconsistent" if apart > GYRO_DIFFERENCE else ""
+
+
 def inertial(s: Subject) -> Iterable[str]:
-    """A third IMU that is not there has been calibrated; a threshold that nothing meets."""
+    """The first thing that is wrong with the calibration of IMUs, one of which is not there."""
     values = s.values
     third = [f"INS_ACC3{of}_{axis}" for of in ("OFFS", "SCAL") for axis in "XYZ"]
     if values["INS_GYR3_ID"] != 0.0:
         yield "Gyros not calibrated"
     elif values["INS_ACC3_ID"] != 0.0 or any(values[name] != values.table[name].default for name in third):
         yield "3D Accel calibration needed"
-    elif values["ARMING_ACCTHRESH"] <= 0.0:
-        yield "Accels inconsistent"
+    elif s.v.sensors.imu_state == 0 and (wrong := _difference(s)):
+        yield wrong
 
 
 def batteries(s: Subject) -> Iterable[str]:

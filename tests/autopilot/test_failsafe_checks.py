@@ -202,10 +202,10 @@ def test_every_check_is_a_bit_of_its_own_and_has_a_text() -> None:
         if not (name.startswith(("BY_", "CHECK_", "COMPASS_", "_")) or name.endswith(NUMBERS))
     ]
     assert sorted(bits) == sorted(arming_checks.TEXTS)
-    bits += [*radio_checks.OFF_CENTRE.values(), radio_checks.CALIBRATION, radio_checks.PARAMETERS]
+    bits += [*radio_checks.OFF_CENTRE.values(), radio_checks.PARAMETERS]
     assert len(set(bits)) == len(bits) and all(bit & (bit - 1) == 0 for bit in bits)
 
 
 def test_a_missing_home_explains_the_missing_position() -> None:
     missing = arming_checks.WAITING_FOR_HOME | arming_checks.NEED_POSITION
-    assert arming_checks.texts(missing, Parameters(), {}, "Arm: ") == ["Arm: AHRS: waiting for home"]
+    assert arming_checks.texts(missing, Parameters(), "Arm: ") == ["Arm: AHRS: waiting for home"]

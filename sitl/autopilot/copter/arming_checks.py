@@ -15,6 +15,7 @@ from ..arming_checks import (
     BY_RUDDER,
     CHECK_BARO,
     CHECK_GPS,
+    CHECK_INS,
     CHECK_PARAMETERS,
     CHECK_RC,
     EMERGENCY_STOP,
@@ -68,11 +69,8 @@ TEXTS = {
 }
 MANDATORY = NEED_POSITION | NEED_ALTITUDE | DOUBTFUL
 """What forcing does not skip."""
-CALIBRATED = radio_checks.STICK_NAMES
-"""Sticks that must be calibrated: their names in status texts."""
 _ROLL_OFF, _PITCH_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[PITCH]
 _THROTTLE_OFF, _YAW_OFF = radio_checks.OFF_CENTRE[THROTTLE], radio_checks.OFF_CENTRE[YAW]
-_ALL_STICKS = 1 << ROLL | 1 << PITCH | 1 << THROTTLE | 1 << YAW
 
 
 @law
@@ -152,7 +150,6 @@ def check(v: Vehicle) -> int:
     failed = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
     failed |= calibration_checks(ap.calibrated.state, p.ARMING) | parameter_checks(ap.calibrated.state)
     failed |= failsafe_checks(ap.modes, p) | location_checks(v)
-    failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, needs_fix, p.ARMING)
     if requires_position(ap.modes.number) and wants(p.ARMING, CHECK_GPS):
@@ -166,9 +163,10 @@ def check(v: Vehicle) -> int:
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
         failed |= NO_MISSION
     if wants(p.ARMING, CHECK_RC):
-        failed |= radio_checks.channels(p, _ALL_STICKS)
         if p.FS.THR_ENABLE > 0.0:
             failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    if ap.arming.interlock_used and ap.arming.interlock_on:
+        failed |= INTERLOCK
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
     if ap.arming.parachute_released:
@@ -192,10 +190,11 @@ def terrain_check(v: Vehicle) -> int:
 
 
 @law
-def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, turns: bool) -> int:
-    """Failed checks that count only at the moment of arming by ``method``; ``turns``: the interlock says so."""
-    failed = INTERLOCK if turns else 0
-    mode = modes.number
+def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, cos_lean: float) -> int:
+    """Failed checks that count only at the moment of arming by ``method``; ``cos_lean``: cosine of the lean."""
+    failed, mode = 0, modes.number
+    if wants(p.ARMING, CHECK_INS):
+        failed |= lean_check(cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     if not may_arm(mode, p, method):
         failed |= MODE
     if method == BY_RUDDER and p.ARMING.RUDDER < 1.0:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from ..parameter_checks import ALWAYS, CHECK_PARAMETERS, CHECK_RC, SHARED, Check, Subject, switches
 from ..params.table import Values
 from ..radio import THROTTLE, stick_channel
+from ..radio_checks import STICK_NAMES, calibration_texts
 
 SPIN_MIN_MOST = 0.3
 THR_VALUE_LEAST, THR_VALUE_ROOM = 910.0, 10.0
@@ -104,5 +105,6 @@ CHECKS = (
     Check(CHECK_PARAMETERS, flight),
     Check(CHECK_PARAMETERS, winch),
     *SHARED,
+    Check(CHECK_RC, lambda s: calibration_texts(s.values, s.v.autopilot.params, STICK_NAMES)),
     Check(CHECK_RC, lambda s: switches(s, "FLTMODE_CH"), when_arming=True),
 )

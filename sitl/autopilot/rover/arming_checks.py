@@ -50,8 +50,6 @@ from .state import Vehicle
 WAYPOINT_SPEED = 1 << 17
 """A bit that is another check of copters."""
 TEXTS = {WAYPOINT_SPEED: "WP_SPEED too low"}
-CALIBRATED = {ROLL: "Steer", THROTTLE: "Throttle"}
-"""Sticks that must be calibrated: their names in status texts."""
 _ROLL_OFF, _THROTTLE_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[THROTTLE]
 _YAW_OFF = radio_checks.OFF_CENTRE[YAW]
 
@@ -101,7 +99,6 @@ def check(v: Vehicle) -> int:
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
     if wants(p.ARMING, CHECK_RC):
-        failed |= radio_checks.channels(p, 1 << ROLL | 1 << THROTTLE)
         if modes.links.bad & BIT_RADIO != 0:
             failed |= RADIO_FAILSAFE
         elif p.FS.THR_ENABLE > 0.0 and not ap.rc.receiver_ok:

@@ -6,10 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ..parameter_checks import ANY, CHECK_RC, OUTPUTS, SHARED, Check, Subject, switches
+from ..radio import ROLL, THROTTLE
+from ..radio_checks import calibration_texts
 from .control import servos
 
-SCRIPTING = 94
-"""Function of an output that a script drives."""
+STICKS = {ROLL: "Steer", THROTTLE: "Throttle"}
+"""Sticks that must be calibrated, and what texts call them."""
 
 
 def motors(s: Subject) -> Iterable[str]:
@@ -25,4 +27,8 @@ def motors(s: Subject) -> Iterable[str]:
         yield "check steering and throttle config"
 
 
-CHECKS = (Check(ANY, motors), *SHARED, Check(CHECK_RC, lambda s: switches(s, "MODE_CH"), when_arming=True))
+CHECKS = (
+    Check(ANY, motors), *SHARED,
+    Check(CHECK_RC, lambda s: calibration_texts(s.values, s.v.autopilot.params, STICKS)),
+    Check(CHECK_RC, lambda s: switches(s, "MODE_CH"), when_arming=True),
+)  # fmt: skip
