@@ -20,7 +20,7 @@ from sitl.vehicle.kinds import KINDS
 RATES_HZ = {
     **dict.fromkeys(("HEARTBEAT", "GLOBAL_POSITION_INT", "ATTITUDE"), 10.0),
     **dict.fromkeys(("SYS_STATUS", "EKF_STATUS_REPORT"), 5.0),
-    "SYSTEM_TIME": 50.0,
+    "SYSTEM_TIME": 40.0,
 }
 """What a program tells; the client's clock goes on with each message."""
 BOOT_SPEEDUP, SPEEDUP = 60, 10
