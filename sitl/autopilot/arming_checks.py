@@ -73,8 +73,8 @@ BATTERY_UNHEALTHY = 1 << 30
 BATTERY_CAPACITY_FAILSAFE = 1 << 31
 BATTERY_CRITICAL_VOLTAGE = 1 << 32
 BATTERY_CRITICAL_CAPACITY = 1 << 33
-BATTERY_CAPACITY_ORDER = 1 << 34
-BATTERY_VOLTAGE_ORDER = 1 << 35
+RADIO_FAILSAFE = 1 << 34
+GCS_FAILSAFE = 1 << 35
 COMPASSES = 1 << 36
 FENCE_POSITION = 1 << 37
 FENCE_SHIFT = 38
@@ -89,7 +89,7 @@ ACCELS_SILENT, GYROS_SILENT = 1 << 61, 1 << 62
 TEXTS = {
     NOT_INITIALISED: "System not initialised",
     BAROMETER: "Baro: not healthy",
-    COMPASS: "Compass not healthy",
+    COMPASS: "Compass 1 not healthy",
     COMPASSES: "Compasses inconsistent",
     FENCE_POSITION: "Fence enabled, need position estimate",
     CALIBRATING_COMPASS: "Compass calibration running",
@@ -117,8 +117,8 @@ TEXTS = {
     BATTERY_CAPACITY_FAILSAFE: "Battery 1 low capacity failsafe",
     BATTERY_CRITICAL_VOLTAGE: "Battery 1 critical voltage failsafe",
     BATTERY_CRITICAL_CAPACITY: "Battery 1 critical capacity failsafe",
-    BATTERY_CAPACITY_ORDER: "Battery 1 capacity failsafe critical >= low",
-    BATTERY_VOLTAGE_ORDER: "Battery 1 voltage failsafe critical >= low",
+    RADIO_FAILSAFE: "Radio failsafe on",
+    GCS_FAILSAFE: "GCS failsafe on",
     FRAME: "Motors: Check frame class and type",
     MODE: "Mode not armable",
     RUDDER_DISABLED: "Rudder arming disabled",
@@ -134,7 +134,7 @@ TEXTS = {
 
 # ARMING_CHECK
 CHECK_ALL, CHECK_BARO, CHECK_COMPASS, CHECK_GPS, CHECK_INS, CHECK_RC, CHECK_BATTERY = 1, 2, 4, 8, 16, 64, 256
-CHECK_PARAMETERS = 32
+CHECK_PARAMETERS, CHECK_MISSION, CHECK_RANGEFINDER, CHECK_CAMERA = 32, 1 << 14, 1 << 15, 1 << 16
 
 _LOW_BITS, _METHOD_BITS = 48, 5
 """Of failed checks in the first number of ARMING_REFUSED, and of the method in the second, below the others."""
@@ -192,6 +192,18 @@ def calibration_checks(state: int, params: Arming) -> int:
     if wants(params, CHECK_INS) and state & sensor_calibration.ACCELS_DONE:
         failed |= REBOOT_FOR_ACCELS
     return failed
+
+
+@law
+def parameter_checks(state: int) -> int:
+    """Failed checks of parameters, which Python has made (``Calibrated.state``)."""
+    return radio_checks.PARAMETERS if state & sensor_calibration.PARAMETERS_BAD else 0
+
+
+@law
+def switch_checks(state: int, receiver_ok: bool) -> int:
+    """The same of switches on channels, at the moment of arming."""
+    return radio_checks.PARAMETERS if receiver_ok and state & sensor_calibration.SWITCHES_BAD else 0
 
 
 @law
@@ -276,9 +288,7 @@ def battery_checks(battery: BatteryState, level: int, params: Parameters) -> int
         return BATTERY_CRITICAL_VOLTAGE
     if is_used_up(used, limits.CRT_MAH, limits):
         return BATTERY_CRITICAL_CAPACITY
-    if limits.LOW_MAH > 0.0 and limits.CRT_MAH >= limits.LOW_MAH:
-        return BATTERY_CAPACITY_ORDER
-    return BATTERY_VOLTAGE_ORDER if limits.LOW_VOLT > 0.0 and limits.CRT_VOLT >= limits.LOW_VOLT else 0
+    return 0
 
 
 @law
@@ -302,15 +312,12 @@ def obstacle_text(found: int) -> str:
     return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
 
 
-def texts(
-    failed: int, params: Parameters, sticks: Mapping[int, str], prefix: str = "", own: Mapping[int, str] | None = None
-) -> list[str]:
+def texts(failed: int, params: Parameters, prefix: str = "", own: Mapping[int, str] | None = None) -> list[str]:
     """Status texts (MAV_SEVERITY_CRITICAL) of failed checks.
 
     Args:
         failed: their bits.
         params: the vehicle's parameters.
-        sticks: how the firmware calls the sticks that must be calibrated.
         prefix: "PreArm: " or "Arm: ".
         own: texts of the firmware's own checks, in place of another one's.
     """
@@ -318,7 +325,7 @@ def texts(
     if shown & WAITING_FOR_HOME:
         shown &= ~NEED_POSITION  # shown only when it is what is missing
     said = [text for bit, text in {**TEXTS, **(own or {})}.items() if shown & bit]
-    said += radio_checks.texts(failed, params, sticks)
+    said += radio_checks.texts(failed, params)
     fence, obstacle = failed >> FENCE_SHIFT & 31, failed >> OBSTACLE_SHIFT & 511
     said += ([fence_arming.text(fence)] if fence else []) + ([obstacle_text(obstacle)] if obstacle else [])
     return [prefix + text for text in said]

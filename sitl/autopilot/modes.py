@@ -50,6 +50,8 @@ NO_RETURN = 8
 NO_PATH = 9
 NO_LANDING = 10
 IN_FENCE_RECOVERY = 11
+NO_RADIO = 12
+GCS_BLOCKED = 13
 
 _NO_SEQUENCE = "Unable to start landing sequence"
 _HINTS = {
@@ -139,6 +141,8 @@ class Mode(Generic[V]):
     """Law that prepares it: ACCEPTED, or why it cannot be entered (then it has changed nothing)."""
     needs_position: bool = False
     """Cannot be entered in motion without a position."""
+    needs_pilot: bool = False
+    """Cannot be entered in radio failsafe, by anybody: nobody would fly it."""
     autonomous: bool = False
     """Moves without the pilot's sticks."""
     standard_mode: int = 0
@@ -151,6 +155,17 @@ class Mode(Generic[V]):
         """What its file says of it behind its name; empty when that begins otherwise."""
         text = " ".join((sys.modules[self.run.__module__].__doc__ or "").split("\n\n")[0].split())
         return text.removeprefix(f"{self.name}: ").rstrip(".") if text.startswith(f"{self.name}: ") else ""
+
+
+def is_blocked(number: int, in_order: Sequence[int], block: float) -> bool:
+    """Whether ground stations may not choose a mode.
+
+    Args:
+        number: of the mode.
+        in_order: numbers of the modes that can be blocked, as the bits of ``block`` mean them.
+        block: FLTMODE_GCSBLOCK.
+    """
+    return number in in_order and int(block) >> in_order.index(number) & 1 != 0
 
 
 def numbers(modes: Sequence[M], flag: str) -> tuple[int, ...]:

@@ -14,6 +14,9 @@ from .params.system import Ahrs, Compass
 
 COMPASS_RUNNING, COMPASS_DONE, ACCELS_DONE = 1, 2, 4
 """``Calibrated.state``: compasses are being calibrated, or have been, or accelerometers have, since power-on."""
+PARAMETERS_BAD, SWITCHES_BAD, NEEDS_LOCATION = 8, 16, 32
+"""The same of parameters (``parameter_checks``): some forbid arming, some while there is a receiver, or a vehicle
+without a position may not be armed in any mode (ARMING_NEED_LOC)."""
 
 COMPASSES = 3
 SILENCE_US = 500_000
@@ -33,7 +36,7 @@ class Calibrated(Record):
     gyro2: Vec3
     mag: Vec3  # field of the first compass, body [gauss]
     mag_seen: int  # ``sensors.mag_count`` of it
-    state: int  # COMPASS_RUNNING, ... (written by the shell)
+    state: int  # what forbids arming: COMPASS_RUNNING, ... (written by the shell)
 
 
 @law

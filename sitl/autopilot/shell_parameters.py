@@ -8,7 +8,17 @@ from .params.table import Values
 
 MISSION_OPTIONS, CLEARED_AT_BOOT = "MIS_OPTIONS", 1
 
+MODE_BLOCK, NEED_LOCATION = "FLTMODE_GCSBLOCK", "ARMING_NEED_LOC"
+MAV_OPTIONS, ONLY_GROUND_STATIONS = "MAV_OPTIONS", 1
+GCS_SYSID_HI = "MAV_GCS_SYSID_HI"
+
 MEANINGS = {
+    MAV_OPTIONS: "Bits: 1 the vehicle hears its ground stations (MAV_GCS_SYSID), itself and radios only",
+    GCS_SYSID_HI: "With MAV_OPTIONS 1: systems from MAV_GCS_SYSID to this one are ground stations, too",
+    NEED_LOCATION: "1: no arming without a position, whatever the mode",
+    "ARMING_MIS_ITEMS": "Bits of commands that the mission must have: 1 LAND, 4 DO_LAND_START, 8 TAKEOFF, 64 RTL",
+    "ARMING_MAGTHRESH": "Greatest difference of the first compass from the earth's field, for arming [mGauss]; 0: any",
+    MODE_BLOCK: "Bits of modes that ground stations may not choose; switches and failsafes may",
     MISSION_OPTIONS: "Bits: 1 a boot clears the mission",
     **relays.MEANINGS,
     **camera.MEANINGS,

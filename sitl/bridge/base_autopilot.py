@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..autopilot import battery, events, home
+from ..autopilot import battery, events, home, modes, parameter_checks, sensor_calibration
 from ..autopilot.arming_checks import BY_MAVLINK, refusal
 from ..autopilot.estimation import aiding, sources
 from ..autopilot.failsafe_checks import CRITICAL as MOST_SEVERE
@@ -18,6 +18,8 @@ from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
+from ..autopilot.radio_checks import PARAMETERS
+from ..autopilot.shell_parameters import MODE_BLOCK, NEED_LOCATION
 from .autopilot_api import Note, Vector, Vehicle
 
 EMERGENCY, CRITICAL, WARNING, INFO = 0, 2, 4, 6
@@ -37,6 +39,10 @@ class BaseAutopilot:
     """and of changing the mode."""
     _auto: int
     """Number of the mode that runs missions."""
+    _checks: Sequence[parameter_checks.Check] = ()
+    """Arming checks of parameters."""
+    _block_order: Sequence[int] = ()
+    """Numbers of the modes in the order of the bits of FLTMODE_GCSBLOCK."""
 
     def __init__(self, vehicle: Any) -> None:
         self._vehicle: Vehicle = vehicle
@@ -44,6 +50,10 @@ class BaseAutopilot:
         self._sequencer = lambda: vehicle.sequencer
         self._aux = lambda: vehicle.aux
         self._notes: list[Note] = []
+        values = vehicle.parameters
+        names = parameter_checks.BOOT_NAMES if self._checks else ()
+        self._boot_values = {name: values[name] for name in names}
+        self.check_parameters()
 
     def take_notes(self) -> list[Note]:
         """What there is to tell, once."""
@@ -56,7 +66,7 @@ class BaseAutopilot:
             return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
         if code == events.ARMING_REFUSED:
             failed, method = refusal(a, b)
-            said = [] if method == BY_MAVLINK else self._arming.texts(self._v, failed, "Arm: ")  # arm() gives its own
+            said = [] if method == BY_MAVLINK else self._arming_texts(self._v, failed, "Arm: ")  # arm() gives its own
             return [Text(CRITICAL, text) for text in said]
         fence = fence_texts.note(code, a, b)
         if fence is not None:
@@ -87,7 +97,10 @@ class BaseAutopilot:
         return int(self._v.autopilot.modes.number)
 
     def arm(self, force: bool) -> bool:
+        self.check_parameters()
         ok, texts = self._arming.arm(self._v, BY_MAVLINK, force)
+        if not (ok or force):
+            texts = [*texts, *self._parameter_texts(self._arming.check(self._v) == 0, "Arm: ")]
         self._say(CRITICAL, texts)
         return bool(ok)
 
@@ -95,14 +108,56 @@ class BaseAutopilot:
         return bool(self._arming.disarm(self._v, BY_MAVLINK, force))
 
     def run_prearm_checks(self) -> None:
+        self.check_parameters()
         self._say(CRITICAL, self.prearm_texts(self._v, "PreArm: "))
 
     def prearm_texts(self, v: Any, prefix: str = "") -> list[str]:
         """What keeps a vehicle of this firmware from arming; ``v``: its record, or a copy of one."""
-        return list(self._arming.texts(v, self._arming.check(v), prefix))
+        return self._arming_texts(v, self._arming.check(v), prefix, any(not each.forbids for each in self._found))
+
+    def check_parameters(self) -> None:
+        """Make the arming checks of parameters, for the core to know."""
+        self._found: list[parameter_checks.Found] = []
+        if not self._checks:
+            return
+        v, values = self._v, self._vehicle.parameters
+        mission = getattr(self._vehicle, "mission", None)
+        commands = frozenset(item.command for item in mission.items) if mission is not None else frozenset()
+        subject = parameter_checks.Subject(values, self._boot_values, v, commands)
+        self._found = parameter_checks.look(subject, self._checks)
+        bits = {
+            sensor_calibration.PARAMETERS_BAD: any(f.forbids and not f.when_arming for f in self._found),
+            sensor_calibration.SWITCHES_BAD: any(f.forbids and f.when_arming for f in self._found),
+            sensor_calibration.NEEDS_LOCATION: values[NEED_LOCATION] != 0.0,
+        }
+        state = int(v.autopilot.calibrated.state)
+        for bit, is_set in bits.items():
+            state = state | bit if is_set else state & ~bit
+        v.autopilot.calibrated.state = state
+
+    def _parameter_texts(self, arming: bool, prefix: str) -> list[str]:
+        """What is wrong with parameters, each after ``prefix``; ``arming``: with what counts at that moment."""
+        return [prefix + each.text for each in self._found if arming or not each.when_arming]
+
+    def _arming_texts(self, v: Any, failed: int, prefix: str, told: bool = False) -> list[str]:
+        """Texts of failed checks; ``told``: parameters have something to say that does not forbid arming."""
+        said = list(self._arming.texts(v, failed, prefix))
+        if failed & PARAMETERS or told:
+            said += self._parameter_texts(prefix == "Arm: " and self._arming.check(v) == 0, prefix)
+        return said
 
     def set_mode(self, number: int) -> bool:
+        if number != modes.shown(self._v.autopilot.modes) and self._is_blocked(number):
+            return False
         return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events
+
+    def _is_blocked(self, number: int) -> bool:
+        """Whether FLTMODE_GCSBLOCK keeps ground stations from choosing a mode; tells of it."""
+        order, v = self._block_order, self._v
+        blocked = number in order and modes.is_blocked(number, order, self._vehicle.parameters[MODE_BLOCK])
+        if blocked:
+            events.emit(v.autopilot.events, v.time_us, events.MODE_REFUSED, float(number), float(modes.GCS_BLOCKED))
+        return blocked
 
     def run_aux_function(self, number: int, position: int) -> bool:
         ok, notes = self._aux().run(number, position)
@@ -149,6 +204,7 @@ class BaseAutopilot:
         changed = getattr(self._vehicle, "parameter_changed", None)
         if changed is not None:
             changed(name)
+        self.check_parameters()
 
     # ------------------------------------------------------------------ mission
 

@@ -30,6 +30,7 @@ from .services.log_download import LogStore
 from .services.mission import MissionService
 from .services.outputs import OutputService
 from .services.parameters import ParameterService
+from .services.senders import SenderService
 from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
@@ -120,6 +121,7 @@ class Bridge:
                 self.by_shell[message(name).id] = build
                 self.telemetry[message(name).id] = message(name)
         self._signing: SigningService = self.get(SigningService)
+        self._senders: SenderService = self.get(SenderService)
         self.board.signer = self._signing
         self._timed = [s for s in self.services.values() if type(s).service is not Service.service]
         self._following = [
@@ -289,6 +291,8 @@ class Bridge:
             journal.received(channel, data)
         if data and self._signing.concerns(channel):
             data = self._signing.received(channel, data)
+        if data and self._senders.is_on:
+            data = self._senders.received(channel, data)
         self._hear(channel, data)
 
     def arrive(self) -> None:
@@ -374,7 +378,7 @@ class Bridge:
     def goes_by_itself(self) -> bool:
         """Whether the core may send for several times in one run: nobody looks at each frame at its time."""
         watched = self.board.is_watched()
-        goes = not watched
+        goes = not (watched or self._senders.is_on)
         for channel in self.channels:
             if not channel.peer.waits:
                 goes = False

@@ -57,6 +57,8 @@ LOGS = Path("logs")
 LOOK_S = 0.2
 """Wall time between two looks for the parent while the first client is awaited [s]."""
 
+LOG_US = 500_000
+"""The log on disk is at most so far behind: suites read it while it grows [simulated us]."""
 Say = Callable[[str], None]
 
 
@@ -106,7 +108,7 @@ class Session:
         """Links of serial ports, by the parameters of their protocols."""
         simulation.set_link_faults(line.link_faults)
         self._open_ports()
-        attach(simulation, LOGS, NumberedLogs)
+        self._logs, self._written_us = attach(simulation, LOGS, NumberedLogs), 0
         self.storage.write()
 
     def _parameters(self, table: Table) -> dict[str, float]:
@@ -196,6 +198,9 @@ class Session:
 
     def _after_slice(self) -> None:
         self._statistics.follow()
+        if self.simulation.time_us - self._written_us >= LOG_US:
+            self._written_us = self.simulation.time_us
+            self._logs.write_out()
         mission = self.simulation.mission
         if mission is not self._mission:
             self._mission = mission

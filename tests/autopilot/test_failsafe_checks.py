@@ -91,8 +91,6 @@ LIMITS = {"ARM_VOLT": 11.0, "ARM_MAH": 1000.0, "LOW_VOLT": 10.5, "LOW_MAH": 900.
         ({"ARM_MAH": 0.0}, 12.0, 2500.0, arming_checks.BATTERY_CAPACITY_FAILSAFE),
         ({"ARM_VOLT": 0.0, "LOW_VOLT": 0.0}, 10.0, 0.0, arming_checks.BATTERY_CRITICAL_VOLTAGE),
         ({"ARM_MAH": 0.0, "LOW_MAH": 0.0}, 12.0, 2500.0, arming_checks.BATTERY_CRITICAL_CAPACITY),
-        ({"CRT_MAH": 900.0}, 12.0, 0.0, arming_checks.BATTERY_CAPACITY_ORDER),
-        ({"CRT_VOLT": 10.5}, 12.0, 0.0, arming_checks.BATTERY_VOLTAGE_ORDER),
         ({"MONITOR": 3.0}, 12.0, 0.0, arming_checks.BATTERY_UNHEALTHY),
         ({"MONITOR": 0.0}, 12.0, 0.0, arming_checks.BATTERY_UNHEALTHY),
         ({"VOLT_PIN": -1.0}, 12.0, 0.0, arming_checks.BATTERY_UNHEALTHY),
@@ -204,10 +202,10 @@ def test_every_check_is_a_bit_of_its_own_and_has_a_text() -> None:
         if not (name.startswith(("BY_", "CHECK_", "COMPASS_", "_")) or name.endswith(NUMBERS))
     ]
     assert sorted(bits) == sorted(arming_checks.TEXTS)
-    bits += [*radio_checks.OFF_CENTRE.values(), radio_checks.CALIBRATION, radio_checks.SAME_FUNCTION]
+    bits += [*radio_checks.OFF_CENTRE.values(), radio_checks.PARAMETERS]
     assert len(set(bits)) == len(bits) and all(bit & (bit - 1) == 0 for bit in bits)
 
 
 def test_a_missing_home_explains_the_missing_position() -> None:
     missing = arming_checks.WAITING_FOR_HOME | arming_checks.NEED_POSITION
-    assert arming_checks.texts(missing, Parameters(), {}, "Arm: ") == ["Arm: AHRS: waiting for home"]
+    assert arming_checks.texts(missing, Parameters(), "Arm: ") == ["Arm: AHRS: waiting for home"]

@@ -9,8 +9,14 @@ import pytest
 
 from sitl.autopilot.arming_checks import BY_MAVLINK, BY_RUDDER, BY_SWITCH, refusal
 from sitl.autopilot.copter import arming as copter_arming
-from sitl.autopilot.radio_checks import CALIBRATION, OFF_CENTRE
+from sitl.autopilot.copter.parameters import TABLE as COPTER
+from sitl.autopilot.parameter_checks import Found
+from sitl.autopilot.params.table import Values
+from sitl.autopilot.radio_checks import OFF_CENTRE, PARAMETERS, STICK_NAMES, calibration_texts
 from sitl.autopilot.rover import arming as rover_arming
+from sitl.autopilot.rover.parameter_checks import STICKS
+from sitl.autopilot.rover.parameters import TABLE as ROVER
+from sitl.autopilot.sensor_calibration import PARAMETERS_BAD
 from sitl.bridge.copter.autopilot import CopterAutopilot
 from tests.autopilot.copter.steady_copter import make
 from tests.autopilot.rover.modes.driven_rover import Rover
@@ -69,8 +75,6 @@ def test_yaw_may_be_off_when_it_is_the_arming_stick() -> None:
         ({"RC4_MIN": 1450.0}, ["Yaw radio min too high"]),
         ({"RC6_MAX": 1400.0}, ["RC6_MAX is less than RC6_TRIM"]),
         ({"RC16_MIN": 1600.0}, ["RC16_MIN is greater than RC16_TRIM"]),
-        ({"RC9_OPTION": 7.0, "RC12_OPTION": 7.0}, ["Duplicate Aux Switch Options"]),
-        ({"RC9_OPTION": 7.0, "RC12_OPTION": 9.0}, []),
         (
             {"RC1_MIN": 1400.0, "RC2_MIN": 1400.0, "RC1_MAX": 1450.0, "RC7_MIN": 1600.0},
             [
@@ -85,9 +89,10 @@ def test_yaw_may_be_off_when_it_is_the_arming_stick() -> None:
     ),
 )
 def test_a_copters_channels_must_be_calibrated(params: dict[str, float], texts: list[str]) -> None:
-    v = copter(**params)
-    assert copter_arming.texts(v, copter_arming.check(v), "PreArm: ") == [f"PreArm: {text}" for text in texts]
-    assert copter_texts(copter(ARMING_CHECK=1022.0 - 64.0, **params)) == []
+    v = copter()
+    values = Values(COPTER, v.autopilot.params)
+    values.update(params)
+    assert list(calibration_texts(values, v.autopilot.params, STICK_NAMES)) == texts
 
 
 def test_texts_name_the_channel_of_a_stick() -> None:
@@ -118,36 +123,41 @@ def test_a_rovers_sticks(channel: int, pulse: int, texts: list[str]) -> None:
 @pytest.mark.parametrize(
     ("params", "texts"),
     (
-        ({"RC1_MIN": 1301.0}, ["Arm: Steer radio min too high"]),
-        ({"RC3_MIN": 1400.0}, ["Arm: Throttle radio min too high"]),
-        ({"RC1_MAX": 1699.0}, ["Arm: Steer radio max too low"]),
+        ({"RC1_MIN": 1301.0}, ["Steer radio min too high"]),
+        ({"RC3_MIN": 1400.0}, ["Throttle radio min too high"]),
+        ({"RC1_MAX": 1699.0}, ["Steer radio max too low"]),
         ({"RC2_MIN": 1400.0, "RC4_MAX": 1600.0}, []),
-        ({"RC5_MIN": 1600.0}, ["Arm: RC5_MIN is greater than RC5_TRIM"]),
-        ({"RC9_OPTION": 7.0, "RC10_OPTION": 7.0}, ["Arm: Duplicate Aux Switch Options"]),
+        ({"RC5_MIN": 1600.0}, ["RC5_MIN is greater than RC5_TRIM"]),
+        ({"RC6_TRIM": -1.0}, ["RC6_MAX is less than RC6_TRIM"]),
     ),
 )
 def test_a_rovers_channels(params: dict[str, float], texts: list[str]) -> None:
-    assert rover_texts(Rover(**params)) == texts
+    ap = Rover().ap
+    values = Values(ROVER, ap.params)
+    values.update(params)
+    assert list(calibration_texts(values, ap.params, STICKS)) == texts
 
 
 def test_a_refusal_keeps_all_its_bits_in_the_event() -> None:
     """A float holds 53 bits; the checks are more."""
-    v = copter(RC1_MIN=1400.0)
-    v.autopilot.rc.receiver_ok = False
+    v = copter()
+    v.autopilot.calibrated.state = PARAMETERS_BAD
+    v.autopilot.rc.receiver_ok, v.autopilot.rc.receiver_us = False, 0
     failed = copter_arming.try_arm(v, BY_SWITCH, False)
     events = v.autopilot.events
-    assert failed & CALIBRATION and failed & 2048
+    assert failed & PARAMETERS and failed & 2048
     a, b = float(events.a[0]), float(events.b[0])
     assert refusal(a, b) == (failed, BY_SWITCH)
     assert refusal(float((1 << 48) - 1), float(OFF_CENTRE[3] >> 48 << 5 | 18)) == ((1 << 48) - 1 | OFF_CENTRE[3], 18)
 
 
 def test_a_refused_switch_says_all() -> None:
-    v = copter(RC1_MIN=1400.0)
-    v.autopilot.rc.receiver_ok = False
+    v = copter()
+    v.autopilot.calibrated.state = PARAMETERS_BAD
+    v.autopilot.rc.receiver_ok, v.autopilot.rc.receiver_us = False, 0
     copter_arming.try_arm(v, BY_SWITCH, False)
     events = v.autopilot.events
     pilot = CopterAutopilot.__new__(CopterAutopilot)
-    pilot._v = v
+    pilot._v, pilot._found = v, [Found("Roll radio min too high", False, True)]
     said = pilot.texts_of(int(events.code[0]), float(events.a[0]), float(events.b[0]))
     assert [note.text for note in said] == ["Arm: RC not found", "Arm: Roll radio min too high"]

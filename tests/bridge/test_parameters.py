@@ -283,3 +283,33 @@ def test_the_client_numbers_its_sessions(bench: Bench) -> None:
     assert unpack(answer)[0][1:3] == (147, ACK)
     (answer,) = bench.ask(request(READ, size=10, session=148))
     assert unpack(answer)[0][1:3] == (148, NAK)
+
+
+def values_of(answers: list[object]) -> dict[str, float]:
+    return {m.param_id: m.param_value for m in answers if m.get_type() == "PARAM_VALUE"}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "own", "kept"),
+    (
+        ("PSC_NE_POS_P", -1.0, "PSC_POSXY_P", -1.0),
+        ("PSC_D_VEL_P", 4.0, "PSC_VELZ_P", 4.0),
+        ("PSC_NE_VEL_IMAX", 5.0, "PSC_VELXY_IMAX", 500.0),
+        ("ARMING_SKIPCHK", -1.0, "ARMING_CHECK", 0.0),
+        ("ARMING_SKIPCHK", 0.0, "ARMING_CHECK", 1.0),
+        ("ARMING_SKIPCHK", 64.0, "ARMING_CHECK", float((1 << 21) - 2 - 64)),
+    ),
+)
+def test_names_of_the_development_version_are_read_and_set(
+    bench: Bench, name: str, value: float, own: str, kept: float
+) -> None:
+    assert name not in names(bench)
+    answers = values_of(write(bench, name, value))
+    assert answers == {name: value, own: kept}
+    assert bench.vehicle.parameters[own] == kept
+    assert values_of(read(bench, name)) == {name: value}
+
+
+def test_other_names_of_other_versions_are_not_there(bench: Bench) -> None:
+    for name in ("SYSID_MYGCS", "WP_SPD", "PSC_NE_NO_P", "PSC_NE_POS_PP"):
+        assert read(bench, name) == [] and write(bench, name, 3.0) == []

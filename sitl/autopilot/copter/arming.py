@@ -9,7 +9,7 @@ from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, MODE, refuse
 from ..events import ARMED, emit
 from ..fence.checks import switch_on_arming
 from ..state import Arming
-from .arming_checks import CALIBRATED, MANDATORY, TEXTS, arm_checks, check, stick_checks
+from .arming_checks import DOUBTFUL, MANDATORY, TEXTS, arm_checks, check, doubt_text, stick_checks
 from .control.motors import ARMING_DELAY_US
 from .modes import ground, simple
 from .modes.state import Modes
@@ -26,10 +26,11 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     arming = ap.arming
     if arming.armed:
         return 0
-    turns = arming.interlock_used and arming.interlock_on
-    failed = check(v) | arm_checks(ap.modes, ap.rc, ap.params, method, turns)
+    failed = check(v)
     if failed == 0:
-        failed = stick_checks(ap.rc, ap.params, method)
+        failed = arm_checks(ap.modes, ap.rc, ap.params, method, ap.control.attitude.cos_lean)
+    if failed == 0:
+        failed = stick_checks(ap.rc, ap.params, method, ap.calibrated.state)
     if (not force and failed != 0) or (failed & MANDATORY) != 0:
         refuse(ap.events, v.time_us, failed, method)
         return failed
@@ -116,6 +117,10 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
 
 def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
     """Status texts of failed checks, each after ``prefix``."""
-    mode = {MODE: f"{TITLES.get(v.autopilot.modes.number)} mode not armable"}
-    own = {**TEXTS, **mode, **arming_checks.receiver_texts(v.sensors, v.autopilot.params)}
-    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix, own)
+    ap = v.autopilot
+    now = {
+        MODE: f"{TITLES.get(ap.modes.number)} mode not armable",
+        DOUBTFUL: doubt_text(ap.estimate, ap.params.FS.EKF_THRESH),
+    }
+    own = {**TEXTS, **now, **arming_checks.receiver_texts(v.sensors, v.autopilot.params)}
+    return arming_checks.texts(failed, v.autopilot.params, prefix, own)

@@ -15,12 +15,14 @@ from ..arming_checks import (
     BY_RUDDER,
     CHECK_BARO,
     CHECK_GPS,
+    CHECK_INS,
     CHECK_PARAMETERS,
     CHECK_RC,
     EMERGENCY_STOP,
     FENCE_POSITION,
     FENCE_SHIFT,
     FRAME,
+    GCS_FAILSAFE,
     GPS_FIX,
     INTERLOCK,
     LEANING,
@@ -29,21 +31,26 @@ from ..arming_checks import (
     NEED_POSITION,
     NO_MISSION,
     PARACHUTE_RELEASED,
+    RADIO_FAILSAFE,
     RUDDER_DISABLED,
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
     battery_checks,
     calibration_checks,
     obstacle_check,
+    parameter_checks,
     proximity_checks,
     receiver_checks,
     sensor_checks,
+    switch_checks,
     wants,
 )
 from ..barometers import are_healthy
+from ..estimation.status import GPS_GLITCHING
 from ..fence import arming as fence_arming
 from ..params.system import Arming
 from ..radio import PITCH, ROLL, THROTTLE, YAW
+from ..sensor_calibration import NEEDS_LOCATION
 from ..state import Estimate, Radio
 from . import pilot
 from .modes.auto import AUTO
@@ -53,20 +60,17 @@ from .parameters import Parameters
 from .state import Vehicle
 from .terrain import has_range
 
-TERRAIN_OFF, TERRAIN_WAITS, RTL_TERRAIN_OFF = 1 << 20, 1 << 21, 1 << 22
+TERRAIN_OFF, TERRAIN_WAITS, RTL_TERRAIN_OFF, DOUBTFUL = 1 << 20, 1 << 21, 1 << 22, 1 << 26
 """Bits that are other checks of rovers."""
 TEXTS = {
     TERRAIN_OFF: "terrain disabled",
     TERRAIN_WAITS: "waiting for terrain data",
     RTL_TERRAIN_OFF: "RTL_ALT_TYPE is above-terrain but no terrain data",
 }
-MANDATORY = NEED_POSITION | NEED_ALTITUDE
+MANDATORY = NEED_POSITION | NEED_ALTITUDE | DOUBTFUL
 """What forcing does not skip."""
-CALIBRATED = radio_checks.STICK_NAMES
-"""Sticks that must be calibrated: their names in status texts."""
 _ROLL_OFF, _PITCH_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[PITCH]
 _THROTTLE_OFF, _YAW_OFF = radio_checks.OFF_CENTRE[THROTTLE], radio_checks.OFF_CENTRE[YAW]
-_ALL_STICKS = 1 << ROLL | 1 << PITCH | 1 << THROTTLE | 1 << YAW
 
 
 @law
@@ -96,13 +100,56 @@ def estimate_checks(mode: int, estimate: Estimate, home_set: bool, needs_fix: bo
 
 
 @law
+def doubt(estimate: Estimate, limit: float) -> int:
+    """DOUBTFUL when fixes are not believed, or a variance is above FS_EKF_THRESH (``limit``)."""
+    worst = max(max(estimate.variance_mag, estimate.variance_pos), max(estimate.variance_vel, estimate.variance_hgt))
+    bad = estimate.status_flags & GPS_GLITCHING != 0 or (limit > 0.0 and worst >= limit)
+    return DOUBTFUL if bad else 0
+
+
+def doubt_text(estimate: Estimate, limit: float) -> str:
+    """Status text of DOUBTFUL."""
+    variances = {
+        "compass": estimate.variance_mag, "position": estimate.variance_pos, "velocity": estimate.variance_vel,
+        "height": estimate.variance_hgt,
+    }  # fmt: skip
+    for name, value in variances.items():
+        if estimate.status_flags & GPS_GLITCHING == 0 and value >= limit:
+            return f"EKF {name} variance"
+    return "GPS glitching"
+
+
+@law
+def failsafe_checks(modes: Modes, p: Parameters) -> int:
+    """Failsafes that are on."""
+    failed = RADIO_FAILSAFE if modes.failsafe.radio and wants(p.ARMING, CHECK_RC) else 0
+    return failed | (GCS_FAILSAFE if modes.failsafe.gcs and p.ARMING.CHECK != 0.0 else 0)
+
+
+@law
+def location_checks(v: Vehicle) -> int:
+    """Failed checks of the position where a mode, a fence or ARMING_NEED_LOC needs it."""
+    ap = v.autopilot
+    by_mode = requires_position(ap.modes.number)
+    by_fence = fence_arming.needs_position(ap.fence, ap.params.FENCE)
+    wanted = ap.calibrated.state & NEEDS_LOCATION != 0
+    if not (by_mode or by_fence or wanted):
+        return 0
+    if ap.estimate.position_ok:
+        return doubt(ap.estimate, ap.params.FS.EKF_THRESH)
+    if wanted:
+        return NEED_POSITION
+    return 0 if by_mode else FENCE_POSITION  # of modes: ``estimate_checks``
+
+
+@law
 def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
     failed = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
-    failed |= calibration_checks(ap.calibrated.state, p.ARMING)
-    failed |= lean_check(ap.control.attitude.cos_lean, math.radians(p.ANGLE_MAX * 0.01))
+    failed |= calibration_checks(ap.calibrated.state, p.ARMING) | parameter_checks(ap.calibrated.state)
+    failed |= failsafe_checks(ap.modes, p) | location_checks(v)
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, needs_fix, p.ARMING)
     if requires_position(ap.modes.number) and wants(p.ARMING, CHECK_GPS):
@@ -116,9 +163,10 @@ def check(v: Vehicle) -> int:
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
         failed |= NO_MISSION
     if wants(p.ARMING, CHECK_RC):
-        failed |= radio_checks.channels(p, _ALL_STICKS)
         if p.FS.THR_ENABLE > 0.0:
             failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+    if ap.arming.interlock_used and ap.arming.interlock_on:
+        failed |= INTERLOCK
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
     if ap.arming.parachute_released:
@@ -126,12 +174,6 @@ def check(v: Vehicle) -> int:
     if ap.modes.mission_over_ground or p.RTL.ALT_TYPE > 0.0:
         failed |= terrain_check(v)
     fence = p.FENCE
-    if (
-        fence_arming.needs_position(ap.fence, fence)
-        and not ap.estimate.position_ok
-        and not requires_position(ap.modes.number)
-    ):
-        failed |= FENCE_POSITION
     limits = Vec3(fence.ALT_MAX, fence.ALT_MIN, fence.AUTOENABLE)
     failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, fence, limits) << FENCE_SHIFT
     return failed if ap.control.motors.count > 0 else failed | FRAME
@@ -148,10 +190,11 @@ def terrain_check(v: Vehicle) -> int:
 
 
 @law
-def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, turns: bool) -> int:
-    """Failed checks that count only at the moment of arming by ``method``; ``turns``: the interlock says so."""
-    failed = INTERLOCK if turns else 0
-    mode = modes.number
+def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, cos_lean: float) -> int:
+    """Failed checks that count only at the moment of arming by ``method``; ``cos_lean``: cosine of the lean."""
+    failed, mode = 0, modes.number
+    if wants(p.ARMING, CHECK_INS):
+        failed |= lean_check(cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     if not may_arm(mode, p, method):
         failed |= MODE
     if method == BY_RUDDER and p.ARMING.RUDDER < 1.0:
@@ -166,12 +209,16 @@ def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, turns: bool)
 
 
 @law
-def stick_checks(rc: Radio, p: Parameters, method: int) -> int:
-    """Sticks that are not at rest when all else allows to arm by ``method``; by stick the yaw cannot be."""
+def stick_checks(rc: Radio, p: Parameters, method: int, state: int) -> int:
+    """Sticks that are not at rest when all else allows to arm by ``method``; by stick the yaw cannot be.
+
+    ``state``: of switches on other channels (``Calibrated.state``).
+    """
     if not rc.receiver_ok or not wants(p.ARMING, CHECK_RC):
         return 0
     failed = radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF) | radio_checks.off_centre(rc, p, PITCH, _PITCH_OFF)
     if method != BY_RUDDER:
         failed |= radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
     channel = radio.stick_channel(p.RCMAP, THROTTLE)
+    failed |= switch_checks(state, rc.receiver_ok)
     return failed | (_THROTTLE_OFF if radio.ranged(rc.channels[channel], p.RC[channel]) > 0.0 else 0)

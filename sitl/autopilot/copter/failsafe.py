@@ -280,7 +280,11 @@ def act_on_estimate(v: Vehicle) -> int:
         return 1
     follows = 1
     if ap.modes.number != LAND:
-        if action == 2 and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED:
+        if (
+            action == 2
+            and not ap.modes.failsafe.radio
+            and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED
+        ):
             return EKF_HOLDS
         land_with_pause(v, REASON_EKF_FAILSAFE)
         follows = EKF_LANDS

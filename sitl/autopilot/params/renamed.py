@@ -9,6 +9,8 @@ metres, angles in degrees. Source: the parameter lists of 4.6 and 4.7 and their 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from typing import NamedTuple
 
 _STREAM = re.compile(r"SR(\d)_(\w+)")
 _GPS = re.compile(r"GPS_(TYPE|DELAY_MS|RATE_MS|GNSS_MODE|COM_PORT)(2?)")
@@ -62,6 +64,43 @@ RENAMED: dict[str, tuple[str, float]] = {
     "RTL_SPEED_MS": ("RTL_SPEED", _CENTI),
 }
 """Name elsewhere -> name here, and the factor from the value elsewhere to the one here."""
+
+
+ALL_CHECKS = (1 << 21) - 2
+"""Bits of ARMING_SKIPCHK."""
+
+
+class Alias(NamedTuple):
+    """A name of ArduPilot's development version by which clients may read and set a parameter; lists do not have it."""
+
+    name: str
+    """Here."""
+    to_here: Callable[[float], float]
+    from_here: Callable[[float], float]
+
+
+def _checks(skipped: float) -> float:
+    """ARMING_CHECK that skips the checks of ARMING_SKIPCHK."""
+    left = ALL_CHECKS & ~int(skipped)
+    return 1.0 if left == ALL_CHECKS else float(left)
+
+
+def _skipped(checks: float) -> float:
+    """ARMING_SKIPCHK that leaves the checks of ARMING_CHECK."""
+    if int(checks) & 1:
+        return 0.0
+    return float(ALL_CHECKS & ~int(checks)) if int(checks) & ALL_CHECKS else -1.0
+
+
+def alias(name: str) -> Alias | None:
+    """What ArduPilot's development version calls ``name``; None: nothing, or it is called so here, too."""
+    if name == "ARMING_SKIPCHK":
+        return Alias("ARMING_CHECK", _checks, _skipped)
+    found = here(name) if _LOOP.fullmatch(name) else None
+    if found is None:
+        return None
+    own, factor = found
+    return Alias(own, lambda value: value * factor, lambda value: value / factor)
 
 
 def here(name: str) -> tuple[str, float] | None:

@@ -10,7 +10,7 @@ from ..arming_checks import BY_RUDDER, refuse
 from ..events import ARMED, DISARMED, Events, emit, emit_and_return
 from ..mode_switch import rudder_command
 from ..state import Arming
-from .arming_checks import CALIBRATED, TEXTS, check, method_checks
+from .arming_checks import TEXTS, check, method_checks
 from .control.motors import is_moving
 from .modes.simple import note_heading
 from .modes.state import PilotState
@@ -28,7 +28,7 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
         return 0
     failed = 0
     if not force:
-        failed = check(v) | method_checks(ap.modes, ap.rc, method, ap.params)
+        failed = check(v) | method_checks(ap.modes, ap.rc, method, ap.params, ap.calibrated.state)
     if failed != 0:
         refuse(ap.events, v.time_us, failed, method)
         return failed
@@ -85,4 +85,4 @@ def arm(v: Vehicle, method: int, force: bool) -> tuple[bool, list[str]]:
 def texts(v: Vehicle, failed: int, prefix: str) -> list[str]:
     """Status texts of failed checks, each after ``prefix``."""
     own = {**TEXTS, **arming_checks.receiver_texts(v.sensors, v.autopilot.params)}
-    return arming_checks.texts(failed, v.autopilot.params, CALIBRATED, prefix, own)
+    return arming_checks.texts(failed, v.autopilot.params, prefix, own)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from .. import radio_checks
+from .. import arming_checks, radio_checks
 from ..arming_checks import (
     AHRS_TYPE,
     BAROMETER,
@@ -22,23 +22,27 @@ from ..arming_checks import (
     NO_MISSION,
     NO_OUTPUTS,
     NOT_INITIALISED,
+    RADIO_FAILSAFE,
     RUDDER_DISABLED,
     battery_checks,
     calibration_checks,
     proximity_checks,
     receiver_checks,
     sensor_checks,
+    switch_checks,
     wants,
 )
 from ..barometers import are_healthy
 from ..fence import arming as fence_arming
 from ..radio import ROLL, THROTTLE, YAW
+from ..radio_checks import RC_MISSING
+from ..sensor_calibration import NEEDS_LOCATION
 from ..state import Estimate, Radio
 from .control import servos
 from .control.motors import is_skid
 from .heights import HEIGHTS
 from .modes.auto import AUTO
-from .modes.state import Modes
+from .modes.state import BIT_RADIO, Modes
 from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .parameters import Parameters
 from .state import Vehicle
@@ -46,16 +50,15 @@ from .state import Vehicle
 WAYPOINT_SPEED = 1 << 17
 """A bit that is another check of copters."""
 TEXTS = {WAYPOINT_SPEED: "WP_SPEED too low"}
-CALIBRATED = {ROLL: "Steer", THROTTLE: "Throttle"}
-"""Sticks that must be calibrated: their names in status texts."""
 _ROLL_OFF, _THROTTLE_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[THROTTLE]
 _YAW_OFF = radio_checks.OFF_CENTRE[YAW]
 
 
 @law
-def estimate_checks(modes: Modes, estimate: Estimate, gps_fix: int, params: Parameters) -> int:
-    """Failed checks of GPS and estimate, as far as the mode needs them; the first of them."""
-    if not requires_position(modes.number) and not requires_velocity(modes.number, is_skid(params)):
+def estimate_checks(modes: Modes, estimate: Estimate, gps_fix: int, params: Parameters, state: int) -> int:
+    """Failed checks of GPS and estimate, as far as the mode or ARMING_NEED_LOC (``state``) needs them; the first."""
+    wanted = state & NEEDS_LOCATION != 0 or requires_position(modes.number)
+    if not wanted and not requires_velocity(modes.number, is_skid(params)):
         return 0
     if gps_fix < 3 and wants(params.ARMING, CHECK_GPS):
         return GPS_FIX
@@ -81,10 +84,10 @@ def check(v: Vehicle) -> int:
     ap = v.autopilot
     modes, p = ap.modes, ap.params
     sensors = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
-    sensors |= calibration_checks(ap.calibrated.state, p.ARMING)
+    sensors |= calibration_checks(ap.calibrated.state, p.ARMING) | arming_checks.parameter_checks(ap.calibrated.state)
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED
-    estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p)
+    estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p, ap.calibrated.state)
     if wants(p.ARMING, CHECK_GPS):
         sensors |= receiver_checks(v.sensors, p)
     if wants(p.ARMING, CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
@@ -96,9 +99,10 @@ def check(v: Vehicle) -> int:
     if ap.arming.emergency_stop:
         failed |= EMERGENCY_STOP
     if wants(p.ARMING, CHECK_RC):
-        failed |= radio_checks.channels(p, 1 << ROLL | 1 << THROTTLE)
-        if p.FS.THR_ENABLE > 0.0:
-            failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
+        if modes.links.bad & BIT_RADIO != 0:
+            failed |= RADIO_FAILSAFE
+        elif p.FS.THR_ENABLE > 0.0 and not ap.rc.receiver_ok:
+            failed |= RC_MISSING
     failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, p.FENCE, HEIGHTS) << FENCE_SHIFT
     return failed if allows_arming(modes.number) else failed | MODE
 
@@ -111,11 +115,14 @@ def stick_checks(rc: Radio, p: Parameters, method: int) -> int:
 
 
 @law
-def method_checks(modes: Modes, rc: Radio, method: int, p: Parameters) -> int:
-    """Failed checks of arming at this moment by ``method``, besides those of ``check``."""
+def method_checks(modes: Modes, rc: Radio, method: int, p: Parameters, state: int) -> int:
+    """Failed checks of arming at this moment by ``method``, besides those of ``check``.
+
+    ``state``: of switches on channels (``Calibrated.state``).
+    """
     failed = 0
     if rc.receiver_ok and wants(p.ARMING, CHECK_RC):
-        failed |= stick_checks(rc, p, method)
+        failed |= stick_checks(rc, p, method) | switch_checks(state, rc.receiver_ok)
     if method == BY_RUDDER:
         if p.ARMING.RUDDER < 1.0:
             failed |= RUDDER_DISABLED

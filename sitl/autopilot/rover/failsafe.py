@@ -22,16 +22,13 @@ from .modes.hold import HOLD
 from .modes.loiter import LOITER
 from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
-from .modes.state import LinksState, Modes
+from .modes.state import BIT_RADIO, LinksState, Modes
 from .modes.table import requires_position
 from .parameters.safety import Battery, Failsafes
 from .state import Vehicle
 
 CONTINUES = 6
 """One more kind of FAILSAFE: AUTO goes on."""
-
-# Bits of ``modes.links``
-BIT_RADIO, BIT_GCS = 1, 2
 
 ENABLED_BUT_IN_AUTO = 2.0
 """FS_THR_ENABLE, FS_GCS_ENABLE: missions go on."""

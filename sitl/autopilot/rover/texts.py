@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from .. import events, smart_rtl_path
 from ..failsafe_checks import EKF, VARIANCE, battery_text
-from ..modes import NO_MISSION
+from ..modes import GCS_BLOCKED, NO_MISSION
 from . import failsafe
 from .modes import circle, dock
 from .modes.set_mode import refusal_texts
@@ -55,6 +55,8 @@ def texts(code: int, a: float, b: float) -> list[tuple[int, str]]:
 
 def _refusal(number: int, cause: int) -> list[tuple[int, str]]:
     said = refusal_texts(number, cause)
+    if cause == GCS_BLOCKED:
+        return [(NOTICE, text) for text in said]
     return [(NOTICE if cause == NO_MISSION and text is said[0] else WARNING, text) for text in said]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot import arming_checks, events, radio, smart_rtl_path
-from ...autopilot.copter import arming, failsafe, motor_test, takeoff_check
+from ...autopilot.copter import arming, failsafe, motor_test, parameter_checks, takeoff_check
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
     auto,
@@ -53,6 +53,8 @@ class CopterAutopilot(BaseAutopilot):
 
     _arming, _failsafe, _set_mode = arming, failsafe, set_mode
     _auto = auto.AUTO
+    _block_order = table.GCS_BLOCK
+    _checks = parameter_checks.CHECKS
 
     def __init__(self, vehicle: Any) -> None:
         super().__init__(vehicle)
@@ -110,6 +112,8 @@ class CopterAutopilot(BaseAutopilot):
 
     def go_back(self, way: int) -> bool:
         """AUTO_RTL by a return path (BY_PATH) or a landing sequence (BY_LANDING)."""
+        if self.mode() != auto.AUTO and self._is_blocked(auto.AUTO):
+            return False
         return int(set_mode.go_back(self._v, way, BY_GROUND_STATION)) == 0
 
     # ------------------------------------------------------------------ take-off and motors
@@ -203,10 +207,11 @@ class CopterAutopilot(BaseAutopilot):
     def parameter_changed(self, name: str) -> None:
         """A frame that is set while disarmed holds at once; speeds of legs that are set while AUTO flies one hold from
         there on, whatever the mission said before."""
-        super().parameter_changed(name)
         if name.startswith(FRAME_PARAMETERS) and not self.armed():
-            frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params)
+            is_frame = name.startswith(FRAME_PARAMETERS[0])  # an output that loses its function does not get it back
+            frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params, is_frame)
             self._check_frame()
+        super().parameter_changed(name)
         nav = self._v.autopilot.modes.nav
         field = LEG_SPEEDS.get(name)
         if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:

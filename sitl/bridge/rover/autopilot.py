@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from ...autopilot import events, home
 from ...autopilot.mission.notes import ItemReached, Text
-from ...autopilot.rover import arming, failsafe, motor_test, texts
+from ...autopilot.rover import arming, failsafe, motor_test, parameter_checks, texts
 from ...autopilot.rover.control import servos
-from ...autopilot.rover.modes import guided_setpoints, set_mode
+from ...autopilot.rover.modes import guided_setpoints, set_mode, table
 from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
@@ -24,6 +24,8 @@ class RoverAutopilot(BaseAutopilot):
 
     _arming, _failsafe, _set_mode = arming, failsafe, set_mode
     _auto = AUTO
+    _block_order = table.GCS_BLOCK
+    _checks = parameter_checks.CHECKS
 
     def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
         if code == events.GUIDED_REACHED:

@@ -19,6 +19,7 @@ from .old_points import OldPointService
 from .outputs import OutputService
 from .parachute import ParachuteService
 from .parameters import ParameterService
+from .senders import SenderService
 from .service import Service
 from .setpoints import SetpointService
 from .signing import SigningService
@@ -56,6 +57,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     CalibrationService,
     CompassCalibrationService,
     SigningService,
+    SenderService,
     FaultService,
     TerrainService,
 )

@@ -12,11 +12,13 @@ Format: https://ardupilot.org/dev/docs/mavlink-get-set-params.html and the reade
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter, stored
+from ...autopilot.params.renamed import Alias, alias
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
@@ -112,11 +114,28 @@ class ParameterService(Service):
         name = fields.param_id.decode("ascii", "replace")
         if name in self._table:
             channel.send(VALUE, self._one(name))
+        elif (other := self._alias(name)) is not None:
+            channel.send(VALUE, self._under_alias(name, other))
+
+    def _alias(self, name: str) -> Alias | None:
+        """The parameter that another version calls ``name``."""
+        found = alias(name)
+        return found if found is not None and found.name in self._table else None
+
+    def _under_alias(self, name: str, other: Alias) -> bytes:
+        kind = WIRE_TYPES[self._table[other.name].kind]
+        value = other.from_here(self._values[other.name])
+        return VALUE.pack(value, len(self._values.listed()), NO_INDEX, name.encode(), kind)
 
     # ------------------------------------------------------------------ writing
 
     def _set(self, channel: Channel, fields: Any, sender: Sender) -> None:
         name = fields.param_id.decode("ascii", "replace")
+        other = self._alias(name) if name not in self._table else None
+        if other is not None and math.isfinite(fields.param_value):
+            self.set(other.name, other.to_here(fields.param_value))
+            channel.send(VALUE, self._under_alias(name, other))
+            return
         if name not in self._table:
             return
         refusal = self.set(name, fields.param_value)

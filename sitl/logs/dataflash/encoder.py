@@ -17,7 +17,7 @@ from ...autopilot.params.table import Values
 from ..kind import logs_of
 from . import bits, formats, places
 from .common import EVENT_MESSAGES
-from .events import EDGES, HOME, ORIGIN, EventEncoder
+from .events import EDGES, HEALTH, HOME, ORIGIN, RESOLVED, SILENCE_US, UNHEALTHY, EventEncoder
 from .plan import Plan
 from .samples import Samples
 
@@ -85,7 +85,7 @@ class LogEncoder:
         self._samples = Samples(v.fleet, v.index, ROWS)
         chosen = self._kind.messages(self._bits, self._boot_unix_us, self._simulated)
         self._plan = Plan(chosen, self._numbers, self._samples)
-        self._samples.want(*(edge.path for edge in EDGES), _NAV + "command_count", _NAV + "command_seq")
+        self._samples.want(*(each.path for each in (*EDGES, *HEALTH)), _NAV + "command_count", _NAV + "command_seq")
         for _, is_set, place in _PLACES:
             self._samples.want(is_set, place + "lat", place + "lon", place + "alt")
         self._samples.begin()
@@ -215,7 +215,7 @@ class LogEncoder:
         self.sampler.row = 0
 
     def _edges(self, n: int) -> None:
-        """Messages that follow from changes in the samples: EV, ORGN, MISE."""
+        """Messages that follow from changes in the samples: EV, ERR of sensors, ORGN, MISE."""
         column, pack = self._samples.column, self.events.pack
         times = column("time_us")
         for edge in EDGES:
@@ -225,6 +225,12 @@ class LogEncoder:
                 if number:
                     time_us = int(times[k + 1])
                     self._notes.append((k + 1, time_us, pack("EV", time_us, number)))
+        for sensor in HEALTH:
+            heard = column(sensor.path)[: n + 1]
+            silent = (heard > 0) & (times[: n + 1] - heard > SILENCE_US)
+            for k in np.flatnonzero(silent[1:] != silent[:-1]).tolist():
+                data = pack("ERR", int(times[k + 1]), sensor.subsystem, UNHEALTHY if silent[k + 1] else RESOLVED)
+                self._notes.append((k + 1, int(times[k + 1]), data))
         for kind, is_set, place in _PLACES:
             moved = np.zeros(n, bool)
             for name in ("lat", "lon", "alt"):

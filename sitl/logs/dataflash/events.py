@@ -56,6 +56,22 @@ EDGES = (
 )
 
 
+class Health(NamedTuple):
+    """A sensor that is healthy while it has been heard of late; a change is logged as an ERR message."""
+
+    subsystem: int
+    """Of ERR."""
+    path: str
+    """Field of the vehicle's record: when it was last heard [us since boot]; 0: never, or that is not known."""
+
+
+_COMPASS, _BARO = 3, 18
+SILENCE_US = 500_000
+RESOLVED, UNHEALTHY = 0, 4
+"""Codes of ERR."""
+HEALTH = (Health(_BARO, "autopilot.ekf.baro_us"), Health(_COMPASS, "sensors.mag_us[0]"))
+
+
 class EventEncoder:
     """Encodes the messages of EVENT_MESSAGES.
 

@@ -286,6 +286,10 @@ class DataFlash:
 
     # ------------------------------------------------------------------ handing out
 
+    def write_out(self) -> None:
+        """Write what is pending: others read the file while it grows."""
+        self._flush()
+
     def entries(self) -> list[Entry]:
         """All logs, after writing what is pending."""
         self._flush()

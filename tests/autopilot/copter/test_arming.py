@@ -102,7 +102,7 @@ def set_fields(v, **fields):
     (
         ({"control__motors__count": 0}, "Motors: Check frame class and type"),
         ({"control__attitude__cos_lean": 0.8}, "Leaning"),
-        ({"rc__receiver_ok": 0}, "RC not found"),
+        ({"rc__receiver_ok": 0, "rc__receiver_us": 0}, "RC not found"),
         (
             {"params__BATT_MONITOR": 4.0, "battery__driver": 4, "params__BATT_ARM_VOLT": 11.0},
             "Battery 1 below minimum arming voltage",

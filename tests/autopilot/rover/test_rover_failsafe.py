@@ -16,7 +16,7 @@ from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.modes.smart_rtl import SMART_RTL
-from sitl.autopilot.rover.modes.state import LinksState, Modes
+from sitl.autopilot.rover.modes.state import BIT_GCS, BIT_RADIO, LinksState, Modes
 from sitl.autopilot.rover.parameters.safety import Failsafes
 from sitl.autopilot.state import Estimate
 from tests.autopilot.rover.modes.driven_rover import Rover
@@ -152,7 +152,7 @@ def test_bad_estimate_is_no_matter_in_manual_nor_before_it_was_good() -> None:
     assert "EKF variance" not in never.texts()
 
 
-@given(st.lists(st.tuples(st.sampled_from([failsafe.BIT_RADIO, failsafe.BIT_GCS]), st.booleans()), max_size=20))
+@given(st.lists(st.tuples(st.sampled_from([BIT_RADIO, BIT_GCS]), st.booleans()), max_size=20))
 def test_links_are_lost_since_the_first_of_them_and_over_with_the_last(seen: list[tuple[int, bool]]) -> None:
     links, lost, since = LinksState(), set(), 0
     for k, (bit, bad) in enumerate(seen, 1):

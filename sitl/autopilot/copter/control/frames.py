@@ -117,11 +117,11 @@ def order(p: Parameters) -> tuple[int, ...]:
     return tuple(sorted(range(len(frame)), key=angles.__getitem__))
 
 
-def load_frame(motors: MotorsState, p: Parameters) -> None:
+def load_frame(motors: MotorsState, p: Parameters, assigns: bool = True) -> None:
     """Let the mixer drive the frame that FRAME_CLASS and FRAME_TYPE name, by the outputs that SERVOn_FUNCTION name.
 
-    A motor that no output has gets the output of its number, if that has no function yet (as ArduPilot's). A frame that
-    there is not has no motors, and cannot be armed.
+    A motor that no output has gets the output of its number (``assigns``), if that has no function yet (as
+    ArduPilot's). A frame that there is not has no motors, and cannot be armed.
     """
     frame = frame_of(int(p.FRAME.CLASS), int(p.FRAME.TYPE)) or ()
     motors.count = len(frame)
@@ -132,7 +132,7 @@ def load_frame(motors: MotorsState, p: Parameters) -> None:
     functions = [int(p.SERVO[k].FUNCTION) for k in range(len(p.SERVO))]
     for k in range(MOTORS_MAX):
         wanted = _FIRST_FUNCTION + k
-        if k < len(frame) and wanted not in functions and functions[k] == 0:
+        if assigns and k < len(frame) and wanted not in functions and functions[k] == 0:
             p.SERVO[k].FUNCTION = functions[k] = wanted
         motors.output[k] = functions.index(wanted) if wanted in functions else -1
     motors.is_plain_quad = list(motors.output[: motors.count]) == list(range(MOTORS_OF_QUAD))

@@ -102,4 +102,4 @@ def run(v: Vehicle) -> None:
     throttle_mix.set_throttle_out(control, p, wanted, False, p.PILOT.THR_FILT)
 
 
-MODE = CopterMode(number=ACRO, name="ACRO", run=run, manual_throttle=True, ignores_simple=True)
+MODE = CopterMode(number=ACRO, name="ACRO", run=run, manual_throttle=True, needs_pilot=True, ignores_simple=True)

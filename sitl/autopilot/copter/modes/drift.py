@@ -101,4 +101,4 @@ def is_landing(modes: Modes) -> bool:
     return modes.pilot.throttle_zero
 
 
-MODE = CopterMode(number=DRIFT, name="DRIFT", run=run, needs_position=True, is_landing=is_landing)
+MODE = CopterMode(number=DRIFT, name="DRIFT", run=run, needs_position=True, needs_pilot=True, is_landing=is_landing)

@@ -9,12 +9,14 @@ from ...events import MODE_CHANGED, MODE_REFUSED, RETURN_ACTIVE, RETURN_WANTED, 
 from ...fence.checks import begin_recovery, keeps_mode
 from ...modes import (
     ACCEPTED,
+    GCS_BLOCKED,
     IN_FENCE_RECOVERY,
     INIT_FAILED,
     MISSING_TAKEOFF,
     NEEDS_ALTITUDE,
     NO_LANDING,
     NO_PATH,
+    NO_RADIO,
     NO_RETURN,
     NO_SUCH_MODE,
     REQUIRES_POSITION,
@@ -32,7 +34,7 @@ from .auto import AUTO, AUTO_RTL
 from .autotune import AUTOTUNE
 from .drift import DRIFT
 from .state import Modes
-from .table import TITLES, has_manual_throttle, is_known, requires_position, start
+from .table import TITLES, has_manual_throttle, is_known, requires_pilot, requires_position, start
 
 _CAUSES = {
     INIT_FAILED: "init failed",
@@ -41,6 +43,8 @@ _CAUSES = {
     NEEDS_ALTITUDE: "need alt estimate",
     MISSING_TAKEOFF: "init failed",
     IN_FENCE_RECOVERY: "in fence recovery",
+    NO_RADIO: "in RC failsafe",
+    GCS_BLOCKED: "GCS entry disabled (FLTMODE_GCSBLOCK)",
     NO_RETURN: "No return path or landing sequence found",
     NO_PATH: "No return path found",
     NO_LANDING: "No landing sequence found",
@@ -90,6 +94,8 @@ def change(v: Vehicle, number: int, reason: int) -> int:
     cause = refusal(number, modes, ap.arming, ap.estimate, ap.params)
     if ap.arming.armed and not ap.arming.landed and keeps_mode(ap.fence, modes.reason, ap.params.FENCE):
         cause = IN_FENCE_RECOVERY
+    if cause == ACCEPTED and modes.failsafe.radio and requires_pilot(number):
+        cause = NO_RADIO
     if cause == ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         modes.nav.over_ground = False

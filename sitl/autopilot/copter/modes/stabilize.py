@@ -39,4 +39,4 @@ def run(v: Vehicle) -> None:
     throttle_mix.set_throttle_out(control, p, wanted, True, p.PILOT.THR_FILT)
 
 
-MODE = CopterMode(number=STABILIZE, name="STABILIZE", run=run, manual_throttle=True)
+MODE = CopterMode(number=STABILIZE, name="STABILIZE", run=run, manual_throttle=True, needs_pilot=True)

@@ -83,10 +83,21 @@ ALL = tuple(NAMES)
 MANUAL_THROTTLE = numbers(MODES, "manual_throttle")
 CLIMB_STICK = numbers(MODES, "climb_stick")
 NEED_POSITION = numbers(MODES, "needs_position")
+NEED_PILOT = numbers(MODES, "needs_pilot")
 AUTONOMOUS = numbers(MODES, "autonomous")
 IDLE_ARMED = numbers(MODES, "idles_armed")
 IGNORE_SIMPLE = numbers(MODES, "ignores_simple")
 ARM_AT_ANY_THROTTLE = numbers(MODES, "arms_at_any_throttle")
+_SPORT, _AUTOROTATE = 13, 26  # modes of other builds, which have bits all the same
+GCS_BLOCK = (
+    *(mode.MODE.number for mode in (stabilize, acro, alt_hold, auto, guided, loiter, circle, drift)),
+    _SPORT,
+    *(mode.MODE.number for mode in (flip, autotune, poshold, brake, throw, avoid_adsb, guided_nogps, smart_rtl)),
+    *(mode.MODE.number for mode in (flowhold, follow, zigzag, systemid)),
+    _AUTOROTATE,
+    *(mode.MODE.number for mode in (auto_rtl, turtle)),
+)
+"""Modes in the order of the bits of FLTMODE_GCSBLOCK."""
 
 
 @law
@@ -111,6 +122,12 @@ def has_climb_stick(number: int) -> bool:
 def requires_position(number: int) -> bool:
     """Whether the mode needs a horizontal position (LAND does without)."""
     return number in NEED_POSITION
+
+
+@law
+def requires_pilot(number: int) -> bool:
+    """Whether the mode cannot be entered in radio failsafe."""
+    return number in NEED_PILOT
 
 
 @law

@@ -26,4 +26,6 @@ def run(v: Vehicle) -> None:
     stabilize.run(v)
 
 
-MODE = CopterMode(number=TURTLE, name="TURTLE", start=start, run=run, manual_throttle=True, may_arm=never_arms)
+MODE = CopterMode(
+    number=TURTLE, name="TURTLE", start=start, run=run, manual_throttle=True, needs_pilot=True, may_arm=never_arms
+)

@@ -7,7 +7,7 @@ from ....core.kernels import law
 from ... import modes as all_modes
 from ...events import MODE_REFUSED, emit
 from ...fence.checks import begin_recovery
-from ...modes import ACCEPTED, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
+from ...modes import ACCEPTED, GCS_BLOCKED, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
 from ..control.motors import is_skid
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -77,5 +77,8 @@ def change_speed(v: Vehicle, speed: float) -> bool:
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:
-    """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
-    return all_modes.refusal_texts(number, cause, "Flight mode change failed")
+    """Status texts of a refused mode change; empty when it was accepted."""
+    failed = "Flight mode change failed"
+    if cause == GCS_BLOCKED:
+        failed = f"Mode change to {table.SHORT_NAMES[number]} denied, GCS entry disabled (FLTMODE_GCSBLOCK)"
+    return all_modes.refusal_texts(number, cause, failed)

@@ -112,10 +112,14 @@ class PilotState(Record):
     rudder_us: int  # since when the steering stick is held for arming or disarming; 0 not
 
 
+BIT_RADIO, BIT_GCS = 1, 2
+"""Bits of ``LinksState``."""
+
+
 class LinksState(Record):
     """Radio and ground station, as the failsafe sees them."""
 
-    bad: int  # bits: 1 radio, 2 ground station (failsafe.py)
+    bad: int  # BIT_RADIO, BIT_GCS
     since_us: int  # when the first of them was lost
     acted: int  # bits for which FS_ACTION was done
 

@@ -48,6 +48,9 @@ MODES: tuple[RoverMode, ...] = with_registered(
 )
 """In the order of AVAILABLE_MODES."""
 NAMES = {mode.number: mode.name for mode in MODES}
+_SHORT = {"STEERING": "STER", "SMART_RTL": "SRTL", "SIMPLE": "SMPL"}
+SHORT_NAMES = {mode.number: _SHORT.get(mode.name, mode.name[:4]) for mode in MODES}
+"""As some texts say them."""
 
 run = by_number("run", {mode.number: mode.run for mode in MODES}, initialising.MODE.run)
 start = by_number("start", {mode.number: mode.start for mode in MODES}, initialising.MODE.start)
@@ -60,6 +63,9 @@ NEED_POSITION = numbers(MODES, "needs_position")
 NEED_VELOCITY = numbers(MODES, "needs_velocity")
 CAR_NEEDS_VELOCITY = numbers(MODES, "car_needs_velocity")
 ARMABLE = numbers(MODES, "armable")
+_IN_ORDER = (manual, acro, steering, loiter, follow, simple, circle, auto, rtl, smart_rtl, guided, dock)
+GCS_BLOCK = tuple(mode.MODE.number for mode in _IN_ORDER)
+"""Modes in the order of the bits of FLTMODE_GCSBLOCK."""
 
 
 @law

@@ -26,7 +26,7 @@ from ..control.motors import is_moving
 from ..state import Vehicle
 from . import set_mode, table
 from .smart_rtl import SMART_RTL
-from .state import Modes
+from .state import BIT_GCS, BIT_RADIO, Modes
 
 # Ticks of 2.5 ms; all are multiples of the 8 of a period
 _TENTH = 40
@@ -84,7 +84,7 @@ def read_transmitter(v: Vehicle) -> None:
     lost = p.FS.THR_ENABLE > 0.0 and is_radio_bad(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     modes.failsafe.radio = lost
     sticks.lost = lost or not ap.rc.receiver_ok
-    failsafe.watch(v, failsafe.BIT_RADIO, lost)
+    failsafe.watch(v, BIT_RADIO, lost)
     if not lost:
         now = moved_to(sticks, ap.rc, int(p.MODE_CH), v.time_us)
         if now >= 0:
@@ -108,7 +108,7 @@ def check_slowly(v: Vehicle) -> None:
     fs, p = ap.modes.failsafe, ap.params
     battery.monitor(ap.battery, v.sensors, p.BATT, v.time_us)
     fs.gcs = is_gcs_lost(fs, v.time_us, p.FS)
-    failsafe.watch(v, failsafe.BIT_GCS, fs.gcs)
+    failsafe.watch(v, BIT_GCS, fs.gcs)
     level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
     report_battery(ap.events, v.time_us, level, ap.battery)
     watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)

@@ -55,7 +55,7 @@ ARRIVED = 0.01
 
 @law
 def top_speed(nav: RoverNav, params: Parameters) -> float:
-    """Speed limit of the path [m/s]: WP_SPEED or what a command set, or the pilot's nudge above it."""
+    """Speed limit of the path [m/s]: WP_SPEED as the mode began, or what a command set; or the pilot's nudge above."""
     limit = nav.speed_ne if nav.speed_ne > 0.0 else params.WP.SPEED
     return max(limit, SPEED_MIN, nav.drive.nudge_speed)
 
@@ -103,7 +103,7 @@ def start(nav: RoverNav, c: PositionState, params: Parameters) -> None:
     """A mode begins: limits from the parameters, forwards, no destination."""
     stop(nav)
     nav.time_scale = 1.0
-    nav.speed_ne = 0.0
+    nav.speed_ne = max(params.WP.SPEED, SPEED_MIN)  # as ArduRover: one that is set on the way acts in the next mode
     nav.drive.nudge_speed = 0.0
     nav.drive.reversed = False
     set_limits(c, nav, params)

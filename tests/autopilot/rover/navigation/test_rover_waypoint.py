@@ -15,12 +15,13 @@ from sitl.autopilot.navigation import path
 from sitl.autopilot.navigation.state import SPEED_REQUEST
 from sitl.autopilot.rover.control import forward_speed
 from sitl.autopilot.rover.modes.guided import GUIDED
+from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.navigation import pivot, waypoint
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.navigation.state import DriveState
 from sitl.autopilot.rover.parameters import Parameters
-from sitl.core.algebra import turned
+from sitl.core.algebra import horizontal, norm2, turned
 from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -314,3 +315,24 @@ def test_pivot_on_its_record_alone() -> None:
     assert drive.pivoting
     pivot.check(drive, 1_000_010, 0.01, False, params)
     assert not drive.pivoting
+
+
+@pytest.mark.parametrize("speed", (1.0, 0.0))
+def test_wp_speed_that_is_set_on_the_way_acts_when_the_mode_is_entered_again(speed: float) -> None:
+    p = Driver(WP_SPEED=5.0).to(100.0, 0.0)
+    p.run(4.0)
+    p.ap.params.WP_SPEED = speed
+    p.run(4.0)
+    assert norm2(horizontal(p.ap.estimate.vel)) == pytest.approx(5.0, abs=0.3)
+    assert request(p.v, HOLD, 2) == 0
+    p.run(5.0)
+    assert request(p.v, GUIDED, 2) == 0
+    assert waypoint.top_speed(p.ap.modes.nav, p.ap.params) == max(speed, waypoint.SPEED_MIN)
+
+
+def test_a_command_changes_the_speed_on_the_way() -> None:
+    p = Driver(WP_SPEED=5.0).to(100.0, 0.0)
+    p.run(4.0)
+    assert waypoint.set_speed(p.ap.modes.nav, 2.0)
+    p.run(4.0)
+    assert norm2(horizontal(p.ap.estimate.vel)) == pytest.approx(2.0, abs=0.1)

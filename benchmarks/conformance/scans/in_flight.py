@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""When a parameter acts that is set while a vehicle moves: at once, on the next leg, when the mode is entered again.
+
+A row is a parameter and a manoeuvre. Its figure (a speed, a rate, a lean) is read with the old value, some seconds
+after the new one is set, after another order in the same mode, and after the mode was entered anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from .program import Program, Programs
+
+AT_ONCE, NEXT_ORDER, MODE_ANEW, NEVER = "at once", "next order", "mode entered again", "never"
+SEEN = 0.5
+"""Share of the whole change that counts."""
+LEAST = 0.08
+"""A figure that changes by less, as a share of it, has not changed."""
+FAR = 2000.0
+Order = Callable[[Program, int], None]
+Figure = Callable[[Program], float]
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """What a vehicle does, and what of it is read."""
+
+    mode: str
+    order: Order
+    """Begins it; its number, from 0, tells one from the next."""
+    figure: Figure
+    height_m: float = 30.0
+    settle_s: float = 7.0
+    between: str = "LOITER"
+    """Mode in which it waits for the next entry."""
+
+
+def speed(program: Program) -> float:
+    """[m/s]."""
+    return program.groundspeed
+
+
+def climb(program: Program) -> float:
+    """[m/s]."""
+    return program.climb_rate
+
+
+def lean(program: Program) -> float:
+    """[deg]."""
+    return max(abs(program.attitude.roll), abs(program.attitude.pitch))
+
+
+def turn_rate(program: Program) -> float:
+    """[deg/s], over a second."""
+    before = program.heading
+    program.delay(1.0)
+    return abs((program.heading - before + 180.0) % 360.0 - 180.0)
+
+
+def goes(north: float, east: float, up: float = 0.0) -> Order:
+    """GUIDED set-points: each order the other way."""
+
+    def order(program: Program, k: int) -> None:
+        way = -1.0 if k % 2 else 1.0
+        altitude = program.altitude + up if program.of == "copter" else None
+        program.set_position(way * north, way * east, altitude)
+
+    return order
+
+
+def item(k: int) -> Order:
+    """The mission from an item on; the next order is the item after it."""
+
+    def order(program: Program, number: int) -> None:
+        program.command("DO_SET_MISSION_CURRENT", k + number)
+
+    return order
+
+
+def holds(**sticks: int) -> Order:
+    """Sticks away from rest, after three seconds at rest."""
+
+    def order(program: Program, number: int) -> None:
+        names = ("roll", "pitch", "throttle", "yaw") if program.of == "copter" else ("steering", "throttle")
+        rest = dict.fromkeys(names, 1500)
+        if number:
+            program.rc(**rest)
+            program.delay(3.0)
+        program.rc(**{**rest, **sticks})
+
+    return order
+
+
+def nothing(program: Program, number: int) -> None:
+    """The mode itself is the order."""
+
+
+LEG, CLIMB, DESCENT = 1, 5, 9
+"""Items of the mission at which its legs begin, each with three more of the same kind."""
+COPTER = {
+    "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed),
+    "GUIDED climb": Manoeuvre("GUIDED", goes(0.0, 0.0, 150.0), climb),
+    "GUIDED descent": Manoeuvre("GUIDED", goes(0.0, 0.0, -70.0), climb, height_m=80.0),
+    "AUTO": Manoeuvre("AUTO", item(LEG), speed),
+    "AUTO climb": Manoeuvre("AUTO", item(CLIMB), climb),
+    "AUTO descent": Manoeuvre("AUTO", item(DESCENT), climb, height_m=80.0),
+    "LOITER pitch": Manoeuvre("LOITER", holds(pitch=1000), speed, between="ALT_HOLD", settle_s=9.0),
+    "LOITER throttle": Manoeuvre("LOITER", holds(throttle=2000), climb, between="ALT_HOLD", settle_s=5.0),
+    "ALT_HOLD throttle": Manoeuvre("ALT_HOLD", holds(throttle=2000), climb, settle_s=5.0),
+    "ALT_HOLD throttle down": Manoeuvre("ALT_HOLD", holds(throttle=1000), climb, height_m=80.0, settle_s=5.0),
+    "ALT_HOLD yaw": Manoeuvre("ALT_HOLD", holds(yaw=2000), turn_rate, settle_s=3.0),
+    "ALT_HOLD roll": Manoeuvre("ALT_HOLD", holds(roll=2000), lean, settle_s=2.0),
+    "CIRCLE": Manoeuvre("CIRCLE", nothing, turn_rate, settle_s=10.0),
+    "LAND": Manoeuvre("LAND", nothing, climb, height_m=9.0, settle_s=3.0),
+}
+ROVER = {
+    "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed, between="HOLD"),
+    "AUTO": Manoeuvre("AUTO", item(LEG), speed, between="HOLD"),
+    "MANUAL throttle": Manoeuvre("MANUAL", holds(throttle=2000), speed, between="HOLD"),
+    "ACRO throttle": Manoeuvre("ACRO", holds(throttle=1700), speed, between="HOLD"),
+    "ACRO roll": Manoeuvre("ACRO", holds(throttle=1600, steering=2000), turn_rate, between="HOLD"),
+    "STEERING throttle": Manoeuvre("STEERING", holds(throttle=1700), speed, between="HOLD"),
+    "CIRCLE": Manoeuvre("CIRCLE", nothing, speed, between="HOLD", settle_s=12.0),
+}
+CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
+    "copter": (
+        ("WPNAV_SPEED", "GUIDED", 1000, 400), ("WPNAV_SPEED", "AUTO", 1000, 400),
+        ("WPNAV_SPEED_UP", "GUIDED climb", 250, 100), ("WPNAV_SPEED_UP", "AUTO climb", 250, 100),
+        ("WPNAV_SPEED_DN", "GUIDED descent", 150, 60), ("WPNAV_SPEED_DN", "AUTO descent", 150, 60),
+        ("LOIT_SPEED", "LOITER pitch", 1250, 400), ("LOIT_ANG_MAX", "LOITER pitch", 0, 5),
+        ("PILOT_SPEED_UP", "LOITER throttle", 250, 100), ("PILOT_SPEED_UP", "ALT_HOLD throttle", 250, 100),
+        ("PILOT_SPEED_DN", "ALT_HOLD throttle down", 150, 60), ("PILOT_Y_RATE", "ALT_HOLD yaw", 60, 20),
+        ("ANGLE_MAX", "ALT_HOLD roll", 3000, 1000), ("CIRCLE_RATE", "CIRCLE", 20, 8), ("LAND_SPEED", "LAND", 50, 100),
+    ),
+    "rover": (
+        ("WP_SPEED", "GUIDED", 5, 2), ("WP_SPEED", "AUTO", 5, 2), ("WP_SPEED", "CIRCLE", 2, 1),
+        ("CIRC_SPEED", "CIRCLE", 2, 1), ("CRUISE_SPEED", "ACRO throttle", 5, 2),
+        ("CRUISE_SPEED", "STEERING throttle", 5, 2), ("CRUISE_THROTTLE", "ACRO throttle", 30, 60),
+        ("MOT_THR_MAX", "MANUAL throttle", 100, 30), ("ACRO_TURN_RATE", "ACRO roll", 60, 20),
+        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("ATC_SPEED_P", "GUIDED", 0.1, 0.3), ("SPEED_MAX", "ACRO throttle", 0, 2),
+    ),
+}  # fmt: skip
+"""Parameter, manoeuvre, old and new value."""
+
+
+def upload(program: Program) -> None:
+    """The mission of the AUTO manoeuvres: legs, climbs, descents."""
+    items = []
+    for k in range(4):
+        items.append(program.item("NAV_WAYPOINT", north=FAR * (-1) ** k, east=10.0 * k, altitude=30.0))
+    for k in range(4):
+        items.append(program.item("NAV_WAYPOINT", north=0.0, east=0.1 * k, altitude=300.0 + k))
+    for k in range(4):
+        items.append(program.item("NAV_WAYPOINT", north=0.0, east=0.1 * k, altitude=5.0 + 0.1 * k))
+    program.upload(items)
+
+
+def when(program: Program, name: str, m: Manoeuvre, old: float, new: float) -> str:
+    """When the parameter acts."""
+    program.params[name] = old
+    program.set_mode(m.mode)
+    m.order(program, 0)
+    program.delay(m.settle_s)
+    figures = [m.figure(program)]
+    program.params[name] = new
+    program.delay(m.settle_s)
+    figures.append(m.figure(program))
+    if m.order is not nothing:
+        m.order(program, 1)
+        program.delay(m.settle_s + 4.0)
+    figures.append(m.figure(program))
+    program.set_mode(m.between)
+    program.delay(5.0)
+    program.set_mode(m.mode)
+    m.order(program, 2)
+    program.delay(m.settle_s + 4.0)
+    figures.append(m.figure(program))
+    first, last = figures[0], figures[-1]
+    if abs(last - first) <= LEAST * max(abs(first), abs(last)):
+        return NEVER
+    for figure, said in zip(figures[1:], (AT_ONCE, NEXT_ORDER, MODE_ANEW), strict=True):
+        if abs(figure - first) >= SEEN * abs(last - first) and not math.isclose(figure, first):
+            return said
+    return NEVER
+
+
+def scan(programs: Programs) -> dict[str, str]:
+    """Rows "PARAMETER in MANOEUVRE"."""
+    rows = {}
+    manoeuvres = COPTER if programs.kind == "copter" else ROVER
+    for name, manoeuvre, old, new in CASES[programs.kind]:
+        row = f"{name} in {manoeuvre}"
+        if fnmatchcase(row, programs.rows):
+            m = manoeuvres[manoeuvre]
+            with programs.started() as program:
+                upload(program)
+                program.be_flying(m.height_m)
+                rows[row] = when(program, name, m, old, new)
+    return rows
