@@ -60,6 +60,9 @@ class RoverCommands(Commands[Vehicle]):
 
     auto = AUTO
     taken = frozenset((*KINDS, *OTHERS))
+    said_invalid = frozenset(
+        (commands.DO_RETURN_PATH_START, commands.DO_LAND_START, commands.DO_MOUNT_CONTROL, commands.DO_WINCH)
+    )
     planner = PLANNER
     goes_on_disarmed = True
 
