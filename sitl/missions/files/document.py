@@ -206,7 +206,7 @@ def make(
         k = 5 if x != int(x) else 6
         raise MissionFileError(f"{where}: parameter {k} is {values[k - 1]}: a whole number is needed{_of(command)}")
     item = MissionItem(command, frame, p1, p2, p3, p4, round(x * scale), round(y * scale), z, autocontinue, current)
-    result = validate.check(item)
+    result = validate.check(item, COMMANDS)
     if result == validate.ACCEPTED and not COMMANDS[command].has_place:
         result = _numbers(item)
     if result != validate.ACCEPTED:

@@ -140,7 +140,9 @@ def plan_simple(entry: Node) -> MissionItem:
     command, frame = entry["command"].whole(), entry["frame"].whole()
     if math.isnan(values[6]) and entry.get("AltitudeMode", 0).value == ABOVE_TERRAIN and "Altitude" in entry:
         values, frame = (*values[:6], entry["Altitude"].number()), RELATIVE  # the ground is flat, as high as home
-    may_be_nan = MAY_BE_NAN.get(command, ())
+    is_nav = command in COMMANDS and COMMANDS[command].is_nav
+    may_be_nan = {1, 2, 3} if is_nav else set()  # of navigation commands the first three are asked for
+    may_be_nan |= {*MAY_BE_NAN.get(command, ())}
     clean = [0.0 if math.isnan(v) and k not in may_be_nan else v for k, v in enumerate(values, 1)]
     return make(command, frame, tuple(clean), int(entry.get("autoContinue", True).flag), entry.where)
 
