@@ -14,7 +14,7 @@ from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
 from ..state import Vehicle
 from . import item as commands
 from .item import UNREPORTED, MissionItem
-from .notes import NOTICE, Note, OutputItem, Text
+from .notes import INFO, NOTICE, Note, OutputItem, Text
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
@@ -77,6 +77,8 @@ class Commands(ABC, Generic[V]):
             set_home(v.autopilot, item)
         elif item.command == commands.DO_FENCE_ENABLE:
             return _enable_fence(v, item.p1 == 1.0)
+        elif item.command == commands.DO_SET_RESUME_REPEAT_DIST:  # taken, and no way is gone back
+            return [Text(INFO, f"Resume repeat dist set to {int(item.p1)} m")]
         elif item.command in commands.CARRIED_OUT:
             return [OutputItem(item)]
         return []

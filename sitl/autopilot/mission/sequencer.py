@@ -113,7 +113,7 @@ class Sequencer:
         )
 
     def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
-        """Take a new mission. One under way goes on with its present command.
+        """Take a new mission. One under way goes on with its present command; one that was left, at the same number.
 
         A leg begins anew. When its item is no longer there, the vehicle goes on to where it was going.
 
@@ -137,8 +137,9 @@ class Sequencer:
                 if is_leg:
                     notes.append(Text(CRITICAL, "Auto mission changed but failed to restart command"))
             return notes
-        nav.mission_state = STOPPED
-        self._set_current(nav, 0, notes)
+        if not mission.present:
+            nav.mission_state = STOPPED
+            self._set_current(nav, 0, notes)
         return notes
 
     def extend_mission(self, v: Vehicle, mission: Mission) -> None:
@@ -161,7 +162,7 @@ class Sequencer:
         if not self.mission.present or not ap.estimate.origin_set:
             return notes
         restart = ap.params.MIS.RESTART == 1 and not nav.mission_resume
-        if restart or nav.mission_state == COMPLETE or nav.mission_current == 0:
+        if restart or nav.mission_state == COMPLETE or self.mission.get(nav.mission_current) is None:
             jumps.keep(nav, {})
             nav.mission_current = 0
         nav.mission_resume = False
@@ -323,6 +324,7 @@ class Sequencer:
         nav = v.autopilot.modes.nav
         nav.condition_kind, nav.mission_do, nav.mission_do_next = CONDITION_NONE, 0, 0
         counts = jumps.runs(nav)
+        ends: list[Note] = []
         for _ in range(len(self.mission) + jumps.LONGEST):
             taken: list[tuple[int, int, int]] = []
             seq = jumps.following(self.mission, seq, counts, JUMPS, taken)
@@ -332,21 +334,25 @@ class Sequencer:
                 break
             if item.is_nav and item.command in self.commands.taken:
                 jumps.keep(nav, counts)
-                self._give(v, seq, notes)
+                self._give(v, seq, notes, ends)
                 return
             if item.is_nav:
                 notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
             elif nav.mission_do_next == 0:
-                self._do(v, seq, notes)
+                ends = self._do(v, seq, notes)
                 nav.mission_do_next = seq + 1
             seq += 1
         jumps.keep(nav, counts)
         nav.mission_state = COMPLETE
         nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
+        _end_first(notes, ends)
         notes += self.commands.finish(v)
 
-    def _give(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
-        """Begin navigation command ``seq``, and run the other do-commands before it."""
+    def _give(self, v: Vehicle, seq: int, notes: list[Note], ends: list[Note]) -> None:
+        """Begin navigation command ``seq``, and run the other do-commands before it.
+
+        ``ends``: what is told of the first, which has run.
+        """
         nav = v.autopilot.modes.nav
         item = self.mission.items[seq]
         if item.command in returning.LANDINGS:
@@ -354,6 +360,7 @@ class Sequencer:
         notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
         self._set_current(nav, seq, notes)
         notes += self.commands.give(v, seq, self._timed(v, item))
+        _end_first(notes, ends)
         self._look_ahead(v)
         if nav.mission_do_next != 0 and nav.condition_kind == CONDITION_NONE:
             self._run_do(v, notes)
@@ -382,14 +389,15 @@ class Sequencer:
             item = self.mission.get(seq)
             if item is None or item.is_nav:
                 break
-            self._do(v, seq, notes)
+            notes += self._do(v, seq, notes)
             seq += 1
             if nav.condition_kind != CONDITION_NONE:
                 nav.mission_do_next = seq
                 return
         nav.mission_do_next = 0
 
-    def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
+    def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> list[Note]:
+        """Run do-command ``seq``; what is told when it is done."""
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
         nav = v.autopilot.modes.nav
@@ -400,10 +408,12 @@ class Sequencer:
             nav.mission_part = RETURN_PATH
         if item.command in self.commands.taken:
             notes += self.commands.run(v, item)
+        ends: list[Note] = []
         if self.commands.skips(item):
-            notes.append(Text(WARNING, f"Skipping invalid cmd #{item.command}"))
+            ends.append(Text(WARNING, f"Skipping invalid cmd #{item.command}"))
         if nav.condition_kind == CONDITION_NONE and item.command not in UNREPORTED:
-            notes.append(ItemReached(seq))
+            ends.append(ItemReached(seq))
+        return ends
 
     def _condition_met(self, v: Vehicle, seq: int) -> list[Note]:
         nav = v.autopilot.modes.nav
@@ -427,6 +437,13 @@ def _takes_off(mission: Mission) -> bool:
         if item is None or item.command != NAV_DELAY:
             return item is not None and item.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
     return False
+
+
+def _end_first(notes: list[Note], ends: list[Note]) -> None:
+    """Tell of the first do-command behind a navigation command: it is done when that is, and is told in place of it."""
+    if any(isinstance(note, ItemReached) for note in ends):
+        notes[:] = [note for note in notes if not isinstance(note, ItemReached)]
+    notes += ends
 
 
 def _often(times: int) -> str:
