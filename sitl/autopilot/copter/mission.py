@@ -88,7 +88,12 @@ OTHERS = (
     *commands.PAYLOAD_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
-SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NAV_LOITER_TIME)
+SAYS_REACHED = (
+    commands.NAV_WAYPOINT,
+    commands.NAV_SPLINE_WAYPOINT,
+    commands.NAV_ARC_WAYPOINT,
+    commands.NAV_LOITER_TIME,
+)
 
 
 class CopterCommands(Commands[Vehicle]):
@@ -112,7 +117,8 @@ class CopterCommands(Commands[Vehicle]):
         """Make ``item`` the command under way."""
         if item.command in FLOWN_AS:
             said = Text(WARNING, f"Mission: {seq} {item.name} is flown as {FLOWN_AS[item.command]}")
-            return [said, *self.give(v, seq, _simpler(item))]
+            self.give(v, seq, _simpler(item))
+            return [said]
         ap, time_us = v.autopilot, v.time_us
         nav = ap.modes.nav
         kind = KINDS[item.command]

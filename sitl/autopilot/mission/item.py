@@ -194,7 +194,7 @@ UNREPORTED = frozenset(
         *VIDEO_COMMANDS,
         *(SET_CAMERA_ZOOM, SET_CAMERA_FOCUS, SET_CAMERA_SOURCE),
         *(DO_GIMBAL_MANAGER_PITCHYAW, DO_GRIPPER, DO_SPRAYER, DO_AUX_FUNCTION, DO_PARACHUTE, JUMP_TAG),
-        *(DO_SEND_SCRIPT_MESSAGE, DO_SET_RESUME_REPEAT_DIST),
+        *(DO_SEND_SCRIPT_MESSAGE, DO_SET_RESUME_REPEAT_DIST, NAV_LOITER_TO_ALT),
     )
 )
 """Of which nothing is told when they are done: no MISSION_ITEM_REACHED, and no word where they are not carried out."""

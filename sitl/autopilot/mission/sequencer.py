@@ -305,7 +305,7 @@ class Sequencer:
         seq = nav.command_seq
         item = self.mission.get(seq)
         nav.mission_reached = seq
-        notes: list[Note] = [ItemReached(seq)]
+        notes: list[Note] = [] if item is not None and item.command in UNREPORTED else [ItemReached(seq)]
         if item is not None:
             notes += self.commands.completed(v, seq, item)
         self._advance(v, seq + 1, notes)
