@@ -17,7 +17,7 @@ from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
 from .autopilot.params import files
 from .autopilot.params.table import Values
-from .bridge.bridge import Bridge, BridgeState
+from .bridge.bridge import EPOCH_US, Bridge, BridgeState
 from .bridge.links import Link, LinkFaults
 from .bridge.services.faults import FaultService
 from .bridge.services.statustext import EventService, StatusTextService
@@ -477,7 +477,8 @@ class Simulation:
         self.plant.power_on()
         if shell_parameters.clears_mission(self.parameters):
             self.mission = Mission()
-        self.sequencer = Sequencer(self, self.firmware.commands)  # tells what the mission is: INITIAL_MODE may be AUTO
+        boot_us = lambda: EPOCH_US + self.before_boot_us  # noqa: E731
+        self.sequencer = Sequencer(self, self.firmware.commands, boot_us)  # tells the mission: INITIAL_MODE may be AUTO
         self.aux = AuxFunctions(self, self.firmware.aux_functions)
         self.firmware.power_on(self.v)
         self.kind.apply_sim_parameters(self.v)

@@ -13,9 +13,10 @@ from ..autopilot.failsafe_checks import CRITICAL as MOST_SEVERE
 from ..autopilot.failsafe_checks import battery_text
 from ..autopilot.fence import texts as fence_texts
 from ..autopilot.landing_target.texts import TEXTS as LANDING_TARGET_TEXTS
-from ..autopilot.mission.item import MissionItem, home_item
+from ..autopilot.mission.item import MissionItem
 from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Text
+from ..autopilot.mission.storage import stored_home
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
 from ..autopilot.radio_checks import PARAMETERS
@@ -210,16 +211,22 @@ class BaseAutopilot:
 
     def mission_items(self) -> tuple[MissionItem, ...]:
         items = tuple(self._sequencer().mission.items)
-        home_record = self._v.autopilot.home
-        if not items or not home_record.is_set:
+        place = self._v.autopilot.home
+        if not items or not place.is_set:
             return items
-        return (home_item(int(home_record.lat), int(home_record.lon), float(home_record.alt)), *items[1:])
+        return (stored_home(int(place.lat), int(place.lon), float(place.alt)), *items[1:])
+
+    def home_changed(self) -> None:
+        place, mission = self._v.autopilot.home, self._sequencer().mission
+        if place.is_set and not mission.items:  # home is item 0 of a mission that has no other
+            alone = stored_home(int(place.lat), int(place.lon), float(place.alt))
+            self._sequencer().extend_mission(self._v, Mission((alone,)))
 
     def current_item(self) -> int:
         return int(self._v.autopilot.modes.nav.mission_current)
 
     def replace_mission(self, items: tuple[MissionItem, ...]) -> int:
-        result, _ = check_all(items, self._vehicle.firmware.commands.taken)
+        result, _ = check_all(items)
         if result == 0:
             self._notes.extend(self._sequencer().set_mission(self._v, Mission(items)))
         return int(result)
@@ -234,6 +241,10 @@ class BaseAutopilot:
         ok, notes = self._sequencer().set_current(self._v, seq, reset)
         self._notes.extend(notes)
         return bool(ok)
+
+    def jump_to_tag(self, tag: int) -> bool:
+        seq = self._sequencer().mission.tagged(tag)
+        return seq > 0 and self.set_current_item(seq)
 
     def start_mission(self) -> bool:
         nav = self._v.autopilot.modes.nav

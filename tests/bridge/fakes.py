@@ -129,6 +129,12 @@ class FakeAutopilot:
     def texts_of(self, code: int, a: int, b: int) -> list[Text]:
         return []
 
+    def home_changed(self) -> None:
+        pass
+
+    def jump_to_tag(self, tag: int) -> bool:
+        return False
+
     def mission_items(self) -> tuple[Any, ...]:
         return self.items
 

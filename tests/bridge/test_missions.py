@@ -20,8 +20,8 @@ SQUARE = [
     MissionItem(16, 0, x=HOME[0], y=HOME[1], z=584.0),
     MissionItem(22, 3, z=10.0),
     *(MissionItem(16, 3, p1=k, x=HOME[0] + 2700 * k, y=HOME[1], z=10.0) for k in range(1, 5)),
-    MissionItem(177, 2, p1=2, p2=1),
-    MissionItem(21, 3),
+    MissionItem(177, 0, p1=2, p2=1),
+    MissionItem(21, 3, p4=1),
 ]
 
 
@@ -225,8 +225,19 @@ def test_partial_write(bench: Bench) -> None:
     assert ack.type == ACCEPTED
     assert bench.autopilot.items == (*SQUARE[:3], new, *SQUARE[4:])
     for first, last in ((3, 2), (0, 99), (-1, 2)):
-        (ack,) = bench.ask(mavlink.MAVLink_mission_write_partial_list_message(1, 1, first, last), "MISSION_ACK")
-        assert ack.type == INVALID_SEQUENCE
+        text, ack = bench.ask(
+            mavlink.MAVLink_mission_write_partial_list_message(1, 1, first, last), "STATUSTEXT", "MISSION_ACK"
+        )
+        assert ack.type == ERROR and text.text == "Flight plan update rejected"
+
+
+def test_partial_write_adds_an_item(bench: Bench) -> None:
+    bench.autopilot.items = tuple(SQUARE)
+    end = len(SQUARE)
+    bench.ask(mavlink.MAVLink_mission_write_partial_list_message(1, 1, end, end))
+    (ack,) = bench.ask(item_int(end, SQUARE[3]), "MISSION_ACK")
+    assert ack.type == ACCEPTED
+    assert bench.autopilot.items == (*SQUARE, SQUARE[3])
 
 
 def test_clear_and_empty_upload(bench: Bench) -> None:
@@ -353,7 +364,7 @@ def test_set_current(bench: Bench) -> None:
     assert answers[0].seq == 3
     assert bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 99)) == []
     answers = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 3))
-    assert answers[0].current == 1
+    assert answers[0].current == 0  # as of ArduPilot, which compares the number of the command
     (ack,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 99))
     assert ack.type == INVALID_SEQUENCE
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from .program import Programs
 
-TABLES = ("acks", "arming", "in-flight", "fields", "logs")
+TABLES = ("acks", "items", "missions", "arming", "in-flight", "fields", "logs")
 Scan = Callable[[Programs], Mapping[str, Any]]
 
 

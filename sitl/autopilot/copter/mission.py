@@ -10,7 +10,7 @@ from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import TERRAIN_FRAMES, MissionItem
-from ..mission.notes import INFO, Note, OutputItem, Text
+from ..mission.notes import INFO, WARNING, Note, OutputItem, Text
 from ..mission.place import down, point
 from ..navigation import command
 from ..navigation import state as kinds
@@ -34,6 +34,7 @@ DEEPEST = 655.35
 """Greatest limit of PAYLOAD_PLACE's descent that the storage holds [m]."""
 GRIPPER_RELEASE = 0.0
 """GRIPPER_ACTIONS"""
+FOREVER_S = 1e9
 LEAST_CLIMB = 1.0
 """Of a take-off from the ground [m]."""
 CLIMB_SPEED, DESCENT_SPEED = 2, 3
@@ -54,7 +55,16 @@ KINDS = {
     commands.NAV_VTOL_LAND: kinds.LAND,
     commands.NAV_GUIDED_ENABLE: kinds.GUIDED,
     commands.NAV_PAYLOAD_PLACE: kinds.PAYLOAD_PLACE,
+    commands.NAV_ARC_WAYPOINT: kinds.WAYPOINT,
+    commands.NAV_SCRIPT_TIME: kinds.DELAY,
+    commands.NAV_ATTITUDE_TIME: kinds.DELAY,
 }
+FLOWN_AS = {
+    commands.NAV_ARC_WAYPOINT: "a straight line",
+    commands.NAV_SCRIPT_TIME: "a delay",
+    commands.NAV_ATTITUDE_TIME: "a delay",
+}
+"""What is flown of commands that are carried out in part."""
 OTHERS = (
     commands.CONDITION_DELAY,
     commands.CONDITION_DISTANCE,
@@ -68,6 +78,7 @@ OTHERS = (
     commands.DO_SET_ROI,
     commands.DO_JUMP_TAG,
     commands.DO_GUIDED_LIMITS,
+    commands.DO_SET_RESUME_REPEAT_DIST,
     commands.DO_PARACHUTE,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
@@ -77,7 +88,12 @@ OTHERS = (
     *commands.PAYLOAD_COMMANDS,
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
-SAYS_REACHED = (commands.NAV_WAYPOINT, commands.NAV_SPLINE_WAYPOINT, commands.NAV_LOITER_TIME)
+SAYS_REACHED = (
+    commands.NAV_WAYPOINT,
+    commands.NAV_SPLINE_WAYPOINT,
+    commands.NAV_ARC_WAYPOINT,
+    commands.NAV_LOITER_TIME,
+)
 
 
 class CopterCommands(Commands[Vehicle]):
@@ -99,6 +115,10 @@ class CopterCommands(Commands[Vehicle]):
 
     def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way."""
+        if item.command in FLOWN_AS:
+            said = Text(WARNING, f"Mission: {seq} {item.name} is flown as {FLOWN_AS[item.command]}")
+            self.give(v, seq, _simpler(item))
+            return [said]
         ap, time_us = v.autopilot, v.time_us
         nav = ap.modes.nav
         kind = KINDS[item.command]
@@ -148,7 +168,7 @@ class CopterCommands(Commands[Vehicle]):
             item = None
         if after is not None and _is_over_ground(v, after) != nav.over_ground:
             after = None
-        following = _following(ap, item, after)
+        following = _following(ap, item and _simpler(item), after and _simpler(after))
         if nav.spline.active:
             PLANNER.aim_spline(ap, following)
         elif following.is_spline:
@@ -210,13 +230,24 @@ class CopterCommands(Commands[Vehicle]):
         return True
 
 
+def _simpler(item: MissionItem) -> MissionItem:
+    """What is flown of a command that is carried out in part: an arc's end, so long a stay."""
+    if item.command == commands.NAV_ARC_WAYPOINT:
+        return item._replace(command=commands.NAV_WAYPOINT, p1=0.0)
+    if item.command == commands.NAV_SCRIPT_TIME:  # of no time: until another is told to be next
+        return item._replace(command=commands.NAV_DELAY, p1=item.p2 or FOREVER_S, x=0, y=0)
+    if item.command == commands.NAV_ATTITUDE_TIME:
+        return item._replace(command=commands.NAV_DELAY, x=0, y=0)
+    return item
+
+
 def _following(ap: Autopilot, item: MissionItem | None, after: MissionItem | None) -> Following:
     """What the command under way goes over into without a stop."""
-    if item is None or KINDS[item.command] not in LEGS:
+    if item is None or KINDS.get(item.command) not in LEGS:  # ArduPilot stops before what it skips, too
         return Following()
     place = _end_of_leg(ap, item, end(ap.modes.nav.current))
     is_spline = item.command == commands.NAV_SPLINE_WAYPOINT
-    if after is None or KINDS[after.command] not in LEGS or whole_seconds(item) > 0.0:
+    if after is None or KINDS.get(after.command) not in LEGS or whole_seconds(item) > 0.0:
         return Following(place, is_spline)
     return Following(place, is_spline, _end_of_leg(ap, after, place), after.command == commands.NAV_SPLINE_WAYPOINT)
 

@@ -13,8 +13,8 @@ from ..navigation.planner import Planner
 from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
 from ..state import Vehicle
 from . import item as commands
-from .item import MissionItem
-from .notes import NOTICE, Note, OutputItem, Text
+from .item import UNREPORTED, MissionItem
+from .notes import INFO, NOTICE, Note, OutputItem, Text
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
@@ -28,7 +28,9 @@ class Commands(ABC, Generic[V]):
     auto_return = -1
     """Number that AUTO is shown under while it flies the mission's way back."""
     taken: frozenset[int]
-    """MAV_CMDs that missions may hold."""
+    """MAV_CMDs that it carries out; others of ``item.STORED`` are stored and passed over."""
+    said_invalid: frozenset[int] = frozenset()
+    """Of ``taken``, those of which ArduPilot says all the same that it skips them."""
     planner: Planner[Any]
     """Plans the legs of missions and of modes."""
     goes_on_disarmed = False
@@ -75,9 +77,15 @@ class Commands(ABC, Generic[V]):
             set_home(v.autopilot, item)
         elif item.command == commands.DO_FENCE_ENABLE:
             return _enable_fence(v, item.p1 == 1.0)
+        elif item.command == commands.DO_SET_RESUME_REPEAT_DIST:  # taken, and no way is gone back
+            return [Text(INFO, f"Resume repeat dist set to {int(item.p1)} m")]
         elif item.command in commands.CARRIED_OUT:
             return [OutputItem(item)]
         return []
+
+    def skips(self, item: MissionItem) -> bool:
+        """Whether it says of a do-command that it skips it."""
+        return item.command in self.said_invalid or not (item.command in self.taken or item.command in UNREPORTED)
 
     @abstractmethod
     def change_speed(self, v: V, kind: int, speed: float) -> bool:
@@ -101,21 +109,6 @@ def whole_seconds(item: MissionItem) -> float:
 def turns(item: MissionItem) -> float:
     """Circles of LOITER_TURNS as ArduPilot stores them: whole ones, or a part of one."""
     return float(int(item.p1)) if item.p1 >= 1.0 else max(item.p1, 0.0)
-
-
-RADIUS_MAX, FINE_MAX, TURNS_MAX = 2550.0, 255.0, 255.0
-"""Circles of LOITER_TURNS: greatest radius, greatest one to the metre [m]; most turns."""
-
-
-def stored(item: MissionItem) -> MissionItem:
-    """An item as ArduPilot's storage keeps it: of circles, whole turns or 256ths of one; metres, or tens of them."""
-    if item.command != commands.NAV_LOITER_TURNS or not (math.isfinite(item.p1) and math.isfinite(item.p3)):
-        return item
-    p1 = min(max(item.p1, 0.0), TURNS_MAX)
-    radius = min(abs(item.p3), RADIUS_MAX)
-    radius = float(int(radius)) if radius <= FINE_MAX else 10.0 * int(0.1 * radius)
-    whole = float(int(p1)) if p1 >= 1.0 else int(p1 * 256.0) / 256.0
-    return item._replace(p1=whole, p3=math.copysign(radius, item.p3) if radius else 0.0)
 
 
 def is_speed(speed: float) -> bool:

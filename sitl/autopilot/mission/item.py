@@ -16,8 +16,11 @@ NAV_LOITER_TIME = 19
 NAV_RETURN_TO_LAUNCH = 20
 NAV_LAND = 21
 NAV_TAKEOFF = 22
+NAV_CONTINUE_AND_CHANGE_ALT = 30
 NAV_LOITER_TO_ALT = 31
+NAV_ARC_WAYPOINT = 36
 NAV_SPLINE_WAYPOINT = 82
+NAV_ALTITUDE_WAIT = 83
 NAV_GUIDED_ENABLE = 92
 NAV_DELAY = 93
 NAV_PAYLOAD_PLACE = 94
@@ -27,19 +30,29 @@ CONDITION_YAW = 115
 DO_JUMP = 177
 DO_CHANGE_SPEED = 178
 DO_SET_HOME = 179
+DO_GO_AROUND = 191
+DO_PAUSE_CONTINUE = 193
 DO_SET_REVERSE = 194
 DO_SET_ROI_LOCATION = 195
 DO_SET_ROI_NONE = 197
 DO_SET_ROI = 201
 DO_FENCE_ENABLE = 207
 NAV_SET_YAW_SPEED = 213
+DO_AUTOTUNE_ENABLE = 212
+DO_SET_RESUME_REPEAT_DIST = 215
+DO_SEND_SCRIPT_MESSAGE = 217
 DO_GUIDED_LIMITS = 222
+DO_ENGINE_CONTROL = 223
+SET_CAMERA_ZOOM, SET_CAMERA_FOCUS, SET_CAMERA_SOURCE = 531, 532, 534
+DO_VTOL_TRANSITION = 3000
+NAV_SCRIPT_TIME, NAV_ATTITUDE_TIME = 42702, 42703
 DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO = 181, 182, 183, 184
 DO_RETURN_PATH_START = 188
 DO_LAND_START = 189
 NAV_VTOL_TAKEOFF = 84
 NAV_VTOL_LAND = 85
 DO_PARACHUTE = 208
+DO_INVERTED_FLIGHT = 210
 DO_GRIPPER = 211
 DO_SPRAYER = 216
 DO_AUX_FUNCTION = 218
@@ -82,8 +95,11 @@ COMMANDS = {
     NAV_RETURN_TO_LAUNCH: Command("RTL", True, False),
     NAV_LAND: Command("Land", True, True),
     NAV_TAKEOFF: Command("Takeoff", True, True),
+    NAV_CONTINUE_AND_CHANGE_ALT: Command("ContinueAndChangeAlt", True, True),
     NAV_LOITER_TO_ALT: Command("LoitAltitude", True, True),
+    NAV_ARC_WAYPOINT: Command("ArcWP", True, True),
     NAV_SPLINE_WAYPOINT: Command("SplineWP", True, True),
+    NAV_ALTITUDE_WAIT: Command("AltitudeWait", True, False),
     NAV_GUIDED_ENABLE: Command("GuidedEnable", True, True),
     NAV_DELAY: Command("Delay", True, False),
     NAV_PAYLOAD_PLACE: Command("PayloadPlace", True, True),
@@ -94,11 +110,24 @@ COMMANDS = {
     DO_JUMP: Command("Jump", False, False),
     DO_CHANGE_SPEED: Command("ChangeSpeed", False, False),
     DO_SET_HOME: Command("SetHome", False, True),
+    DO_GO_AROUND: Command("Go Around", False, True),
+    DO_PAUSE_CONTINUE: Command("PauseContinue", False, False),
     DO_SET_REVERSE: Command("SetReverse", False, False),
     DO_SET_ROI_LOCATION: Command("SetROILocation", False, True),
     DO_SET_ROI_NONE: Command("SetROINone", False, False),
     DO_SET_ROI: Command("SetROI", False, True),
     DO_FENCE_ENABLE: Command("FenceEnable", False, False),
+    DO_AUTOTUNE_ENABLE: Command("AutoTuneEnable", False, False),
+    DO_SET_RESUME_REPEAT_DIST: Command("SetRepeatDist", False, False),
+    DO_SEND_SCRIPT_MESSAGE: Command("Scripting", False, False),
+    DO_ENGINE_CONTROL: Command("EngineControl", False, False),
+    DO_INVERTED_FLIGHT: Command("InvertedFlight", False, False),
+    DO_VTOL_TRANSITION: Command("VTOLTransition", False, False),
+    SET_CAMERA_ZOOM: Command("SetCameraZoom", False, False),
+    SET_CAMERA_FOCUS: Command("SetCameraFocus", False, False),
+    SET_CAMERA_SOURCE: Command("SetCameraSource", False, False),
+    NAV_SCRIPT_TIME: Command("NavScriptTime", True, False),
+    NAV_ATTITUDE_TIME: Command("NavAttitudeTime", True, False),
     DO_GUIDED_LIMITS: Command("GuidedLimits", False, False),
     DO_RETURN_PATH_START: Command("ReturnPathStart", False, True),
     DO_LAND_START: Command("LandStart", False, True),
@@ -113,7 +142,7 @@ COMMANDS = {
     DO_SPRAYER: Command("Sprayer", False, False),
     DO_AUX_FUNCTION: Command("AuxFunction", False, False),
     JUMP_TAG: Command("Tag", False, False),
-    DO_JUMP_TAG: Command("DoJumpTag", False, False),
+    DO_JUMP_TAG: Command("JumpToTag", False, False),
     DO_WINCH: Command("Winch", False, False),
     DO_DIGICAM_CONFIGURE: Command("DigiCamCfg", False, False),
     DO_DIGICAM_CONTROL: Command("DigiCamCtrl", False, False),
@@ -127,7 +156,10 @@ COMMANDS = {
     **dict.fromkeys(FENCE_COMMANDS, Command("Fence", False, True)),
     RALLY_POINT: Command("Rally", False, True),
 }
-"""Every command that lists of items may hold; ``commands.Commands.taken`` says which missions of a firmware take."""
+"""Every command that lists of items may hold."""
+
+STORED = frozenset(COMMANDS) - {*FENCE_COMMANDS, RALLY_POINT}
+"""Commands that missions may hold, of all firmwares; ``commands.Commands.taken`` says which of them one carries out."""
 
 CAMERA_COMMANDS = (
     DO_DIGICAM_CONFIGURE,
@@ -142,13 +174,30 @@ OUTPUT_COMMANDS = (DO_SET_RELAY, DO_REPEAT_RELAY, DO_SET_SERVO, DO_REPEAT_SERVO)
 MOUNT_COMMANDS = (DO_MOUNT_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
 PAYLOAD_COMMANDS = (DO_GRIPPER, DO_SPRAYER, DO_WINCH, DO_AUX_FUNCTION)
 """In missions of all firmwares."""
-NUMBER_COMMANDS = (DO_DIGICAM_CONFIGURE, DO_DIGICAM_CONTROL, DO_GIMBAL_MANAGER_PITCHYAW)
+NUMBER_COMMANDS = (
+    DO_DIGICAM_CONFIGURE,
+    DO_DIGICAM_CONTROL,
+    DO_GIMBAL_MANAGER_PITCHYAW,
+    NAV_SCRIPT_TIME,
+    NAV_ATTITUDE_TIME,
+)
 """Parameters 5 and 6 are numbers of their own. Of every other command they are a place or stand where one does."""
 ROI_COMMANDS = (DO_SET_ROI_LOCATION, DO_SET_ROI_NONE, DO_SET_ROI)
 CARRIED_OUT = frozenset(
     (*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS, DO_PARACHUTE)
 )
 """By the bridge and what is fitted to the vehicle, besides what the autopilot does with them."""
+UNREPORTED = frozenset(
+    (
+        *OUTPUT_COMMANDS,
+        *CAMERA_COMMANDS,
+        *VIDEO_COMMANDS,
+        *(SET_CAMERA_ZOOM, SET_CAMERA_FOCUS, SET_CAMERA_SOURCE),
+        *(DO_GIMBAL_MANAGER_PITCHYAW, DO_GRIPPER, DO_SPRAYER, DO_AUX_FUNCTION, DO_PARACHUTE, JUMP_TAG),
+        *(DO_SEND_SCRIPT_MESSAGE, DO_SET_RESUME_REPEAT_DIST, NAV_LOITER_TO_ALT),
+    )
+)
+"""Of which nothing is told when they are done: no MISSION_ITEM_REACHED, and no word where they are not carried out."""
 MARKS = (JUMP_TAG, DO_LAND_START, DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""
 

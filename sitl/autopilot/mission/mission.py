@@ -11,7 +11,7 @@ from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
 from ...errors import SitlError
-from .item import COMMANDS, JUMP_TAG, MissionItem, home_item
+from .item import JUMP_TAG, STORED, MissionItem, home_item
 from .validate import ACCEPTED, check_all
 
 RESULT_NAMES = {
@@ -45,7 +45,7 @@ class Mission:
     items: tuple[MissionItem, ...] = ()
 
     @classmethod
-    def of(cls, items: Iterable[MissionItem], taken: Container[int] = COMMANDS) -> Mission:
+    def of(cls, items: Iterable[MissionItem], taken: Container[int] = STORED) -> Mission:
         """A mission of valid items, home first; ``taken``: the commands that a firmware takes.
 
         Raises:

@@ -14,6 +14,7 @@ the mission. Every method takes the vehicle's record ``v`` and returns what the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from .. import events
@@ -43,15 +44,18 @@ from . import jumps, returning
 from .commands import Commands
 from .item import (
     COMMANDS,
-    DO_AUX_FUNCTION,
     DO_LAND_START,
     DO_RETURN_PATH_START,
+    NAV_DELAY,
     NAV_TAKEOFF,
     NAV_VTOL_TAKEOFF,
     TERRAIN_FRAMES,
+    UNREPORTED,
+    MissionItem,
 )
 from .mission import Mission
-from .notes import CRITICAL, INFO, CurrentChanged, ItemReached, Note, Text
+from .notes import CRITICAL, INFO, WARNING, CurrentChanged, ItemReached, Note, Text
+from .time_of_day import seconds_until
 
 LEGS = (WAYPOINT, LOITER_UNLIMITED, LOITER_TIME)
 """Kinds of commands that begin anew when a mission is uploaded, the same one too."""
@@ -70,9 +74,11 @@ class Holder(Protocol):
 class Sequencer:
     """Runs one vehicle's mission with the commands of its firmware."""
 
-    def __init__(self, holder: Holder, commands: Commands[Any]) -> None:
+    def __init__(self, holder: Holder, commands: Commands[Any], boot_us: Callable[[], int] = lambda: 0) -> None:
+        """``boot_us``: Unix time of the last boot [us], for items that wait for a time of day."""
         self._holder = holder
         self.commands = commands
+        self._boot_us = boot_us
         self._publish(holder.v)
         holder.v.autopilot.modes.nav.mission_events = holder.v.autopilot.events.count
 
@@ -98,8 +104,7 @@ class Sequencer:
         ap, mission = v.autopilot, self.mission
         ap.params.MIS.TOTAL = float(len(mission))
         ap.modes.mission_count = len(mission)
-        first = mission.get(jumps.next_nav(mission, 1, {}, JUMPS))
-        ap.modes.mission_takes_off = first is not None and first.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
+        ap.modes.mission_takes_off = _takes_off(mission)
         ap.modes.mission_lands = bool(returning.marks(mission, DO_LAND_START))
         ap.modes.mission_returns = returning.has_path(mission)
         ap.modes.mission_over_ground = any(
@@ -108,16 +113,16 @@ class Sequencer:
         )
 
     def set_mission(self, v: Vehicle, mission: Mission) -> list[Note]:
-        """Take a new mission. One under way goes on with its present command.
+        """Take a new mission. One under way goes on with its present command; one that was left, at the same number.
 
         A leg begins anew. When its item is no longer there, the vehicle goes on to where it was going.
 
         Raises:
-            MissionError: it holds a command that this firmware does not take.
+            MissionError: it holds what no firmware takes.
         """
         nav = v.autopilot.modes.nav
         seq = nav.command_seq
-        self._holder.mission = Mission.of(mission.items, self.commands.taken)
+        self._holder.mission = Mission.of(mission.items)
         self._publish(v)
         jumps.keep(nav, {})
         notes: list[Note] = []
@@ -132,8 +137,9 @@ class Sequencer:
                 if is_leg:
                     notes.append(Text(CRITICAL, "Auto mission changed but failed to restart command"))
             return notes
-        nav.mission_state = STOPPED
-        self._set_current(nav, 0, notes)
+        if not mission.present:
+            nav.mission_state = STOPPED
+            self._set_current(nav, 0, notes)
         return notes
 
     def extend_mission(self, v: Vehicle, mission: Mission) -> None:
@@ -156,7 +162,7 @@ class Sequencer:
         if not self.mission.present or not ap.estimate.origin_set:
             return notes
         restart = ap.params.MIS.RESTART == 1 and not nav.mission_resume
-        if restart or nav.mission_state == COMPLETE or nav.mission_current == 0:
+        if restart or nav.mission_state == COMPLETE or self.mission.get(nav.mission_current) is None:
             jumps.keep(nav, {})
             nav.mission_current = 0
         nav.mission_resume = False
@@ -299,7 +305,7 @@ class Sequencer:
         seq = nav.command_seq
         item = self.mission.get(seq)
         nav.mission_reached = seq
-        notes: list[Note] = [ItemReached(seq)]
+        notes: list[Note] = [] if item is not None and item.command in UNREPORTED else [ItemReached(seq)]
         if item is not None:
             notes += self.commands.completed(v, seq, item)
         self._advance(v, seq + 1, notes)
@@ -318,38 +324,52 @@ class Sequencer:
         nav = v.autopilot.modes.nav
         nav.condition_kind, nav.mission_do, nav.mission_do_next = CONDITION_NONE, 0, 0
         counts = jumps.runs(nav)
+        ends: list[Note] = []
         for _ in range(len(self.mission) + jumps.LONGEST):
             taken: list[tuple[int, int, int]] = []
             seq = jumps.following(self.mission, seq, counts, JUMPS, taken)
-            notes.extend(Text(INFO, f"Mission: {k} Jump {done}/{times}") for k, done, times in taken)
+            notes.extend(Text(INFO, f"Mission: {k} Jump {done}/{_often(times)}") for k, done, times in taken)
             item = self.mission.get(seq)
             if item is None:
                 break
-            if item.is_nav:
+            if item.is_nav and item.command in self.commands.taken:
                 jumps.keep(nav, counts)
-                self._give(v, seq, notes)
+                self._give(v, seq, notes, ends)
                 return
-            if nav.mission_do_next == 0:
-                self._do(v, seq, notes)
+            if item.is_nav:
+                notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
+            elif nav.mission_do_next == 0:
+                ends = self._do(v, seq, notes)
                 nav.mission_do_next = seq + 1
             seq += 1
         jumps.keep(nav, counts)
         nav.mission_state = COMPLETE
         nav.condition_kind, nav.mission_do_next = CONDITION_NONE, 0
+        _end_first(notes, ends)
         notes += self.commands.finish(v)
 
-    def _give(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
-        """Begin navigation command ``seq``, and run the other do-commands before it."""
+    def _give(self, v: Vehicle, seq: int, notes: list[Note], ends: list[Note]) -> None:
+        """Begin navigation command ``seq``, and run the other do-commands before it.
+
+        ``ends``: what is told of the first, which has run.
+        """
         nav = v.autopilot.modes.nav
         item = self.mission.items[seq]
         if item.command in returning.LANDINGS:
             nav.mission_part = LANDING
         notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
         self._set_current(nav, seq, notes)
-        notes += self.commands.give(v, seq, item)
+        notes += self.commands.give(v, seq, self._timed(v, item))
+        _end_first(notes, ends)
         self._look_ahead(v)
         if nav.mission_do_next != 0 and nav.condition_kind == CONDITION_NONE:
             self._run_do(v, notes)
+
+    def _timed(self, v: Vehicle, item: MissionItem) -> MissionItem:
+        """A delay until a time of day as one of so many seconds."""
+        if item.command != NAV_DELAY or item.p1 > 0.0:
+            return item
+        return item._replace(p1=seconds_until(item, self._boot_us() + v.time_us))
 
     def _look_ahead(self, v: Vehicle) -> None:
         """Plan the leg after the current one."""
@@ -369,14 +389,15 @@ class Sequencer:
             item = self.mission.get(seq)
             if item is None or item.is_nav:
                 break
-            self._do(v, seq, notes)
+            notes += self._do(v, seq, notes)
             seq += 1
             if nav.condition_kind != CONDITION_NONE:
                 nav.mission_do_next = seq
                 return
         nav.mission_do_next = 0
 
-    def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> None:
+    def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> list[Note]:
+        """Run do-command ``seq``; what is told when it is done."""
         item = self.mission.items[seq]
         notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
         nav = v.autopilot.modes.nav
@@ -385,9 +406,14 @@ class Sequencer:
             nav.mission_part = LANDING
         elif item.command == DO_RETURN_PATH_START and nav.mission_part == OUTWARD:
             nav.mission_part = RETURN_PATH
-        notes += self.commands.run(v, item)
-        if nav.condition_kind == CONDITION_NONE and item.command != DO_AUX_FUNCTION:  # of switches nothing is told
-            notes.append(ItemReached(seq))
+        if item.command in self.commands.taken:
+            notes += self.commands.run(v, item)
+        ends: list[Note] = []
+        if self.commands.skips(item):
+            ends.append(Text(WARNING, f"Skipping invalid cmd #{item.command}"))
+        if nav.condition_kind == CONDITION_NONE and item.command not in UNREPORTED:
+            ends.append(ItemReached(seq))
+        return ends
 
     def _condition_met(self, v: Vehicle, seq: int) -> list[Note]:
         nav = v.autopilot.modes.nav
@@ -396,3 +422,29 @@ class Sequencer:
         notes: list[Note] = [ItemReached(seq)]
         self._run_do(v, notes)
         return notes
+
+
+BEFORE_TAKE_OFF = 16
+"""So many navigation commands are looked through for a take-off."""
+
+
+def _takes_off(mission: Mission) -> bool:
+    """Whether the mission begins with a take-off; delays may stand before it."""
+    seq = 0
+    for _ in range(BEFORE_TAKE_OFF):
+        seq = jumps.next_nav(mission, seq + 1, {}, JUMPS)
+        item = mission.get(seq)
+        if item is None or item.command != NAV_DELAY:
+            return item is not None and item.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
+    return False
+
+
+def _end_first(notes: list[Note], ends: list[Note]) -> None:
+    """Tell of the first do-command behind a navigation command: it is done when that is, and is told in place of it."""
+    if any(isinstance(note, ItemReached) for note in ends):
+        notes[:] = [note for note in notes if not isinstance(note, ItemReached)]
+    notes += ends
+
+
+def _often(times: int) -> str:
+    return "unlimited" if times == jumps.FOREVER else str(times)

@@ -14,14 +14,15 @@ from .item import (
     GLOBAL,
     GLOBAL_INT,
     MISSION,
+    NAV_ARC_WAYPOINT,
     NAV_LAND,
     NAV_LOITER_UNLIM,
-    NAV_SPLINE_WAYPOINT,
     NAV_TAKEOFF,
     NAV_VTOL_LAND,
     NAV_VTOL_TAKEOFF,
     NAV_WAYPOINT,
     RELATIVE_FRAMES,
+    STORED,
     TERRAIN_FRAMES,
     MissionItem,
 )
@@ -44,30 +45,28 @@ MAX_ITEMS = 724
 HIGHEST = 83000.0
 """Altitudes are below this [m]."""
 
-INT32_MAX = 2**31 - 1
-
 PLACE_FRAMES = (GLOBAL, GLOBAL_INT, MISSION, *RELATIVE_FRAMES, *TERRAIN_FRAMES)
-_YAW_MAY_BE_NAN = (
-    NAV_WAYPOINT,
-    NAV_SPLINE_WAYPOINT,
-    NAV_LOITER_UNLIM,
-    NAV_LAND,
-    NAV_TAKEOFF,
-    NAV_VTOL_TAKEOFF,
-    NAV_VTOL_LAND,
-)
+MAY_BE_NAN = {
+    **dict.fromkeys((NAV_WAYPOINT, NAV_LOITER_UNLIM, NAV_LAND, NAV_TAKEOFF, NAV_VTOL_TAKEOFF), (4,)),
+    NAV_ARC_WAYPOINT: (2, 3, 4),
+    NAV_VTOL_LAND: (3, 4),
+}
+"""Which of the first four parameters may be NaN, by command."""
+RESERVED = (0, 1)
+"""No commands: ArduPilot's storage marks longer numbers with them."""
 
 
-def check(item: MissionItem, taken: Container[int] = COMMANDS) -> int:
+def check(item: MissionItem, taken: Container[int] = STORED) -> int:
     """Result for one item: parameters are numbers, the command ``taken`` and the frame known, the place on earth.
 
-    NaN as parameter 4 means "keep the heading" in some navigation commands; elsewhere it is refused. Commands
-    without a place take any frame.
+    NaN is taken where it means "as it is". Commands without a place take any frame, and anything where a place stands.
     """
-    for k, value in enumerate((item.p1, item.p2, item.p3, item.p4)):
-        keep_yaw = k == 3 and item.command in _YAW_MAY_BE_NAN and math.isnan(value)
-        if not math.isfinite(value) and not keep_yaw:
-            return INVALID_PARAM1 + k
+    may_be_nan = MAY_BE_NAN.get(item.command, ())
+    for k, value in enumerate((item.p1, item.p2, item.p3, item.p4), 1):
+        if not math.isfinite(value) and not (math.isnan(value) and k in may_be_nan):
+            return INVALID_PARAM1 + k - 1
+    if item.command in RESERVED:
+        return INVALID
     if item.command not in COMMANDS or item.command not in taken:
         return UNSUPPORTED
     if COMMANDS[item.command].has_place:
@@ -79,12 +78,6 @@ def check(item: MissionItem, taken: Container[int] = COMMANDS) -> int:
             return INVALID_PARAM7
         if item.frame not in PLACE_FRAMES:
             return UNSUPPORTED_FRAME
-    elif abs(item.x) > INT32_MAX:
-        return INVALID_PARAM5_X
-    elif abs(item.y) > INT32_MAX:
-        return INVALID_PARAM6_Y
-    elif not math.isfinite(item.z):
-        return INVALID_PARAM7
     if item.command == DO_JUMP and int(item.p1) < 1:
         return ERROR  # to home, which is not flown
     return ACCEPTED
@@ -95,7 +88,7 @@ def check_count(count: int) -> int:
     return NO_SPACE if count > MAX_ITEMS else ACCEPTED
 
 
-def check_all(items: Sequence[MissionItem], taken: Container[int] = COMMANDS) -> tuple[int, int]:
+def check_all(items: Sequence[MissionItem], taken: Container[int] = STORED) -> tuple[int, int]:
     """(result, number of the first item refused or -1) for a whole mission."""
     if check_count(len(items)) != ACCEPTED:
         return (NO_SPACE, MAX_ITEMS)

@@ -45,6 +45,7 @@ OTHERS = (
     commands.DO_SET_ROI_NONE,
     commands.DO_SET_ROI,
     commands.DO_GUIDED_LIMITS,
+    commands.DO_SET_RESUME_REPEAT_DIST,
     commands.DO_JUMP_TAG,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
@@ -60,6 +61,9 @@ class RoverCommands(Commands[Vehicle]):
 
     auto = AUTO
     taken = frozenset((*KINDS, *OTHERS))
+    said_invalid = frozenset(
+        (commands.DO_RETURN_PATH_START, commands.DO_LAND_START, commands.DO_MOUNT_CONTROL, commands.DO_WINCH)
+    )
     planner = PLANNER
     goes_on_disarmed = True
 
@@ -104,7 +108,7 @@ class RoverCommands(Commands[Vehicle]):
         nav = ap.modes.nav
         if nav.command_kind != kinds.WAYPOINT or nav.delay > 0.0:
             return
-        through = item is not None and KINDS[item.command] in (*LEGS, kinds.LOITER_TURNS)
+        through = item is not None and KINDS.get(item.command) in (*LEGS, kinds.LOITER_TURNS)
         corner = end(nav.current)
         PLANNER.look_ahead(ap, flat(point(ap, item, corner)) if item is not None and through else None)
 

@@ -11,11 +11,11 @@ from ...autopilot.copter.modes.table import MODES
 from ...vehicle.copter import QUADROTOR
 from ..profile import Profile
 from ..services.service import CRITICAL, EMERGENCY, INFO
+from ..services.setpoints import SetpointService
 from ..telemetry.shell import CAPABILITIES, TERMINATION
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
 from .core import UNITS
-from .setpoints import CopterSetpoints
 
 PROFILE = Profile(
     firmware="ArduCopter",
@@ -45,7 +45,7 @@ PROFILE = Profile(
         ),
     },
     commands=COMMANDS,
-    set_points=CopterSetpoints,
+    set_points=SetpointService,
     texts={
         events.ARMED: (INFO, "Arming motors"),
         events.DISARMED: (INFO, "Disarming motors"),

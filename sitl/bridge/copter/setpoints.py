@@ -6,8 +6,6 @@ A combination, frame or number that cannot be flown stops the vehicle where it i
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...autopilot.copter.modes.auto import is_guided
 from ...autopilot.copter.modes.guided_setpoints import (
     NO_YAW,
@@ -22,7 +20,6 @@ from ...autopilot.copter.modes.guided_setpoints import (
     takes_attitudes,
 )
 from ...autopilot.copter.terrain import is_flat
-from ...autopilot.mission.item import MissionItem
 from ...core.algebra import IDENTITY, ZERO, quat_norm_squared
 from ...core.kernels import law
 from ...core.records import Floats
@@ -42,7 +39,6 @@ from ..services.setpoints import (
     ROLL_RATE_IGNORED,
     THRUST_IGNORED,
     SetAttitudeTarget,
-    SetpointService,
     SetPositionTargetGlobalInt,
     SetPositionTargetLocalNed,
     Target,
@@ -173,16 +169,3 @@ def is_unit(numbers: Floats) -> bool:
 def other_position(m: GlobalPositionInt, v: Copter, sender: int) -> None:
     """Where another vehicle is, for FOLLOW."""
     take_position(m, v, sender, v.autopilot.params.FOLL.ALT_TYPE == OVER_HOME)
-
-
-class CopterSetpoints(SetpointService):
-    """Mission items with ``current`` 2 or 3."""
-
-    def __init__(self, bridge: Any) -> None:
-        super().__init__(bridge)
-        self._pos = bridge.reader.fields("autopilot.estimate.pos")
-
-    def _height_target(self, item: MissionItem) -> bool:
-        north, east, _ = self._pos()
-        place = self.bridge.places.over_origin(north, east, self._height(item))
-        return place is not None and self.bridge.autopilot.guided_position(place)

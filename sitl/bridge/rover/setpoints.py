@@ -13,7 +13,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from ...autopilot.events import SETPOINT_IGNORED, emit
-from ...autopilot.mission.item import MissionItem
 from ...autopilot.rover.modes.guided_setpoints import (
     is_open,
     set_heading_and_speed,
@@ -143,11 +142,7 @@ def attitude_target(m: SetAttitudeTarget, v: Rover, sender: int) -> None:
 
 
 class RoverSetpoints(SetpointService):
-    """Mission items with ``current`` 2 or 3."""
+    """Mission items with ``current`` 2; in missions that allow set-points, too."""
 
     def _listens(self) -> bool:
         return super()._listens() or cast("RoverAutopilot", self.bridge.autopilot).is_guided_in_auto()
-
-    def _height_target(self, item: MissionItem) -> bool:
-        """Taken, and nothing to do: a rover has one height."""
-        return True

@@ -438,6 +438,15 @@ def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> i
     return ACCEPTED if ok else FAILED
 
 
+def jump_to_tag(bridge: Bridge, channel: Channel, command: Command) -> int:
+    """601: p1 the tag of a JUMP_TAG of the mission, which goes on there; FAILED without it."""
+    if not 0.0 <= command.p1 <= 65535.0:
+        return DENIED
+    ok = bridge.autopilot.jump_to_tag(int(command.p1))
+    bridge.say_pending()
+    return ACCEPTED if ok else FAILED
+
+
 def choose_sources(bridge: Bridge, channel: Channel, command: Command) -> int:
     """42007: p1 the set of sources of the estimator, 1 .. 3 (EK3_SRC1_* ..)."""
     if command.p1 not in (1.0, 2.0, 3.0):
@@ -451,6 +460,7 @@ COMMANDS: dict[int, Entry] = {
     245: Entry(storage),
     246: Entry(reboot, required=(1,)),
     401: Entry(prearm_checks),
+    601: Entry(jump_to_tag),
     42007: Entry(choose_sources, required=(1,)),
     420: Entry(inject_failure, required=(1, 2)),
     42006: Entry(calibrate_compass_by_heading, required=(1,)),

@@ -10,10 +10,13 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import message
+from ..wire.port import NEVER
 from .service import Handler, Sender, Service
 from .terrain import TerrainService
 
 HOME, ORIGIN = message("HOME_POSITION").id, message("GPS_GLOBAL_ORIGIN").id
+LOOK_US = 50_000
+"""So often home is looked for once there is an origin."""
 H, E = "autopilot.home.", "autopilot.estimate.origin_"
 
 
@@ -26,12 +29,13 @@ class HomeService(Service):
         self._origin = bridge.reader.fields(E + "set", E + "lat", E + "lon", E + "alt")
         self._sent_home = self._home()
         self._sent_origin = self._origin()
+        self.due_us = NEVER
 
     def snapshot(self) -> Any:
-        return (self._sent_home, self._sent_origin)
+        return (self._sent_home, self._sent_origin, self.due_us)
 
     def restore(self, state: Any) -> None:
-        self._sent_home, self._sent_origin = state
+        self._sent_home, self._sent_origin, self.due_us = state
 
     def handlers(self) -> dict[str, Handler]:
         return {"SET_GPS_GLOBAL_ORIGIN": self._set_origin, "SET_HOME_POSITION": self._set_home}
@@ -41,10 +45,18 @@ class HomeService(Service):
         home, origin = self._home(), self._origin()
         if (home, origin) != (self._sent_home, self._sent_origin):
             self.bridge.get(TerrainService).look_up()
+            self.due_us = self.bridge.now_us + LOOK_US if origin[0] and not home[0] else NEVER
+        if home != self._sent_home:
+            self.bridge.autopilot.home_changed()
         for number, now, sent in ((ORIGIN, origin, self._sent_origin), (HOME, home, self._sent_home)):
             if now != sent and now[0]:
                 self.bridge.send_to_all(number)
         self._sent_home, self._sent_origin = home, origin
+
+    def service(self, now_us: int) -> None:
+        """Home is set some ticks after the origin, by itself."""
+        self.due_us = now_us + LOOK_US if self._origin()[0] and not self._home()[0] else NEVER
+        self.tell_changes()
 
     def _set_origin(self, channel: Channel, m: Any, sender: Sender) -> None:
         """Only before the estimator has an origin; else nothing happens, as in ArduPilot."""

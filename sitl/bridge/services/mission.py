@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...autopilot.fence.items import FenceError
-from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem, home_item
+from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, STORED, MissionItem
+from ...autopilot.mission.storage import stored_home
 from ...autopilot.mission.validate import MAX_ITEMS
 from ..channel import Channel
 from ..dialect import message
@@ -22,7 +23,6 @@ from .mission_upload import (
     CANCELLED,
     DENIED,
     ERROR,
-    INVALID,
     INVALID_SEQUENCE,
     NO_SPACE,
     UNSUPPORTED,
@@ -46,7 +46,7 @@ COPY_US = 2_000_000
 REPEAT_US = 200_000
 """An item that is there already is answered, when the next one was asked for so long ago."""
 GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
-"""Values of ``current`` that make a mission item a target for GUIDED (DroneKit's simple_goto)."""
+"""Values of ``current``: a target for GUIDED (DroneKit's simple_goto); a change of height, which only planes make."""
 
 
 class MissionService(Service):
@@ -54,11 +54,13 @@ class MissionService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._taken = {MISSION: bridge.vehicle.firmware.commands.taken, FENCE: FENCE_COMMANDS, RALLY: (RALLY_POINT,)}
+        self._taken = {MISSION: STORED, FENCE: FENCE_COMMANDS, RALLY: (RALLY_POINT,)}
         self._lists: dict[int, tuple[MissionItem, ...]] = {FENCE: (), RALLY: ()}
         self.upload: Upload | None = None
         self._last: tuple[Channel, Sender, int, range, int] | None = None
         """Who uploaded last, what, the numbers of its items, and when: its acknowledgement may have been lost."""
+        self._warned = False
+        """Whether a client was told that MISSION_REQUEST is old."""
         self._home = bridge.reader.fields("autopilot.home.lat", "autopilot.home.lon", "autopilot.home.alt")
 
     def handlers(self) -> dict[str, Handler]:
@@ -119,7 +121,7 @@ class MissionService(Service):
 
     def home_alone(self, kind: int) -> tuple[MissionItem, ...]:
         """Item 0, home, can be read of an empty mission all the same (DroneKit's download waits for it)."""
-        return (home_item(*self._home()),) if kind == MISSION else ()
+        return (stored_home(*self._home()),) if kind == MISSION else ()
 
     def _replace(self, kind: int, items: tuple[MissionItem, ...]) -> int:
         """Replace a list whole; the MAV_MISSION_RESULT."""
@@ -211,8 +213,9 @@ class MissionService(Service):
             pass
         elif self.upload is not None:
             self._ack(channel, sender, DENIED, kind)
-        elif not 0 <= first <= last < len(self.items(kind)):
-            self._ack(channel, sender, INVALID_SEQUENCE, kind)
+        elif not 0 <= first <= last <= len(self.items(kind)):  # one more item may be added
+            self.bridge.get(StatusTextService).say(WARNING, "Flight plan update rejected")
+            self._ack(channel, sender, ERROR, kind)
         else:
             self._begin(channel, sender, kind, first, last + 1, self.items(kind))
 
@@ -231,7 +234,7 @@ class MissionService(Service):
         self, channel: Channel, sender: Sender, kind: int, first: int, stop: int, base: tuple[MissionItem, ...]
     ) -> None:
         self.upload = Upload(channel, sender, kind, first, stop, base, self.bridge.now_us)
-        self._last = None
+        self._last, self._warned = None, False
         self._request_next(self.upload)
 
     def _request_next(self, upload: Upload) -> None:
@@ -256,9 +259,9 @@ class MissionService(Service):
             self._ack(channel, sender, UNSUPPORTED, kind)
             return
         if kind == MISSION and fields.current in (GUIDED_TARGET, ALTITUDE_CHANGE):
-            if result == ACCEPTED:
+            if result == ACCEPTED and fields.current == GUIDED_TARGET:
                 target = self.bridge.get(SetpointService).mission_item_target
-                result = ACCEPTED if target(item, fields.current == ALTITUDE_CHANGE) else ERROR
+                result = ACCEPTED if target(item) else ERROR
             self._ack(channel, sender, result)
             return
         upload = self.upload
@@ -322,10 +325,11 @@ class MissionService(Service):
             None if self.upload is None else self.upload.snapshot(),
             None if last is None else (last[0].number, *last[1:]),
             (self._lists[FENCE], self._lists[RALLY]),
+            self._warned,
         )
 
     def restore(self, state: Any) -> None:
-        upload, last, (self._lists[FENCE], self._lists[RALLY]) = state
+        upload, last, (self._lists[FENCE], self._lists[RALLY]), self._warned = state
         by_number = {c.number: c for c in self.bridge.channels} if upload or last else {}
         self.upload = Upload.restored(upload, by_number[upload[0]]) if upload and upload[0] in by_number else None
         self._last = (by_number[last[0]], *last[1:]) if last and last[0] in by_number else None
@@ -357,6 +361,9 @@ class MissionService(Service):
         self._send_item(channel, fields, sender, to_int)
 
     def _request_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
+        if not self._warned:
+            self._warned = True
+            self.bridge.get(StatusTextService).say(WARNING, "got MISSION_REQUEST; use MISSION_REQUEST_INT!")
         self._send_item(channel, fields, sender, to_float)
 
     def _send_item(self, channel: Channel, fields: Any, sender: Sender, pack: Any) -> None:
@@ -368,15 +375,17 @@ class MissionService(Service):
         if fields.seq >= len(items):
             self._ack(channel, sender, INVALID_SEQUENCE, kind)
         else:
-            is_current = kind == MISSION and fields.seq == self.bridge.autopilot.current_item()
-            channel.send(*pack(items[fields.seq], fields.seq, is_current, sender, kind))
+            item = items[fields.seq]
+            # ArduPilot compares the command, where the number of the item is meant: 1 is seldom sent
+            is_current = kind == MISSION and item.command == self.bridge.autopilot.current_item()
+            channel.send(*pack(item, fields.seq, is_current, sender, kind))
 
     # ------------------------------------------------------------------ the rest
 
     def _clear_all(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
         if kind not in (*self._taken, ALL):
-            self._ack(channel, sender, INVALID, kind)
+            self._ack(channel, sender, UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
             self.upload = None
             cleared = kind not in (MISSION, ALL) or self.bridge.autopilot.clear_mission()

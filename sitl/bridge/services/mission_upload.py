@@ -8,18 +8,20 @@ Numbers of MAV_MISSION_RESULT that the protocol itself gives.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Container
 from typing import Any
 
-from ...autopilot.mission.commands import stored
-from ...autopilot.mission.item import COMMANDS, MissionItem
+import numpy as np
+
+from ...autopilot.mission.item import COMMANDS, STORED, MissionItem
+from ...autopilot.mission.storage import stored, whole
 from ...autopilot.mission.validate import INVALID_PARAM5_X, INVALID_PARAM6_Y, check
 from ..channel import Channel
 from ..dialect import MessageType, message
 from .service import Sender
 
 ITEM_INT, ITEM = message("MISSION_ITEM_INT"), message("MISSION_ITEM")
+_DEGE7 = np.float32(1e7)
 _SAME_FRAME = {5: 0, 6: 3, 11: 10}
 """The _INT frames mean the same as the frames without; they are kept (and given back) as those."""
 
@@ -30,16 +32,14 @@ def from_int(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
 
 
 def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
-    """Item of a MISSION_ITEM (degrees) and its MAV_MISSION_RESULT."""
+    """Item of a MISSION_ITEM (degrees) and its MAV_MISSION_RESULT; degE7 in single precision, as in ArduPilot."""
     known = COMMANDS.get(fields.command)
-    scale = 1e7 if known is not None and known.has_place else 1.0
-    whole = []
-    for value, refusal in ((fields.x, INVALID_PARAM5_X), (fields.y, INVALID_PARAM6_Y)):
-        scaled = value * scale
-        if not (math.isfinite(scaled) and abs(scaled) < 2.0**31):
+    if known is None or not known.has_place:
+        return _checked(fields, whole(fields.x), whole(fields.y), taken)
+    for value, most, refusal in ((fields.x, 90.0, INVALID_PARAM5_X), (fields.y, 180.0, INVALID_PARAM6_Y)):
+        if not abs(value) <= most:
             return _checked(fields, 0, 0, taken)[0], refusal
-        whole.append(round(scaled))
-    return _checked(fields, whole[0], whole[1], taken)
+    return _checked(fields, *(whole(float(np.float32(v) * _DEGE7)) for v in (fields.x, fields.y)), taken)
 
 
 def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[MissionItem, int]:
@@ -47,7 +47,7 @@ def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[Missio
     p1, p2, p3, p4 = fields.param1, fields.param2, fields.param3, fields.param4
     item = MissionItem(fields.command, frame, p1, p2, p3, p4, x, y, fields.z, fields.autocontinue)
     result = check(item, taken)
-    return (stored(item) if result == ACCEPTED else item), result
+    return (stored(item) if result == ACCEPTED and item.command in STORED else item), result
 
 
 def _common(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from ...core.kernels import law
 from ...core.records import Floats
 from ...core.vectors import Quat, Vec3
 from ..wire.message import Message
-from .command import FRAMES_AMSL, GLOBAL_FRAMES
+from .command import GLOBAL_FRAMES
 from .service import Service
 
 POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
@@ -163,7 +163,7 @@ def rotation(numbers: Floats) -> Rotation:
 
 
 class SetpointService(Service):
-    """Mission items with ``current`` 2 or 3: places to go to at once, in GUIDED."""
+    """Mission items with ``current`` 2: places to go to at once, in GUIDED."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
@@ -174,22 +174,9 @@ class SetpointService(Service):
         """Whether set-points count now."""
         return self._mode() == self._guided
 
-    def _height_target(self, item: MissionItem) -> bool:
-        """Go to the height of a mission item (``current`` = 3)."""
-        raise NotImplementedError
-
-    def mission_item_target(self, item: MissionItem, altitude_only: bool) -> bool:
-        """Go to a mission item's place (``current`` = 2).
-
-        Or to its height over the present place (3), in GUIDED.
-        """
+    def mission_item_target(self, item: MissionItem) -> bool:
+        """Go to a mission item's place (``current`` = 2), in GUIDED."""
         if not self._listens() or item.frame not in GLOBAL_FRAMES:
             return False
-        if altitude_only:
-            return self._height_target(item)
         place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
         return place is not None and self.bridge.autopilot.guided_position(place)
-
-    def _height(self, item: MissionItem) -> float:
-        """Height of a mission item [m above sea level]."""
-        return item.z if item.frame in FRAMES_AMSL else self.bridge.places.home_alt() + item.z

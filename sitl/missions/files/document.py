@@ -169,6 +169,8 @@ FRAME_NAMES = {
     0: "global", 2: "mission", 3: "relative", 5: "global int", 6: "relative int", 10: "terrain", 11: "terrain int",
 }  # fmt: skip
 
+INT32_MAX = 2**31 - 1
+"""Parameters 5 and 6 travel as whole numbers."""
 LARGEST = 3.4028234663852886e38
 """Parameters travel in single precision."""
 
@@ -204,10 +206,21 @@ def make(
         k = 5 if x != int(x) else 6
         raise MissionFileError(f"{where}: parameter {k} is {values[k - 1]}: a whole number is needed{_of(command)}")
     item = MissionItem(command, frame, p1, p2, p3, p4, round(x * scale), round(y * scale), z, autocontinue, current)
-    result = validate.check(item)
+    result = validate.check(item, COMMANDS)
+    if result == validate.ACCEPTED and not COMMANDS[command].has_place:
+        result = _numbers(item)
     if result != validate.ACCEPTED:
         raise MissionFileError(f"{where}: {_reason(result, command, frame, values)}")
     return item
+
+
+def _numbers(item: MissionItem) -> int:
+    """Result for parameters 5 to 7 where no place stands: files have numbers there that MAVLink carries."""
+    if abs(item.x) > INT32_MAX:
+        return validate.INVALID_PARAM5_X
+    if abs(item.y) > INT32_MAX:
+        return validate.INVALID_PARAM6_Y
+    return validate.ACCEPTED if math.isfinite(item.z) else validate.INVALID_PARAM7
 
 
 def _of(command: int) -> str:
@@ -227,7 +240,7 @@ def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) ->
     value = values[k]
     if not COMMANDS[command].has_place or k < 4:
         if math.isfinite(value):
-            limit = f"{validate.INT32_MAX * (1e-7 if has_degrees(command) else 1.0):.10g}"
+            limit = f"{INT32_MAX * (1e-7 if has_degrees(command) else 1.0):.10g}"
             return f"parameter {k + 1} is {value}: it is within +-{limit}, which MAVLink carries{of}"
         return f"parameter {k + 1} is {value}: a finite number is needed{of}"
     if result == validate.INVALID_PARAM5_X:

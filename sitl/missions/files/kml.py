@@ -79,6 +79,8 @@ class Reader:
         """
         try:
             self._parser.Parse(data, True)
+        except LookupError as error:
+            raise MissionFileError(f"{self._name}: no XML that is read here: {error}") from None
         except expat.ExpatError as error:
             said = expat.ErrorString(error.code)
             raise MissionFileError(f"{self._name}:{error.lineno}: no XML: {said} (column {error.offset + 1})") from None

@@ -13,6 +13,7 @@ from typing import Any
 
 from sitl.autopilot.mission.item import COMMANDS, DO_JUMP, GLOBAL, NAV_WAYPOINT, RELATIVE, RELATIVE_FRAMES, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
+from sitl.autopilot.mission.validate import MAY_BE_NAN
 
 from . import complex_items
 from .document import (
@@ -131,8 +132,8 @@ def _add(items: list[MissionItem], entry: Node, numbers: dict[int, int], jumps: 
 def plan_simple(entry: Node) -> MissionItem:
     """Item of an entry of type SimpleItem.
 
-    A place or a parameter of a do-command that is null counts as 0, as a parameter of a navigation command as NaN,
-    "keep the heading". The frame says what the altitude counts from; AltitudeMode says how it was entered. It counts
+    A parameter that is null counts as NaN, "as it is", where vehicles take that (validate.MAY_BE_NAN), elsewhere as 0.
+    The frame says what the altitude counts from; AltitudeMode says how it was entered. It counts
     only where the ground station did not know the terrain yet: the altitude is null then, and Altitude is meant.
     """
     values = entry["params"].numbers(7)
@@ -140,7 +141,9 @@ def plan_simple(entry: Node) -> MissionItem:
     if math.isnan(values[6]) and entry.get("AltitudeMode", 0).value == ABOVE_TERRAIN and "Altitude" in entry:
         values, frame = (*values[:6], entry["Altitude"].number()), RELATIVE  # the ground is flat, as high as home
     is_nav = command in COMMANDS and COMMANDS[command].is_nav
-    clean = [0.0 if math.isnan(v) and (k >= 4 or not is_nav) else v for k, v in enumerate(values)]
+    may_be_nan = {1, 2, 3} if is_nav else set()  # of navigation commands the first three are asked for
+    may_be_nan |= {*MAY_BE_NAN.get(command, ())}
+    clean = [0.0 if math.isnan(v) and k not in may_be_nan else v for k, v in enumerate(values, 1)]
     return make(command, frame, tuple(clean), int(entry.get("autoContinue", True).flag), entry.where)
 
 

@@ -478,3 +478,77 @@ def test_vertical_take_off_and_landing_are_the_copters_own() -> None:
     p.complete()
     assert p.nav.command_kind == LAND
     assert c.NAV_VTOL_LAND not in ROVER.taken
+
+
+def test_a_jump_for_ever_says_so() -> None:
+    p = Vehicle(WP, WP, jump(1, -1)).start()
+    p.order(5)
+    assert "Mission: 3 Jump 0/unlimited" in p.texts()
+
+
+def test_of_a_tag_nothing_is_told_when_it_is_passed() -> None:
+    p = Vehicle(WP, tag(7), WP).start()
+    p.complete()
+    assert "Mission: 2 Tag 0" in p.texts()
+    assert [n.seq for n in p.told if isinstance(n, ItemReached)] == [1]
+
+
+def test_a_do_command_behind_a_waypoint_is_told_in_place_of_it() -> None:
+    """As ArduPilot, which sends one MISSION_ITEM_REACHED for both."""
+    p = Vehicle(WP, SPEED, SPEED, WP).start()
+    p.complete()
+    assert [n.seq for n in p.told if isinstance(n, ItemReached)] == [2, 3]
+
+
+def test_what_is_not_carried_out_is_passed_over() -> None:
+    up, reverse = MissionItem(c.NAV_CONTINUE_AND_CHANGE_ALT), MissionItem(c.DO_SET_REVERSE, p1=1.0)
+    p = Vehicle(WP, up, reverse, WP).start()
+    assert p.complete() == 4
+    assert p.texts()[-4:] == [
+        "Mission: 2 ContinueAndChangeAlt",
+        "Mission: 3 SetReverse",
+        "Mission: 4 WP",
+        "Skipping invalid cmd #194",
+    ]
+
+
+@pytest.mark.parametrize("command", [c.NAV_ARC_WAYPOINT, c.NAV_SCRIPT_TIME, c.NAV_ATTITUDE_TIME])
+def test_what_is_carried_out_in_part_says_so(command: int) -> None:
+    p = Vehicle(WP, MissionItem(command, p1=3.0, p2=3.0, x=LAT, y=LON), WP).start()
+    assert p.complete() == 2
+    assert any("is flown as" in text for text in p.texts())
+
+
+@pytest.mark.parametrize(
+    ("items", "takes_off"),
+    [
+        ((SPEED, MissionItem(c.NAV_DELAY, p1=60.0), TAKEOFF), 1),
+        ((MissionItem(c.NAV_DELAY, p1=60.0), WP, TAKEOFF), 0),
+        ((MissionItem(c.NAV_DELAY, p1=60.0),), 0),
+        ((MissionItem(c.NAV_DELAY, p1=60.0), jump(1, -1)), 0),
+        ((), 0),
+    ],
+)
+def test_delays_may_stand_before_the_take_off(items: tuple[MissionItem, ...], takes_off: int) -> None:
+    assert Vehicle(*items).v.autopilot.modes.mission_takes_off == takes_off
+
+
+def test_a_delay_until_a_time_of_day() -> None:
+    p = Vehicle(WP, MissionItem(c.NAV_DELAY, p2=0.0, p3=1.0, p4=17.0), WP).start()
+    p.complete()
+    assert "Delaying 77 sec" in p.texts() and p.nav.delay == 77.0
+
+
+def test_another_mission_goes_on_at_the_number_where_the_one_before_was_left() -> None:
+    """As ArduPilot; a client that means the beginning says MISSION_SET_CURRENT 0."""
+    p = Vehicle(WP, WP, WP).start()
+    p.complete()
+    p.sequencer.stop(p.v)
+    p.sequencer.set_mission(p.v, Mission((home_item(LAT, LON, ALT), WP, WP, WP, WP)))
+    assert p.nav.mission_current == 2
+    p.start()
+    assert p.nav.command_seq == 2
+    p.sequencer.stop(p.v)
+    p.sequencer.set_mission(p.v, Mission((home_item(LAT, LON, ALT), WP)))
+    p.start()
+    assert p.nav.command_seq == 1

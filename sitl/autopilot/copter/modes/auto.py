@@ -202,7 +202,7 @@ def run_path(v: Vehicle, kind: int) -> bool:
         ground.rest(ap.arming.armed, control, est, p)
         if ap.arming.armed and ap.arming.landed and modes.nav.mission_state == COMPLETE:
             ground.disarm(v, BY_MISSION_EXIT)
-        return False
+        return kind == kinds.DELAY and command.has_waited(modes.nav, v.time_us)
     if not command.follows_path(kind):
         ground.hold(modes.auto_yaw, control, est, p)
         return False

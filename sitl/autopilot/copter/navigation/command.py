@@ -40,7 +40,12 @@ def run(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time_us:
         return circle.run(nav, control, est, p) >= nav.turns
     if not waypoint.advance(nav, control, est, p, time_us):
         return False
+    return has_waited(nav, time_us) and kind in (WAYPOINT, LOITER_TIME, DELAY)
+
+
+@law
+def has_waited(nav: CopterNav, time_us: int) -> bool:
+    """Whether the delay of the command is over; it counts from the first call."""
     if nav.since_us == 0:
         nav.since_us = time_us
-    waited = (time_us - nav.since_us) * 1e-6 >= nav.delay
-    return waited and kind in (WAYPOINT, LOITER_TIME, DELAY)
+    return (time_us - nav.since_us) * 1e-6 >= nav.delay

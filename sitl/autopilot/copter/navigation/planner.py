@@ -26,6 +26,8 @@ from .state import Spline
 GRAVITY = 9.80665
 _ALONG = 0.999
 """Cosine of the angle to the path under way within which a leg goes on with its speed."""
+_SLOWING_S = 1.8
+"""A leg with less time than this between its phases of speeding up and slowing down [s] has no room for another."""
 _POINT = Limits(1.0, 1.0, 1.0)
 """Of a leg without length, which needs none."""
 
@@ -244,6 +246,15 @@ class CopterPlanner(Planner[Autopilot]):
         s = ap.modes.nav.spline
         if s.active:
             spline_curve.set_limits(s, self.spline_limits(ap), s.end_speed)
+
+    def _replan(self, ap: Autopilot, leg: Leg) -> None:
+        """A lower speed comes too late for a leg that still speeds up, has no steady acceleration, and is too short to
+        slow down again before its end: as in ArduPilot it goes on as planned."""
+        wanted = bounded(self.limits(ap, leg.unit))
+        speeds_up = leg.started and leg.elapsed < leg.turn_in and wanted.speed < leg.top_speed
+        if speeds_up and leg.turn_out - leg.turn_in < _SLOWING_S and max(leg.a[: leg.segments]) < wanted.acceleration:
+            return
+        super()._replan(ap, leg)
 
     def start(self, ap: Autopilot, time_us: int) -> None:
         """Hand the legs to the follower."""

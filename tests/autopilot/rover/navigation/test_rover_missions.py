@@ -12,7 +12,8 @@ from sitl.autopilot import events
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
-from sitl.autopilot.mission.mission import Mission, MissionError
+from sitl.autopilot.mission.mission import Mission
+from sitl.autopilot.mission.notes import ItemReached, Text
 from sitl.autopilot.mission.validate import UNSUPPORTED, check
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
@@ -189,13 +190,23 @@ def test_without_an_origin_it_waits() -> None:
     assert p.ap.modes.nav.target[0] == pytest.approx(15.0, abs=0.1)
 
 
-def test_what_the_other_firmware_takes_is_refused() -> None:
+def test_what_only_the_other_firmware_carries_out() -> None:
     for command in (c.NAV_TAKEOFF, c.NAV_LAND, c.CONDITION_YAW):
         assert check(MissionItem(command), COMMANDS.taken) == UNSUPPORTED
     for command in (c.DO_SET_REVERSE, c.NAV_SET_YAW_SPEED):
         assert check(MissionItem(command), COPTER.taken) == UNSUPPORTED
+
+
+def test_what_it_does_not_carry_out_is_passed_over() -> None:
     p = Missionary()
     assert p.sequencer is not None
-    with pytest.raises(MissionError, match=r"item 1 \(command 22, frame 3\): unsupported command"):
-        p.sequencer.set_mission(p.v, Mission.of([at(WP, 0.0, 0.0), MissionItem(c.NAV_TAKEOFF)]))
-    assert p.mission == Mission()
+    items = [at(WP, 0.0, 0.0), MissionItem(c.NAV_TAKEOFF), MissionItem(c.CONDITION_YAW), at(WP, 10.0, 0.0)]
+    p.sequencer.set_mission(p.v, Mission.of(items))
+    notes = p.sequencer.start(p.v)
+    assert [note.text for note in notes if isinstance(note, Text)] == [
+        "Mission: 1 Takeoff",
+        "Mission: 2 CondYaw",
+        "Mission: 3 WP",
+        "Skipping invalid cmd #115",
+    ]
+    assert ItemReached(2) in notes and p.ap.modes.nav.command_seq == 3

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""NAV_DELAY until a time of day, UTC (parameters 2 to 4: hour, minute, second; -1 stands for any)."""
+
+from __future__ import annotations
+
+from .item import MissionItem
+
+ANY = -1
+HOUR, MINUTE, SECOND = 3600, 60, 1
+
+
+def seconds_until(item: MissionItem, now_us: int) -> float:
+    """How long it is until the time of ``item`` comes next [s]; ``now_us``: Unix time [us].
+
+    Any hour, and any minute: only what is told counts. 0 when nothing is told.
+    """
+    told = [(int(item.p2), HOUR, 24 * HOUR), (int(item.p3), MINUTE, HOUR), (int(item.p4), SECOND, MINUTE)]
+    while told and told[0][0] == ANY:
+        told.pop(0)
+    if not told:
+        return 0.0
+    until_us = sum(count * unit for count, unit, _ in told) * 1_000_000
+    round_us = told[0][2] * 1_000_000
+    left_us = until_us - now_us % round_us
+    return (left_us + round_us if left_us < 0 else left_us) * 1e-6
