@@ -140,7 +140,8 @@ CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
         ("CIRC_SPEED", "CIRCLE", 2, 1), ("CRUISE_SPEED", "ACRO throttle", 5, 2),
         ("CRUISE_SPEED", "STEERING throttle", 5, 2), ("CRUISE_THROTTLE", "ACRO throttle", 30, 60),
         ("MOT_THR_MAX", "MANUAL throttle", 100, 30), ("ACRO_TURN_RATE", "ACRO roll", 60, 20),
-        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("ATC_SPEED_P", "GUIDED", 0.1, 0.3), ("SPEED_MAX", "ACRO throttle", 0, 2),
+        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("ATC_SPEED_P", "GUIDED", 0.1, 0.3),
+        ("SPEED_MAX", "ACRO throttle", 0, 2),
     ),
 }  # fmt: skip
 """Parameter, manoeuvre, old and new value."""

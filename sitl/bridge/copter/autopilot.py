@@ -19,6 +19,7 @@ from ...autopilot.copter.modes import (
     set_mode,
     simple,
     systemid,
+    table,
     throw,
     zigzag,
 )
