@@ -22,9 +22,10 @@ from ..params.estimator import Ekf3
 from ..params.parameters import Parameters
 from ..params.without_gps import Sources
 from ..state import Estimate, Sensors
-from . import doubt, noise, sources
+from . import doubt, height, noise, sources
 from .aiding import Origin, fix_ne, place_origin, reset_to_fix, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
+from .height import Height
 from .history import past_at
 from .magnetometer import learn_field
 from .state import BG, VEL, Ekf
@@ -36,6 +37,8 @@ CHECKS_HOLD_US = 10_000_000
 """The quality checks must hold this long before the first use."""
 RETURN_FIXES = 5
 """Good fixes in a row before GPS is used again after a loss."""
+HEIGHT_NOISE = 1.5
+"""Noise of a fix's height by EK3_POSNE_M_NSE, as with ArduPilot where the receiver does not say it."""
 MIN_SATELLITES = 6
 MAX_HDOP = 250.0  # times 100
 MAX_SPEED = 29_999.0
@@ -234,6 +237,30 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, fix: Fix, params: Ekf3, when_us: int,
 
 
 @law
+def gives_height(ekf: Ekf, estimate: Estimate, source: Sources) -> bool:
+    """Whether the height is that of fixes now (EK3_SRCn_POSZ 3): otherwise, or while there are none, the barometer's."""
+    return source.POSZ == sources.GPS and estimate.origin_set and ekf.now_us - ekf.gps_us <= SILENCE_US
+
+
+@law
+def fuse_height(ekf: Ekf, estimate: Estimate, fix: Fix, params: Ekf3, when_us: int) -> bool:
+    """Fuse the height of a fix taken at ``when_us``; whether something was fused.
+
+    The first one after heights of the barometer is taken over where it is beyond the gate. (ArduPilot takes each such.)
+    """
+    if not ekf.height_of_gps:
+        ekf.height_of_gps = True
+        ekf.baro_fused_us = ekf.now_us - height.UNKNOWN_US
+    down = estimate.origin_alt - 0.001 * fix.gps_alt
+    nominal = HEIGHT_NOISE * params.POSNE_M_NSE
+    sigma = noise.GPS_HEIGHT * nominal
+    age = 1e-6 * (ekf.now_us - when_us)
+    now = down + 0.01 * age * fix.gps_vel.z
+    residual = down - past_at(ekf, when_us).pos.z
+    return height.fuse(ekf, estimate, Height(now, age, residual, sigma * sigma, nominal), params)
+
+
+@law
 def delay_of(receiver: int, params: Parameters) -> int:
     """Age of a fix of a receiver when it arrives [us]."""
     return delay_us(params.GPS2_DELAY_MS if receiver == 1 else params.GPS1_DELAY_MS)
@@ -277,18 +304,22 @@ def fuse(
     if not ekf.field_known and ekf.yaw_aligned:
         learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
-        place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
+        ground_d = ekf.ground_d if source.POSZ == sources.GPS else 0.0  # by the barometer; it is 0 by the receiver then
+        place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter - ground_d))
         if is_source:
             ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)
     when_us = ekf.gps_arrival_us - delay_of(receiver, params)
+    fused = False
+    if gives_height(ekf, estimate, source):
+        fused = fuse_height(ekf, estimate, fix, params.EK3, when_us)
     if not is_source or not estimate.origin_set:
-        return False
+        return fused
     if ekf.absolute:
         if receiver != ekf.gps_receiver:
             follow(ekf, estimate, fix, 1e-6 * (ekf.now_us - when_us), receiver)
-        return fuse_fix(ekf, estimate, fix, params.EK3, when_us, source)
+        return fuse_fix(ekf, estimate, fix, params.EK3, when_us, source) or fused
     if may_start(ekf):
         ekf.gps_receiver = receiver
         start_using(ekf, estimate, log, fix, 1e-6 * (ekf.now_us - when_us))
-    return False
+    return fused
