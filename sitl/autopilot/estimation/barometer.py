@@ -55,7 +55,7 @@ def _empty(ekf: Ekf) -> None:
 
 @law
 def follow(ekf: Ekf) -> None:
-    """The height comes from elsewhere: learn how far the barometer's is off, so that it can take over without a jump."""
+    """The height comes from elsewhere: learn how far the barometer's is off, so that it takes over without a jump."""
     if ekf.baro_n < FUSE_SAMPLES:
         return
     age = 1e-6 * (ekf.now_us - ekf.baro_us_sum / ekf.baro_n)

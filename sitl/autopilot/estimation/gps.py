@@ -90,8 +90,11 @@ def has_quality(fix: Fix, params: Ekf3) -> bool:
 
 
 @law
-def count_fix(ekf: Ekf, fix: Fix, params: Ekf3) -> bool:
-    """Count the fixes in a row and how long they have been good; whether this one makes sense."""
+def count_fix(ekf: Ekf, fix: Fix, params: Ekf3, source: Sources) -> bool:
+    """Count the fixes in a row and how long they have been good; whether this one makes sense.
+
+    The mean altitude is that of the height zero: of the barometer; of the ground, where the height is that of fixes.
+    """
     sane = is_sane(fix)
     if not sane or ekf.now_us - ekf.gps_us > SILENCE_US:
         ekf.gps_good_us = 0
@@ -100,10 +103,10 @@ def count_fix(ekf: Ekf, fix: Fix, params: Ekf3) -> bool:
         return False
     ekf.gps_us = ekf.now_us
     ekf.gps_fixes += 1
-    alt = 0.001 * fix.gps_alt
+    alt, down = 0.001 * fix.gps_alt, ekf.pos.z - (ekf.ground_d if source.POSZ == sources.GPS else 0.0)
     if ekf.gps_fixes == 1 or ekf.gps_alt_filter != ekf.gps_alt_filter:  # the first, or after a filter step gone bad
-        ekf.gps_alt_filter = alt + ekf.pos.z
-    ekf.gps_alt_filter += 0.1 * (alt + ekf.pos.z - ekf.gps_alt_filter)
+        ekf.gps_alt_filter = alt + down
+    ekf.gps_alt_filter += 0.1 * (alt + down - ekf.gps_alt_filter)
     if not has_quality(fix, params):
         ekf.gps_good_us = 0
     elif ekf.gps_good_us == 0:
@@ -238,7 +241,7 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, fix: Fix, params: Ekf3, when_us: int,
 
 @law
 def gives_height(ekf: Ekf, estimate: Estimate, source: Sources) -> bool:
-    """Whether the height is that of fixes now (EK3_SRCn_POSZ 3): otherwise, or while there are none, the barometer's."""
+    """Whether the height is that of fixes now (EK3_SRCn_POSZ 3); else, or while there are none, the barometer's."""
     return source.POSZ == sources.GPS and estimate.origin_set and ekf.now_us - ekf.gps_us <= SILENCE_US
 
 
@@ -299,13 +302,12 @@ def fuse(
         return False
     ekf.gps_new = False
     fix = fix_of(receiver, sensors)
-    if not count_fix(ekf, fix, params.EK3):
+    if not count_fix(ekf, fix, params.EK3, source):
         return False
     if not ekf.field_known and ekf.yaw_aligned:
         learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
-        ground_d = ekf.ground_d if source.POSZ == sources.GPS else 0.0  # by the barometer; it is 0 by the receiver then
-        place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter - ground_d))
+        place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
         if is_source:
             ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)

@@ -102,7 +102,7 @@ class Ekf(Record):
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
     gps_receiver: int  # whose fixes are fused: 0 the first's, 1 the second's
-    gps_alt_filter: float  # mean altitude while on the ground [m]
+    gps_alt_filter: float  # mean altitude of the height zero [m]
     gps_used_before: bool
     gps_glitch: bool  # fixes have been beyond the gates for a second, and within for less than ten since
     gps_passed_us: int  # last fix within the gates
