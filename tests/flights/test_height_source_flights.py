@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the height comes from (EK3_SRC1_POSZ): a sensor that lies moves a hovering copter only where it is the source."""
+"""What the height comes from (EK3_SRC1_POSZ): a sensor that lies moves a copter only where it is the source."""
 
 from __future__ import annotations
 
