@@ -23,6 +23,8 @@ from sitl.agents.report.group import Group
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
+from sitl.envs.robots import boots as boots_of_vehicles
+from sitl.envs.robots import in_fleet
 from tests.agents.small_runs import CIRCUIT2, new
 
 CHANGES = [
@@ -95,6 +97,44 @@ def test_at_home_it_must_play(tmp_path):
     new(tmp_path / "run", env_options={"world": "nowhere"})
     with pytest.raises(AgentError, match="run cannot be played at home: there is no model"):
         attempt(Trial(tmp_path / "run", None, 1), told_nothing, lambda: False)
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory):
+    """A run on a vehicle with an autopilot."""
+    path = tmp_path_factory.mktemp("runs") / "driven"
+    new(path, env="GazeboMazeErleRoverLIDAR-v0", episodes=1, max_steps=3)
+    train_one(path, told_nothing, lambda: False)
+    return Group.load(path)
+
+
+def test_episodes_begin_with_as_many_boots_as_are_asked_for(driven, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        in_fleet, "draw", lambda boots, seed: asked.append(boots) or boots_of_vehicles.draw(boots, seed)
+    )
+    for boots, found in ((None, 1), (3, 3)):
+        asked.clear()
+        one = rehearse([driven], [Change("late", "latency", latency=0.2)], episodes=2, boots=boots)[0]
+        assert one.home.boots == one.tried[0].boots == found
+        assert {*asked} == ({3} if boots else set()), "one boot is where each episode is anyway"
+        assert not one.tried[0].seen
+
+
+def test_the_report_says_that_one_boot_is_one_draw(driven, tmp_path):
+    pytest.importorskip("matplotlib")
+    rows = [np.full((1, 3), 5.0), np.zeros((1, 3)), np.zeros((1, 3))]
+    for boots in (0, 1, 64):
+        home = Tried(*rows, boots=boots)
+        text = write_report({"a": [Rehearsed("it", driven.runs, home, CHANGES[:1], [home])]}, tmp_path).read_text()
+        assert ("All episodes of it begin with one and the same boot" in text) == (boots == 1)
+
+
+def test_boots_that_there_cannot_be_are_refused(sitl, group, driven):
+    code, _, error = sitl("rehearse", driven.runs[0].path, "--boots", 2000)
+    assert code == 2 and "boots = 2000; a whole number, 1 .. 1024, is needed" in error
+    code, _, error = sitl("rehearse", group.runs[0].path, "--boots", 3)
+    assert code == 2 and "boots" in error
 
 
 def test_an_interrupt_ends_it(group):

@@ -208,6 +208,12 @@ def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
             "Where there is one seed the intervals do not hold the luck of training: another seed of the same run may "
             "lie far outside of them."
         )
+    once = [one.name for one in rehearsed if one.home.boots == 1]
+    if once:
+        out.append(
+            f"All episodes of {' and '.join(once)} begin with one and the same boot, and so with the same error of the "
+            "estimate: the intervals do not hold how much boots differ (--boots 64 does)."
+        )
     if len(rehearsed) > 1:
         first = rehearsed[0].name
         out.append(

@@ -48,7 +48,7 @@ from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
-from .moves import BEGINS
+from .moves import BEGINS, BOOT
 from .robot import Floats, Pose
 from .truth import TRUE_REPORT
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
@@ -141,6 +141,9 @@ class AutopilotRobot:
             else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
+        each_boots = not made.simulates or choice is not None or (chosen.begin == BOOT and chosen.boots > 1)
+        self.boots = 0 if each_boots else int(chosen.boots)
+        """Number of prepared boots of which each episode begins with one; 0: there are none."""
         self.over = np.zeros(count, np.bool_)
         """Whether an agent is not in charge of its vehicle any more: the episode is truncated."""
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
