@@ -38,8 +38,8 @@ class Tried:
     refused: str = ""
     seen: bool = False
     """Whether the randomisation that they were trained with covers the change."""
-    boots: int = 0
-    """Number of prepared boots of which each episode begins with one; 0: see ``Result``."""
+    boots: Sequence[int] = ()
+    """Number of the boot that each episode began with, in all runs; (): see ``Result``."""
 
     @classmethod
     def of(cls, results: Sequence[Result]) -> Tried:
@@ -75,12 +75,15 @@ class Rehearsed:
 
     def transfer_ratios(self) -> list[Ratio | None]:
         """Reward under each change relative to that without it; None where it was not played."""
-        return [None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards) for tried in self.tried]
+        return [
+            None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards, self.home.boots)
+            for tried in self.tried
+        ]
 
     def advantages(self, first: Rehearsed) -> list[Ratio | None]:
         """Advantage over other runs under each change, see ``advantage``; None where one of the two was not played."""
         return [
-            None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards)
+            None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards, first.home.boots)
             for a, b in zip(first.tried, self.tried)
         ]
 

@@ -101,8 +101,9 @@ class Result:
     """Whether the training's randomisation covers the change."""
     refused: str = ""
     """Reason why it was not played; "" when it was."""
-    boots: int = 0
-    """Number of prepared boots; 0: of a robot without an autopilot, or that boots for each episode."""
+    boots: tuple[int, ...] = ()
+    """Number of the prepared boot that each episode began with; (): of a robot without an autopilot, or that boots for
+    each episode."""
 
 
 def home_options(config: RunConfig, boots: int | None = None) -> dict[str, Any]:
@@ -168,16 +169,19 @@ def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendPr
     options = _options(config, home, trial.change)
     env = environments.make(config, **options)
 
+    robot = _robot(env)
     false_alarms: list[bool] = []
+    boots: list[int] = []
     go_on = until_stopped(send_progress, stopped)
 
     def watch(played: Played) -> None:
         false_alarms.append(played.crashed and is_false_alarm(env))
+        if getattr(robot, "boots", 0):
+            boots.append(robot.boot_of(0))
         go_on(played)
 
     try:
-        boots = int(getattr(_robot(env), "boots", 0))
-        jitter = jitter_of(config, _robot(env)) if trial.jitter is None else trial.jitter
+        jitter = jitter_of(config, robot) if trial.jitter is None else trial.jitter
         policy.check(env.observation_space, env.action_space)
         poses = moved_starts(env, trial.episodes, trial.seed, jitter) if jitter > 0.0 else None
         found = evaluate(env, policy, trial.episodes, trial.seed, poses, watch).episodes
@@ -189,7 +193,7 @@ def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendPr
         tuple(false_alarms),
         math.fsum(played.simulated_s for played in found),
         trial.change is not None and is_covered(options, home, config.env_options.get("randomise")),
-        boots=boots,
+        boots=tuple(boots),
     )
 
 
