@@ -39,6 +39,8 @@ DRIVE = Setpoint("drive", ("forward [m/s]", "turn [rad/s]"))
 """Speeds of a robot without autopilot; turn is counter-clockwise seen from above."""
 RC_OVERRIDE = Setpoint("rc", tuple(f"channel {k} [us]" for k in range(1, 9)))
 """RC_CHANNELS_OVERRIDE; 0 releases a channel."""
+LOITER_STICKS = Setpoint("loiter", RC_OVERRIDE.columns)
+"""RC_CHANNELS_OVERRIDE in LOITER: sticks ask a copter for velocities, and centred ones hold the position."""
 VELOCITY = Setpoint("velocity", ("forward [m/s]", "left [m/s]", "up [m/s]", "turn [rad/s]"))
 """SET_POSITION_TARGET_LOCAL_NED, velocities along the body's heading; turn counter-clockwise."""
 POSITION = Setpoint("position", ("x [m]", "y [m]", "z [m]", "yaw [rad]"))
@@ -60,7 +62,8 @@ MOTORS = Setpoint(
 """Controls of a copter's motors, as an autopilot's outputs would be: the direct path, no autopilot behind it."""
 
 SETPOINTS = {
-    kind.name: kind for kind in (DRIVE, RC_OVERRIDE, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS)
+    kind.name: kind
+    for kind in (DRIVE, RC_OVERRIDE, LOITER_STICKS, VELOCITY, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS)
 }
 
 

@@ -53,6 +53,7 @@ EXAMPLES = {
     "race_baseline": Example("python examples/race_baseline.py", ("matplotlib",)),
     "privileged_critic": Example("python examples/privileged_critic.py", ("torch",)),
     "residual_rates": Example("python examples/residual_rates.py", ("stable-baselines3",)),
+    "loiter_sticks": Example("python examples/loiter_sticks.py", ("stable-baselines3",)),
     "pettingzoo_swarm": Example("python examples/pettingzoo_swarm.py", ("matplotlib", "pettingzoo")),
     "regression": Example("pytest examples/regression", ("pytest",)),
 }

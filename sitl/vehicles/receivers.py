@@ -38,10 +38,6 @@ RTK: dict[str, float] = {
     "gps_satellites": 20,
     "gps_hdop": 0.6,
     "gps_vdop": 0.9,
-    # Height is the receiver's, as with EK3_SRC1_POSZ 3; the filter here takes it through the barometer. 11.4 Pa/m.
-    "baro_noise": 0.12,  # [Pa] 0.0105 m
-    "baro_drift": 0.12,  # [Pa] 0.0105 m
-    "baro_drift_time": 60.0,  # [s]
 }
 MOCAP: dict[str, float] = {
     # Cameras that track markers. Merriaux et al., "A Study of Vicon System Positioning Performance", Sensors 17 (2017)
@@ -58,10 +54,6 @@ MOCAP: dict[str, float] = {
     "gps_satellites": 20,
     "gps_hdop": 0.6,
     "gps_vdop": 0.9,
-    # Height is the cameras', as with EK3_SRC1_POSZ 6; the filter here takes it through the barometer.
-    "baro_noise": 0.03,  # [Pa] 0.0025 m
-    "baro_drift": 0.012,  # [Pa] 0.001 m
-    "baro_drift_time": 300.0,  # [s]
 }
 UWB: dict[str, float] = {
     # Ultra-wideband beacons around the arena, as kits with two-way ranging give it in the line of sight. All figures
@@ -77,11 +69,11 @@ UWB: dict[str, float] = {
 
 SETS: dict[str, SensorSet] = {
     AS_IT_IS: SensorSet("as the airframe has them"),
-    "rtk": SensorSet("u-blox ZED-F9P with RTK, fixed: 1 cm", RTK, {"EK3_POSNE_M_NSE": 0.1, "EK3_ALT_M_NSE": 0.2}),
+    "rtk": SensorSet("u-blox ZED-F9P with RTK, fixed: 1 cm", RTK, {"EK3_POSNE_M_NSE": 0.1, "EK3_SRC1_POSZ": 3}),
     "mocap": SensorSet(
         "motion capture: 2 mm, in steps of 1 cm",
         MOCAP,
-        {"EK3_POSNE_M_NSE": 0.1, "EK3_ALT_M_NSE": 0.1, "EK3_VELNE_M_NSE": 0.15, "EK3_VELD_M_NSE": 0.15,
+        {"EK3_POSNE_M_NSE": 0.1, "EK3_SRC1_POSZ": 3, "EK3_VELNE_M_NSE": 0.15, "EK3_VELD_M_NSE": 0.15,
          "GPS1_DELAY_MS": 50},
     ),
     "uwb": SensorSet(

@@ -47,6 +47,15 @@ def test_the_part_of_the_example_is_the_true_way_to_the_goal():
     env.close()
 
 
+def test_sticks_of_loiter_are_learnt(monkeypatch, capsys):
+    pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
+    text = said("loiter_sticks", 8192, monkeypatch, capsys)
+    found = dict(re.findall(r"^(.+): reaches (\d+) of 32, in .+, return \S+$", text, re.M))
+    assert int(found["centred sticks"]) == 0, "the position is held"
+    assert int(found["by rule"]) > 24, "sticks move it to the goal"
+    assert 0 <= int(found["learnt"]) <= 32
+
+
 def test_the_residual_begins_as_the_controller(monkeypatch, capsys):
     pytest.importorskip("stable_baselines3", reason="needs the extra 'rl'")
     text = said("residual_rates", 8192, monkeypatch, capsys)

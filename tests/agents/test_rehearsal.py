@@ -23,6 +23,8 @@ from sitl.agents.report.group import Group
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
+from sitl.envs.robots import boots as boots_of_vehicles
+from sitl.envs.robots import in_fleet
 from tests.agents.small_runs import CIRCUIT2, new
 
 CHANGES = [
@@ -97,6 +99,45 @@ def test_at_home_it_must_play(tmp_path):
         attempt(Trial(tmp_path / "run", None, 1), told_nothing, lambda: False)
 
 
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory):
+    """A run on a vehicle with an autopilot."""
+    path = tmp_path_factory.mktemp("runs") / "driven"
+    new(path, env="GazeboMazeErleRoverLIDAR-v0", episodes=1, max_steps=3)
+    train_one(path, told_nothing, lambda: False)
+    return Group.load(path)
+
+
+def test_episodes_begin_with_as_many_boots_as_are_asked_for(driven, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        in_fleet, "draw", lambda boots, seed: asked.append(boots) or boots_of_vehicles.draw(boots, seed)
+    )
+    for boots, found in ((None, 1), (3, 3)):
+        asked.clear()
+        one = rehearse([driven], [Change("late", "latency", latency=0.2)], episodes=2, boots=boots)[0]
+        assert len(one.home.boots) == 2 and one.home.boots == one.tried[0].boots
+        assert {*one.home.boots} <= ({0} if found == 1 else {1, 2, 3})
+        assert {*asked} == ({3} if boots else set()), "one boot is where each episode is anyway"
+        assert not one.tried[0].seen
+
+
+def test_the_report_says_that_one_boot_is_one_draw(driven, tmp_path):
+    pytest.importorskip("matplotlib")
+    rows = [np.full((1, 3), 5.0), np.zeros((1, 3)), np.zeros((1, 3))]
+    for boots in ((), (0, 0, 0), (3, 9, 3)):
+        home = Tried(*rows, boots=boots)
+        text = write_report({"a": [Rehearsed("it", driven.runs, home, CHANGES[:1], [home])]}, tmp_path).read_text()
+        assert ("All episodes of it begin with one and the same boot" in text) == (boots == (0, 0, 0))
+
+
+def test_boots_that_there_cannot_be_are_refused(sitl, group, driven):
+    code, _, error = sitl("rehearse", driven.runs[0].path, "--boots", 2000)
+    assert code == 2 and "boots = 2000; a whole number, 1 .. 1024, is needed" in error
+    code, _, error = sitl("rehearse", group.runs[0].path, "--boots", 3)
+    assert code == 2 and "boots" in error
+
+
 def test_an_interrupt_ends_it(group):
     assert attempt(Trial(group.runs[0].path, None, 5), told_nothing, lambda: True) is None
 
@@ -123,6 +164,24 @@ def test_share_of_a_reward():
     assert seeds.high - seeds.low > 0.3  # the spread between seeds counts
     assert transfer_ratio(home, home[:, :7]).value == pytest.approx(1.0)
     assert math.isnan(transfer_ratio(-home, home).value)
+
+
+def test_episodes_of_one_boot_count_as_one_draw():
+    """Eight boots, of which the reward depends, and fifty episodes with each."""
+    rng = np.random.default_rng(4)
+    boots = rng.permutation(np.repeat(np.arange(1, 9), 50))
+    of_boot = rng.normal(60.0, 10.0, 9)
+    home, changed = np.full((2, 400), 100.0), np.tile(of_boot[boots] + rng.normal(0.0, 1.0, 400), (2, 1))
+    apart = transfer_ratio(home, changed)
+    together = transfer_ratio(home, changed, boots)
+    expected = 0.01 * 1.96 * of_boot[1:].std() / math.sqrt(8.0)
+    assert together.value == apart.value
+    assert together.high - together.low == pytest.approx(2.0 * expected, rel=0.1)
+    assert apart.high - apart.low < 0.3 * (together.high - together.low)
+    above = advantage(home, np.full((1, 400), 50.0), changed, boots)
+    assert above.high - above.low == pytest.approx(2.0 * expected, rel=0.1)
+    for alone in (np.arange(400), np.zeros(400, np.int64)):
+        assert transfer_ratio(home, changed, alone) == apart, "episodes are drawn"
 
 
 def test_advantage_has_one_measure_for_both():

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
+from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.envs import EnvOptionError
 from tests.envs.vector_equality import same
 
 TRUTH = ["true_pose", "true_velocity", "true_attitude", "true_rates"]
 OPTIONS = {"setpoint": "motors", "observation": TRUTH, "step_time": 0.01}
-UP, ROLL = 6, 8
+AHEAD, UP, ROLL = 4, 6, 8
 """Columns."""
 
 
@@ -104,6 +105,23 @@ def test_sticks_are_centred_at_zero_and_reach_their_ends():
         seen, *_ = env.step(np.array([0.3, 0.0, 0.5, 0.0], np.float32))
     assert seen[ROLL] > 0.05, "roll right"
     assert seen[2] > height + 0.2, "climb"
+
+
+def test_sticks_in_loiter_ask_for_velocities_and_centred_they_hold_the_position():
+    env = gym.make("sitl/CopterHover-v1", setpoint="loiter", observation=TRUTH, randomise=None)
+    assert env.action_space == gym.spaces.Box(-1.0, 1.0, (4,), np.float32)
+    assert env.unwrapped.session.action.limits == 4 * ((1100.0, 1900.0),)
+    env.reset(seed=1)
+    for _ in range(20):
+        seen, *_ = env.step(np.array([0.0, -0.3, 0.0, 0.0], np.float32))
+    assert env.unwrapped.session.robot.view(0).autopilot.modes.number == LOITER
+    assert seen[AHEAD] > 1.0, "pitch down: ahead"
+    for _ in range(40):
+        seen, *_ = env.step(np.zeros(4, np.float32))
+    stopped = seen[:3]
+    for _ in range(20):
+        seen, *_ = env.step(np.zeros(4, np.float32))
+    assert np.linalg.norm(seen[:3] - stopped) < 0.2, "it holds its position"
 
 
 def test_a_rover_takes_steering_and_throttle_by_sticks_and_speed_and_turn_rate():

@@ -203,7 +203,9 @@ def test_rewards_of_goals_are_those_of_steps():
     assert env.compute_reward(np.stack([there, there]), np.stack([there, there + 5.0]), {}).tolist() == [0.0, -1.0]
 
 
-@pytest.mark.parametrize("setpoint", ["velocity", "position", "attitude", "acceleration", "thrust", "rates", "rc"])
+@pytest.mark.parametrize(
+    "setpoint", ["velocity", "position", "attitude", "acceleration", "thrust", "rates", "rc", "loiter"]
+)
 def test_normalised_actions_reach_their_limits(setpoint):
     env = gym.make(HOVER, setpoint=setpoint).unwrapped
     action, commands = env.session.action, env.session.commands

@@ -11,6 +11,8 @@ from typing import Any
 
 from tqdm import tqdm
 
+from sitl.envs.robots.boots import check_boots
+
 from ..errors import AgentError
 from ..rehearsal import plan as plans
 from ..rehearsal.change import Change
@@ -48,6 +50,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--jitter", type=float, metavar="X", help="move start poses by up to X m and X rad (default: of the run)"
     )
+    parser.add_argument(
+        "--boots", type=positive, metavar="N",
+        help="begin each episode of a vehicle with an autopilot with one of N prepared boots (default: of the run's "
+        "environment; with 1 the intervals do not hold how much boots differ)",
+    )  # fmt: skip
     add_said_again(parser)
     add_jobs(parser)
     parser.add_argument(
@@ -68,8 +75,10 @@ def run(options: argparse.Namespace) -> int:
     plan = plans.load(options.plan) if options.plan else plans.plan_for(robot_name(config))
     changes = plan.chosen(options.only or ())
     EvaluationPlan().changed(jitter=options.jitter)  # refuses one that cannot be
+    if options.boots is not None:
+        check_boots(options.boots)
     make_folder(options.out)  # before all is played, see that it can be written
-    found = with_bar(groups, changes, options.episodes, options.seed, options.jitter, pool)
+    found = with_bar(groups, changes, options.episodes, options.seed, options.jitter, pool, options.boots)
     if found is None:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130
@@ -87,6 +96,7 @@ def with_bar(
     seed: int,
     jitter: float | None,
     pool: Workers,
+    boots: int | None = None,
 ) -> list[Rehearsed] | None:
     """``rehearse`` with a progress bar of all episodes."""
     total = sum(trial.episodes for group in groups for trial in trials_of(group.runs, changes, episodes, seed))
@@ -95,4 +105,4 @@ def with_bar(
         def on_progress(index: int, count: Any) -> None:
             bar.update(count)
 
-        return rehearse(groups, changes, episodes, seed, jitter, on_progress, pool)
+        return rehearse(groups, changes, episodes, seed, jitter, on_progress, pool, boots)

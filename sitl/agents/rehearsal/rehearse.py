@@ -38,6 +38,8 @@ class Tried:
     refused: str = ""
     seen: bool = False
     """Whether the randomisation that they were trained with covers the change."""
+    boots: Sequence[int] = ()
+    """Number of the boot that each episode began with, in all runs; (): see ``Result``."""
 
     @classmethod
     def of(cls, results: Sequence[Result]) -> Tried:
@@ -51,6 +53,7 @@ class Tried:
             np.array([result.crashed for result in results], np.float64),
             np.array([result.false_alarms for result in results], np.float64),
             seen=all(result.seen for result in results),
+            boots=results[0].boots,
         )
 
     @property
@@ -72,12 +75,15 @@ class Rehearsed:
 
     def transfer_ratios(self) -> list[Ratio | None]:
         """Reward under each change relative to that without it; None where it was not played."""
-        return [None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards) for tried in self.tried]
+        return [
+            None if tried.refused else transfer_ratio(self.home.rewards, tried.rewards, self.home.boots)
+            for tried in self.tried
+        ]
 
     def advantages(self, first: Rehearsed) -> list[Ratio | None]:
         """Advantage over other runs under each change, see ``advantage``; None where one of the two was not played."""
         return [
-            None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards)
+            None if a.refused or b.refused else advantage(first.home.rewards, a.rewards, b.rewards, first.home.boots)
             for a, b in zip(first.tried, self.tried)
         ]
 
@@ -88,6 +94,7 @@ def trials_of(
     episodes: int | None = None,
     seed: int = 0,
     jitter: float | None = None,
+    boots: int | None = None,
 ) -> list[Trial]:
     """Trials without a change first, then under each change; one trial a run.
 
@@ -96,14 +103,14 @@ def trials_of(
         changes: changes that are tried.
         episodes: episodes of a trial; None: as many as the run's evaluation has, ``EPISODES`` at most.
         seed: seed of the episodes.
-        jitter: see ``Trial``.
+        jitter, boots: see ``Trial``.
     """
     out = []
     for change in (None, *changes):
         for run in runs:
             count = episodes or min(run.config.evaluation.episodes, EPISODES)
             least = count if change is None or change.episodes is None else min(count, change.episodes)
-            out.append(Trial(run.path, change, least, seed, jitter))
+            out.append(Trial(run.path, change, least, seed, jitter, boots))
     return out
 
 
@@ -115,19 +122,20 @@ def rehearse(
     jitter: float | None = None,
     on_progress: OnProgress = lambda index, message: None,
     pool: Workers | None = None,
+    boots: int | None = None,
 ) -> list[Rehearsed] | None:
     """Try groups of runs; None when it was interrupted.
 
     Args:
         groups: names and runs.
-        changes, episodes, seed, jitter: see ``trials_of``.
+        changes, episodes, seed, jitter, boots: see ``trials_of``.
         on_progress: called with the number of a trial and 1 for each of its episodes.
         pool: who flies the trials; None: this process.
 
     Raises:
         AgentError: a run cannot be played at home.
     """
-    trials = [trials_of(group.runs, changes, episodes, seed, jitter) for group in groups]
+    trials = [trials_of(group.runs, changes, episodes, seed, jitter, boots) for group in groups]
     pool = pool or Workers()
     found = pool.each(attempt, [trial for some in trials for trial in some], pool.jobs, on_progress)
     if any(result is None for result in found):

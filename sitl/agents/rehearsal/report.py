@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sitl.envs.randomisation import DRAWS
+from sitl.envs.robots.boots import SINGLE
 
 from ..report import curves
 from ..report.document import Document
@@ -100,7 +101,8 @@ def write_report(sections: Mapping[str, Sequence[Rehearsed]], folder: Path, seed
     document.paragraph(
         "What was learnt in one simulation, at home, plays in others that it has not seen. The share is the mean "
         "reward under a change by that at home, of the same episodes (starts and seeds); in brackets its 95 % "
-        "bootstrap interval over episodes, and over seeds where there are several. A reward below 0 gives a negative "
+        "bootstrap interval over episodes, and over seeds where there are several; episodes that began with the same "
+        "boot of the vehicle count as one draw. A reward below 0 gives a negative "
         "share. A crash is false when noise alone made a reading one: nothing was touched, and nothing stood within "
         f"the crash range and {100 * MARGIN:.0f} cm."
     )
@@ -207,6 +209,12 @@ def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
         out.append(
             "Where there is one seed the intervals do not hold the luck of training: another seed of the same run may "
             "lie far outside of them."
+        )
+    once = [one.name for one in rehearsed if {*one.home.boots} == {SINGLE}]
+    if once:
+        out.append(
+            f"All episodes of {' and '.join(once)} begin with one and the same boot, and so with the same error of the "
+            "estimate: the intervals do not hold how much boots differ (--boots 64 does)."
         )
     if len(rehearsed) > 1:
         first = rehearsed[0].name

@@ -82,6 +82,8 @@ class Trial:
     """Seed of the resets; equal for all trials, so that their episodes are paired."""
     jitter: float | None = None
     """Start poses are moved by up to so much [m, rad]; None: as the run is evaluated, see ``jitter_of``."""
+    boots: int | None = None
+    """Number of prepared boots of which each episode begins with one; None: as many as the run's environment has."""
 
 
 @dataclass(frozen=True)
@@ -99,12 +101,22 @@ class Result:
     """Whether the training's randomisation covers the change."""
     refused: str = ""
     """Reason why it was not played; "" when it was."""
+    boots: tuple[int, ...] = ()
+    """Number of the prepared boot that each episode began with; (): of a robot without an autopilot, or that boots for
+    each episode."""
 
 
-def home_options(config: RunConfig) -> dict[str, Any]:
+def home_options(config: RunConfig, boots: int | None = None) -> dict[str, Any]:
     """Options of the environment without a change: those of the run's evaluation, without the randomisation of its
-    training, so that plain and randomised runs are compared in the same environment."""
+    training, so that plain and randomised runs are compared in the same environment.
+
+    Args:
+        config: configuration of the run.
+        boots: see ``Trial``.
+    """
     out = {**config.evaluation.options}
+    if boots is not None:
+        out["boots"] = boots
     if "randomise" in {**config.env_options, **out}:
         out["randomise"] = None
     return out
@@ -153,18 +165,23 @@ def attempt(trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Resu
 
 def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result:
     policy = algorithms.policy_of(run)
-    options = _options(config, trial.change)
+    home = home_options(config, trial.boots)
+    options = _options(config, home, trial.change)
     env = environments.make(config, **options)
 
+    robot = _robot(env)
     false_alarms: list[bool] = []
+    boots: list[int] = []
     go_on = until_stopped(send_progress, stopped)
 
     def watch(played: Played) -> None:
         false_alarms.append(played.crashed and is_false_alarm(env))
+        if getattr(robot, "boots", 0):
+            boots.append(robot.boot_of(0))
         go_on(played)
 
     try:
-        jitter = jitter_of(config, _robot(env)) if trial.jitter is None else trial.jitter
+        jitter = jitter_of(config, robot) if trial.jitter is None else trial.jitter
         policy.check(env.observation_space, env.action_space)
         poses = moved_starts(env, trial.episodes, trial.seed, jitter) if jitter > 0.0 else None
         found = evaluate(env, policy, trial.episodes, trial.seed, poses, watch).episodes
@@ -175,12 +192,12 @@ def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendPr
         tuple(played.crashed for played in found),
         tuple(false_alarms),
         math.fsum(played.simulated_s for played in found),
-        trial.change is not None and is_covered(options, home_options(config), config.env_options.get("randomise")),
+        trial.change is not None and is_covered(options, home, config.env_options.get("randomise")),
+        boots=tuple(boots),
     )
 
 
-def _options(config: RunConfig, change: Change | None) -> Mapping[str, Any]:
-    home = home_options(config)
+def _options(config: RunConfig, home: Mapping[str, Any], change: Change | None) -> Mapping[str, Any]:
     if change is None:
         return home
     env = environments.make(config, **home)

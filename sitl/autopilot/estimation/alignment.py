@@ -13,7 +13,7 @@ from ...core.algebra import ZERO, horizontal, normalise, quat_from_euler, quat_n
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
 from .. import events
-from . import covariance
+from . import covariance, height
 from .magnetometer import clear_samples
 from .state import RING, THETA, Ekf, N
 from .strapdown import tilt_from_acc, within
@@ -155,4 +155,4 @@ def restart(ekf: Ekf) -> None:
     ekf.hold_pos = Vec2(held.x if abs(held.x) < _FAR else 0.0, held.y if abs(held.y) < _FAR else 0.0)
     ekf.pos = with_down(horizontal(ekf.pos), 0.0)
     initialise(ekf)
-    ekf.baro_fused_us = ekf.now_us - 60_000_000  # the height is not known: take the barometer's
+    ekf.baro_fused_us = ekf.now_us - height.UNKNOWN_US  # the next one is taken as it is

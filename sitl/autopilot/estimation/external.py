@@ -15,10 +15,9 @@ from ..params.without_gps import Sources
 from ..params.without_gps import VisualOdometry as Settings
 from ..state import Estimate
 from ..visual_odometry import VisualOdometry
-from . import flow
+from . import flow, height
 from .aiding import reset_ne
 from .alignment import YAW
-from .barometer import reset_height
 from .fusion import NO_NIS, Innovation, correct, gate_ratio, innovate_position, innovate_state
 from .history import past_at
 from .magnetometer import turn
@@ -41,7 +40,7 @@ def jump_to(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, source: Sources,
     vel = velocity_of(ekf, seen) if source.VELXY == EXTERNAL and seen.velocity.count > 0 else ekf.vel
     reset_ne(ekf, estimate, horizontal(seen.pose.pos + age * vel), horizontal(vel))
     if source.POSZ == EXTERNAL:
-        reset_height(ekf, estimate, seen.pose.pos.z, seen.pose.sigma * seen.pose.sigma)
+        height.reset(ekf, estimate, seen.pose.pos.z, seen.pose.sigma * seen.pose.sigma)
     ekf.pose_resets = seen.resets
 
 

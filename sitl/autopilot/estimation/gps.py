@@ -22,9 +22,10 @@ from ..params.estimator import Ekf3
 from ..params.parameters import Parameters
 from ..params.without_gps import Sources
 from ..state import Estimate, Sensors
-from . import doubt, noise, sources
+from . import doubt, height, noise, sources
 from .aiding import Origin, fix_ne, place_origin, reset_to_fix, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
+from .height import Height
 from .history import past_at
 from .magnetometer import learn_field
 from .state import BG, VEL, Ekf
@@ -36,6 +37,8 @@ CHECKS_HOLD_US = 10_000_000
 """The quality checks must hold this long before the first use."""
 RETURN_FIXES = 5
 """Good fixes in a row before GPS is used again after a loss."""
+HEIGHT_NOISE = 1.5
+"""Noise of a fix's height by EK3_POSNE_M_NSE, as with ArduPilot where the receiver does not say it."""
 MIN_SATELLITES = 6
 MAX_HDOP = 250.0  # times 100
 MAX_SPEED = 29_999.0
@@ -87,8 +90,11 @@ def has_quality(fix: Fix, params: Ekf3) -> bool:
 
 
 @law
-def count_fix(ekf: Ekf, fix: Fix, params: Ekf3) -> bool:
-    """Count the fixes in a row and how long they have been good; whether this one makes sense."""
+def count_fix(ekf: Ekf, fix: Fix, params: Ekf3, source: Sources) -> bool:
+    """Count the fixes in a row and how long they have been good; whether this one makes sense.
+
+    The mean altitude is that of the height zero: of the barometer; of the ground, where the height is that of fixes.
+    """
     sane = is_sane(fix)
     if not sane or ekf.now_us - ekf.gps_us > SILENCE_US:
         ekf.gps_good_us = 0
@@ -97,10 +103,10 @@ def count_fix(ekf: Ekf, fix: Fix, params: Ekf3) -> bool:
         return False
     ekf.gps_us = ekf.now_us
     ekf.gps_fixes += 1
-    alt = 0.001 * fix.gps_alt
+    alt, down = 0.001 * fix.gps_alt, ekf.pos.z - (ekf.ground_d if source.POSZ == sources.GPS else 0.0)
     if ekf.gps_fixes == 1 or ekf.gps_alt_filter != ekf.gps_alt_filter:  # the first, or after a filter step gone bad
-        ekf.gps_alt_filter = alt + ekf.pos.z
-    ekf.gps_alt_filter += 0.1 * (alt + ekf.pos.z - ekf.gps_alt_filter)
+        ekf.gps_alt_filter = alt + down
+    ekf.gps_alt_filter += 0.1 * (alt + down - ekf.gps_alt_filter)
     if not has_quality(fix, params):
         ekf.gps_good_us = 0
     elif ekf.gps_good_us == 0:
@@ -234,6 +240,30 @@ def fuse_fix(ekf: Ekf, estimate: Estimate, fix: Fix, params: Ekf3, when_us: int,
 
 
 @law
+def gives_height(ekf: Ekf, estimate: Estimate, source: Sources) -> bool:
+    """Whether the height is that of fixes now (EK3_SRCn_POSZ 3); else, or while there are none, the barometer's."""
+    return source.POSZ == sources.GPS and estimate.origin_set and ekf.now_us - ekf.gps_us <= SILENCE_US
+
+
+@law
+def fuse_height(ekf: Ekf, estimate: Estimate, fix: Fix, params: Ekf3, when_us: int) -> bool:
+    """Fuse the height of a fix taken at ``when_us``; whether something was fused.
+
+    The first one after heights of the barometer is taken over where it is beyond the gate. (ArduPilot takes each such.)
+    """
+    if not ekf.height_of_gps:
+        ekf.height_of_gps = True
+        ekf.baro_fused_us = ekf.now_us - height.UNKNOWN_US
+    down = estimate.origin_alt - 0.001 * fix.gps_alt
+    nominal = HEIGHT_NOISE * params.POSNE_M_NSE
+    sigma = noise.GPS_HEIGHT * nominal
+    age = 1e-6 * (ekf.now_us - when_us)
+    now = down + 0.01 * age * fix.gps_vel.z
+    residual = down - past_at(ekf, when_us).pos.z
+    return height.fuse(ekf, estimate, Height(now, age, residual, sigma * sigma, nominal), params)
+
+
+@law
 def delay_of(receiver: int, params: Parameters) -> int:
     """Age of a fix of a receiver when it arrives [us]."""
     return delay_us(params.GPS2_DELAY_MS if receiver == 1 else params.GPS1_DELAY_MS)
@@ -272,7 +302,7 @@ def fuse(
         return False
     ekf.gps_new = False
     fix = fix_of(receiver, sensors)
-    if not count_fix(ekf, fix, params.EK3):
+    if not count_fix(ekf, fix, params.EK3, source):
         return False
     if not ekf.field_known and ekf.yaw_aligned:
         learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
@@ -282,13 +312,16 @@ def fuse(
             ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)
     when_us = ekf.gps_arrival_us - delay_of(receiver, params)
+    fused = False
+    if gives_height(ekf, estimate, source):
+        fused = fuse_height(ekf, estimate, fix, params.EK3, when_us)
     if not is_source or not estimate.origin_set:
-        return False
+        return fused
     if ekf.absolute:
         if receiver != ekf.gps_receiver:
             follow(ekf, estimate, fix, 1e-6 * (ekf.now_us - when_us), receiver)
-        return fuse_fix(ekf, estimate, fix, params.EK3, when_us, source)
+        return fuse_fix(ekf, estimate, fix, params.EK3, when_us, source) or fused
     if may_start(ekf):
         ekf.gps_receiver = receiver
         start_using(ekf, estimate, log, fix, 1e-6 * (ekf.now_us - when_us))
-    return False
+    return fused

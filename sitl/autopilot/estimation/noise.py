@@ -26,6 +26,9 @@ FLOW = 0.12
 """EK3_FLOW_M_NSE to standard deviation of one sample of optical flow [rad/s]: 0.03 by default."""
 GPS_POSITION = 0.23
 """EK3_POSNE_M_NSE to standard deviation of one fix [m]: 0.115 by default."""
+GPS_HEIGHT = 0.3
+"""1.5 times EK3_POSNE_M_NSE, which ArduPilot takes for the height of a fix, to its standard deviation [m]: 0.225 by
+default."""
 GPS_VELOCITY_NE = 0.17
 """EK3_VELNE_M_NSE to standard deviation of one fix [m/s]: 0.05 by default."""
 GPS_VELOCITY_D = 0.16

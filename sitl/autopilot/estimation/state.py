@@ -80,8 +80,10 @@ class Ekf(Record):
     baro_us_sum: int  # of their times
     baro_sum: float  # altitude in the standard atmosphere [m]
     baro_ground: float  # altitude in the standard atmosphere of the height zero [m]
+    baro_offset: float  # position down that it shows too little of, learnt while the height comes from elsewhere [m]
     baro_us: int  # last good sample
-    baro_fused_us: int
+    baro_fused_us: int  # a height last was fused, of the barometer or in its place
+    height_of_gps: bool  # the last measured height was a fix's
     # magnetometer
     mag_seen: int
     mag_changed_us: int  # when it took to another compass
@@ -100,7 +102,7 @@ class Ekf(Record):
     gps_good_us: int  # since when the quality checks hold, 0: they do not
     gps_fixes: int  # sane fixes in a row
     gps_receiver: int  # whose fixes are fused: 0 the first's, 1 the second's
-    gps_alt_filter: float  # mean altitude while on the ground [m]
+    gps_alt_filter: float  # mean altitude of the height zero [m]
     gps_used_before: bool
     gps_glitch: bool  # fixes have been beyond the gates for a second, and within for less than ten since
     gps_passed_us: int  # last fix within the gates
@@ -127,8 +129,8 @@ class Ekf(Record):
     innovation_flow: Vec2  # [rad/s]
     # last innovations (measured minus expected), fused or not, for logs
     innovation_vel: Vec3  # GPS [m/s]
-    innovation_pos: Vec3  # GPS north and east, barometer down [m]
+    innovation_pos: Vec3  # GPS north and east; down of what the height is from [m]
     innovation_yaw: float  # magnetometer [rad]
     # consistency: normalised innovation squared, sums and counts since the filter started
-    nis_sum: Floats = array(4)  # GPS position, GPS velocity, barometer, magnetometer
+    nis_sum: Floats = array(4)  # GPS position, GPS velocity, height, magnetometer
     nis_count: Ints = array(4, stored="i8")

@@ -124,10 +124,13 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     alignment.begin_step(ekf)
     history.keep(ekf)
     fused = False
-    if usual or not (source.POSZ == sources.EXTERNAL and ekf.absolute):
+    if gps.gives_height(ekf, estimate, source):
+        barometer.follow(ekf)
+    elif usual or not (source.POSZ == sources.EXTERNAL and ekf.absolute):
         fused |= barometer.fuse(ekf, estimate, params)
     else:
-        barometer.leave_out(ekf)
+        barometer.follow(ekf)
+        ekf.baro_fused_us = ekf.now_us
     otherwise = not usual and (source.YAW == sources.EXTERNAL or source.YAW == sources.NONE)
     ekf.without_compass = ekf.compass_lies or otherwise
     if not ekf.without_compass:

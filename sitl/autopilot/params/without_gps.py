@@ -11,7 +11,7 @@ class Sources(ParameterGroup):
 
     POSXY: float = param(0, 0, 7, "", "Horizontal position: 0 none, 3 GPS, 6 external; else none", INT8)
     VELXY: float = param(0, 0, 7, "", "Horizontal velocity: 0 none, 3 GPS, 5 optical flow, 6 external; else none", INT8)
-    POSZ: float = param(1, 0, 7, "", "Height: 6 external; else the barometer", INT8)
+    POSZ: float = param(1, 0, 7, "", "Height: 3 GPS, 6 external; else the barometer", INT8)
     VELZ: float = param(0, 0, 7, "", "Vertical velocity: 3 GPS, 6 external; else none", INT8)
     YAW: float = param(0, 0, 8, "", "Heading: 0 none, 1 compass, 6 external; else the compass", INT8)
 

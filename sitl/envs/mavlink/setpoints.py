@@ -120,8 +120,8 @@ def rover_attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[
 
 COMMON: dict[str, Encode] = {"rc": override, "velocity": velocity}
 COPTER: dict[str, Encode] = {
-    **COMMON, "position": position, "attitude": attitude, "acceleration": acceleration, "thrust": thrust,
-    "rates": rates,
+    **COMMON, "loiter": override, "position": position, "attitude": attitude, "acceleration": acceleration,
+    "thrust": thrust, "rates": rates,
 }  # fmt: skip
 ROVER: dict[str, Encode] = {**COMMON, "position": rover_position, "attitude": rover_attitude}
 """Kind of set-point -> its message."""

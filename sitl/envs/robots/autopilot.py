@@ -43,12 +43,12 @@ from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
 from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .at_connection import SocketVehicles
-from .boots import check_boots
+from .boots import check_boots, draw
 from .foreign import ForeignVehicles
 from .in_fleet import FleetVehicles
 from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
-from .moves import BEGINS
+from .moves import BEGINS, BOOT
 from .robot import Floats, Pose
 from .truth import TRUE_REPORT
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
@@ -141,6 +141,10 @@ class AutopilotRobot:
             else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
+        each_boots = not made.simulates or choice is not None or (chosen.begin == BOOT and chosen.boots > 1)
+        self.boots = 0 if each_boots else int(chosen.boots)
+        """Number of prepared boots of which each episode begins with one; 0: there are none."""
+        self._seeds = [0] * count
         self.over = np.zeros(count, np.bool_)
         """Whether an agent is not in charge of its vehicle any more: the episode is truncated."""
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
@@ -217,6 +221,7 @@ class AutopilotRobot:
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
         self._unready.add(index)
+        self._seeds[index] = seed
         try:
             self._states[index] = self._vehicles.begin(index, pose, seed)
         except LinkLostError:
@@ -224,6 +229,10 @@ class AutopilotRobot:
             raise
         self.collided[index], self.over[index] = 0, False
         self._read(index)
+
+    def boot_of(self, index: int) -> int:
+        """Number of the prepared boot that a robot's episode began with, as ``reset`` drew it; -1: there is none."""
+        return draw(self.boots, self._seeds[index]).boot if self.boots else -1
 
     def check_failure(self, failure: Failure) -> None:
         """See ``sitl.envs.faults.FailingRobot``."""

@@ -11,10 +11,11 @@ import numpy.typing as npt
 
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.guided import GUIDED
+from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.core.constants import TICK_S
 from sitl.physics.native.copter.state import ALL_DRIVEN
 
-from ..actions import ACCELERATION, ATTITUDE, MOTORS, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
+from ..actions import ACCELERATION, ATTITUDE, LOITER_STICKS, MOTORS, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
 from ..mavlink import px4, setpoints
 from .kind import FAR, RobotKind, pulses
 from .robot import Floats
@@ -43,9 +44,10 @@ def drive(records: Any, rows: npt.NDArray[np.int64], commands: Floats) -> None:
 THRUST_IS_THRUST = 8
 """Bit of GUID_OPTIONS: the thrust of SET_ATTITUDE_TARGET is a thrust."""
 _ARDUPILOT = RobotKind(
-    setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS),
+    setpoints=(VELOCITY, RC_OVERRIDE, LOITER_STICKS, POSITION, ATTITUDE, ACCELERATION, THRUST, RATES, MOTORS),
     modes={
         "rc": ALT_HOLD,
+        "loiter": LOITER,
         **dict.fromkeys(("velocity", "position", "attitude", "acceleration", "thrust", "rates", "motors"), GUIDED),
     },
     parameters={"thrust": ("GUID_OPTIONS", THRUST_IS_THRUST), "rates": ("GUID_OPTIONS", THRUST_IS_THRUST)},
@@ -67,6 +69,7 @@ _ARDUPILOT = RobotKind(
     },
     continuous={
         "rc": ((1300, 1300, 1300, 1300), (1700, 1700, 1700, 1700), (0, 1, 2, 3)),
+        "loiter": ((1300, 1300, 1300, 1300), (1700, 1700, 1700, 1700), (0, 1, 2, 3)),
         "velocity": ((-1.0, -1.0, -0.5, -1.0), (1.0, 1.0, 0.5, 1.0), (0, 1, 2, 3)),
         "position": ((-FAR, -FAR, 0.5, -3.2), (FAR, FAR, 100.0, 3.2), (0, 1, 2, 3)),
         "attitude": ((-0.2, -0.2, -1.0, -1.0), (0.2, 0.2, 1.0, 1.0), (0, 1, 2, 3)),
@@ -77,6 +80,7 @@ _ARDUPILOT = RobotKind(
     },
     agile={
         "rc": (4 * (1100.0,), 4 * (1900.0,), (0, 1, 2, 3)),
+        "loiter": (4 * (1100.0,), 4 * (1900.0,), (0, 1, 2, 3)),
         "velocity": ((-5.0, -5.0, -2.0, -1.5), (5.0, 5.0, 2.0, 1.5), (0, 1, 2, 3)),
         "attitude": ((-0.5, -0.5, -1.5, -1.0), (0.5, 0.5, 1.5, 1.0), (0, 1, 2, 3)),
         "acceleration": ((-4.0, -4.0, -2.0, -1.5), (4.0, 4.0, 2.0, 1.5), (0, 1, 2, 3)),
