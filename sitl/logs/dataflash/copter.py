@@ -76,7 +76,7 @@ CONTROL = Message(
         Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
         Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
         Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
-        Field("BAlt", "e", "m", "B", derived.baro_altitude("sensors.abs_pressure")),
+        Field("BAlt", "f", "m", "0", derived.baro_altitude("sensors.abs_pressure")),
         Field("DSAlt", "f", "m", "0"),
         Field("SAlt", "f", "m", "0"),
         Field("TAlt", "f", "m", "0"),
@@ -182,6 +182,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
                 Field("BatVolt", "f", source=_MOTORS + "voltage_ratio"),
                 Field("ThLimit", "f", source=1.0),
                 Field("ThrAvMx", "f", source=_MOTORS + "throttle_avg_max"),
+                Field("ThrOut", "f", source=_MOTORS + "throttle_out"),
                 Field("FailFlags", "B", source=2),
             ),
             bits.MEDIUM,
@@ -203,6 +204,14 @@ _MODES = (
 )
 """https://mavlink.io/en/messages/ardupilotmega.html#COPTER_MODE"""
 
+_LEARN_AND_SAVE = 2.0
+"""MOT_HOVER_LEARN"""
+
+
+def _saved(v: Any) -> tuple[str, ...]:
+    return ("MOT_THST_HOVER",) if v.autopilot.params.MOT.HOVER_LEARN == _LEARN_AND_SAVE else ()
+
+
 LOGS = KindLogs(
     messages=messages,
     title="ArduCopter",
@@ -211,6 +220,7 @@ LOGS = KindLogs(
     mav_types=(2, 3, 4, 13, 14, 15, 29),
     mode_names=tuple(_MODES.split()),
     event_rows=lambda v, code, a: system_id.rows(v, code, a) + autotune.rows(v, code, a),
+    saved=_saved,
     parameters=("RTL_ALT", "RTL_ALT_M", "PHLD_BRAKE_RATE"),
     panels=(plot.altitude, plot.attitude, plot.motors),
 )
