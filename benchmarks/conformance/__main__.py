@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m benchmarks.conformance --suite PATH copter|rover TEST... [--jobs N] [--speedup K] [--binary PATH]``."""
+"""``python -m benchmarks.conformance --suite PATH copter|rover TEST... [--jobs N] [--speedup K] [--binary PATH]``.
+
+``python -m benchmarks.conformance --scan TABLE copter|rover [--binary PATH] [--keep] [--rows PATTERN]``.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,11 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
+from sitl.missions.manoeuvres.executable import enter_namespace
+
 from . import processes, table
+from .scans import TABLES
+from .scans.run import scan
 from .table import Outcome
 
 ROOT = Path(__file__).parents[2]
@@ -97,8 +104,11 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     top = argparse.ArgumentParser(prog="python -m benchmarks.conformance", description=__doc__)
     top.add_argument("vehicle", choices=sorted(PROGRAMS))
-    top.add_argument("tests", nargs="+", metavar="TEST", help="name of a test, or @FILE with a name a line")
-    top.add_argument("--suite", type=Path, required=True, metavar="PATH", help="checkout of ArduPilot (Tools/autotest)")
+    top.add_argument("tests", nargs="*", metavar="TEST", help="name of a test, or @FILE with a name a line")
+    top.add_argument("--suite", type=Path, metavar="PATH", help="checkout of ArduPilot (Tools/autotest)")
+    top.add_argument("--scan", choices=TABLES, metavar="TABLE", help=f"a table instead: {', '.join(TABLES)}")
+    top.add_argument("--rows", default="*", metavar="PATTERN", help="of a table: only rows that match")
+    top.add_argument("--keep", action="store_true", help="of a table: keep what --binary answered")
     top.add_argument("--jobs", type=int, default=1, metavar="N", help="tests at once (default 1)")
     top.add_argument("--speedup", type=int, default=10, metavar="K", help="default 10")
     top.add_argument("--timeout", type=float, default=600.0, metavar="S", help="wall time of a test (default 600)")
@@ -112,6 +122,13 @@ def parser() -> argparse.ArgumentParser:
 def main() -> int:
     """Run the tests; the exit code is 0 when all pass."""
     options = parser().parse_args()
+    if options.scan:
+        if options.binary:
+            enter_namespace()
+        words = (options.scan, options.vehicle, options.binary, options.keep, options.rows, options.speedup)
+        return 1 if scan(*words) else 0
+    if options.suite is None or not options.tests:
+        sys.exit("name a checkout of ArduPilot (--suite PATH) and tests, or a table (--scan TABLE)")
     suite = options.suite.resolve()
     if not (suite / "Tools" / "autotest").is_dir():
         sys.exit(f"--suite {options.suite}: there is no folder Tools/autotest")

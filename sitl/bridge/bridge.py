@@ -104,6 +104,8 @@ class Bridge:
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
         """Set by who lets clients push the clock (``sitl.run.standstill``)."""
+        self.is_stepped = False
+        """Set by who steps the vehicle from this process, and wants messages of every tick (``sitl.envs``)."""
         self.places = Places(vehicle.v.autopilot, lambda lat, lon: self.get(TerrainService).rise(lat, lon))
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}

@@ -23,10 +23,11 @@ from ...autopilot.copter.modes.guided_setpoints import (
 )
 from ...autopilot.copter.terrain import is_flat
 from ...autopilot.mission.item import MissionItem
-from ...core.algebra import IDENTITY
+from ...core.algebra import IDENTITY, ZERO, quat_norm_squared
 from ...core.kernels import law
+from ...core.records import Floats
 from ...core.scalars import finite
-from ...core.vectors import Vec3
+from ...core.vectors import Quat, Vec3
 from ...vehicle.copter import Copter
 from ..places import LocalPlace, local_place
 from ..services.command import FRAMES_TERRAIN, GLOBAL_FRAMES
@@ -53,6 +54,11 @@ from ..telemetry.motion import GlobalPositionInt
 
 OVER_HOME = 1
 """FOLL_ALT_TYPE"""
+FASTEST = 1000.0
+"""[m/s], of any component."""
+RATES_IGNORED = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | BODY_YAW_RATE_IGNORED
+UNIT = 1e-3
+"""The square of a quaternion's length is within this of 1."""
 
 
 @law
@@ -68,11 +74,11 @@ def position_target_local(m: SetPositionTargetLocalNed, v: Copter, sender: int) 
 
 @law
 def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
-    """The same with a place on the globe; one that is not there is ignored."""
+    """The same with a place on the globe; before there is an origin it is ignored."""
     if not is_guided(v.autopilot.modes):
         return
     frame, use_pos = m.coordinate_frame, (m.type_mask & POSITION_IGNORED) == 0
-    if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt)):
+    if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt) and is_place(m.lat_int, m.lon_int)):
         stop(v)
         return
     place = local_place(v.autopilot, m.lat_int, m.lon_int, m.alt, frame)
@@ -102,11 +108,9 @@ def yaw_of(target: Target) -> YawSetpoint:
 
 @law
 def follow(v: Copter, target: Target, is_force: bool) -> None:
-    """Fly what a target asks for; ``is_force``: its acceleration is a force, which is left alone."""
-    if is_force and target.use_acc:
-        return
+    """Fly what a target asks for; ``is_force``: its acceleration is a force, which cannot be flown."""
     yaw = yaw_of(target)
-    if not is_finite(target):
+    if not is_finite(target) or (is_force and target.use_acc) or is_absurd(target.vel):
         stop(v)
     elif target.use_vel and target.use_pos:
         set_pos_vel_accel(v, target.pos, target.vel, target.acc, yaw)
@@ -128,22 +132,41 @@ def is_finite(target: Target) -> bool:
 
 
 @law
+def is_absurd(vel: Vec3) -> bool:
+    """Whether a velocity is faster than ArduCopter takes."""
+    return max(abs(vel.x), abs(vel.y), abs(vel.z)) > FASTEST
+
+
+@law
+def is_place(lat: int, lon: int) -> bool:
+    """Whether there is such a latitude and longitude [degE7]."""
+    return abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000
+
+
+@law
 def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
-    """Fly an attitude, or body rates."""
-    mask = m.type_mask
-    if not takes_attitudes(v.autopilot.modes) or (mask & THRUST_IGNORED) != 0:
+    """Fly an attitude, which turns on with the body rates, or body rates alone. Rates are all given or all ignored."""
+    if not takes_attitudes(v.autopilot.modes):
         return
-    rates = Vec3(
-        0.0 if (mask & ROLL_RATE_IGNORED) != 0 else m.body_roll_rate,
-        0.0 if (mask & PITCH_RATE_IGNORED) != 0 else m.body_pitch_rate,
-        0.0 if (mask & BODY_YAW_RATE_IGNORED) != 0 else m.body_yaw_rate,
-    )
-    use_attitude = (mask & ATTITUDE_IGNORED) == 0
-    given = rotation(m.q)
-    if use_attitude and not given.is_given:
-        return
-    if finite(rates.x + rates.y + rates.z + m.thrust):
+    mask, use_attitude = m.type_mask, (m.type_mask & ATTITUDE_IGNORED) == 0
+    ignored, given = mask & RATES_IGNORED, rotation(m.q)
+    rates = Vec3(m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate) if ignored == 0 else ZERO
+    if (
+        (mask & THRUST_IGNORED) != 0
+        or (ignored != 0 and ignored != RATES_IGNORED)
+        or (use_attitude and not is_unit(m.q))
+        or not finite(rates.x + rates.y + rates.z + m.thrust)
+    ):
+        stop(v)
+    else:
         set_attitude(v, use_attitude, given.q if use_attitude else IDENTITY, rates, m.thrust)
+
+
+@law
+def is_unit(numbers: Floats) -> bool:
+    """Whether a message's quaternion has length 1, as exactly as ArduCopter asks for."""
+    q = Quat(float(numbers[0]), float(numbers[1]), float(numbers[2]), float(numbers[3]))
+    return abs(quat_norm_squared(q) - 1.0) < UNIT
 
 
 @law

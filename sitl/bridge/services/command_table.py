@@ -40,7 +40,7 @@ HOME_POSITION, AUTOPILOT_VERSION = message("HOME_POSITION").id, message("AUTOPIL
 
 
 def set_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """511: p1 message, p2 interval [us]: -1 stops, 0 default. DENIED with a text: unknown, or above SCHED_LOOP_RATE."""
+    """511: p1 message, p2 interval [us]: -1 stops, 0 default. DENIED: unknown, too fast."""
     return int(bridge.get(StreamService).set_interval(channel, command))
 
 

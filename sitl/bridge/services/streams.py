@@ -17,7 +17,7 @@ from ..dialect import message
 from ..wire.streams import interval_of, set_interval
 from .command import Command
 from .high_latency import HIGH_LATENCY2, HighLatencyService
-from .service import ACCEPTED, DENIED, FAILED, WARNING, Handler, Sender, Service
+from .service import ACCEPTED, DENIED, FAILED, INFO, Handler, Sender, Service
 from .statustext import StatusTextService
 from .terrain import REPORT, TerrainService
 
@@ -48,8 +48,7 @@ ALL_STREAMS = 0
 RATE_PREFIX = "MAV1_"
 HEARTBEAT_US = 1_000_000
 TIMESYNC_US = 10_000_000
-LONGEST_US = 2**31 - 1
-"""What MESSAGE_INTERVAL can carry."""
+LONGEST_US = 60_000_000
 ON_REQUEST_ONLY = frozenset(("AUTOPILOT_VERSION", "STATUSTEXT"))
 HEARTBEAT, TIMESYNC = message("HEARTBEAT").id, message("TIMESYNC").id
 INTERVAL = message("MESSAGE_INTERVAL")
@@ -100,10 +99,13 @@ class StreamService(Service):
 
     def set_group(self, channel: Channel, group: int, rate_hz: int) -> None:
         """Send a group's messages at ``rate_hz`` (0: stop), whatever was asked for them singly before."""
-        rate_hz = min(rate_hz, self._loop_rate())
         self._asked = {**self._asked, (channel.number, group): rate_hz}
         for name in self._groups[group][1]:
-            self._set(channel, message(name).id, 1_000_000 // rate_hz if rate_hz > 0 else 0)
+            self._set(channel, message(name).id, self._interval_us(rate_hz))
+
+    def _interval_us(self, rate_hz: int) -> int:
+        """Of a group's rate, or the shortest one [us]; 0: not sent."""
+        return max(1_000_000 // rate_hz, self._shortest_us()) if rate_hz > 0 else 0
 
     def _set(self, channel: Channel, number: int, interval_us: int) -> None:
         bridge, high_latency = self.bridge, self.bridge.get(HighLatencyService)
@@ -115,8 +117,14 @@ class StreamService(Service):
             if number == REPORT.id:
                 bridge.get(TerrainService).look()
 
-    def _loop_rate(self) -> int:
-        return max(int(self.bridge.parameter("SCHED_LOOP_RATE") or 400), 1)
+    def _shortest_us(self) -> int:
+        """Messages come at most at 0.8 of SCHED_LOOP_RATE, in whole milliseconds [us]; to who pushes the clock, at
+        all of it."""
+        bridge = self.bridge
+        period_us = 1_000_000 // max(int(bridge.parameter("SCHED_LOOP_RATE") or 400), 1)
+        if bridge.is_stepped or bridge.grants is not None:
+            return period_us
+        return max(period_us // 800, 1) * 1000
 
     def _request_data_stream(self, channel: Channel, fields: Any, sender: Sender) -> None:
         rate = fields.req_message_rate if fields.start_stop == 1 else 0
@@ -130,23 +138,27 @@ class StreamService(Service):
     # ------------------------------------------------------------------ commands
 
     def set_interval(self, channel: Channel, command: Command) -> int:
-        """MAV_CMD_SET_MESSAGE_INTERVAL: p1 message id, p2 interval [us], -1 off, 0 default."""
-        number, interval = int(command.p1), command.p2
+        """MAV_CMD_SET_MESSAGE_INTERVAL: p1 message id, p2 interval [us], -1 off, 0 default; p3 must be 0."""
+        number, interval = int(command.p1), int(command.p2)
+        if command.p3 != 0.0:
+            return DENIED
         kind = self.bridge.telemetry.get(number)
         say = self.bridge.get(StatusTextService).say
         if kind is None or kind.name in ON_REQUEST_ONLY:
-            say(WARNING, f"No ap_message for mavlink id ({number})")
+            say(INFO, f"No ap_message for mavlink id ({number})")
             return DENIED
-        if interval == 0.0:
+        if interval == 0:
             self._set(channel, number, self._default_interval(channel, number))
             return ACCEPTED
-        if interval < 0.0:
+        if interval == -1:
             self._set(channel, number, 0)
             return ACCEPTED
-        if interval < 1e6 / self._loop_rate():
-            say(WARNING, f"Requested rate for message ID {number} too fast. Increase SCHED_LOOP_RATE")
+        if interval < 0:
             return DENIED
-        self._set(channel, number, int(min(interval, LONGEST_US)))
+        if interval < self._shortest_us():
+            say(INFO, f"Requested rate for message ID {number} too fast. Increase SCHED_LOOP_RATE")
+            return DENIED
+        self._set(channel, number, min(interval, LONGEST_US))
         return ACCEPTED
 
     def _default_interval(self, channel: Channel, number: int) -> int:
@@ -155,7 +167,7 @@ class StreamService(Service):
             return HEARTBEAT_US if number == HEARTBEAT else TIMESYNC_US
         group = self._group_of.get(number)
         rate = self._asked.get((channel.number, group), 0) if group is not None else 0
-        return 1_000_000 // rate if rate else 0
+        return self._interval_us(rate)
 
     def get_interval(self, channel: Channel, command: Command) -> int:
         """MAV_CMD_GET_MESSAGE_INTERVAL: answers MESSAGE_INTERVAL; 0 not available, -1 not sent."""

@@ -73,6 +73,8 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     """
     telemetry = link.inbox
     scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink and telemetry.scans_used else ()
+    if link.simulation is not None:
+        link.simulation.bridge.is_stepped = True
     intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
     for kind in (POSITION, ATTITUDE, *scan, *telemetry.wanted):
         if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):

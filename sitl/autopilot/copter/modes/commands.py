@@ -70,7 +70,6 @@ def take_off(ap: Autopilot, height: float) -> int:
     control, est, p = ap.control, ap.estimate, ap.params
     if mode == GUIDED:
         ap.modes.guided.submode = guided.TAKEOFF
-        ap.modes.guided.paused = False
         auto_yaw.set_mode(ap.modes.auto_yaw, auto_yaw.HOLD, control.attitude, est)
         takeoff.begin(ap.modes.takeoff, target_d, True, control, est, p)
     else:

@@ -4,12 +4,26 @@
 Set-points are written by the laws of ``guided_setpoints``. Velocity, acceleration and attitude set-points older than
 GUID_TIMEOUT stop the vehicle: velocity and acceleration become zero, the attitude level at constant height.
 
+A pause (DO_PAUSE_CONTINUE) stops the vehicle and holds it, whatever set-points come meanwhile; the last of them is
+flown when it goes on.
+
 A mission's GUIDED_ENABLE flies so, too, within the limits of DO_GUIDED_LIMITS.
 """
 
 from __future__ import annotations
 
-from ....core.algebra import ZERO, euler_of, horizontal, norm2, quat_from_euler
+from ....core.algebra import (
+    ZERO,
+    euler_of,
+    horizontal,
+    multiply,
+    norm,
+    norm2,
+    normalise,
+    quat_from_euler,
+    quat_from_rotation_vector,
+    rotate,
+)
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Euler, Vec2, Vec3
@@ -21,6 +35,7 @@ from ...state import Arming, Estimate
 from ...terrain.ground import lose_ground
 from .. import avoidance, terrain
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
+from ..control.attitude_target import limit_rates, rate_max
 from ..control.state import DT, Control
 from ..parameters import Parameters
 from ..state import Vehicle
@@ -51,6 +66,7 @@ def start(v: Vehicle) -> int:
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     auto_yaw.set_default(modes.auto_yaw, p.WP, False, control.attitude, est)
     start_submode(modes.guided, VELOCITY_ACCEL, control, est, p)
+    modes.guided.paused = False
     modes.guided.update_us = v.time_us
     return ACCEPTED
 
@@ -59,7 +75,6 @@ def start(v: Vehicle) -> int:
 def start_submode(guided: GuidedState, submode: int, control: Control, est: Estimate, p: Parameters) -> None:
     """Change what kind of set-point is flown, from the present motion."""
     guided.submode = submode
-    guided.paused = False
     guided.timed_out = False
     guided.vel = ZERO
     guided.acc = ZERO
@@ -89,7 +104,9 @@ def run(v: Vehicle) -> None:
     if (int(p.GUID.OPTIONS) & _NO_PILOT_YAW) == 0:
         auto_yaw.follow_pilot(modes, control.attitude, est)
     stale = is_stale(guided, v.time_us, p.GUID.TIMEOUT)
-    if guided.submode == TAKEOFF:
+    if guided.paused:
+        run_paused(ap.arming, control, est, p)
+    elif guided.submode == TAKEOFF:
         takeoff.run(v)
     elif guided.submode == ANGLE:
         note_timeout(guided, stale, ap.events, v.time_us)
@@ -98,15 +115,25 @@ def run(v: Vehicle) -> None:
         ground.rest(ap.arming.armed, control, est, p)
     else:
         control.motors.desired_spool = ground.UNLIMITED
-        if guided.paused:
-            ground.brake(control)
-        else:
-            if guided.submode != POSITION:
-                note_timeout(guided, stale, ap.events, v.time_us)
-            if stale:
-                auto_yaw.stop_turning(modes.auto_yaw, control.attitude, est)
-            follow_setpoint(v, guided, stale, control)
+        if guided.submode != POSITION:
+            note_timeout(guided, stale, ap.events, v.time_us)
+        if stale:
+            auto_yaw.stop_turning(modes.auto_yaw, control.attitude, est)
+        follow_setpoint(v, guided, stale, control)
         ground.fly(modes.auto_yaw, control, est, p)
+
+
+@law
+def run_paused(arming: Arming, control: Control, est: Estimate, p: Parameters) -> None:
+    """One tick of a pause: come to a stop and hold, the heading, too."""
+    if ground.is_grounded(arming):
+        ground.rest(arming.armed, control, est, p)
+        return
+    control.motors.desired_spool = ground.UNLIMITED
+    ground.brake(control)
+    position.update_ne(control, est, p)
+    altitude.update_d(control, est, p)
+    attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), 0.0)
 
 
 @law
@@ -192,7 +219,11 @@ def run_angle(guided: GuidedState, stale: bool, arming: Arming, control: Control
 @law
 def fly_angle(guided: GuidedState, climb: float, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of an attitude or rates with a thrust or ``climb`` [m/s] in the air."""
-    if guided.use_attitude:
+    if guided.use_attitude and norm(guided.rates) > 0.0:
+        turning = rotate(guided.q, limit_rates(guided.rates, rate_max(p.ATC)))  # as ArduPilot has it
+        attitude.input_quaternion(control, est, p, guided.q, turning)
+        guided.q = normalise(multiply(guided.q, quat_from_rotation_vector(turning * DT)))
+    elif guided.use_attitude:
         attitude.input_quaternion(control, est, p, guided.q, guided.rates)
     else:
         attitude.input_rates(control, est, p, guided.rates)

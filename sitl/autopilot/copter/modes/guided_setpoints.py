@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ....core.algebra import ZERO, quat_norm_squared
+from ....core.algebra import quat_norm_squared
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Quat, Vec3
 from ...fence.checks import allows
+from ...modes import ACCEPTED
 from .. import terrain
 from ..control.state import AltitudeState
 from ..state import Autopilot, Vehicle
@@ -79,7 +80,6 @@ def begin(v: Vehicle, submode: int) -> GuidedState:
     ap.modes.nav.over_ground = False
     if state.submode != submode:
         guided.start_submode(state, submode, ap.control, ap.estimate, ap.params)
-    state.paused = False
     state.update_us = v.time_us
     return state
 
@@ -192,5 +192,7 @@ def climb_of_thrust(thrust: float, limits: AltitudeState) -> float:
 
 @law
 def stop(v: Vehicle) -> int:
-    """Come to a stop and hold (velocity zero)."""
-    return set_velocity(v, ZERO, ZERO, NO_YAW)
+    """Come to a stop and hold, as when the mode is entered; a pause ends."""
+    if not is_guided(v.autopilot.modes):
+        return WRONG_MODE
+    return OK if guided.start(v) == ACCEPTED else WRONG_MODE

@@ -14,6 +14,7 @@ from sitl.autopilot.copter.modes.commands import LARGEST, NOT_FINITE, OK, OUT_OF
 from sitl.autopilot.copter.modes.guided import ACCEL, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
 from sitl.autopilot.copter.modes.guided_setpoints import NO_YAW, YawSetpoint
 from sitl.autopilot.events import GUIDED_TIMEOUT
+from sitl.core.algebra import euler_of
 from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, make, snapshot, turn_to, wait
 
@@ -148,16 +149,59 @@ def test_the_set_point_moves_on_between_messages(flying):
     assert target.pos[1] == pytest.approx(0.5 * 1.0 * 0.1**2)
 
 
-def test_pause_keeps_the_target_and_a_new_set_point_ends_it(flying):
-    guided_setpoints.set_position(flying, Vec3(20.0, 0.0, -10.0), NO_YAW)
-    assert commands.set_paused(flying.autopilot.modes, True) == OK
-    guided.run(flying)
-    assert flying.autopilot.control.pos_ne.vel_desired[0] == 0.0
-    commands.set_paused(flying.autopilot.modes, False)
-    assert flying.autopilot.modes.guided.paused == 0
+SET_POINTS = {
+    "position": lambda v: guided_setpoints.set_position(v, Vec3(20.0, 0.0, -10.0), NO_YAW),
+    "velocity": lambda v: guided_setpoints.set_velocity(v, Vec3(5.0, 0.0, 0.0), STILL, NO_YAW),
+    "acceleration": lambda v: guided_setpoints.set_accel(v, Vec3(2.0, 0.0, 0.0), NO_YAW),
+    "moving position": lambda v: guided_setpoints.set_pos_vel_accel(v, GOOD, Vec3(5.0, 0.0, 0.0), STILL, NO_YAW),
+}
+
+
+def ticks(v, count):
+    """The greatest speed that is asked for [m/s]."""
+    fastest = 0.0
+    for _ in range(count):
+        v.time_us += 2500
+        guided.run(v)
+        fastest = max(fastest, abs(v.autopilot.control.pos_ne.vel_desired[0]))
+    return fastest
+
+
+@pytest.mark.parametrize("name", SET_POINTS)
+def test_a_pause_holds_against_new_set_points_and_flies_on_when_it_ends(flying, name):
+    modes = flying.autopilot.modes
+    assert commands.set_paused(modes, True) == OK
+    assert SET_POINTS[name](flying) == OK
+    assert ticks(flying, 40) == 0.0 and modes.guided.paused
+    commands.set_paused(modes, False)
+    assert ticks(flying, 40) > 0.01
+
+
+def test_a_pause_holds_against_an_attitude_and_a_lean_ends(flying):
+    q = Quat(math.cos(0.1), 0.0, math.sin(0.1), 0.0)
     commands.set_paused(flying.autopilot.modes, True)
-    guided_setpoints.set_position(flying, Vec3(5.0, 0.0, -10.0), NO_YAW)
-    assert flying.autopilot.modes.guided.paused == 0
+    assert guided_setpoints.set_attitude(flying, True, q, STILL, 0.5) == OK
+    ticks(flying, 200)
+    assert abs(flying.autopilot.control.attitude.target_euler[1]) < 0.02
+    commands.set_paused(flying.autopilot.modes, False)
+    ticks(flying, 200)
+    assert flying.autopilot.control.attitude.target_euler[1] == pytest.approx(0.2, abs=0.02)
+
+
+def test_what_stops_the_vehicle_ends_a_pause_too(flying):
+    commands.set_paused(flying.autopilot.modes, True)
+    assert guided_setpoints.stop(flying) == OK
+    assert not flying.autopilot.modes.guided.paused
+
+
+@pytest.mark.parametrize(("yaw", "lean"), [(0.0, (0.1, 0.0)), (math.pi / 2, (0.0, 0.1))])
+def test_an_attitude_turns_on_with_its_rates(flying, yaw, lean):
+    """Rates count in the frame that ArduCopter takes them in: a roll rate at heading east pitches."""
+    q = Quat(math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
+    guided_setpoints.set_attitude(flying, True, q, Vec3(0.1, 0.0, 0.0), 0.5)
+    ticks(flying, 400)
+    reached = euler_of(flying.autopilot.modes.guided.q)
+    assert (reached.roll, reached.pitch) == pytest.approx(lean, abs=1e-3)
 
 
 def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
