@@ -54,8 +54,25 @@ _PLAIN: dict[str, tuple[tuple[float, ...], ...]] = {
     "DO_JUMP_TAG": ((1,), (0,), (-1,)),
     "MISSION_START": ((1, 0), (0, 1), (1, 1)),
     "SET_MESSAGE_INTERVAL": (
-        (30, -1), (30, -2), (30, 0), (30, 1), (30, 999), (30, 1000), (30, 2500), (30, 3000), (30, 3125), (30, 4000),
-        (30, 20000), (30, 24000), (30, 25000), (30, 1e6), (30, 6e7), (30, 7e7), (30, 1e5, 1), (9999, 1e5), (-1, 1e5),
+        (30, -1),
+        (30, -2),
+        (30, 0),
+        (30, 1),
+        (30, 999),
+        (30, 1000),
+        (30, 2500),
+        (30, 3000),
+        (30, 3125),
+        (30, 4000),
+        (30, 20000),
+        (30, 24000),
+        (30, 25000),
+        (30, 1e6),
+        (30, 6e7),
+        (30, 7e7),
+        (30, 1e5, 1),
+        (9999, 1e5),
+        (-1, 1e5),
     ),
     "GET_MESSAGE_INTERVAL": ((0,), (30,), (9999,), (-1,)),
     "REQUEST_MESSAGE": ((0,), (148,), (9999,), (-1,), (244, 30), (244, 9999)),
@@ -113,7 +130,9 @@ def _places(command: str | int, first: tuple[tuple[float, ...], ...], z: float =
         for four, frame in itertools.product(first, (RELATIVE, 0, 1, 2, 5, 6, 10, 11))
         if frame == RELATIVE or four == first[0]
     ]
-    bad = [Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_place=True) for place in ((91.0, 0.0, z), (0.0, 181.0, z))]
+    bad = [
+        Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_place=True) for place in ((91.0, 0.0, z), (0.0, 181.0, z))
+    ]
     return [*good, *bad]
 
 

@@ -60,6 +60,8 @@ TARGET_MASKS = (
     IGNORE_POS | IGNORE_VEL | IGNORE_YAW | IGNORE_YAW_RATE,  # ACCEL
 )
 """By GUIDED's submode: what of the target does not count; others have no such target."""
+LAST_BITS = 0xF000
+"""ArduPilot sets what no bit of POSITION_TARGET_TYPEMASK is, too."""
 LOCAL_NED = 1
 
 
@@ -120,7 +122,7 @@ def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
     m.lat_int = int32(place.lat)
     m.lon_int = int32(place.lon)
     m.alt = estimate.origin_alt - to.z
-    m.type_mask = PLACE
+    m.type_mask = LAST_BITS | PLACE
     return True
 
 
