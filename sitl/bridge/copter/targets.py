@@ -31,7 +31,8 @@ _FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
 
 @law
 def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
-    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m]."""
+    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m], as
+    ArduCopter 4.7 has it: negative below the target."""
     modes, control, pos = v.autopilot.modes, v.autopilot.control, v.autopilot.estimate.pos
     euler = control.attitude.target_euler
     if is_guided(modes):
@@ -46,7 +47,7 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     m.nav_roll = euler.roll * DEG
     m.nav_pitch = euler.pitch * DEG
     m.nav_bearing = int16(euler.yaw * DEG)
-    m.alt_error = -control.pos_d.pos_error
+    m.alt_error = control.pos_d.pos_error
     return True
 
 

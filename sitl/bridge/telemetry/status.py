@@ -83,9 +83,9 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
             health |= BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
         health |= PREARM
-    if ap.params.LOG.BACKEND_TYPE != 0.0:
-        common |= LOGGING
-        health |= LOGGING
+    logs = LOGGING if ap.params.LOG.BACKEND_TYPE != 0.0 else 0
+    logs_now = logs if ap.arming.armed_us > 0 or ap.params.LOG.DISARMED != 0.0 else 0
+    health |= logs
     if ap.flow.kind != 0:
         common |= FLOW
         health |= FLOW if is_healthy(ap.flow, v.time_us) else 0
@@ -93,8 +93,8 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
         common |= VISION
         health |= VISION if visual_odometry.is_healthy(ap.odometry, v.time_us) else 0
     fence = GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
-    m.onboard_control_sensors_present = common | controllers | fence
-    m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0)
+    m.onboard_control_sensors_present = common | controllers | fence | logs
+    m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0) | logs_now
     m.onboard_control_sensors_health = health
     m.voltage_battery = uint16(battery.voltage * 1e3) if monitor >= VOLTAGE_MONITOR else UNKNOWN
     m.current_battery = int16(battery.current * 100.0) if monitor >= CURRENT_MONITOR else -1

@@ -16,6 +16,8 @@ from .formats import Field, Message, Source
 E, S, A, K = "autopilot.estimate.", "sensors.", "autopilot.", "autopilot.ekf."
 _ATTITUDE = bits.ATTITUDE | bits.ATTITUDE_FAST
 PARAMETERS = A + "params."
+NO_AIRSPEED, NO_DRAG = 1 << 4, 1 << 5
+"""Timeouts of XKF4: neither is ever fused."""
 
 
 def _pulses(path: str) -> tuple[Field, ...]:
@@ -34,7 +36,8 @@ def pulses_out(bit: int) -> Message:
 
 def magnetometer(bit: int) -> Message:
     """MAG: field in the body's frame [mgauss]."""
-    offsets = tuple(Field(label, "h", "G", "C") for label in ("OfsX", "OfsY", "OfsZ", "MOX", "MOY", "MOZ"))
+    offsets = [Field(f"Ofs{axis}", "h", "G", "C", f"{PARAMETERS}COMPASS.OFS.{axis}") for axis in "XYZ"]
+    offsets += [Field(f"MO{axis}", "h", "G", "C") for axis in "XYZ"]
     return Message(
         "MAG",
         (
@@ -298,10 +301,10 @@ def gps_accuracy(receiver: int, r: str) -> Message:
         (
             Field("I", "B", "#", source=receiver),
             Field("VDop", "C", "-", "B", r + "gps_epv", 0.01),
-            Field("HAcc", "C", "m", "B", r + "gps_eph", 0.003),
-            Field("VAcc", "C", "m", "B", r + "gps_epv", 0.005),
+            Field("HAcc", "C", "m", "B", r + "gps_eph", 0.3 / 121.0),
+            Field("VAcc", "C", "m", "B", r + "gps_epv", 0.3 / 200.0),
             Field("SAcc", "C", "n", "B"),
-            Field("YAcc", "f", "d", "0", float("nan")),
+            Field("YAcc", "f", "d", "0"),
             Field("VV", "B", source=1),
             Field("SMS", "I", "s", "C", r + "gps_time_us", 1e-3),
             Field("Delta", "H", "s", "C", 200),
@@ -389,8 +392,8 @@ def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
                 Field("OFN", "f", "m", "?", e + "reset_pos[0]"),
                 Field("OFE", "f", "m", "?", e + "reset_pos[1]"),
                 Field("FS", "H"),
-                Field("TS", "B"),
-                Field("SS", "I", source=e + "status_flags"),
+                Field("TS", "B", source=NO_AIRSPEED | NO_DRAG),
+                Field("SS", "I", source=derived.solution(e, k)),
                 Field("GPS", "H"),
                 Field("PI", "b", source=K + "imu"),
             ),
@@ -451,6 +454,21 @@ FILTER = (
 )
 """The filter that is flown by, and the second one while there is one."""
 
+AHR2 = Message(
+    "AHR2",
+    (
+        Field("Roll", "c", "d", "B", derived.euler(E + "q", 0), DEG),
+        Field("Pitch", "c", "d", "B", derived.euler(E + "q", 1), DEG),
+        Field("Yaw", "C", "h", "B", derived.wrapped(derived.euler(E + "q", 2))),
+        Field("Alt", "f", "m", "0", derived.difference(E + "origin_alt", E + "pos[2]")),
+        Field("Lat", "L", "D", "G", derived.latitude(E + "origin_", E + "pos")),
+        Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
+        *(Field(f"Q{n + 1}", "f", source=f"{E}q[{n}]") for n in range(4)),
+    ),
+    bits.MEDIUM,
+    _ATTITUDE,
+)
+"""AHR2: the second attitude source; this firmware has one estimator and logs it again, as AHRS2 tells it."""
 _BODY, _PLACE = "physics.body.", "physics.place."
 
 

@@ -199,6 +199,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         common.pid("PIDA", _SPEED + "loop", "ATC.SPEED.", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
         common.LANDING_TARGET,
         *common.FILTER,
+        common.AHR2,
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
