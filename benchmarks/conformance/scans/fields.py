@@ -44,7 +44,8 @@ TOLERANCES = {
     r"servo\d+_raw|chan\d+_raw": 15.0,
     r"throttle|thrust|battery|battery_remaining|load": 3.0,
     r"current_consumed|energy_consumed|totalcurrent": 60.0,
-    r"rpm|current|current_battery|voltage.*|chan\d+_scaled": 0.0,
+    r"chan\d+_scaled": 60.0,
+    r"rpm|current|current_battery|voltage.*": 0.0,
 }
 """How far a number may be from the real one's, besides 3 % of it."""
 EXACT = re.compile(
@@ -209,7 +210,7 @@ def value(samples: list[Any], name: str, field: str) -> Any:
             return str(x)
         spread = max(samples) - min(samples)
         if EXACT.fullmatch(field):
-            return x
+            return int(x) if x == int(x) else x
         return [_short(x), _short(max(_tolerance(name, field), 0.03 * abs(x), spread))]
     last = samples[-1]
     if isinstance(last, bytes):
