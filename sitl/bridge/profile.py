@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..autopilot.modes import Mode
 from ..vehicle.kinds import KINDS
@@ -18,6 +18,17 @@ from .services.command import Entry
 
 if TYPE_CHECKING:
     from .services.setpoints import SetpointService
+
+
+class Targets(NamedTuple):
+    """What a vehicle wants, for HIGH_LATENCY2."""
+
+    altitude: float = 0.0
+    """Above mean sea level [m]; 0: it controls none."""
+    speed: float = 0.0
+    """[m/s]; 0: it controls none."""
+    wind_heading: int = 0
+    """Of the wind that it knows [2 deg]."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +58,10 @@ class Profile:
     """Units that hear and tell clients, with what they can build and take."""
     autopilot: Callable[[Any], Autopilot]
     """The firmware's laws behind the services."""
+    silent: frozenset[int] = frozenset()
+    """Messages that one may ask for, and that it has nothing to say in (besides those of ``streams.OF_PARTS``)."""
+    targets: Callable[[Any], Targets] = lambda v: Targets()
+    """Of the vehicle's record."""
 
 
 def load(kind: str) -> Profile:

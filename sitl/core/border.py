@@ -39,7 +39,7 @@ class GpsReading(Record):
 
     gps_count: int
     gps_time_us: int  # when the reader got it; the fix is older by the receiver's delay
-    gps_fix: int  # GPS_FIX_TYPE: 0 no GPS, 1 none, 3 3D
+    gps_fix: int  # GPS_FIX_TYPE: 0 no GPS, 1 none, 3 3D, 6 RTK fixed
     gps_lat: Int32  # [degE7]
     gps_lon: Int32  # [degE7]
     gps_alt: Int32  # above mean sea level [mm]

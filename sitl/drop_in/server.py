@@ -19,7 +19,7 @@ from ..bridge.services.signing import SigningService
 from ..bridge.signing import WINDOW, Signing
 from ..core.compile import Progress
 from ..errors import OptionError
-from ..logs.dataflash.log import attach
+from ..logs.dataflash.log import DataFlash, attach
 from ..logs.dataflash.numbered import NumberedLogs
 from ..run import runner
 from ..run.pacing import Pacing
@@ -88,6 +88,7 @@ class Session:
         self.simulation = simulation = Simulation(scenario, progress=progress)
         self._values = simulation.parameters
         self._values.update(params)  # values out of range are kept as they are, and told so
+        self._values.defaults = {**simulation.airframe.parameters, **self._of_files}
         self.pacing = Pacing(None)
         self._follow_speedup()
         if not clears_mission(self._values):
@@ -102,7 +103,8 @@ class Session:
             kept = kept._replace(timestamp=kept.timestamp + WINDOW)
             simulation.bridge.get(SigningService).signing = Signing(kept)
         simulation.bridge.listeners.append(self)
-        self._statistics = Statistics(simulation, self.storage.keep)
+        self._logs: DataFlash | None = None
+        self._statistics = Statistics(simulation, self._keep)
         self._awaited: Link | None = None
         self._serial: dict[str, Link] = {}
         """Links of serial ports, by the parameters of their protocols."""
@@ -113,7 +115,7 @@ class Session:
 
     def _parameters(self, table: Table) -> dict[str, float]:
         """Of default files, storage and command line; what the firmware does not take is told and left out."""
-        of_files = files.load_all(self._line.defaults)
+        self._of_files = of_files = files.load_all(self._line.defaults)
         for note in files.notes(table, of_files):
             self._say(note)
         values = {"SIM_WIND_T": 0.0, **of_files}  # ArduPilot's, with less wind near the ground
@@ -195,6 +197,12 @@ class Session:
         self.wait_for_client(running)
         self._follow_speedup()  # time begins now
         runner.serve(self.simulation, self.pacing, running=running, on_slice=self._after_slice)
+
+    def _keep(self, name: str, value: float) -> None:
+        """Keep a parameter that counts, and have it logged."""
+        self.storage.keep(name, value)
+        if self._logs is not None:
+            self._logs.parameter_set(name)
 
     def _after_slice(self) -> None:
         self._statistics.follow()

@@ -40,7 +40,7 @@ AIRFRAME = RoverAirframe(
         "centre_height": 0.02,  # [m] (assumed)
         "battery_voltage_full": 12.6,  # [V] SIM_BATT_VOLTAGE
         "battery_capacity": 0.0,  # [Ah] SIM_BATT_CAP_AH 0: it never empties
-        "battery_resistance": BATTERY_SAG / BATTERY_CURRENT,  # [ohm] counts once a capacity is given
+        "battery_resistance": BATTERY_SAG / BATTERY_CURRENT,  # [ohm]
         "contact_radius": 0.25,  # [m] (assumed)
         "contact_top": 0.3,  # [m] (assumed)
         **sensor_sets.SITL_IMU,

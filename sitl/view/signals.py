@@ -11,7 +11,7 @@ import numpy as np
 
 from ..bridge.dialect import message
 from ..bridge.profile import Profile
-from ..bridge.telemetry.builder import build
+from ..bridge.telemetry.plain import build
 from ..bridge.wire.choose import message_of
 from ..bridge.wire.port import Port
 from ..core.record_reader import RecordReader

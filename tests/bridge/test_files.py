@@ -6,9 +6,13 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Sequence
+from itertools import count
 from typing import NamedTuple
 
+import pytest
+
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services.ftp import FtpService
 from sitl.bridge.services.mission import FENCE, MissionService
 from sitl.bridge.services.parameters import ParameterService
 from tests.bridge.fakes import Bench
@@ -16,6 +20,8 @@ from tests.bridge.test_parameters import ACK, BURST, NAK, OPEN, READ, fetch, req
 
 TERMINATE, LIST, CREATE, WRITE, CRC = 1, 3, 6, 7, 14
 INVALID_SIZE, END_OF_FILE, NOT_FOUND = 3, 6, 10
+SEQUENCES = count(1000)
+"""Each request has a number of its own: one that comes again is a copy."""
 WAYPOINT, POLYGON = 16, 5001
 
 
@@ -79,11 +85,62 @@ def refusal(bench: Bench, path: bytes) -> int:
 def test_folders_are_listed(bench: Bench) -> None:
     assert listed(bench, b"/") == ["D.", "D..", "D@SYS"]
     system = listed(bench, b"@SYS")
-    assert [entry.split("\t")[0] for entry in system] == ["Fuarts.txt", "Ftasks.txt"]
+    names = "threads tasks dma memory uarts timers can_log can0_stats can1_stats"
+    assert [entry.split("\t")[0] for entry in system[:9]] == [f"F{name}.txt" for name in names.split()]
+    assert system[9:] == ["Fcrash_dump.bin\t100000", "Fstorage.bin\t100000"] and system[1] == "Ftasks.txt\t8"
     assert listed(bench, b"/@SYS/") == system
     assert [refusal(bench, path) for path in (b"nothing", b"@MISSION", b"logs", b"")] == [NOT_FOUND] * 3 + [
         INVALID_SIZE
     ]
+
+
+def told(bench: Bench, opcode: int, path: bytes, **more: int) -> int:
+    """The error that a request gets, 0: none."""
+    (answer,) = bench.ask(request(opcode, path, sequence=next(SEQUENCES), **more))
+    head, data = unpack(answer)
+    return 0 if head[2] == ACK else data[0]
+
+
+def test_clients_make_files_and_folders(bench: Bench) -> None:
+    assert told(bench, 9, b"/notes") == 0 and told(bench, 9, b"notes") == 8, "there is one"
+    assert told(bench, 6, b"notes/a.txt") == 0
+    assert (told(bench, 7, b"hello", offset=0), told(bench, 7, b"!", offset=7), told(bench, 1, b"")) == (0, 0, 0)
+    assert listed(bench, b"/") == ["D.", "D..", "D@SYS", "Dnotes"]
+    assert listed(bench, b"/notes/") == ["D.", "D..", "Fa.txt\t8"]
+    assert fetch(bench, b"notes/a.txt") == b"hello\0\0!"
+    assert told(bench, 11, b"notes/a.txt") == told(bench, 7, b"J", offset=0) == 0 == told(bench, 1, b"")
+    assert told(bench, 13, b"notes/a.txt\0b.txt") == 0 and fetch(bench, b"b.txt") == b"Jello\0\0!"
+    assert told(bench, 13, b"notes\0papers") == 0 and told(bench, 13, b"b.txt\0papers/b.txt") == 0
+    state = bench.bridge.snapshot()
+    assert told(bench, 10, b"papers") == 1, "not empty"
+    assert told(bench, 8, b"papers/b.txt") == 0 and told(bench, 10, b"papers") == 0
+    assert listed(bench, b"/") == ["D.", "D..", "D@SYS"]
+    bench.bridge.restore(state)
+    assert listed(bench, b"papers") == ["D.", "D..", "Fb.txt\t8"]
+
+
+@pytest.mark.parametrize(("opcode", "path", "error"), [
+    (6, b"none/a.txt", 10), (6, b"@SYS/a.txt", 9), (6, b"logs/1.BIN", 9), (6, b"../a.txt", 1), (6, b"", 3),
+    (9, b"..", 1), (9, b"a/../b", 1), (9, b"@PARAM", 9), (9, b"x" * 201, 1),
+    (8, b"none", 10), (8, b"@SYS/tasks.txt", 9), (8, b"logs/1.BIN", 9), (10, b"logs", 9), (10, b"none", 10),
+    (11, b"none", 10), (13, b"none\0a", 10), (13, b"one", 3), (13, b"@SYS/tasks.txt\0a", 9),
+])  # fmt: skip
+def test_what_is_not_a_clients_stays(bench: Bench, opcode: int, path: bytes, error: int) -> None:
+    before = listed(bench, b"/")
+    assert told(bench, opcode, path) == error
+    assert listed(bench, b"/") == before
+
+
+def test_clients_files_have_room_for_a_megabyte(bench: Bench) -> None:
+    store = bench.bridge.get(FtpService)._clients
+    assert store.create("a") == store.create("b") == 0
+    assert store.write("a", bytes(1 << 19)) == store.write("b", bytes(1 << 19)) == 0
+    assert store.write("b", bytes((1 << 19) + 1)) == 1 and store.write("a", b"") == 0
+    assert store.make_folder("c") == store.create("c/a") == 0
+    assert store.rename("c", "c/d") == store.rename("c", "a") == store.create("c") == store.remove("c") == 1
+    for k in range(996):
+        assert store.make_folder(str(k)) == 0
+    assert store.create("more") == 1 and store.create("a") == 0
 
 
 def test_logs_are_listed_and_read(bench: Bench) -> None:

@@ -210,6 +210,7 @@ def fetch(bench: Bench, path: bytes) -> bytes:
 def test_all_parameters(bench: Bench, query: bytes) -> None:
     bench.vehicle.v.autopilot.params.MAV_GCS_SYSID = 250.0
     bench.vehicle.parameters["FRSKY_OPTIONS"] = 3.0
+    bench.vehicle.parameters.defaults = {"WPNAV_SPEED": 450.0}  # of a file
     decoded = MAVFTP.ftp_param_decode(fetch(bench, b"@PARAM/param.pck" + query))
     values = {name.decode(): value for name, value, _ in decoded.params}
     assert list(values) == names(bench)
@@ -219,6 +220,7 @@ def test_all_parameters(bench: Bench, query: bytes) -> None:
     if query:
         defaults = {name.decode(): value for name, value, _ in decoded.defaults}
         assert defaults["MAV_GCS_SYSID"] == 255.0 and values["MAV_GCS_SYSID"] == 250.0
+        assert defaults["WPNAV_SPEED"] == 450.0 != values["WPNAV_SPEED"]
 
 
 def test_ground_stations_read_what_parameters_mean(bench: Bench) -> None:

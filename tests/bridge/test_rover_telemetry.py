@@ -41,17 +41,18 @@ def test_heartbeat(rover_bench: Bench, mode: int, base: int, state: int) -> None
 
 
 def test_controllers_are_at_work_in_some_modes(rover_bench: Bench) -> None:
-    rates, heading, altitude, place, motors = 0x400 | 0x800, 0x1000, 0x2000, 0x4000, 0x8000
-    every = rates | heading | place | motors | altitude
+    rates, heading, altitude, place = 0x400 | 0x800, 0x1000, 0x2000, 0x4000
+    every = rates | heading | place | altitude
     ap = rover_bench.vehicle.v.autopilot
     for mode, armed, at_work in (
-        (MANUAL, 0, 0), (1, 0, rates), (HOLD, 1, motors), (GUIDED, 1, rates | heading | place | motors)
+        (MANUAL, 0, 0), (1, 0, rates), (HOLD, 1, 0), (GUIDED, 1, rates | heading | place)
     ):  # fmt: skip
         ap.modes.number, ap.arming.armed = mode, armed
         status = get(rover_bench, "SYS_STATUS")
         assert status.onboard_control_sensors_present & every == every & ~altitude
         assert status.onboard_control_sensors_enabled & every == at_work
         assert status.onboard_control_sensors_health & every == at_work
+        assert status.onboard_control_sensors_enabled & status.onboard_control_sensors_health & 0x8000, "outputs"
 
 
 def test_it_neither_flies_nor_lands(rover_bench: Bench) -> None:
@@ -67,7 +68,7 @@ def test_throttle_and_outputs(rover_bench: Bench) -> None:
     motors.out_left, motors.out_right = 1.0, -0.125
     assert get(rover_bench, "VFR_HUD").throttle == 40
     out = get(rover_bench, "RC_CHANNELS_SCALED")
-    assert (out.chan1_scaled, out.chan3_scaled, out.chan2_scaled, out.rssi) == (2500, -5000, -1, 255)
+    assert (out.chan1_scaled, out.chan3_scaled, out.chan2_scaled, out.rssi) == (2500, -5000, 0, 255)
     p.SERVO1_FUNCTION, p.SERVO3_FUNCTION = 73, 74
     out = get(rover_bench, "RC_CHANNELS_SCALED")
     assert (out.chan1_scaled, out.chan3_scaled) == (10_000, -1250)
@@ -104,7 +105,7 @@ def test_targets_of_guided(driving: Bench) -> None:
     assert get(driving, "NAV_CONTROLLER_OUTPUT").nav_bearing == 0, "timed out"
     modes.guided.submode = guided_mode.POSITION
     output = get(driving, "NAV_CONTROLLER_OUTPUT")
-    assert (output.nav_bearing, output.target_bearing, output.wp_dist, output.xtrack_error) == (45, 90, 20, -1.5)
+    assert (output.nav_bearing, output.target_bearing, output.wp_dist, output.xtrack_error) == (0, 90, 20, -1.5)
     target = get(driving, "POSITION_TARGET_GLOBAL_INT")
     assert target.type_mask == 0xFDF8 and target.lat_int == pytest.approx(HOME[0] + 270, abs=1)
 

@@ -13,7 +13,7 @@ from sitl.autopilot.copter.modes.table import TITLES
 from sitl.autopilot.rover.modes.table import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links.inprocess import InProcessLink
-from sitl.core.vectors import Vec3
+from sitl.core.vectors import Vec2, Vec3
 from tests.bridge.fakes import HOME, Bench, Client
 
 SET_INTERVAL, GET_INTERVAL, REQUEST = 511, 510, 512
@@ -21,7 +21,7 @@ ALL_GROUPS = {
     "RAW_IMU", "SCALED_PRESSURE", "SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT",
     "NAV_CONTROLLER_OUTPUT", "SERVO_OUTPUT_RAW", "RC_CHANNELS", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED",
     "ATTITUDE", "SIMSTATE", "AHRS2", "VFR_HUD", "AHRS", "SYSTEM_TIME", "BATTERY_STATUS",
-    "EKF_STATUS_REPORT", "WIND", "VIBRATION", "TERRAIN_REPORT",
+    "EKF_STATUS_REPORT", "WIND", "VIBRATION", "TERRAIN_REPORT", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE2",
 }  # fmt: skip
 
 
@@ -187,10 +187,10 @@ def test_available_modes(bench: Bench) -> None:
 RECORDED = {
     "AHRS", "AHRS2", "ATTITUDE", "BATTERY_STATUS", "EKF_STATUS_REPORT", "GLOBAL_POSITION_INT", "GPS_RAW_INT",
     "HEARTBEAT", "LOCAL_POSITION_NED", "MEMINFO", "MISSION_CURRENT", "POWER_STATUS", "RAW_IMU", "RC_CHANNELS",
-    "RC_CHANNELS_SCALED", "SCALED_PRESSURE", "SERVO_OUTPUT_RAW", "SIMSTATE", "SYSTEM_TIME", "SYS_STATUS", "VFR_HUD",
-    "VIBRATION",
+    "RC_CHANNELS_SCALED", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE", "SCALED_PRESSURE2", "SERVO_OUTPUT_RAW",
+    "SIMSTATE", "SYSTEM_TIME", "SYS_STATUS", "VFR_HUD", "VIBRATION",
 }  # fmt: skip
-"""What a real ArduRover sends once a second in MANUAL, but for second sensors."""
+"""What a real ArduRover sends once a second in MANUAL."""
 IN_GUIDED = {"NAV_CONTROLLER_OUTPUT"}
 
 
@@ -234,11 +234,20 @@ def test_high_latency_by_request(bench: Bench) -> None:
     estimate, v = bench.vehicle.v.autopilot.estimate, bench.vehicle.v
     estimate.pos, estimate.vel = Vec3(100.0, 0.0, -20.0), Vec3(0.0, 3.0, -1.5)
     v.autopilot.battery.remaining_pct = -1.0
-    v.sensors.temperature = 17.6
+    v.autopilot.arming.armed = True
+    v.autopilot.control.motors.throttle_out = 0.36
+    modes, control = v.autopilot.modes, v.autopilot.control
+    modes.number, modes.guided.pos = 4, Vec3(100.0, 95.0, -20.0)
+    control.tick = control.pos_ne.last_tick = control.pos_d.last_tick = 1
+    control.pos_d.pos_error, control.pos_ne.vel_target = -4.0, Vec2(3.0, 4.0)
     (m,) = bench.telemetry("HIGH_LATENCY2")
     assert (m.latitude, m.longitude, m.altitude) == (pytest.approx(HOME[0] + 8983, abs=2), HOME[1], 604)
-    assert (m.groundspeed, m.climb_rate, m.heading, m.battery, m.temperature_air) == (15, 15, 0, -1, 18)
-    assert m.failure_flags & 1 == 0
+    assert (m.groundspeed, m.climb_rate, m.heading, m.battery, m.temperature_air) == (15, 0, 0, -1, -128)
+    assert (m.target_altitude, m.target_heading, m.target_distance) == (608, 45, 9)
+    assert (m.throttle, m.airspeed, m.airspeed_sp, m.wind_heading) == (36, 15, 25, 90)
+    (beat,) = bench.telemetry("HEARTBEAT")
+    assert m.custom0 & 0xFF == beat.base_mode and beat.base_mode & 0x80
+    assert m.failure_flags & 0x803 == 2, "there is no airspeed sensor"
     v.sensors.gps_fix = 1
     assert bench.telemetry("HIGH_LATENCY2")[0].failure_flags & 1 == 1
 

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from sitl.bridge.dialect import message
+from sitl.core.algebra import quat_about_down
+from sitl.core.vectors import Vec3
 from tests.bridge.fakes import HOME, Bench
 
 
@@ -56,6 +58,67 @@ def test_imu_units(bench: Bench) -> None:
     high = get(bench, "HIGHRES_IMU")
     assert high.abs_pressure == 945.0 and high.pressure_alt == pytest.approx(584.0, abs=6.0)
     assert get(bench, "SCALED_PRESSURE").press_abs == 945.0
+
+
+def test_second_imu_and_other_compasses(bench: Bench) -> None:
+    v = bench.vehicle.v
+    v.autopilot.calibrated.acc, v.autopilot.calibrated.acc2 = Vec3(0.0, 0.0, -9.81), Vec3(0.0, 9.81, 0.0)
+    v.autopilot.calibrated.gyro2 = Vec3(0.1, 0.0, 0.0)
+    for name in (f"COMPASS_OFS{k}_{axis}" for k in (2, 3) for axis in "XYZ"):
+        v.autopilot.params[name] = 0.0
+    v.sensors.mag2, v.sensors.mag3 = (0.1, 0.2, 0.3), (0.4, 0.5, 0.6)
+    imu = get(bench, "SCALED_IMU2")
+    assert imu.zacc in (-1000, -1001) and (imu.yacc, imu.xgyro) == (0, 0), "both show the same"
+    v.sensors.imu_state = 1
+    imu = get(bench, "SCALED_IMU2")
+    assert imu.yacc in (1000, 1001) and (imu.zacc, imu.xgyro) == (0, 100)
+    assert (imu.xmag, imu.ymag, imu.zmag) == pytest.approx((100, 200, 300), abs=1)
+    third = get(bench, "SCALED_IMU3")
+    assert (third.xmag, third.ymag, third.zmag) == pytest.approx((400, 500, 600), abs=1)
+    assert (third.xacc, third.zacc, third.xgyro, third.temperature) == (0, 0, 0, 0)
+
+
+def test_the_truth(bench: Bench) -> None:
+    v = bench.vehicle.v
+    body, place = v.physics.body, v.physics.place
+    place.lat, place.lon, place.alt = *HOME[:2], HOME[2]
+    body.pos, body.vel, body.q = Vec3(100.0, 0.0, -20.0), Vec3(1.0, -2.0, 0.5), quat_about_down(0.5)
+    m = get(bench, "SIM_STATE")
+    assert (m.q1, m.q4, m.yaw) == pytest.approx((math.cos(0.25), math.sin(0.25), 0.5), abs=1e-5)
+    assert (m.vn, m.ve, m.vd) == pytest.approx((1.0, -2.0, 0.5), abs=0.011)
+    assert m.alt == pytest.approx(HOME[2] + 20.0, abs=0.01)
+    assert m.lat_int == pytest.approx(HOME[0] + 8983, abs=2) and m.lon_int == HOME[1]
+    assert (m.lat, m.lon) == pytest.approx((m.lat_int, m.lon_int), rel=1e-6), "degE7, as a real one's"
+    assert (m.lat_int, m.yaw) == (get(bench, "SIMSTATE").lat, get(bench, "SIMSTATE").yaw)
+
+
+def test_home_has_no_orientation(bench: Bench) -> None:
+    bench.vehicle.locate()
+    assert all(math.isnan(x) for x in get(bench, "HOME_POSITION").q)
+
+
+def test_channels_are_eight_or_sixteen(bench: Bench) -> None:
+    rc, v = bench.vehicle.v.autopilot.rc, bench.vehicle.v
+    rc.receiver_us = v.time_us
+    rc.channels[:] = 0
+    assert get(bench, "RC_CHANNELS").chancount == 0
+    rc.channels[7] = 1500
+    assert get(bench, "RC_CHANNELS").chancount == 8
+    rc.channels[8] = 1500
+    assert get(bench, "RC_CHANNELS").chancount == 16
+    rc.channels[7] = 0
+    assert get(bench, "RC_CHANNELS").chancount == 16
+
+
+def test_terrain_that_nobody_knows_is_at_sea_level(bench: Bench) -> None:
+    bench.vehicle.locate()
+    terrain, estimate = bench.vehicle.v.autopilot.terrain, bench.vehicle.v.autopilot.estimate
+    estimate.pos = Vec3(0.0, 0.0, -10.0)
+    terrain.asked = True
+    report = get(bench, "TERRAIN_REPORT")
+    assert (report.terrain_height, report.current_height) == (0.0, 594.0)
+    terrain.was_known = True
+    assert get(bench, "TERRAIN_REPORT").current_height == pytest.approx(10.0)
 
 
 def test_heartbeat_and_status(bench: Bench) -> None:
@@ -183,23 +246,23 @@ def test_sensor_health_is_what_the_firmware_knows(bench: Bench) -> None:
 
 def test_gps_accuracies(bench: Bench) -> None:
     sensors = bench.vehicle.v.sensors
-    sensors.gps_eph, sensors.gps_epv = 120, 200
+    sensors.gps_eph, sensors.gps_epv = 121, 200
     raw = get(bench, "GPS_RAW_INT")
     assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (65535, 65535, 0, 0, 0)
     sensors.gps_fix = 3
     raw = get(bench, "GPS_RAW_INT")
-    assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (120, 200, 360, 1000, 120)
+    assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (121, 200, 300, 300, 0)
 
 
 def test_no_channels_without_receiver_or_override(bench: Bench) -> None:
     v = bench.vehicle.v
     assert get(bench, "RC_CHANNELS").chancount == 0
     v.autopilot.rc.channels[:4] = 1500
-    assert get(bench, "RC_CHANNELS").chancount == 16
+    assert get(bench, "RC_CHANNELS").chancount == 8
     v.time_us += 10_000_000
     assert get(bench, "RC_CHANNELS").chancount == 0
     v.autopilot.rc.receiver_us = v.time_us
-    assert get(bench, "RC_CHANNELS").chancount == 16
+    assert get(bench, "RC_CHANNELS").chancount == 8
 
 
 def test_a_message_that_is_left_out_is_told_once(bench: Bench) -> None:

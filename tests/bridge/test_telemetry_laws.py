@@ -20,7 +20,7 @@ from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
 from sitl.bridge.telemetry.ranging import PART, DebugFloatArray, scan
 from sitl.bridge.telemetry.sensors import simstate
 from sitl.bridge.telemetry.shell import shell_builders
-from sitl.bridge.telemetry.status import RECEIVER, system_time
+from sitl.bridge.telemetry.status import ATTITUDE, PROPULSION, RATE, RECEIVER, YAW, system_time
 from sitl.bridge.telemetry.units import boot_ms, heading_cdeg, int16, int32, percent, uint16
 from sitl.bridge.wire.choose import message_of
 from sitl.bridge.wire.port import Port
@@ -100,16 +100,19 @@ def test_attitude(v: Copter) -> None:
 
 
 def test_the_controllers_of_a_firmware_that_rests() -> None:
-    """The copter tells all of them as healthy, the rover those at work."""
     for record, status, idle in (
-        (Copter(), copter.sys_status, copter.CONTROLLERS),
-        (Rover(), rover.sys_status, rover.controllers_at_work(0, False)),
+        (Copter(), copter.sys_status, RATE | ATTITUDE | YAW | PROPULSION),
+        (Rover(), rover.sys_status, 0),
     ):
         v: Any = record
+        assert not says(status, v).onboard_control_sensors_present & RECEIVER, "not seen yet"
+        v.autopilot.rc.receiver_us = 1
+        m = says(status, v)
+        assert m.onboard_control_sensors_present & RECEIVER and not m.onboard_control_sensors_health & RECEIVER
         v.autopilot.rc.receiver_ok = True
         m = says(status, v)
         assert m.onboard_control_sensors_health & copter.CONTROLLERS == idle
-        assert m.onboard_control_sensors_present & m.onboard_control_sensors_health & RECEIVER
+        assert m.onboard_control_sensors_health & RECEIVER
         assert (m.voltage_battery, m.current_battery, m.battery_remaining) == (65535, -1, 0)
 
 

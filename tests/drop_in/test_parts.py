@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import struct
 import sysconfig
@@ -15,6 +16,7 @@ import pytest
 from sitl.autopilot.mission.item import FENCE_INCLUSION, NAV_WAYPOINT, RALLY_POINT, MissionItem, home_item
 from sitl.bridge.services.parameters import ParameterService
 from sitl.bridge.signing import SigningState
+from sitl.core.vectors import Vec3
 from sitl.drop_in.command_line import parse
 from sitl.drop_in.server import Session
 from sitl.drop_in.statistics import SINCE_S, Statistics
@@ -27,6 +29,7 @@ from sitl.logs.dataflash.numbered import NumberedLogs
 from sitl.simulation import Core, Simulation
 from tests import mutations
 from tests.full_disk import WORDS, full_disk
+from tests.logs.dataflash.conftest import read_log
 
 
 @pytest.fixture
@@ -153,6 +156,22 @@ def test_statistics_count_boots_and_time(simulation: Simulation) -> None:
     assert params["STAT_RESET"] == simulation.bridge.epoch_us // 1_000_000 + 96 - SINCE_S
 
 
+def test_statistics_count_flights_and_what_is_flown(simulation: Simulation) -> None:
+    kept: dict[str, float] = {}
+    statistics = Statistics(simulation, kept.__setitem__)
+    ap = simulation.v.autopilot
+    ap.arming.armed, ap.arming.landed = True, False
+    for north in (0.0, 3.0, 3.2, 1000.0):
+        ap.estimate.pos = Vec3(north, 0.0, 0.0)
+        statistics._second()
+    assert "STAT_FLTCNT" not in kept, "up to the last half minute"
+    ap.arming.landed = True
+    statistics._second()
+    assert [kept[f"STAT_{name}"] for name in ("FLTCNT", "FLTTIME", "RUNTIME")] == [1.0, 4.0, 5.0]
+    assert kept["STAT_DISTFLWN"] == 303.0, "less than half a metre in a second is noise, more than 300 m an error"
+    assert simulation.parameters["STAT_DISTFLWN"] == 303.0
+
+
 def test_logs_are_numbered_over_runs(core: Core, tmp_path: Path) -> None:
     folder = tmp_path / "logs"
     for number in (1, 2):
@@ -191,6 +210,25 @@ def test_what_a_fault_sets_is_not_kept(core: Core, tmp_path: Path, monkeypatch: 
     assert {name: value for name, value in kept.items() if name.startswith("SIM_")} == {
         "SIM_WIND_SPD": 3.0, "SIM_RC_FAIL": 2.0,
     }  # fmt: skip
+
+
+def test_logs_tell_defaults_of_files_and_what_is_counted(
+    core: Core, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Session, "_open_ports", lambda session: None)
+    (tmp_path / "files.parm").write_text("WP_SPEED 1.5\nLOG_DISARMED 1\n")
+    session = Session("ardurover", parse(["-w", "--defaults", "files.parm"]), say=lambda text: None)
+    simulation = session.simulation
+    simulation.bridge.get(ParameterService).set("WP_SPEED", 3.0)
+    simulation.advance(31.0)
+    for _ in range(31):
+        session._statistics._second()
+    session.close()
+    rows = [(m.Name, m.Value, m.Default) for m in read_log(tmp_path / "logs" / "00000001.BIN")["PARM"]]
+    assert ("WP_SPEED", 3.0, 1.5) in rows and ("LOG_DISARMED", 1.0, 1.0) in rows
+    later = [(name, value) for name, value, default in rows if math.isnan(default)]
+    assert later == [("STAT_RUNTIME", 30.0)]
 
 
 def test_a_model_that_there_is_not_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

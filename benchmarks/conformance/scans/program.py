@@ -13,6 +13,8 @@ from sitl import vehicles
 from sitl.client import Client
 from sitl.client.connection import Connection
 from sitl.client.errors import CommandRefusedError
+from sitl.logs.dataflash.log import attach
+from sitl.logs.dataflash.numbered import NumberedLogs
 from sitl.missions.manoeuvres import executable
 from sitl.missions.manoeuvres.__main__ import FRAMES, HOME
 from sitl.simulation import Simulation, load_core
@@ -114,16 +116,23 @@ class Programs:
     """Which rows are wanted, as a pattern of the shell."""
 
     @contextmanager
-    def started(self, params: Mapping[str, float] | None = None, seed: int = 0) -> Iterator[Program]:
+    def started(
+        self, params: Mapping[str, float] | None = None, seed: int = 0, folder: Path | None = None
+    ) -> Iterator[Program]:
         """A program on the ground at the start of its time, with the parameters of our airframe and these; it ends with
-        the block."""
+        the block. ``folder``: where its folder ``logs`` is."""
         params = {**vehicles.load(FRAMES[self.kind]).parameters, **(params or {})}
         if self.binary is None:
             core = load_core(KINDS[self.kind])
-            yield Program(Simulation(FRAMES[self.kind], home=HOME, seed=seed, core=core, params=params), self.kind)
+            simulation = Simulation(FRAMES[self.kind], home=HOME, seed=seed, core=core, params=params)
+            if folder is not None:
+                attach(simulation, folder / "logs", NumberedLogs)
+            yield Program(simulation, self.kind)
+            simulation.close()
             return
         path = executable.find(self.binary, self.kind)
-        with executable.started(path, self.kind, HOME, BOOT_SPEEDUP, params, self.instance) as connection:
+        start = (path, self.kind, HOME, BOOT_SPEEDUP, params, self.instance)
+        with executable.started(*start, own=folder) as connection:
             program = Program(connection, self.kind)
             program.wait_ready()
             program.params["SIM_SPEEDUP"] = self.speedup

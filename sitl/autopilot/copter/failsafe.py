@@ -107,6 +107,8 @@ def text(which: int, how: int) -> str | None:
     if how == BATTERY_LANDS:
         return "Radio + Battery Failsafe - Continuing Landing"
     said = failsafe_checks.text(which, how != 0)
+    if which == RADIO and how == AUTO_GOES_ON:
+        return f"{said} - Continuing Auto"
     return f"{said} - {_ENDINGS[how]}" if said and how in _ENDINGS else said
 
 

@@ -118,6 +118,8 @@ class Values:
         self.kept: dict[str, float] = {}
         """What is not in the record: those without effect, as far as they were set, and values that are out of range,
         for which the record has the nearest one that is not."""
+        self.defaults: Mapping[str, float] = {}
+        """Defaults of files, where they are others than the firmware's."""
 
     def __getitem__(self, name: str) -> float:
         value = self.kept.get(name)
@@ -142,6 +144,11 @@ class Values:
                 self.kept.pop(name, None)
             else:
                 self.kept[name] = value
+
+    def default(self, name: str) -> float:
+        """What clients and logs are told as a parameter's default."""
+        parameter = self.table[name]
+        return stored(parameter, self.defaults.get(name, parameter.default))
 
     def state(self) -> tuple[bytes, tuple[tuple[str, float], ...]]:
         """Equal as long as no value has changed, by whomever: the core writes parameters, too."""

@@ -3,30 +3,52 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 from ...autopilot import events, smart_rtl_path
+from ...autopilot.copter.control.altitude_start import is_active_d
+from ...autopilot.copter.control.position_start import is_active_ne
 from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ...vehicle.copter import QUADROTOR
-from ..profile import Profile
+from ..profile import Profile, Targets
 from ..services.service import CRITICAL, EMERGENCY, INFO
 from ..services.setpoints import SetpointService
-from ..telemetry.shell import CAPABILITIES, TERMINATION
+from ..telemetry.motion import global_position
+from ..telemetry.shell import CAPABILITIES, TERMINATION, TERRAIN
 from .autopilot import CopterAutopilot
 from .commands import COMMANDS
 from .core import UNITS
 
+_NO_WIND = 90
+"""A wind from 180 deg [2 deg], as ArduCopter tells the one that it does not know."""
+
+
+def targets(v: Any) -> Targets:
+    """What the position controllers follow; without them, where it is."""
+    control = v.autopilot.control
+    ne, d = control.pos_ne.vel_target, control.pos_d
+    altitude, climb, moves = global_position(v).alt, 0.0, (0.0, 0.0)
+    if is_active_d(control):
+        altitude, climb = altitude - d.pos_error, d.vel_target
+    if is_active_ne(control):
+        moves = (ne.x, ne.y)
+    return Targets(altitude, math.hypot(*moves, climb), _NO_WIND)
+
+
 PROFILE = Profile(
     firmware="ArduCopter",
     mav_type=QUADROTOR,
-    capabilities=CAPABILITIES | TERMINATION,
+    capabilities=CAPABILITIES | TERMINATION | TERRAIN,
     modes=MODES,
     auto=AUTO,
     guided=GUIDED,
     rtl=RTL,
     groups={
-        1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+        1: ("RAW_SENS", ("RAW_IMU", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE", "SCALED_PRESSURE2")),
         2: (
             "EXT_STAT",
             ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "GPS2_RAW",
@@ -40,7 +62,7 @@ PROFILE = Profile(
         12: (
             "EXTRA3",
             ("AHRS", "WIND", "DISTANCE_SENSOR", "RANGEFINDER", "OPTICAL_FLOW", "SYSTEM_TIME", "BATTERY_STATUS",
-             "EKF_STATUS_REPORT", "VIBRATION", "TERRAIN_REPORT",
+             "EKF_STATUS_REPORT", "VIBRATION", "TERRAIN_REPORT", "ESC_TELEMETRY_1_TO_4",
              "GIMBAL_DEVICE_ATTITUDE_STATUS"),
         ),
     },
@@ -56,4 +78,5 @@ PROFILE = Profile(
     },
     core=UNITS,
     autopilot=CopterAutopilot,
+    targets=targets,
 )  # fmt: skip

@@ -31,7 +31,8 @@ _FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
 
 @law
 def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
-    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m]."""
+    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m], as
+    ArduCopter 4.7 has it: negative below the target."""
     modes, control, pos = v.autopilot.modes, v.autopilot.control, v.autopilot.estimate.pos
     euler = control.attitude.target_euler
     if is_guided(modes):
@@ -46,7 +47,7 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     m.nav_roll = euler.roll * DEG
     m.nav_pitch = euler.pitch * DEG
     m.nav_bearing = int16(euler.yaw * DEG)
-    m.alt_error = -control.pos_d.pos_error
+    m.alt_error = control.pos_d.pos_error
     return True
 
 
@@ -60,6 +61,8 @@ TARGET_MASKS = (
     IGNORE_POS | IGNORE_VEL | IGNORE_YAW | IGNORE_YAW_RATE,  # ACCEL
 )
 """By GUIDED's submode: what of the target does not count; others have no such target."""
+LAST_BITS = 0xF000
+"""ArduPilot sets what no bit of POSITION_TARGET_TYPEMASK is, too."""
 LOCAL_NED = 1
 
 
@@ -120,7 +123,7 @@ def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
     m.lat_int = int32(place.lat)
     m.lon_int = int32(place.lon)
     m.alt = estimate.origin_alt - to.z
-    m.type_mask = PLACE
+    m.type_mask = LAST_BITS | PLACE
     return True
 
 

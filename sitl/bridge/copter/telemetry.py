@@ -6,9 +6,12 @@ from __future__ import annotations
 from ...autopilot.avoidance.proximity import has_data
 from ...autopilot.control.pid import pid_gains
 from ...autopilot.copter.control.altitude import altitude_gains
+from ...autopilot.copter.control.altitude_start import is_active_d
+from ...autopilot.copter.control.position_start import is_active_ne
+from ...autopilot.copter.control.state import Control
 from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
-from ...autopilot.copter.modes.table import MODES, NEED_POSITION
+from ...autopilot.copter.modes.table import NEED_POSITION
 from ...autopilot.navigation.state import TAKEOFF
 from ...core.kernels import law
 from ...core.records import Ints
@@ -31,10 +34,11 @@ from ..telemetry.motion import VfrHud
 from ..telemetry.status import (
     ALTITUDE,
     ATTITUDE,
-    MOTORS,
     POSITION,
+    PROPULSION,
     PROXIMITY,
     RATE,
+    TERRAIN,
     VISION,
     YAW,
     MissionCurrent,
@@ -70,35 +74,36 @@ def heartbeat(m: Heartbeat, v: Copter) -> bool:
     return fill_heartbeat(m, v, mav_type(v.autopilot.control.motors.count), base, state)
 
 
-POSITION_MODES = tuple(mode.number for mode in MODES if mode.needs_position or mode.uses_position)
-ALTITUDE_MODES = tuple(mode.number for mode in MODES if not mode.manual_throttle)
-CONTROLLERS = RATE | ATTITUDE | YAW | ALTITUDE | POSITION | MOTORS
+CONTROLLERS = RATE | ATTITUDE | YAW | ALTITUDE | POSITION | PROPULSION
 """Bits of SYS_STATUS"""
 
 
 @law
-def controllers_at_work(mode: int, armed: bool) -> int:
-    """Bits of the controllers that a mode uses."""
-    bits = RATE | ATTITUDE | YAW
-    if mode in POSITION_MODES:
+def controllers_at_work(control: Control) -> int:
+    """Bits of the controllers that run."""
+    bits = RATE | ATTITUDE | YAW | PROPULSION
+    if is_active_ne(control):
         bits |= POSITION
-    if mode in ALTITUDE_MODES:
+    if is_active_d(control):
         bits |= ALTITUDE
-    if armed:
-        bits |= MOTORS
     return bits
 
 
 @law
 def sys_status(m: SysStatus, v: Copter) -> bool:
     """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
-    at_work = controllers_at_work(v.autopilot.modes.number, v.autopilot.arming.armed)
-    looks = PROXIMITY if v.autopilot.proximity.kind != 0 else 0
-    sees = looks if has_data(v.autopilot.proximity, v.time_us) else 0
-    if v.autopilot.params.PLND.ENABLED != 0.0:
+    ap = v.autopilot
+    at_work = controllers_at_work(ap.control)
+    healthy = at_work & ~PROPULSION if ap.control.motors.boosting else at_work
+    looks = PROXIMITY if ap.proximity.kind != 0 else 0
+    sees = PROXIMITY if looks == 0 or has_data(ap.proximity, v.time_us) else 0
+    if ap.params.PLND.ENABLED != 0.0:
         looks |= VISION
-        sees |= VISION if v.autopilot.landing_target.sees else 0
-    return status.sys_status(m, v, CONTROLLERS | looks, at_work | looks, CONTROLLERS | sees)
+        sees |= VISION if ap.landing_target.sees else 0
+    if ap.params.TERRAIN.ENABLE != 0.0:
+        looks |= TERRAIN
+        sees |= TERRAIN
+    return status.sys_status(m, v, CONTROLLERS | looks, at_work | looks, healthy | sees)
 
 
 @law

@@ -24,7 +24,7 @@ class TerrainReport(Message, name="TERRAIN_REPORT"):
 @law
 def terrain_report(m: TerrainReport, v: Copter) -> bool:
     """TERRAIN_REPORT: position, terrain altitude [m above sea level], altitude above terrain, numbers of missing and
-    loaded parts of the grid; spacing 0: no data here, altitudes use the last known terrain."""
+    loaded parts of the grid; spacing 0: no data here, altitudes use the last known terrain, else that at sea level."""
     ap = v.autopilot
     t = ap.terrain
     difference = ap.home.pos.z - by_grid(t, ap.estimate.pos, ap.home.pos.z).d
@@ -32,7 +32,8 @@ def terrain_report(m: TerrainReport, v: Copter) -> bool:
     m.lat, m.lon = place.lat, place.lon
     m.spacing = uint16(float(t.spacing)) if t.is_known else 0
     m.terrain_height = t.home + difference + t.offset
-    m.current_height = ap.home.pos.z - ap.estimate.pos.z - difference
+    known = t.was_known or not t.asked
+    m.current_height = ap.home.pos.z - ap.estimate.pos.z - difference if known else place.alt
     m.pending, m.loaded = uint16(float(t.pending)), uint16(float(t.loaded))
     return True
 

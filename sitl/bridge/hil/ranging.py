@@ -15,7 +15,7 @@ import numpy as np
 from ...core.record_reader import RecordReader
 from ...physics.native.ranging import show_lidar
 from ..dialect import message
-from ..telemetry.builder import build
+from ..telemetry.plain import build
 from ..telemetry.ranging import FACING_DOWN, PART, SCAN_NAME, distance_sensor, obstacle_distance, scan
 from ..wire.port import Port
 from .protocol import LATEST_US, RefusedError

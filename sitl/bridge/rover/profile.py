@@ -3,17 +3,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
-from ...autopilot.rover.modes.table import MODES
+from ...autopilot.rover.modes.table import MODES, is_autonomous
 from ...vehicle.rover import GROUND_ROVER
-from ..profile import Profile
+from ..profile import Profile, Targets
 from ..telemetry.shell import CAPABILITIES
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
 from .core import UNITS
 from .setpoints import RoverSetpoints
+
+
+def targets(v: Any) -> Targets:
+    """The speed that it wants where it drives itself."""
+    ap = v.autopilot
+    return Targets(speed=abs(float(ap.control.speed.desired)) if is_autonomous(ap.modes.number) else 0.0)
+
 
 PROFILE = Profile(
     firmware="ArduRover",
@@ -24,7 +33,7 @@ PROFILE = Profile(
     guided=GUIDED,
     rtl=RTL,
     groups={
-        1: ("RAW_SENS", ("RAW_IMU", "SCALED_PRESSURE")),
+        1: ("RAW_SENS", ("RAW_IMU", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE", "SCALED_PRESSURE2")),
         2: (
             "EXT_STAT",
             ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "GPS2_RAW",
@@ -47,4 +56,6 @@ PROFILE = Profile(
     texts={},
     core=UNITS,
     autopilot=RoverAutopilot,
+    silent=frozenset((83, 85, 136, 168, 11030, 11038)),
+    targets=targets,
 )  # fmt: skip

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ...autopilot.rover.modes.guided import GUIDED, HEADING_AND_SPEED
-from ...autopilot.rover.modes.mode import END_OF_PATH, NO_PLACE, PLACE_TO_STAY
+from ...autopilot.rover.modes.mode import END_OF_PATH, NO_PLACE
 from ...autopilot.rover.modes.table import destination, is_autonomous
 from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
@@ -26,16 +26,17 @@ class NavControllerOutput(Message, name="NAV_CONTROLLER_OUTPUT"):
 
 @law
 def nav_controller_output(m: NavControllerOutput, v: Rover) -> bool:
-    """NAV_CONTROLLER_OUTPUT: bearings [deg], distance and cross-track error [m]; nothing in the pilot's modes."""
+    """NAV_CONTROLLER_OUTPUT: bearings [deg], distance and cross-track error [m]; nothing in the pilot's modes.
+
+    As in ArduRover, ``nav_bearing`` is 0 on the way to places: what steers there is a turn rate.
+    """
     modes, pos = v.autopilot.modes, v.autopilot.estimate.pos
     if not is_autonomous(modes.number):
         return False
     to = destination(modes.number, modes)
     if to.kind != NO_PLACE:
-        steered_to = to.place if to.kind == PLACE_TO_STAY else v.autopilot.control.position.pos_target
         m.wp_dist = uint16(hypot(to.place.x - pos.x, to.place.y - pos.y))
         m.target_bearing = int16(atan2(to.place.y - pos.y, to.place.x - pos.x) * DEG)
-        m.nav_bearing = int16(atan2(steered_to.y - pos.y, steered_to.x - pos.x) * DEG)
     elif modes.number == GUIDED and modes.guided.submode == HEADING_AND_SPEED and modes.guided.has_target:
         m.nav_bearing = int16(modes.guided.heading * DEG)
     if to.kind == END_OF_PATH:

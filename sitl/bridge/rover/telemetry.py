@@ -29,7 +29,7 @@ from ..telemetry.heartbeat import (
     fill_heartbeat,
 )
 from ..telemetry.motion import VfrHud
-from ..telemetry.status import ATTITUDE, MOTORS, POSITION, RATE, YAW, MissionCurrent, SysStatus
+from ..telemetry.status import ATTITUDE, POSITION, RATE, YAW, MissionCurrent, SysStatus
 from ..telemetry.tuning import STEERING, VERTICAL, PidTuning, fill_tuning, next_loop
 from ..telemetry.units import DEG, boot_ms, int16
 from ..wire.message import Message
@@ -59,28 +59,26 @@ def heartbeat(m: Heartbeat, v: Rover) -> bool:
     return fill_heartbeat(m, v, GROUND_ROVER, base, state)
 
 
-CONTROLLERS = RATE | ATTITUDE | YAW | POSITION | MOTORS
+CONTROLLERS = RATE | ATTITUDE | YAW | POSITION
 """Bits of SYS_STATUS"""
 CONTROLLED_MODES = numbers(MODES, "controlled")
 
 
 @law
-def controllers_at_work(mode: int, armed: bool) -> int:
+def controllers_at_work(mode: int) -> int:
     """Bits of the controllers that a mode uses."""
     bits = 0
     if mode in CONTROLLED_MODES:
         bits |= RATE | ATTITUDE
     if is_autonomous(mode):
         bits |= YAW | POSITION
-    if armed:
-        bits |= MOTORS
     return bits
 
 
 @law
 def sys_status(m: SysStatus, v: Rover) -> bool:
     """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
-    at_work = controllers_at_work(v.autopilot.modes.number, v.autopilot.arming.armed)
+    at_work = controllers_at_work(v.autopilot.modes.number)
     return status.sys_status(m, v, CONTROLLERS, at_work, at_work)
 
 
@@ -115,13 +113,7 @@ def vfr_hud(m: VfrHud, v: Rover) -> bool:
 class RcChannelsScaled(Message, name="RC_CHANNELS_SCALED"):
     time_boot_ms: int
     chan1_scaled: int
-    chan2_scaled: int
     chan3_scaled: int
-    chan4_scaled: int
-    chan5_scaled: int
-    chan6_scaled: int
-    chan7_scaled: int
-    chan8_scaled: int
     rssi: int
 
 
@@ -144,7 +136,6 @@ def rc_channels_scaled(m: RcChannelsScaled, v: Rover) -> bool:
     m.time_boot_ms = boot_ms(v.time_us)
     m.chan1_scaled = int16(first * 1e4)
     m.chan3_scaled = int16(third * 1e4)
-    m.chan2_scaled = m.chan4_scaled = m.chan5_scaled = m.chan6_scaled = m.chan7_scaled = m.chan8_scaled = -1
     m.rssi = 255
     return True
 

@@ -7,6 +7,7 @@ from .commands import CommandService
 from .compass_calibration import CompassCalibrationService
 from .config_error import ConfigErrorService
 from .faults import FaultService
+from .flight_state import FlightStateService
 from .ftp import FtpService
 from .gripper import GripperService
 from .high_latency import HighLatencyService
@@ -60,6 +61,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     SenderService,
     FaultService,
     TerrainService,
+    FlightStateService,
 )
 """In the order in which they act when several are due at the same time."""
 _registered: list[type[Service]] = []

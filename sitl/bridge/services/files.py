@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files that MAVLink FTP serves: parameters, missions (which it takes, too), logs, links, what parameters mean.
+"""The files that MAVLink FTP serves: parameters, missions (which it takes, too), logs, links, what parameters mean, and
+what clients have made (``client_files.py``).
 
 As ArduPilot's: ``@SYS/`` tells of the running system, ``@MISSION/`` has mission, fence and rally points as items of
 MISSION_ITEM_INT behind a header of five numbers, ``logs/`` the on-board logs.
@@ -13,6 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .. import metadata
+from .client_files import ClientFiles
 from .mission import FENCE, MISSION, RALLY, MissionService
 from .mission_upload import ITEM_INT, to_int
 from .parameters import ParameterService
@@ -59,10 +61,11 @@ class Log:
         return found ^ 0xFFFFFFFF
 
 
-def read(bridge: Bridge, path: str, queries: list[str]) -> bytes | Log | None:
+def read(bridge: Bridge, clients: ClientFiles, path: str, queries: list[str]) -> bytes | Log | None:
     """What is in a file now; None: there is none.
 
     Args:
+        clients: what clients have made.
         path: without a slash before it.
         queries: what stands behind its "?".
     """
@@ -75,20 +78,22 @@ def read(bridge: Bridge, path: str, queries: list[str]) -> bytes | Log | None:
         return _system(bridge)[path]()
     if path in (logs := _logs(bridge)) and bridge.logs is not None:
         return Log(bridge.logs, logs[path])
-    return metadata.files(values.table).get(path)
+    return metadata.files(values.table).get(path, clients.read(path))
 
 
-def listing(bridge: Bridge, path: str) -> list[str] | None:
+def listing(bridge: Bridge, clients: ClientFiles, path: str) -> list[str] | None:
     """Entries of a folder, as FTP tells them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
-    sizes = {name: len(file()) for name, file in _system(bridge).items()}
+    sizes = {f"@SYS/{name}": UNKNOWN_SIZE for name in SYSTEM}
+    sizes |= {name: len(file()) for name, file in _system(bridge).items()}
     sizes |= {name: entry.size for name, entry in _logs(bridge).items()}
     folder = path.strip("/")
     folder = "" if folder == "." else folder
     if folder:
         found = [f"F{name[len(folder) + 1 :]}\t{size}" for name, size in sizes.items() if name.startswith(folder + "/")]
-        return found or None
+        made = clients.listing(folder)
+        return found or (None if made is None else ["D.", "D..", *made])
     folders = {name.split("/")[0] for name in sizes}
-    return ["D.", "D..", *(f"D{name}" for name in sorted(folders))]
+    return ["D.", "D..", *(f"D{name}" for name in sorted(folders)), *(clients.listing("") or ())]
 
 
 def pack_mission(bridge: Bridge, kind: int) -> bytes:
@@ -109,6 +114,15 @@ def write(bridge: Bridge, path: str, data: bytes) -> bool:
     starts = range(MISSION_HEADER.size, len(data), _ITEM_BYTES)
     rows = [ITEM_INT.decode(data[at : at + _ITEM_BYTES]) for at in starts]
     return bridge.get(MissionService).take(MISSIONS[path], rows)
+
+
+SYSTEM = (
+    "threads.txt", "tasks.txt", "dma.txt", "memory.txt", "uarts.txt", "timers.txt", "can_log.txt", "can0_stats.txt",
+    "can1_stats.txt", "crash_dump.bin", "storage.bin",
+)  # fmt: skip
+"""What ArduPilot lists in @SYS; those of the board and its memory cannot be read there, either."""
+UNKNOWN_SIZE = 100_000
+"""As ArduPilot lists a file whose size is known only when it is read."""
 
 
 def _system(bridge: Bridge) -> Mapping[str, Reader]:

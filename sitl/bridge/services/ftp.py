@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """MAVLink FTP (https://mavlink.io/en/services/ftp.html): lists and reads the files of ``files.py``, tells their CRC-32,
-and takes missions as files.
+takes missions as files, and keeps files and folders of clients (``client_files.py``).
 
 Everything else is refused by its own error.
 """
@@ -16,13 +16,15 @@ from ..dialect import message
 from ..metadata import file_crc
 from ..wire.port import NEVER
 from . import files
+from .client_files import ClientFiles
 from .service import Handler, Sender, Service
 
 KIND = message("FILE_TRANSFER_PROTOCOL")
 HEADER = struct.Struct("<HBBBBBBI")
 """sequence, session, opcode, size, request opcode, burst complete, padding, offset"""
 DATA_BYTES = 239
-TERMINATE, RESET, LIST, OPEN_READ, READ, CREATE, WRITE, CRC, BURST_READ = 1, 2, 3, 4, 5, 6, 7, 14, 15
+NONE, TERMINATE, RESET, LIST, OPEN_READ, READ, CREATE, WRITE, REMOVE, MAKE_FOLDER, REMOVE_FOLDER = range(11)
+OPEN_WRITE, RENAME, CRC, BURST_READ = 11, 13, 14, 15
 ACK, NAK = 128, 129
 FAIL, INVALID_DATA_SIZE, INVALID_SESSION, END_OF_FILE, UNKNOWN_COMMAND, FILE_PROTECTED, FILE_NOT_FOUND = (
     1,
@@ -37,7 +39,7 @@ MOST_WRITTEN = 1 << 20
 """Bytes of a file that is written."""
 COPY_US, COPIES = 1_000_000, 16
 """A copy of a request comes at most so late, and behind at most so many others."""
-_OF_SESSIONS = (TERMINATE, RESET, OPEN_READ, CREATE)
+_OF_SESSIONS = (TERMINATE, RESET, OPEN_READ, CREATE, REMOVE, MAKE_FOLDER, REMOVE_FOLDER, OPEN_WRITE, RENAME)
 BURST_EVERY_US = 10_000
 BURST_AT_ONCE = 10
 """Packets every 10 ms of simulated time."""
@@ -82,13 +84,20 @@ class FtpService(Service):
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
         self._answered: dict[Channel, _Answered] = {}
+        self._clients = ClientFiles()
         self._summed: tuple[Any, int] = (None, 0)
         """The file whose checksum was worked out last, and that."""
         self._operations: dict[int, Callable[[_Request], None]] = {
+            NONE: lambda request: self._reply(request, b""),
             LIST: self._list,
+            REMOVE: lambda request: self._change(request, self._clients.remove),
+            MAKE_FOLDER: lambda request: self._change(request, self._clients.make_folder),
+            REMOVE_FOLDER: lambda request: self._change(request, self._clients.remove_folder),
+            RENAME: self._rename,
             CRC: self._crc,
             OPEN_READ: self._open,
             CREATE: self._create,
+            OPEN_WRITE: self._open_to_write,
             WRITE: self._write,
             READ: self._read,
             BURST_READ: self._burst,
@@ -152,7 +161,7 @@ class FtpService(Service):
         found = self._sessions.get(request.channel)
         if found is not None and (request.opcode == RESET or found.number == request.session):
             del self._sessions[request.channel]
-            if found.written and request.opcode == TERMINATE:
+            if found.written in files.MISSIONS and request.opcode == TERMINATE:
                 if not files.write(self.bridge, found.written, found.data[:]):
                     self._refuse(request, FAIL)
                     return
@@ -165,12 +174,38 @@ class FtpService(Service):
             self._reply(request, struct.pack("<I", len(data)))
 
     def _create(self, request: _Request) -> None:
-        path = self._path(request).lstrip("/")
-        if path in files.MISSIONS:
-            self._sessions[request.channel] = _Session(b"", request.sender, request.session, path)
-            self._reply(request, b"")
+        path = self._path(request)
+        error = 0 if path in files.MISSIONS else self._clients.create(path)
+        self._begin_to_write(request, path, b"", error if request.data else INVALID_DATA_SIZE)
+
+    def _open_to_write(self, request: _Request) -> None:
+        path = self._path(request)
+        data = self._clients.read(path)
+        self._begin_to_write(request, path, data or b"", FILE_NOT_FOUND if data is None else 0)
+
+    def _begin_to_write(self, request: _Request, path: str, data: bytes, error: int) -> None:
+        if error:
+            self._refuse(request, error)
+            return
+        self._sessions[request.channel] = _Session(data, request.sender, request.session, path)
+        self._reply(request, b"")
+
+    def _change(self, request: _Request, change: Callable[[str], int]) -> None:
+        """Make or remove what one path names."""
+        error = change(self._path(request)) if request.data else INVALID_DATA_SIZE
+        if error:
+            self._refuse(request, error)
         else:
-            self._refuse(request, FILE_PROTECTED)
+            self._reply(request, b"")
+
+    def _rename(self, request: _Request) -> None:
+        """Two paths with a zero between them."""
+        old, between, _ = request.data.partition(b"\0")
+        new = request._replace(data=request.data[len(old) + 1 :])
+        if not (old and between and self._path(new)):
+            self._refuse(request, INVALID_DATA_SIZE)
+        else:
+            self._change(request, lambda path: self._clients.rename(path, self._path(new)))
 
     def _write(self, request: _Request) -> None:
         found = self._session(request)
@@ -180,7 +215,12 @@ class FtpService(Service):
         if not found.written or end > MOST_WRITTEN:
             self._refuse(request, FAIL)
             return
-        found.data = bytes(found.data[: request.offset]).ljust(request.offset, b"\0") + request.data + found.data[end:]
+        data = bytes(found.data[: request.offset]).ljust(request.offset, b"\0") + request.data + found.data[end:]
+        error = 0 if found.written in files.MISSIONS else self._clients.write(found.written, data)
+        if error:
+            self._refuse(request, error)
+            return
+        found.data = data
         self._reply(request, struct.pack("<I", len(request.data)), request.offset)
 
     def _crc(self, request: _Request) -> None:
@@ -193,12 +233,13 @@ class FtpService(Service):
         self._reply(request, struct.pack("<I", self._summed[1]))
 
     def _path(self, request: _Request) -> str:
-        return request.data.split(b"\0", 1)[0].decode("ascii", "replace")
+        """Without slashes before and behind it."""
+        return request.data.split(b"\0", 1)[0].decode("ascii", "replace").strip("/")
 
     def _file(self, request: _Request) -> bytes | files.Log | None:
         """What is in the file that is asked for; None when there is none, which the client is told."""
         path, _, query = self._path(request).partition("?")
-        data = files.read(self.bridge, path.lstrip("/"), query.split("&"))
+        data = files.read(self.bridge, self._clients, path, query.split("&"))
         if data is None:
             self._refuse(request, FILE_NOT_FOUND)
         return data
@@ -208,7 +249,7 @@ class FtpService(Service):
         if not request.data:
             self._refuse(request, INVALID_DATA_SIZE)
             return
-        entries = files.listing(self.bridge, self._path(request))
+        entries = files.listing(self.bridge, self._clients, self._path(request))
         if entries is None:
             self._refuse(request, FILE_NOT_FOUND)
             return
@@ -257,10 +298,11 @@ class FtpService(Service):
             for channel, s in self._sessions.items()
         )
         answered = tuple((c.number, a.request[1:], a.reply, a.time_us) for c, a in self._answered.items())
-        return (sessions, answered, self.due_us)
+        return (sessions, answered, self.due_us, self._clients.state())
 
     def restore(self, state: Any) -> None:
-        sessions, answered, self.due_us = state
+        sessions, answered, self.due_us, made = state
+        self._clients.restore(made)
         channels = {channel.number: channel for channel in self.bridge.channels} if answered else {}
         self._answered = {
             channels[number]: _Answered(_Request(channels[number], *request), reply, time_us)

@@ -67,7 +67,7 @@ class ParameterService(Service):
         state = self._values.state()
         before = self._packed.get(with_defaults)
         if before is None or before[0] != state:
-            listed = [(p, self._values[p.name]) for p in self._values.listed()]
+            listed = [(p, self._values[p.name], self._values.default(p.name)) for p in self._values.listed()]
             before = self._packed[with_defaults] = (state, pack_parameters(listed, with_defaults))
         return before[1]
 
@@ -186,18 +186,20 @@ HAS_DEFAULT = 1
 _TYPES = {INT8: (1, "b"), INT16: (2, "h"), INT32: (3, "i"), FLOAT: (4, "f")}
 
 
-def pack_parameters(values: Sequence[tuple[Parameter, float]], with_defaults: bool) -> bytes:
-    """The file's bytes. With defaults, a parameter that differs from its default carries both."""
+def pack_parameters(values: Sequence[tuple[Parameter, float, float]], with_defaults: bool) -> bytes:
+    """The file's bytes, of parameters with value and default.
+
+    With defaults, a parameter that differs from its default carries both.
+    """
     magic = MAGIC_WITH_DEFAULTS if with_defaults else MAGIC
     parts = [struct.pack("<HHH", magic, len(values), len(values))]
     before = b""
-    for parameter, value in values:
+    for parameter, value, default in values:
         name = parameter.name.encode("ascii")
         shared = 0
         while shared < min(len(name) - 1, len(before), 15) and name[shared] == before[shared]:
             shared += 1
         number, code = _TYPES[parameter.kind]
-        default = stored(parameter, parameter.default)
         both = with_defaults and default != value
         flags = HAS_DEFAULT if both else 0
         parts.append(bytes((number | flags << 4, shared | (len(name) - shared - 1) << 4)) + name[shared:])

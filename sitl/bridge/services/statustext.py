@@ -13,6 +13,7 @@ from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, 
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
+from .flight_state import FlightStateService
 from .home import HomeService
 from .service import CRITICAL, INFO, WARNING, Service
 from .terrain import TerrainService
@@ -176,6 +177,7 @@ class EventService(Service):
                 self.bridge.get(StatusTextService).say(note.severity, note.text)
             elif isinstance(note, ItemReached):
                 self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
+                self.bridge.get(FlightStateService).reached(note.seq)
                 for listener in self.bridge.listeners:
                     listener.reached(note.seq)
             elif isinstance(note, OutputItem):

@@ -22,9 +22,12 @@ from .statustext import StatusTextService
 from .terrain import REPORT, TerrainService
 
 AVAILABLE_MODES = message("AVAILABLE_MODES")
-OF_PARTS = (132, 173, 246, 280, 281, 285, 301, 9005)
-"""Messages of range-finders, other traffic, gimbal and winch: one may ask for them where the part is missing or off;
-nothing comes then, as from ArduPilot."""
+OF_PARTS = frozenset(
+    (22, 35, 127, 128, 132, 133, 143, 173, 180, 191, 192, 225, 226, 246, 259, 260, 262, 269, 271, 277, 280, 281, 285,
+     295, 301, 373, 9005, 10008)
+)  # fmt: skip
+"""Messages of parts (range-finder, airspeed sensor, camera, gimbal, winch, generator, ...) or of moments: one may ask
+for them where the part is missing or off; nothing comes then, as from ArduPilot."""
 AUTOMATIC = 4
 """MAV_MODE_PROPERTY_AUTO_MODE: moves without the pilot's sticks."""
 NOT_SELECTABLE = 2
@@ -179,11 +182,14 @@ class StreamService(Service):
         return ACCEPTED if known else FAILED
 
     def request_message(self, channel: Channel, command: Command) -> int:
-        """MAV_CMD_REQUEST_MESSAGE: p1 message id, p2 number of the mode for AVAILABLE_MODES (0: all), of the
-        message for MESSAGE_INTERVAL."""
-        if int(command.p1) == INTERVAL.id:
-            return self.get_interval(channel, command._replace(p1=command.p2))
+        """MAV_CMD_REQUEST_MESSAGE: p1 message id; p2 number of the mode for AVAILABLE_MODES (0: all), or of the message
+        for MESSAGE_INTERVAL."""
         if int(command.p1) == AVAILABLE_MODES.id:
             return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
-        result = self.bridge.send_after_answer(channel, int(command.p1))
-        return ACCEPTED if int(command.p1) in OF_PARTS else result
+        if int(command.p1) == INTERVAL.id:
+            return self.get_interval(channel, command._replace(p1=command.p2))
+        number = int(command.p1)
+        if number == TIMESYNC:
+            return FAILED
+        result = self.bridge.send_after_answer(channel, number)
+        return ACCEPTED if number in OF_PARTS | self.bridge.profile.silent else result

@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
-from ...core.records import as_bytes
-from ...vehicle.record import Vehicle
 from ..dialect import message
 from ..wire.choose import Builder, message_of
-from ..wire.message import Message
-from ..wire.port import Port
 from . import channels, fence, flow, motion, ranging, sensors, status
+from .plain import build
 from .shell import shell_builders
 
 if TYPE_CHECKING:
@@ -64,17 +61,3 @@ def shell_messages(bridge: Bridge) -> dict[int, Callable[[], bytes]]:
 def by_number(builders: tuple[Builder, ...]) -> dict[int, Builder]:
     """Laws by the number of the message that each builds."""
     return {message_of(builder).kind.id: builder for builder in builders}
-
-
-@cache
-def _kind(builder: Builder) -> tuple[type[Message], bool]:
-    """(The message that a law builds, whether it takes the port.)"""
-    return message_of(builder), builder.__code__.co_argcount == 3  # type: ignore[attr-defined]
-
-
-def build(builder: Builder, v: Vehicle, port: Port) -> bytes:
-    """The payload that a law builds now, in plain Python; empty when the vehicle has nothing to say."""
-    cls, takes_port = _kind(builder)
-    m: Any = cls()
-    said = builder(m, v, port) if takes_port else builder(m, v)
-    return bytes(as_bytes(m, cls.dtype)) if said else b""

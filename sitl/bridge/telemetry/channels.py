@@ -8,8 +8,8 @@ from ...vehicle.record import Vehicle
 from ..wire.message import Message
 from .units import boot_ms, uint16
 
-CHANNELS = 16
-"""chancount of a receiver, as ArduPilot tells it."""
+CHANNELS, MORE_CHANNELS = 8, 16
+"""chancount of a receiver, without and with pulses on more than eight channels."""
 UNKNOWN = 255
 """rssi"""
 
@@ -64,7 +64,7 @@ def rc_channels(m: RcChannels, v: Vehicle, receiver_timeout: float) -> bool:
     if v.time_us - v.autopilot.rc.receiver_us < receiver_timeout * 1e6:
         for k in range(len(pulses)):
             if pulses[k] != 0:
-                m.chancount = CHANNELS
+                m.chancount = CHANNELS if k < CHANNELS and m.chancount != MORE_CHANNELS else MORE_CHANNELS
     m.rssi = UNKNOWN
     return True
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from ...autopilot.estimation.status import POS_HORIZ_REL
@@ -17,6 +18,8 @@ from ..wire.message import Message
 from .units import DEG, boot_ms, heading_cdeg, int16, int32, uint16
 
 UNKNOWN = 65535
+ACCURACY_OF_HDOP, ACCURACY_OF_VDOP = 300.0 / 121.0, 300.0 / 200.0
+"""Accuracy of a fix by a hundredth of its dilution [mm]: 0.3 m of ArduPilot's simulated receiver (1.21, 2.00)."""
 
 
 class GlobalPosition(NamedTuple):
@@ -141,7 +144,7 @@ class HomePosition(Message, name="HOME_POSITION"):
 
 @law
 def home_position(m: HomePosition, v: Vehicle) -> bool:
-    """HOME_POSITION: degE7, mm, and NED metres from the origin; nothing until home is set."""
+    """HOME_POSITION: degE7, mm, and NED metres from the origin, no orientation; nothing until home is set."""
     home = v.autopilot.home
     m.latitude = int32(home.lat)
     m.longitude = int32(home.lon)
@@ -149,7 +152,8 @@ def home_position(m: HomePosition, v: Vehicle) -> bool:
     m.x = home.pos.x
     m.y = home.pos.y
     m.z = home.pos.z
-    m.q[0] = 1.0
+    for k in range(len(m.q)):
+        m.q[k] = math.nan
     m.time_usec = v.time_us
     return home.is_set
 
@@ -186,7 +190,6 @@ class GpsRawInt(Message, name="GPS_RAW_INT"):
     alt_ellipsoid: int
     h_acc: int
     v_acc: int
-    vel_acc: int
 
 
 class Gps2Raw(Message, name="GPS2_RAW"):
@@ -203,13 +206,13 @@ class Gps2Raw(Message, name="GPS2_RAW"):
     alt_ellipsoid: int
     h_acc: int
     v_acc: int
-    vel_acc: int
 
 
 @law
 def fill_fix(m: GpsRawInt | Gps2Raw, s: GpsReading) -> None:
-    """A receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] are 0.3 m x HDOP and 0.5 m x VDOP,
-    vel_acc [mm/s] is 0.1 m/s x HDOP; the heading's accuracy is not known (0).
+    """A receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] follow from the dilutions.
+
+    The accuracies of speed and heading are not known (0), as with ArduPilot's simulated receiver.
     """
     vel = s.gps_vel
     m.time_usec = s.gps_time_us
@@ -224,9 +227,8 @@ def fill_fix(m: GpsRawInt | Gps2Raw, s: GpsReading) -> None:
     if s.gps_fix >= 2:
         m.eph = uint16(s.gps_eph)
         m.epv = uint16(s.gps_epv)
-        m.h_acc = m.eph * 3
-        m.v_acc = m.epv * 5
-        m.vel_acc = m.eph
+        m.h_acc = int32(ACCURACY_OF_HDOP * m.eph)
+        m.v_acc = int32(ACCURACY_OF_VDOP * m.epv)
 
 
 @law

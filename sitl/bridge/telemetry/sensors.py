@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from ...autopilot.sensor_calibration import field_of
 from ...autopilot.vibration import vibration_levels
 from ...core.algebra import euler_of
-from ...core.border import BAROS_DIFFER, ONE_BARO
+from ...core.border import BAROS_DIFFER, IMUS_DIFFER, ONE_BARO
 from ...core.constants import GRAVITY
 from ...core.elementary import pow
 from ...core.kernels import law
-from ...core.vectors import Quat
+from ...core.vectors import Quat, Vec3
 from ...physics.carried import MILLIG, Carried, carried
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
@@ -67,11 +68,30 @@ class ScaledImu(Message, name="SCALED_IMU"):
     temperature: int
 
 
+class ScaledImu2(Message, name="SCALED_IMU2"):
+    time_boot_ms: int
+    xacc: int
+    yacc: int
+    zacc: int
+    xgyro: int
+    ygyro: int
+    zgyro: int
+    xmag: int
+    ymag: int
+    zmag: int
+    temperature: int
+
+
+class ScaledImu3(Message, name="SCALED_IMU3"):
+    time_boot_ms: int
+    xmag: int
+    ymag: int
+    zmag: int
+
+
 @law
-def scaled_imu(m: ScaledImu, v: Vehicle) -> bool:
-    """SCALED_IMU: mG, mrad/s, mgauss."""
-    s, c = v.sensors, v.autopilot.calibrated
-    acc, gyro, mag = c.acc, c.gyro, c.mag
+def fill_imu(m: ScaledImu | ScaledImu2, v: Vehicle, acc: Vec3, gyro: Vec3) -> None:
+    """What an IMU shows: mG, mrad/s, centidegrees Celsius."""
     m.time_boot_ms = boot_ms(v.time_us)
     m.xacc = int16(acc.x * MILLIG_PER_ACC)
     m.yacc = int16(acc.y * MILLIG_PER_ACC)
@@ -79,10 +99,41 @@ def scaled_imu(m: ScaledImu, v: Vehicle) -> bool:
     m.xgyro = int16(gyro.x * 1000.0)
     m.ygyro = int16(gyro.y * 1000.0)
     m.zgyro = int16(gyro.z * 1000.0)
-    m.xmag = int16(mag.x * 1000.0)
-    m.ymag = int16(mag.y * 1000.0)
-    m.zmag = int16(mag.z * 1000.0)
-    m.temperature = int16(s.temperature * 100.0)
+    m.temperature = int16(v.sensors.temperature * 100.0)
+
+
+@law
+def fill_field(m: ScaledImu | ScaledImu2 | ScaledImu3, field: Vec3) -> None:
+    """What a compass shows [mgauss]."""
+    m.xmag = int16(field.x * 1000.0)
+    m.ymag = int16(field.y * 1000.0)
+    m.zmag = int16(field.z * 1000.0)
+
+
+@law
+def scaled_imu(m: ScaledImu, v: Vehicle) -> bool:
+    """SCALED_IMU: mG, mrad/s, mgauss."""
+    c = v.autopilot.calibrated
+    fill_imu(m, v, c.acc, c.gyro)
+    fill_field(m, c.mag)
+    return True
+
+
+@law
+def scaled_imu2(m: ScaledImu2, v: Vehicle) -> bool:
+    """SCALED_IMU2: the second IMU and compass."""
+    c = v.autopilot.calibrated
+    differ = v.sensors.imu_state & IMUS_DIFFER != 0
+    fill_imu(m, v, c.acc2 if differ else c.acc, c.gyro2 if differ else c.gyro)
+    fill_field(m, field_of(1, v.sensors, v.autopilot.params))
+    return True
+
+
+@law
+def scaled_imu3(m: ScaledImu3, v: Vehicle) -> bool:
+    """SCALED_IMU3: the third compass [mgauss]; there is no third IMU, whose fields are 0."""
+    m.time_boot_ms = boot_ms(v.time_us)
+    fill_field(m, field_of(2, v.sensors, v.autopilot.params))
     return True
 
 
@@ -195,6 +246,64 @@ def simstate(m: SimState, v: Vehicle) -> bool:
     return True
 
 
+class SimStateWithSpeed(Message, name="SIM_STATE"):
+    q1: float
+    q2: float
+    q3: float
+    q4: float
+    roll: float
+    pitch: float
+    yaw: float
+    xacc: float
+    yacc: float
+    zacc: float
+    xgyro: float
+    ygyro: float
+    zgyro: float
+    lat: float
+    lon: float
+    alt: float
+    vn: float
+    ve: float
+    vd: float
+    lat_int: int
+    lon_int: int
+
+
+@law
+def fill_sim_state(m: SimStateWithSpeed, truth: Carried) -> None:
+    """SIM_STATE of a truth, from wherever it comes; ``lat`` and ``lon`` are degE7, too, as ArduPilot has them."""
+    q, rates, force, velocity = truth.attitude, truth.rates, truth.acceleration, truth.velocity
+    euler = euler_of(Quat(q[0], q[1], q[2], q[3]))
+    m.q1 = q[0]
+    m.q2 = q[1]
+    m.q3 = q[2]
+    m.q4 = q[3]
+    m.roll = euler.roll
+    m.pitch = euler.pitch
+    m.yaw = euler.yaw
+    m.xacc = MILLIG * force[0]
+    m.yacc = MILLIG * force[1]
+    m.zacc = MILLIG * force[2]
+    m.xgyro = rates[0]
+    m.ygyro = rates[1]
+    m.zgyro = rates[2]
+    m.lat = m.lat_int = truth.lat
+    m.lon = m.lon_int = truth.lon
+    m.alt = truth.alt * 1e-3
+    m.vn = velocity[0] * 1e-2
+    m.ve = velocity[1] * 1e-2
+    m.vd = velocity[2] * 1e-2
+
+
+@law
+def sim_state(m: SimStateWithSpeed, v: Vehicle) -> bool:
+    """SIM_STATE: the simulator's truth: attitude, specific force [m/s^2] and rates [rad/s] of the body, degE7, altitude
+    [m], velocity NED [m/s]."""
+    fill_sim_state(m, carried(v))
+    return True
+
+
 class VibrationMessage(Message, name="VIBRATION"):
     time_usec: int
     vibration_x: float
@@ -218,4 +327,7 @@ def vibration(m: VibrationMessage, v: Vehicle) -> bool:
     return True
 
 
-MESSAGES = (raw_imu, scaled_imu, highres_imu, scaled_pressure, scaled_pressure2, simstate, vibration)
+MESSAGES = (
+    raw_imu, scaled_imu, scaled_imu2, scaled_imu3, highres_imu, scaled_pressure, scaled_pressure2, simstate, sim_state,
+    vibration,
+)  # fmt: skip

@@ -9,15 +9,12 @@ from typing import TYPE_CHECKING
 
 from ... import __version__
 from ...autopilot import relays
-from ...autopilot.gps_receivers import has_fix
-from ...autopilot.modes import shown
-from ...core.elementary import hypot
 from ...core.records import as_bytes
 from .. import metadata
 from ..dialect import message
-from .motion import global_position
-from .sensors import SimState, fill_simstate
-from .units import boot_ms, heading_cdeg, int16, percent, uint16
+from .high_latency import high_latency
+from .sensors import SimState, SimStateWithSpeed, fill_sim_state, fill_simstate
+from .units import boot_ms
 
 if TYPE_CHECKING:
     from ..autopilot_api import Vehicle
@@ -28,7 +25,8 @@ ShellBuilder = Callable[["Vehicle", "Profile"], bytes]
 
 MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, FTP = 0x1, 0x2, 0x4, 0x8, 0x20
 COMPASS_CALIBRATION, FENCE, RALLY = 0x1000, 0x4000, 0x8000
-SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERMINATION, MAVLINK2 = 0x40, 0x80, 0x100, 0x800, 0x2000
+SET_ATTITUDE, SET_LOCAL_POSITION, SET_GLOBAL_POSITION, TERRAIN, TERMINATION = 0x40, 0x80, 0x100, 0x200, 0x800
+MAVLINK2 = 0x2000
 CAPABILITIES = MISSION_FLOAT | PARAM_FLOAT | MISSION_INT | COMMAND_INT | FTP
 CAPABILITIES |= SET_ATTITUDE | SET_LOCAL_POSITION | SET_GLOBAL_POSITION | MAVLINK2 | COMPASS_CALIBRATION | FENCE | RALLY
 """What every firmware can: ArduPilot's. Compass calibrations are refused."""
@@ -59,42 +57,17 @@ def banner(profile: Profile) -> str:
     return f"{profile.firmware} V{major}.{minor}.{patch}-dev (gym-sitl {__version__})"
 
 
-def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
-    """HIGH_LATENCY2: the state in 42 bytes; the target is home; the air's temperature is the barometer's [degC]."""
-    v = vehicle.v
-    ap = v.autopilot
-    velocity, here = ap.estimate.vel, global_position(v)
-    failures = 0 if has_fix(v.autopilot.gps.primary, v.sensors) else GPS_FAILED
-    failures |= 0 if ap.rc.receiver_ok else RECEIVER_FAILED
-    failures |= 0 if ap.modes.failsafe.ekf == 0 else ESTIMATE_FAILED
-    return message("HIGH_LATENCY2").payload(
-        timestamp=boot_ms(int(v.time_us)),
-        type=profile.mav_type,
-        autopilot=ARDUPILOTMEGA,
-        custom_mode=int(shown(ap.modes)) & 0xFFFF,
-        latitude=int(here.lat),
-        longitude=int(here.lon),
-        altitude=int16(here.alt),
-        target_altitude=int16(ap.home.alt),
-        heading=heading_cdeg(ap.estimate.yaw) // 200,
-        groundspeed=min(uint16(5.0 * hypot(velocity.x, velocity.y)), 255),
-        climb_rate=min(max(int16(-10.0 * velocity.z), -128), 127),
-        temperature_air=min(max(round(v.sensors.temperature), -127), 127),
-        battery=percent(ap.battery.remaining_pct),
-        wp_num=uint16(float(ap.modes.nav.mission_current)),
-        failure_flags=failures,
-    )
-
-
-ARDUPILOTMEGA = 3
-GPS_FAILED, RECEIVER_FAILED, ESTIMATE_FAILED = 1, 256, 4096
-"""HL_FAILURE_FLAG"""
-
-
 def simstate(vehicle: Vehicle, profile: Profile) -> bytes:
     """SIMSTATE of a vehicle whose physics is at the other end of a link: it is asked."""
     m = SimState()
     fill_simstate(m, vehicle.truth())
+    return bytes(as_bytes(m, m.dtype))
+
+
+def sim_state(vehicle: Vehicle, profile: Profile) -> bytes:
+    """SIM_STATE of such a vehicle."""
+    m = SimStateWithSpeed()
+    fill_sim_state(m, vehicle.truth())
     return bytes(as_bytes(m, m.dtype))
 
 
@@ -130,4 +103,5 @@ SHELL_BUILDERS: dict[str, ShellBuilder] = {
 
 def shell_builders(vehicle: Vehicle) -> dict[str, ShellBuilder]:
     """What the shell builds for a vehicle, by the message's name; it comes before a law for the same message."""
-    return SHELL_BUILDERS if vehicle.has_truth_in_record else {**SHELL_BUILDERS, "SIMSTATE": simstate}
+    of_truth: dict[str, ShellBuilder] = {"SIMSTATE": simstate, "SIM_STATE": sim_state}
+    return SHELL_BUILDERS if vehicle.has_truth_in_record else {**SHELL_BUILDERS, **of_truth}

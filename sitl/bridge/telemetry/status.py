@@ -20,6 +20,7 @@ from .units import boot_ms, int16, int32, percent, uint16
 GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
 RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
 RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
+TERRAIN, LOGGING, PROPULSION = 0x400000, 0x1000000, 0x40000000
 PROXIMITY, FLOW, VISION = 0x4000000, 0x40, 0x80
 PRESENT = GYRO | ACCEL | MAG | BARO | AHRS | PREARM
 """In every firmware, besides its controllers; a GPS receiver once it has said something, until it is silent."""
@@ -67,21 +68,24 @@ class SysStatus(Message, name="SYS_STATUS"):
 
 @law
 def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy: int) -> bool:
-    """SYS_STATUS of a firmware with these controllers, of which some are at work and healthy (bits)."""
+    """SYS_STATUS of a firmware with these controllers and sensors, of which some are at work and healthy (bits)."""
     ap, battery, monitor = v.autopilot, v.autopilot.battery, v.autopilot.params.BATT.MONITOR
-    common = PRESENT
-    health = healthy | sensor_health(v)
+    common = PRESENT | MOTORS
+    health = healthy | sensor_health(v) | MOTORS
     if fix_of(ap.gps.primary, v.sensors).gps_fix > 0:
         common |= GPS
-    if ap.rc.receiver_ok:
+    if ap.rc.receiver_us > 0:
         common |= RECEIVER
-        health |= RECEIVER  # cannot fail
+        health |= RECEIVER if ap.rc.receiver_ok else 0
     if monitor >= VOLTAGE_MONITOR:
         common |= BATTERY
         if ap.modes.failsafe.battery == 0 and battery.healthy:
             health |= BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
         health |= PREARM
+    logs = LOGGING if ap.params.LOG.BACKEND_TYPE != 0.0 else 0
+    logs_now = logs if ap.arming.armed_us > 0 or ap.params.LOG.DISARMED != 0.0 else 0
+    health |= logs
     if ap.flow.kind != 0:
         common |= FLOW
         health |= FLOW if is_healthy(ap.flow, v.time_us) else 0
@@ -89,8 +93,8 @@ def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy
         common |= VISION
         health |= VISION if visual_odometry.is_healthy(ap.odometry, v.time_us) else 0
     fence = GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
-    m.onboard_control_sensors_present = common | controllers | fence
-    m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0)
+    m.onboard_control_sensors_present = common | controllers | fence | logs
+    m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0) | logs_now
     m.onboard_control_sensors_health = health
     m.voltage_battery = uint16(battery.voltage * 1e3) if monitor >= VOLTAGE_MONITOR else UNKNOWN
     m.current_battery = int16(battery.current * 100.0) if monitor >= CURRENT_MONITOR else -1
@@ -180,7 +184,7 @@ class MemInfo(Message, name="MEMINFO"):
 def meminfo(m: MemInfo, v: Vehicle) -> bool:
     """MEMINFO: a process has memory enough; the figure of ArduPilot's SITL."""
     m.freemem = 65535
-    m.freemem32 = 131072
+    m.freemem32 = 524288
     return True
 
 

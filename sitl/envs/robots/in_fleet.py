@@ -14,7 +14,8 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from sitl.bridge.telemetry.builder import build, by_number
+from sitl.bridge.telemetry.builder import by_number
+from sitl.bridge.telemetry.plain import build
 from sitl.client.connection import InProcess
 from sitl.core.geodesy import offset_ne
 from sitl.core.kernels import jit_disabled

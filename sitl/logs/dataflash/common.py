@@ -16,6 +16,8 @@ from .formats import Field, Message, Source
 E, S, A, K = "autopilot.estimate.", "sensors.", "autopilot.", "autopilot.ekf."
 _ATTITUDE = bits.ATTITUDE | bits.ATTITUDE_FAST
 PARAMETERS = A + "params."
+NO_AIRSPEED, NO_DRAG = 1 << 4, 1 << 5
+"""Timeouts of XKF4: neither is ever fused."""
 
 
 def _pulses(path: str) -> tuple[Field, ...]:
@@ -34,7 +36,8 @@ def pulses_out(bit: int) -> Message:
 
 def magnetometer(bit: int) -> Message:
     """MAG: field in the body's frame [mgauss]."""
-    offsets = tuple(Field(label, "h", "G", "C") for label in ("OfsX", "OfsY", "OfsZ", "MOX", "MOY", "MOZ"))
+    offsets = [Field(f"Ofs{axis}", "h", "G", "C", f"{PARAMETERS}COMPASS.OFS.{axis}") for axis in "XYZ"]
+    offsets += [Field(f"MO{axis}", "h", "G", "C") for axis in "XYZ"]
     return Message(
         "MAG",
         (
@@ -79,7 +82,7 @@ COMMAND = (
 
 EVENT_MESSAGES = (
     Message("PARM", (Field("Name", "N"), Field("Value", "f"), Field("Default", "f"))),
-    Message("MSG", (Field("Message", "Z"),)),
+    Message("MSG", (Field("ID", "B"), Field("Seq", "B"), Field("Message", "Z"))),
     Message(
         "VER",
         (
@@ -95,23 +98,24 @@ EVENT_MESSAGES = (
     Message(
         "SIDD",
         (
-            Field("Time", "f", "s", "0"), Field("Targ", "f"), Field("F", "f", "z", "0"),
-            *(Field(f"G{axis}", "f", "k", "0") for axis in "xyz"),
-            *(Field(f"A{axis}", "f", "o", "0") for axis in "xyz"),
+            Field("Time", "f", "s"), Field("Targ", "f"), Field("F", "f", "z"),
+            *(Field(f"G{axis}", "f", "k") for axis in "xyz"),
+            *(Field(f"A{axis}", "f", "o") for axis in "xyz"),
         ),
     ),
     Message(
         "SIDS",
         (
-            Field("Ax", "B"), Field("Mag", "f"), Field("FSt", "f", "z", "0"), Field("FSp", "f", "z", "0"),
-            *(Field(name, "f", "s", "0") for name in ("TFin", "TC", "TR", "TFout")),
+            Field("Ax", "B"), Field("Mag", "f"),
+            *(Field(name, "f", "s") for name in ("FSt", "FSp", "TFin", "TC", "TR", "TFout")),
         ),
     ),
     Message(
         "ATUN",
         (
             Field("Axis", "B"), Field("TuneStep", "B"),
-            *(Field(name, "f") for name in ("Targ", "Min", "Max", "RP", "RD", "SP", "ddt")),
+            *(Field(name, "f", "d", "0") for name in ("Targ", "Min", "Max")),
+            *(Field(name, "f") for name in ("RP", "RD", "SP")), Field("ddt", "f", "o", "0"),
         ),
     ),
     Message("CMD", COMMAND, bits=bits.COMMANDS),
@@ -120,21 +124,21 @@ EVENT_MESSAGES = (
         "FNCE",
         (
             Field("Tot", "B"), Field("Seq", "B"), Field("Type", "B"), Field("Lat", "L", "D", "G"),
-            Field("Lng", "L", "U", "G"), Field("Count", "B"), Field("Radius", "f", "m", "0"),
+            Field("Lng", "L", "U", "G"), Field("Count", "B"), Field("Radius", "f", "m"),
         ),
     ),
     Message(
         "RALY",
         (
             Field("Tot", "B"), Field("Seq", "B"), Field("Lat", "L", "D", "G"), Field("Lng", "L", "U", "G"),
-            Field("Alt", "h", "m", "0"), Field("Flags", "B"),
+            Field("Alt", "h", "m", "B"), Field("Flags", "B"),
         ),
     ),
     Message(
         "OABR",
         (
-            Field("Type", "B"), Field("Act", "B"), *(Field(name, "H", "d", "0") for name in ("DYaw", "Yaw", "DP")),
-            Field("RChg", "B"), Field("Mar", "f", "m", "0"),
+            Field("Type", "B"), Field("Act", "B"), *(Field(name, "H", "d") for name in ("DYaw", "Yaw", "DP")),
+            Field("RChg", "B"), Field("Mar", "f", "m"),
             Field("DLt", "L", "D", "G"), Field("DLg", "L", "U", "G"), Field("DAlt", "f", "m", "0"),
             Field("OLt", "L", "D", "G"), Field("OLg", "L", "U", "G"), Field("OAlt", "f", "m", "0"),
         ),
@@ -184,7 +188,7 @@ def barometer(number: int, pressure: str, count: str, when: Source) -> Message:
             Field("Temp", "c", "O", "B", S + "temperature"),
             Field("CRt", "f", "n", "0", E + "vel[2]", -1.0),
             Field("SMS", "I", "s", "C", S + "time_us", 1e-3),
-            Field("Offset", "f", "m", "-"),
+            Field("Offset", "f", "m", "?"),
             Field("GndTemp", "f", "O", "0", S + "temperature"),
             Field("H", "B", source=derived.is_seen(count)),
             Field("CPress", "f", "P", "0", pressure, 100.0),
@@ -204,7 +208,7 @@ SENSORS = (
             *(Field(f"Acc{axis}", "f", "o", "0", f"@acc[{k}]") for k, axis in enumerate("XYZ")),
             Field("EG", "I"),
             Field("EA", "I"),
-            Field("T", "f", "O", "0", S + "temperature"),
+            Field("T", "f", "O", source=S + "temperature"),
             Field("GH", "B", source=1),
             Field("AH", "B", source=1),
             Field("GHz", "H", "z", "0", 400),
@@ -259,7 +263,7 @@ def battery(resting: Source, resistance: Source = 0.0) -> Message:
             Field("Temp", "c", "O", "?"),
             Field("Res", "f", "w", "0", resistance),
             Field("RemPct", "B", "%", "0", A + "battery.remaining_pct"),
-            Field("H", "B", source=1),
+            Field("H", "B", "-", "0", 1),
             Field("SH", "B", "%", "0"),
         ),
         bits.MEDIUM,
@@ -297,10 +301,10 @@ def gps_accuracy(receiver: int, r: str) -> Message:
         (
             Field("I", "B", "#", source=receiver),
             Field("VDop", "C", "-", "B", r + "gps_epv", 0.01),
-            Field("HAcc", "C", "m", "B", r + "gps_eph", 0.003),
-            Field("VAcc", "C", "m", "B", r + "gps_epv", 0.005),
+            Field("HAcc", "C", "m", "B", r + "gps_eph", 0.3 / 121.0),
+            Field("VAcc", "C", "m", "B", r + "gps_epv", 0.3 / 200.0),
             Field("SAcc", "C", "n", "B"),
-            Field("YAcc", "f", "d", "0", float("nan")),
+            Field("YAcc", "f", "d", "0"),
             Field("VV", "B", source=1),
             Field("SMS", "I", "s", "C", r + "gps_time_us", 1e-3),
             Field("Delta", "H", "s", "C", 200),
@@ -369,9 +373,9 @@ def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
                 *(Field(f"IP{axis}", "c", "m", "B", f"{k}innovation_pos[{n}]", -1.0) for n, axis in enumerate("NED")),
                 *(Field(f"IM{axis}", "h", "G", "C") for axis in "XYZ"),
                 Field("IYAW", "c", "d", "B", k + "innovation_yaw", -DEG),
-                Field("IVT", "c", "?", "?"),
-                Field("RErr", "f"),
-                Field("ErSc", "f"),
+                Field("IVT", "c", "?", "B"),
+                Field("RErr", "f", "-", "0"),
+                Field("ErSc", "f", "-", "0"),
             ),
             bits.MEDIUM,
             _ATTITUDE,
@@ -381,15 +385,15 @@ def estimator(e: str, k: str, when: Source) -> tuple[Message, ...]:
             "XKF4",
             (
                 Field("C", "B", "#", source=k + "imu"),
-                *(Field(f"S{x}", "H", "-", "B", f"{e}variance_{y}", 100.0)
+                *(Field(f"S{x}", "c", source=f"{e}variance_{y}")
                   for x, y in (("V", "vel"), ("P", "pos"), ("H", "hgt"), ("M", "mag"))),
-                Field("SVT", "H", "-", "B"),
+                Field("SVT", "c"),
                 Field("errRP", "f", "-", "-", derived.angle_error(k + "P"), 1.0 / DEG),
                 Field("OFN", "f", "m", "?", e + "reset_pos[0]"),
                 Field("OFE", "f", "m", "?", e + "reset_pos[1]"),
                 Field("FS", "H"),
-                Field("TS", "B"),
-                Field("SS", "I", source=e + "status_flags"),
+                Field("TS", "B", source=NO_AIRSPEED | NO_DRAG),
+                Field("SS", "I", source=derived.solution(e, k)),
                 Field("GPS", "H"),
                 Field("PI", "b", source=K + "imu"),
             ),
@@ -450,6 +454,21 @@ FILTER = (
 )
 """The filter that is flown by, and the second one while there is one."""
 
+AHR2 = Message(
+    "AHR2",
+    (
+        Field("Roll", "c", "d", "B", derived.euler(E + "q", 0), DEG),
+        Field("Pitch", "c", "d", "B", derived.euler(E + "q", 1), DEG),
+        Field("Yaw", "C", "h", "B", derived.wrapped(derived.euler(E + "q", 2))),
+        Field("Alt", "f", "m", "0", derived.difference(E + "origin_alt", E + "pos[2]")),
+        Field("Lat", "L", "D", "G", derived.latitude(E + "origin_", E + "pos")),
+        Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
+        *(Field(f"Q{n + 1}", "f", source=f"{E}q[{n}]") for n in range(4)),
+    ),
+    bits.MEDIUM,
+    _ATTITUDE,
+)
+"""AHR2: the second attitude source; this firmware has one estimator and logs it again, as AHRS2 tells it."""
 _BODY, _PLACE = "physics.body.", "physics.place."
 
 
@@ -480,7 +499,7 @@ def gps_fix(boot_unix_us: int, receiver: int, r: str) -> Message:
             Field("Spd", "f", "n", "0", derived.length(r + "gps_vel[0]", r + "gps_vel[1]"), 0.01),
             Field("GCrs", "f", "h", "0", derived.course(r)),
             Field("VZ", "f", "n", "0", r + "gps_vel[2]", 0.01),
-            Field("Yaw", "f", "h", "0"),
+            Field("Yaw", "f", "h"),
             Field("U", "B", source=derived.is_used(receiver)),
         ),
         bits.MEDIUM,
@@ -494,7 +513,7 @@ _TARGET = A + "landing_target."
 
 
 def _acquired(path: str) -> Any:
-    return lambda s: 100.0 * s(_TARGET + path) * s(_TARGET + "acquired")
+    return lambda s: s(_TARGET + path) * s(_TARGET + "acquired")
 
 
 LANDING_TARGET = Message(
@@ -502,9 +521,9 @@ LANDING_TARGET = Message(
     (
         Field("Heal", "B", source=_TARGET + "sees"),
         Field("TAcq", "B", source=_TARGET + "acquired"),
-        *(Field(f"p{axis}", "f", "m", "B", _acquired(f"away[{k}]")) for k, axis in enumerate("XY")),
-        *(Field(f"v{axis}", "f", "n", "B", _acquired(f"closing[{k}]")) for k, axis in enumerate("XY")),
-        *(Field(f"m{axis}", "f", "m", "B", f"{_TARGET}place[{k}]", 100.0) for k, axis in enumerate("XYZ")),
+        *(Field(f"p{axis}", "f", "m", "0", _acquired(f"away[{k}]")) for k, axis in enumerate("XY")),
+        *(Field(f"v{axis}", "f", "n", "0", _acquired(f"closing[{k}]")) for k, axis in enumerate("XY")),
+        *(Field(f"m{axis}", "f", "m", "0", f"{_TARGET}place[{k}]") for k, axis in enumerate("XYZ")),
         Field("LastMeasMS", "I", "s", "C", _TARGET + "used_us", 1e-3),
         Field("EKFOutl", "I", source=_TARGET + "outliers"),
         Field("Est", "B", source=A + "params.PLND.EST_TYPE"),
@@ -522,7 +541,7 @@ TRUTH = Message(
         Field("Alt", "f", "m", "0", derived.difference(_PLACE + "alt", _BODY + "pos[2]")),
         Field("Lat", "L", "D", "G", derived.latitude(_PLACE, _BODY + "pos")),
         Field("Lng", "L", "U", "G", derived.longitude(_PLACE, _BODY + "pos")),
-        *(Field(f"Q{k + 1}", "f", "?", "?", f"{_BODY}q[{k}]") for k in range(4)),
+        *(Field(f"Q{k + 1}", "f", "-", "0", f"{_BODY}q[{k}]") for k in range(4)),
     ),
     bits.MEDIUM,
     _ATTITUDE,

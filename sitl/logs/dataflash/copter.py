@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -67,19 +68,33 @@ def _boost(s: Any) -> Array:
     return s(_MOTORS + "throttle_in") - s(_ATTITUDE + "throttle_in")
 
 
+T = A + "terrain."
+
+
+def _over_ground(s: Any) -> Array:
+    """Height over the ground [m]."""
+    return s(A + "home.pos[2]") - s(E + "pos[2]") - s(T + "difference")
+
+
+def _over_terrain(s: Any) -> Array:
+    """The same as far as terrain is known, else the altitude above mean sea level [m]."""
+    is_known = (s.raw(T + "was_known") != 0) | (s.raw(T + "asked") == 0)
+    return np.where(is_known, _over_ground(s), s(E + "origin_alt") - s(E + "pos[2]"))
+
+
 CONTROL = Message(
     "CTUN",
     (
-        Field("ThI", "f", source=A + "modes.pilot.throttle"),
+        Field("ThI", "f", source=_ATTITUDE + "throttle_in"),
         Field("ABst", "f", source=_boost),
         Field("ThO", "f", source=_MOTORS + "throttle_out"),
         Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
         Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
         Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
-        Field("BAlt", "e", "m", "B", derived.baro_altitude("sensors.abs_pressure")),
-        Field("DSAlt", "f", "m", "0"),
+        Field("BAlt", "f", "m", "0", derived.baro_altitude("sensors.abs_pressure")),
+        Field("DSAlt", "f", "m", "0", math.nan),
         Field("SAlt", "f", "m", "0"),
-        Field("TAlt", "f", "m", "0"),
+        Field("TAlt", "f", "m", "0", _over_terrain),
         Field("DCRt", "h", "n", "B", _D + "vel_target", -100.0),
         Field("CRt", "h", "n", "B", E + "vel[2]", -100.0),
     ),
@@ -88,17 +103,9 @@ CONTROL = Message(
 )
 
 
-T = A + "terrain."
-
-
 def _ground(s: Any) -> Array:
     """Height of the ground as TERRAIN_REPORT tells it [m]."""
     return s(T + "home") + s(T + "difference") + s(T + "offset")
-
-
-def _over_ground(s: Any) -> Array:
-    """Height over the ground [m]."""
-    return s(A + "home.pos[2]") - s(E + "pos[2]") - s(T + "difference")
 
 
 TERRAIN = Message(
@@ -182,6 +189,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
                 Field("BatVolt", "f", source=_MOTORS + "voltage_ratio"),
                 Field("ThLimit", "f", source=1.0),
                 Field("ThrAvMx", "f", source=_MOTORS + "throttle_avg_max"),
+                Field("ThrOut", "f", source=_MOTORS + "throttle_out"),
                 Field("FailFlags", "B", source=2),
             ),
             bits.MEDIUM,
@@ -192,6 +200,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         common.LANDING_TARGET,
         TERRAIN,
         *common.FILTER,
+        common.AHR2,
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
@@ -203,6 +212,14 @@ _MODES = (
 )
 """https://mavlink.io/en/messages/ardupilotmega.html#COPTER_MODE"""
 
+_LEARN_AND_SAVE = 2.0
+"""MOT_HOVER_LEARN"""
+
+
+def _saved(v: Any) -> tuple[str, ...]:
+    return ("MOT_THST_HOVER",) if v.autopilot.params.MOT.HOVER_LEARN == _LEARN_AND_SAVE else ()
+
+
 LOGS = KindLogs(
     messages=messages,
     title="ArduCopter",
@@ -211,6 +228,7 @@ LOGS = KindLogs(
     mav_types=(2, 3, 4, 13, 14, 15, 29),
     mode_names=tuple(_MODES.split()),
     event_rows=lambda v, code, a: system_id.rows(v, code, a) + autotune.rows(v, code, a),
+    saved=_saved,
     parameters=("RTL_ALT", "RTL_ALT_M", "PHLD_BRAKE_RATE"),
     panels=(plot.altitude, plot.attitude, plot.motors),
 )

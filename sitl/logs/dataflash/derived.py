@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ...autopilot.estimation.status import POS_HORIZ_ABS
 from ...core import elementary_arrays as arrays
 from ...core.algebra import euler_of
 from ...core.array_kernels import Kernel, Table
@@ -183,6 +184,21 @@ def estimates(s: Any) -> Array:
 def second_lane_estimates(s: Any) -> Array:
     """The same of the second filter, shape (rows,)."""
     return estimates(s) & (s.raw(A + "second_lane.runs") != 0)
+
+
+USES_GPS, GPS_IS_GOOD, INITIALISED = 1 << 13, 1 << 15, 1 << 16
+"""Bits of ArduPilot's nav_filter_status that EKF_STATUS_REPORT does not have."""
+
+
+def solution(e: str, k: str) -> Column:
+    """Status of a filter's solution (XKF4.SS); ``e``, ``k``: as in ``common.estimator``."""
+
+    def column(s: Any) -> Array:
+        flags = s.raw(e + "status_flags").astype(np.int64)
+        flags |= np.where(flags & POS_HORIZ_ABS, USES_GPS, 0) | np.where(s.raw(k + "gps_good_us") > 0, GPS_IS_GOOD, 0)
+        return flags | INITIALISED
+
+    return column
 
 
 def angle_error(path: str) -> Column:

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 
-from ...autopilot.events import EVENT_RING
+from ...autopilot.events import DISARMED, EVENT_RING
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
 from ...autopilot.modes import shown
@@ -76,6 +77,8 @@ class LogEncoder:
         self._missions: list[tuple[int, Mission]] = []
         self._mission = vehicle.mission
         self._last_us = 0
+        self._values: dict[str, float] = {}
+        """Parameters as they were logged last."""
         self._out: list[bytes] = []
         self._seen = int(vehicle.v.autopilot.events.count)
         self._plan_rows()
@@ -127,6 +130,8 @@ class LogEncoder:
             at = k % EVENT_RING
             event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
             self.note(int(ring.time_us[at]), self.events.event, *event)
+            if event[0] == DISARMED:
+                self._saved(int(ring.time_us[at]))
             rows = places.rows(self._vehicle.v, *event[:3])
             rows += self._kind.event_rows(self._vehicle.v, *event[:2]) if self._kind.event_rows else []
             for name, numbers in rows:
@@ -147,6 +152,7 @@ class LogEncoder:
         self._mission = self._vehicle.mission
         if self._bits & bits.COMMANDS:
             self.note(time_us, self.events.mission, self._mission.items)
+        self.parameter(time_us, "MIS_TOTAL")
 
     @property
     def mission(self) -> Mission:
@@ -154,8 +160,16 @@ class LogEncoder:
         return self._mission
 
     def parameter(self, time_us: int, name: str) -> None:
-        """Add a parameter that was set; time since boot [us]."""
-        self.note(time_us, self.events.parameters, [self._parameter(name)])
+        """Add a parameter that was set; time since boot [us]. Its default is not told again (not a number)."""
+        value = self._values[name] = self._vehicle.parameters[name]
+        self.note(time_us, self.events.parameters, [(name, value, math.nan)])
+
+    def _saved(self, time_us: int) -> None:
+        """Add the parameters that the vehicle changed itself; it saves them when it disarms. Time since boot [us]."""
+        values, always = self._vehicle.parameters, self._kind.saved(self._vehicle.v) if self._kind.saved else ()
+        for name, before in self._values.items():
+            if name in always or values[name] != before:
+                self.parameter(time_us, name)
 
     def set_bitmask(self, bitmask: int) -> None:
         """Log by another LOG_BITMASK from now on."""
@@ -186,9 +200,11 @@ class LogEncoder:
         described = f"{title} V{'.'.join(map(str, VERSION))}-dev ({self._version})"
         version = (0, 0, *VERSION, 0, 0, described.encode()[:64], 0, build, 0, 0, 0)
         modes = v.v.autopilot.modes
+        self._values = {p.name: v.parameters[p.name] for p in v.parameters.listed()}
+        defaults = [(name, value, v.parameters.default(name)) for name, value in self._values.items()]
         self._out += [
             formats.head(self._described, self._numbers, time_us),
-            pack.parameters(time_us, [self._parameter(p.name) for p in v.parameters.listed()]),
+            pack.parameters(time_us, defaults),
             pack.pack("VER", time_us, 3, *version[1:]),
             pack.text(time_us, described),
             pack.text(time_us, f"Airframe: {v.airframe.name}"),
@@ -254,9 +270,6 @@ class LogEncoder:
     def _place(self, row: int, kind: int, place: str, time_us: int) -> bytes:
         numbers = (float(self._samples.column(place + name)[row]) for name in ("lat", "lon", "alt"))
         return self.events.origin(time_us, kind, *numbers)
-
-    def _parameter(self, name: str) -> tuple[str, float, float]:
-        return name, self._vehicle.parameters[name], self._vehicle.firmware.table[name].default
 
     def _checks(self) -> int:
         return int(self._vehicle.v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF

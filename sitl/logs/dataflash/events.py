@@ -33,6 +33,7 @@ _FAILSAFES = {
     failsafes.TERRAIN: _TERRAIN,
 }
 """Failsafe -> subsystem of ERR."""
+TEXT_BYTES = 64
 ORIGIN, HOME = 0, 1
 """Type of ORGN."""
 
@@ -81,6 +82,7 @@ class EventEncoder:
 
     def __init__(self, numbers: dict[str, int]) -> None:
         self._packers: dict[str, tuple[Callable[..., bytes], int]] = {}
+        self._texts = 0
         for m in EVENT_MESSAGES:
             layout: Struct = m.packer
             self._packers[m.name] = (layout.pack, numbers[m.name])
@@ -127,8 +129,11 @@ class EventEncoder:
         return b""
 
     def text(self, time_us: int, text: str) -> bytes:
-        """MSG: the first 64 bytes."""
-        return self.pack("MSG", time_us, text.encode("ascii", "replace")[:64])
+        """MSG: a message for every 64 bytes, with the text's number (``ID``) and its own in the text (``Seq``)."""
+        data, number = text.encode("ascii", "replace"), self._texts & 255
+        self._texts += 1
+        starts = range(0, max(len(data), 1), TEXT_BYTES)
+        return b"".join(self.pack("MSG", time_us, number, k, data[at : at + TEXT_BYTES]) for k, at in enumerate(starts))
 
     def command(self, name: str, time_us: int, total: int, seq: int, item: MissionItem) -> bytes:
         """CMD or MISE."""

@@ -12,6 +12,8 @@ import struct
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 HEAD = b"\xa3\x95"
 
 TYPES = {
@@ -42,14 +44,14 @@ UNITS = {
     "e": "deg/s/s", "E": "rad/s", "G": "Gauss", "h": "degheading", "i": "A.s", "J": "W.s", "l": "l", "L": "rad/s/s",
     "m": "m", "n": "m/s", "o": "m/s/s", "O": "degC", "%": "%", "S": "satellites", "s": "s", "q": "rpm", "r": "rad",
     "U": "deglongitude", "u": "ppm", "v": "V", "P": "Pa", "w": "Ohm", "W": "Watt", "X": "W.h", "y": "l/s", "Y": "us",
-    "z": "Hz", "#": "instance",
+    "z": "Hz", "#": "instance", "B": "B/s", "t": "N.m",
 }  # fmt: skip
 """Letters of FMTU's UnitIds."""
 MULTIPLIERS = {
     "-": 0.0, "?": 1.0, "2": 1e2, "1": 1e1, "0": 1e0, "A": 1e-1, "B": 1e-2, "C": 1e-3, "D": 1e-4, "E": 1e-5,
     "F": 1e-6, "G": 1e-7, "I": 1e-9, "!": 3.6, "/": 3600.0,
 }  # fmt: skip
-"""Letters of FMTU's MultIds: stored number times this is in the unit."""
+"""Letters of FMTU's MultIds: stored number times this is in the unit; MULT has them as rounded to single precision."""
 
 NAME_BYTES, FORMAT_BYTES, LABEL_BYTES = 4, 16, 64
 
@@ -171,7 +173,9 @@ def head(messages: Iterable[Message], numbers: dict[str, int], time_us: int) -> 
     parts = [_fmt(n, layout.size, name, letters, labels) for n, layout, name, letters, labels, _, _ in _DESCRIBED]
     parts += [_fmt(numbers[m.name], m.packer.size, m.name, m.format, m.labels) for m in messages]
     parts += [_UNIT.pack(HEAD, UNIT_NUMBER, time_us, ord(key), text.encode()) for key, text in UNITS.items()]
-    parts += [_MULT.pack(HEAD, MULT_NUMBER, time_us, ord(key), factor) for key, factor in MULTIPLIERS.items()]
+    parts += [
+        _MULT.pack(HEAD, MULT_NUMBER, time_us, ord(key), np.float32(factor)) for key, factor in MULTIPLIERS.items()
+    ]
     for number, _, _, _, _, units, multipliers in _DESCRIBED:
         parts.append(_FMTU.pack(HEAD, FMTU_NUMBER, time_us, number, units.encode(), multipliers.encode()))
     for m in messages:

@@ -2,7 +2,7 @@
 """The on-board logger keeps DataFlash logs of a vehicle in files, and hands them out.
 
 LOG_BACKEND_TYPE, LOG_DISARMED and LOG_BITMASK decide, as in ArduPilot: unless LOG_DISARMED says so, a log begins with
-the first arming and pauses 15 s after each disarming. A reboot begins another.
+the first arming, or attempt at it, and pauses 15 s after each disarming or refusal. A reboot begins another.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
 from ... import __version__
+from ...autopilot.events import ARMING_REFUSED, EVENT_RING
 from ...vehicle.sampler import LONGEST_US, NEVER, next_row_us
 from ..tlog import LogError
 from .encoder import LogEncoder, Vehicle
 from .samples import place
 
 PERSIST_US = 15_000_000
-"""Time after disarming during which logging continues [us]."""
+"""Time after disarming, or a refused arming, during which logging continues [us]."""
 POLL_US = LONGEST_US
 """Period at which a logger that is not logging checks whether it should [us]."""
 _ALWAYS, _KEEP_FLIGHTS = (1, 2, 3), 3
@@ -95,8 +96,8 @@ class DataFlash:
         self._encoder: LogEncoder | None = None
         self._file: LogFile | None = None
         self._paused = False
-        self._disarmed_us = -PERSIST_US
-        self._since_us = 0
+        self._disarmed_us = self._refused_us = -PERSIST_US
+        self._since_us = self._read = 0
         self._texts: list[tuple[int, str]] = []
         self._count = 0
         self._settings()
@@ -165,8 +166,19 @@ class DataFlash:
 
     def _is_idle(self) -> bool:
         """Whether no log can begin before something happens."""
-        armed = self._words[self._armed_at] or self._words[self._time_at] - self._disarmed_us < PERSIST_US
-        return not (self._texts or (self._on and (armed or self._disarmed in _ALWAYS)))
+        return not (self._texts or (self._on and (self._is_awake() or self._disarmed in _ALWAYS)))
+
+    def _is_awake(self) -> bool:
+        """Whether the vehicle is armed, was until lately, or has lately refused to be."""
+        words = self._words
+        now, count = int(words[self._time_at]), int(words[self._count_at])
+        if count != self._read:
+            ring = self._vehicle.v.autopilot.events
+            for k in range(max(self._read, count - EVENT_RING), count):
+                if ring.code[k % EVENT_RING] == ARMING_REFUSED:
+                    self._refused_us = int(ring.time_us[k % EVENT_RING])
+            self._read = count
+        return bool(words[self._armed_at]) or now - max(self._disarmed_us, self._refused_us) < PERSIST_US
 
     def _core_samples(self, encoder: LogEncoder) -> bool:
         """Whether the core can take samples until something happens: there is nothing else to be logged before."""
@@ -189,7 +201,7 @@ class DataFlash:
         now = self._words[self._time_at]
         if armed:
             self._disarmed_us = now
-        wanted = self._on and (self._disarmed in _ALWAYS or now - self._disarmed_us < PERSIST_US)
+        wanted = self._on and (self._disarmed in _ALWAYS or self._is_awake())
         if self._encoder is None or self._paused:
             if wanted:
                 self._begin(now)
@@ -219,8 +231,10 @@ class DataFlash:
 
     def _begin(self, now: int) -> None:
         """Start a log or continue one, from the events since arming (or since boot, where LOG_DISARMED says so)."""
-        armed_us = 0 if self._disarmed in _ALWAYS else self._words[self._armed_us_at]
-        since = max(armed_us, self._since_us)
+        since = 0 if self._disarmed in _ALWAYS else self._refused_us
+        if self._words[self._armed_at]:
+            since = max(since, self._words[self._armed_us_at])
+        since = max(since, self._since_us)
         if self._encoder is None:
             unix_us = self.epoch_us + self._boot_us
             bitmask = int(self._vehicle.v.autopilot.params.LOG.BITMASK)
@@ -259,7 +273,7 @@ class DataFlash:
         now = self._now_us
         if self._encoder is None or self._paused:
             self._texts.append((now, text))
-            if self._words[self._armed_at]:
+            if self._is_awake():
                 self._due_us = min(self._due_us, now)  # the log begins with the next tick
             return
         self._catch_up()

@@ -148,7 +148,7 @@ NAVIGATION = Message(
         Field("WpDist", "f", "m", "0", _distance),
         Field("WpBrg", "f", "h", "0", _bearing),
         Field("DesYaw", "f", "h", "0", _heading),
-        Field("Yaw", "H", "d", "B", lambda s: np.mod(_YAW(s) * DEG * 100.0, 36000.0)),
+        Field("Yaw", "H", "h", "B", lambda s: np.mod(_YAW(s) * DEG * 100.0, 36000.0)),
         Field("XTrack", "f", "m", "0", _beside),
     ),
     bits.MEDIUM,
@@ -199,6 +199,7 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         common.pid("PIDA", _SPEED + "loop", "ATC.SPEED.", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
         common.LANDING_TARGET,
         *common.FILTER,
+        common.AHR2,
         *((common.TRUTH,) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)

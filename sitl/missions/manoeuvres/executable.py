@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -64,7 +64,7 @@ def enter_namespace() -> None:
 @contextmanager
 def started(
     path: Path, kind: str, home: tuple[float, ...], speedup: int, params: Mapping[str, float], instance: int = 0,
-    port: int = PORT,
+    port: int = PORT, own: Path | None = None,
 ) -> Iterator[RealTime]:  # fmt: skip
     """The executable, started in a folder of its own, and the connection to it; it ends with the block.
 
@@ -76,11 +76,12 @@ def started(
         params: what differs from the firmware's defaults.
         instance: its number, which adds 10 to its ports.
         port: TCP port of instance 0; its second serial line is two above.
+        own: a folder that stays, in place of one that is removed.
 
     Raises:
         LinkLostError: it does not listen.
     """
-    with TemporaryDirectory(prefix="manoeuvres-") as folder:
+    with nullcontext(str(own)) if own is not None else TemporaryDirectory(prefix="manoeuvres-") as folder:
         defaults = Path(folder) / "defaults.parm"
         defaults.write_text(
             "".join(f"{name} {value}\n" for name, value in {**CALIBRATION, **params}.items()), encoding="ascii"

@@ -32,6 +32,14 @@ def open_circuit(charge: float) -> float:
 
 
 @law
+def sag(battery: BatteryState, figures: Battery, charge_per_amp: float) -> None:
+    """Of a rover: the inner resistance counts without a capacity, too, as in ArduPilot's simulator."""
+    if battery.capacity <= 0.0 and charge_per_amp <= 0.0:
+        full = battery.full_voltage if battery.full_voltage > 0.0 else figures.battery_voltage_full
+        battery.voltage = max(battery.voltage - battery.current * figures.battery_resistance, LEAST * full)
+
+
+@law
 def discharge(battery: BatteryState, power: float, figures: Battery, charge_per_amp: float) -> None:
     """Draw the motors' power [W] for one tick; ``charge_per_amp``: loss of charge (of 1) per ampere and tick [1/A]."""
     full = battery.full_voltage if battery.full_voltage > 0.0 else figures.battery_voltage_full

@@ -120,6 +120,7 @@ def test_what_follows_a_lost_radio_is_said(flying):
     k = ap.events.count - 1
     said = failsafe.text(int(ap.events.a[k]), int(ap.events.b[k]))
     assert (ap.modes.number, said) == (GUIDED, "Radio Failsafe - Continuing Guided Mode")
+    assert failsafe.text(int(ap.events.a[k]), failsafe.AUTO_GOES_ON) == "Radio Failsafe - Continuing Auto"
 
 
 @pytest.mark.parametrize(("action", "after"), ((1, LAND), (2, RTL), (0, RTL)))

@@ -197,7 +197,7 @@ def test_a_landing_target_is_logged(tmp_path: Path) -> None:
     assert (rows[0].Heal, rows[0].TAcq, rows[0].mZ) == (0, 0, 0.0)
     last = rows[-1]
     assert (last.Heal, last.TAcq, last.Est, last.EKFOutl) == (1, 1, 1, 0)
-    assert (last.pX, last.pY) == pytest.approx([100.0 * x for x in away], abs=2.0)
-    assert (last.mX, last.mY, last.mZ) == pytest.approx([100.0 * x for x in place], abs=2.0)
+    assert (last.pX, last.pY) == pytest.approx(away, abs=0.02)
+    assert (last.mX, last.mY, last.mZ) == pytest.approx(place, abs=0.02)
     assert np.unique(np.diff(times(rows))).tolist() == [100_000]
     assert last.TimeUS - 1000 * last.LastMeasMS <= 20_000

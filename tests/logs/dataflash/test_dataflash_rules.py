@@ -69,6 +69,70 @@ def test_logging_pauses_after_disarming_and_goes_on_in_the_same_file(tmp_path: P
     assert list(tmp_path.iterdir()) == [run.path]
 
 
+@pytest.mark.parametrize("kind", ["copter", "rover"])
+def test_a_refused_arming_is_logged_for_15_s_with_its_reason(tmp_path: Path, kind: str) -> None:
+    run = Run(tmp_path, kind)
+    run.simulation.advance(1.0)
+    run.client.command(400, 1)
+    run.simulation.advance(30.0)
+    run.simulation.close()
+    log = read_log(run.path)
+    assert any(m.Message.startswith("Arm: ") for m in log["MSG"])
+    assert len(log["PARM"]) > 1000 and not log["ARM"]
+    stamps = [m.TimeUS * 1e-6 for m in log["BAT"]]
+    assert stamps[0] == pytest.approx(1.0, abs=0.11) and stamps[-1] == pytest.approx(16.0, abs=0.11)
+
+
+def test_a_flight_after_a_refused_arming_is_in_the_same_log(tmp_path: Path) -> None:
+    run = Run(tmp_path, "rover")
+    run.client.command(400, 1)
+    run.simulation.advance(20.0)
+    run.arm()
+    run.simulation.close()
+    log = read_log(run.path)
+    assert [m.ArmState for m in log["ARM"]] == [1]
+    gaps = [b.TimeUS - a.TimeUS for a, b in pairwise(log["BAT"])]
+    assert max(gaps) > 4e6
+    assert list(tmp_path.iterdir()) == [run.path]
+
+
+def test_parameters_that_change_while_it_logs_are_logged_again_without_a_default(tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    run.drive()
+    run.set("LAND_SPEED", 70.0)
+    run.client.command(400, 0, 21196)
+    run.simulation.advance(1.0)
+    run.simulation.close()
+    rows: dict[str, list[tuple[float, bool]]] = {}
+    for m in read_log(run.path)["PARM"]:
+        rows.setdefault(m.Name, []).append((m.Value, math.isnan(m.Default)))
+    again = {name: found for name, found in rows.items() if len(found) > 1}
+    assert set(again) == {"LAND_SPEED", "MOT_THST_HOVER"}
+    assert again["LAND_SPEED"][1] == (70.0, True)
+    (before, told), (after, left_out) = again["MOT_THST_HOVER"]
+    assert (told, left_out) == (False, True) and after != before
+
+
+def test_a_hover_throttle_that_is_not_saved_is_logged_once(tmp_path: Path) -> None:
+    run = Run(tmp_path, MOT_HOVER_LEARN=0.0)
+    run.arm()
+    run.client.command(400, 0, 21196)
+    run.simulation.advance(1.0)
+    run.simulation.close()
+    assert [m.Name for m in read_log(run.path)["PARM"]].count("MOT_THST_HOVER") == 1
+
+
+def test_a_long_text_is_logged_in_pieces(tmp_path: Path) -> None:
+    run = Run(tmp_path, LOG_DISARMED=1.0)
+    run.simulation.advance(0.1)
+    run.logger.said(6, "x" * 70)
+    run.logger.said(6, "y")
+    run.simulation.close()
+    *_, first, second, other = read_log(run.path)["MSG"]
+    assert [(m.Seq, m.Message) for m in (first, second, other)] == [(0, "x" * 64), (1, "x" * 6), (0, "y")]
+    assert first.ID == second.ID == other.ID - 1
+
+
 def test_bitmask_chooses_at_any_time(tmp_path: Path) -> None:
     run = Run(tmp_path, LOG_DISARMED=1.0, LOG_BITMASK=1 << 9)
     run.simulation.advance(1.0)

@@ -78,6 +78,7 @@ def end(v: Vehicle[Physics]) -> None:
     """Last thing of a tick: battery and sensors."""
     p = v.physics
     battery.discharge(p.battery, p.wheels.power, p.airframe, p.derived.charge_per_amp)
+    battery.sag(p.battery, p.airframe, p.derived.charge_per_amp)
     sense(p, v.sensors, v.rng, Clock(v.tick, v.time_us))
     step, period = p.airframe.encoder_step, p.derived.encoder_period
     if period == 0:  # the airframe has none

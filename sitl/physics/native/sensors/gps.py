@@ -23,7 +23,9 @@ from ..tick import TICK_S, Clock
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""
-NO_FIX, FIX_3D = 1, 3
+NO_FIX, FIX_3D, RTK_FIXED = 1, 3, 6
+EXACT = 0.02
+"""A receiver with a smaller error than this [m] has fixed the carrier's phase, and says so."""
 """Of MAVLink's GPS_FIX_TYPE."""
 
 JAM_SILENT_TICKS, JAM_SILENT_MORE_TICKS = 400, 2000
@@ -125,7 +127,8 @@ def take(p: Physics, r: GpsReceiver, tick: int, rng: Rng) -> None:
     if fault.is_on and fault.loss > 0.0 and uniform(rng) < fault.loss:
         return
     found = measure(r, p.body, p.airframe, d, rng)
-    fix_type = FIX_3D if tick >= d.gps_fix else NO_FIX
+    best = RTK_FIXED if p.airframe.gps_noise_horizontal + p.airframe.gps_drift_horizontal < EXACT else FIX_3D
+    fix_type = best if tick >= d.gps_fix else NO_FIX
     if r.jammed:
         fix_type = drift_jammed(r, tick, rng)
         found = Measured(found.pos + r.jam.pos, r.jam.vel)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What clients ask for now and then: FLIGHT_INFORMATION, AUTOPILOT_STATE_FOR_GIMBAL_DEVICE, MISSION_ITEM_REACHED."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...core.algebra import rotate
+from ..dialect import message
+from ..telemetry.plain import told
+from ..telemetry.units import boot_ms
+from .service import Service
+
+NONE_REACHED = 0xFFFF
+ON_GROUND, IN_AIR = 1, 2
+"""MAV_LANDED_STATE: it stands, or anything from this number on is a flight."""
+
+
+class FlightStateService(Service):
+    """When it was armed and took off, which item of the mission it reached last, and what a gimbal needs."""
+
+    def __init__(self, bridge: Any) -> None:
+        super().__init__(bridge)
+        self._took_off_us = 0
+        self._reached = NONE_REACHED
+
+    def snapshot(self) -> Any:
+        return self._took_off_us, self._reached
+
+    def restore(self, state: Any) -> None:
+        self._took_off_us, self._reached = state
+
+    def messages(self) -> dict[str, Callable[[], bytes]]:
+        return {
+            "FLIGHT_INFORMATION": self._flight,
+            "AUTOPILOT_STATE_FOR_GIMBAL_DEVICE": self._for_gimbal,
+            "MISSION_ITEM_REACHED": lambda: message("MISSION_ITEM_REACHED").payload(seq=self._reached),
+        }
+
+    def reached(self, seq: int) -> None:
+        """An item of the mission was reached."""
+        self._reached = seq
+
+    def _flight(self) -> bytes:
+        """Times since boot [us], whatever the fields' names say; that of the take-off is when somebody first asked in
+        flight, as in ArduPilot."""
+        now, ap = self.bridge.now_us, self.bridge.vehicle.v.autopilot
+        told_state = told(self.bridge.profile, self.bridge.vehicle.v, "EXTENDED_SYS_STATE")
+        state = int(getattr(told_state, "landed_state", 0))
+        if state == ON_GROUND:
+            self._took_off_us = 0
+        elif state >= IN_AIR and not self._took_off_us:
+            self._took_off_us = now
+        return message("FLIGHT_INFORMATION").payload(
+            time_boot_ms=boot_ms(now),
+            arming_time_utc=max(int(ap.arming.armed_us), 0),
+            takeoff_time_utc=self._took_off_us,
+        )
+
+    def _for_gimbal(self) -> bytes:
+        estimate = self.bridge.vehicle.v.autopilot.estimate
+        q, velocity = estimate.q, estimate.vel
+        return message("AUTOPILOT_STATE_FOR_GIMBAL_DEVICE").payload(
+            target_system=self.bridge.system,
+            time_boot_us=self.bridge.now_us & 0xFFFFFFFF,
+            q=(q.w, q.x, q.y, q.z),
+            vx=velocity.x,
+            vy=velocity.y,
+            vz=velocity.z,
+            estimator_status=int(estimate.status_flags) & 0xFFFF,
+            angular_velocity_z=rotate(q, estimate.rates).z,
+        )

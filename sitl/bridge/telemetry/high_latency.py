@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""HIGH_LATENCY2: the state in 42 bytes, made of what other messages tell, as ArduPilot's is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..dialect import message
+from .motion import global_position
+from .plain import told
+from .status import ACCEL, AHRS, BARO, BATTERY, GEOFENCE, GPS, GYRO, MAG, RECEIVER, TERRAIN
+from .units import boot_ms, heading_cdeg, int16, percent, uint8, uint16
+
+if TYPE_CHECKING:
+    from ..autopilot_api import Vehicle
+    from ..profile import Profile
+
+ARDUPILOTMEGA = 3
+DIFFERENTIAL_PRESSURE = 0x10
+"""Bit of SYS_STATUS; no vehicle has an airspeed sensor."""
+FAILURES = {
+    GPS: 0x1, DIFFERENTIAL_PRESSURE: 0x2, BARO: 0x4, ACCEL: 0x8, GYRO: 0x10, MAG: 0x20, TERRAIN: 0x40, BATTERY: 0x80,
+    RECEIVER: 0x100, GEOFENCE: 0x800, AHRS: 0x1000,
+}  # fmt: skip
+"""Bit of SYS_STATUS' health -> HL_FAILURE_FLAG, set while that is not healthy."""
+NO_TEMPERATURE = -128
+UNIT = 5.0
+"""Of speeds [1/(m/s)]."""
+
+
+def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
+    """HIGH_LATENCY2: place, target, speeds in 0.2 m/s, headings in 2 degrees, distance to the target in 10 m, failures;
+    ``custom0`` is HEARTBEAT's base_mode. No air temperature: that would be an airspeed sensor's."""
+    v = vehicle.v
+    ap = v.autopilot
+    names = ("HEARTBEAT", "VFR_HUD", "SYS_STATUS", "NAV_CONTROLLER_OUTPUT")
+    beat, hud, status, navigation = (told(profile, v, name) for name in names)
+    here, targets = global_position(v), profile.targets(v)
+    bearing, distance = (navigation.target_bearing, navigation.wp_dist) if navigation is not None else (0, 0)
+    return message("HIGH_LATENCY2").payload(
+        timestamp=boot_ms(int(v.time_us)),
+        type=profile.mav_type,
+        autopilot=ARDUPILOTMEGA,
+        custom_mode=int(beat.custom_mode) & 0xFFFF,
+        latitude=int(here.lat),
+        longitude=int(here.lon),
+        altitude=int16(here.alt),
+        target_altitude=int16(targets.altitude),
+        heading=heading_cdeg(ap.estimate.yaw) // 100 // 2,
+        target_heading=int(bearing) % 360 // 2,
+        target_distance=int(distance) // 10,
+        throttle=int(hud.throttle),
+        airspeed=uint8(UNIT * hud.airspeed),
+        airspeed_sp=uint8(UNIT * targets.speed),
+        groundspeed=uint8(UNIT * hud.groundspeed),
+        wind_heading=targets.wind_heading,
+        temperature_air=NO_TEMPERATURE,
+        battery=percent(ap.battery.remaining_pct),
+        wp_num=uint16(float(ap.modes.nav.mission_current)),
+        failure_flags=failures(int(status.onboard_control_sensors_health)),
+        custom0=_signed(int(beat.base_mode)),
+    )
+
+
+def failures(health: int) -> int:
+    """HL_FAILURE_FLAG bits of SYS_STATUS' health."""
+    return sum(flag for sensor, flag in FAILURES.items() if not health & sensor)
+
+
+def _signed(byte: int) -> int:
+    return byte - 256 if byte > 127 else byte
