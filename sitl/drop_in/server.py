@@ -206,7 +206,7 @@ class Session:
 
     def _after_slice(self) -> None:
         self._statistics.follow()
-        if self.simulation.time_us - self._written_us >= LOG_US:
+        if self._logs is not None and self.simulation.time_us - self._written_us >= LOG_US:
             self._written_us = self.simulation.time_us
             self._logs.write_out()
         mission = self.simulation.mission
