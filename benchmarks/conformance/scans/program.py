@@ -12,7 +12,7 @@ from typing import Any
 from sitl import vehicles
 from sitl.client import Client
 from sitl.client.connection import Connection
-from sitl.client.errors import CommandRefusedError
+from sitl.client.errors import CommandRefusedError, WaitTimeoutError
 from sitl.missions.manoeuvres import executable
 from sitl.missions.manoeuvres.__main__ import FRAMES, HOME
 from sitl.simulation import Simulation, load_core
@@ -86,7 +86,7 @@ class Program(Client):
         for patience in (5.0, 20.0, 60.0):  # its log is opened in wall time
             try:
                 return self.arm()
-            except CommandRefusedError:
+            except (CommandRefusedError, WaitTimeoutError):
                 if self.is_ours:
                     raise
                 self.delay(patience)
