@@ -92,6 +92,12 @@ def test_a_motor_test_that_cannot_be_ends_as_it_begins(bench: Bench, p: tuple[fl
     assert ("Motor Test: cancelled" in said) == (p[0] in (0, 5))
 
 
+def test_a_percentage_in_single_precision_is_a_whole_pulse(bench: Bench) -> None:
+    assert bench.command(MOTOR_TEST, 1, 0, 90.1, 1, 1, 2) == ACCEPTED
+    bench.wait(0.1)
+    assert bench.pwm[0] == 1901
+
+
 def test_a_motor_is_tested_by_the_throttle_stick(bench: Bench) -> None:
     bench.simulation.v.autopilot.rc.channels[2] = 1400
     assert bench.command(MOTOR_TEST, 1, 2, 0, 1, 1, 2) == ACCEPTED

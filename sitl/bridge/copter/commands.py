@@ -51,6 +51,8 @@ def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 PERCENT, PULSE, PILOT = range(3)
 """MOTOR_TEST_THROTTLE_TYPE"""
+ROUNDING = 1e-4
+"""Pulses are whole, and a percentage comes in single precision: 90.1 % is 1901 us."""
 BOARD_ORDER = 2.0
 """MOTOR_TEST_ORDER: by motor number; the others go clockwise from the front."""
 
@@ -58,11 +60,12 @@ BOARD_ORDER = 2.0
 def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
     """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p5 motors in turn, p6 order."""
     kind = int(command.p2)
-    throttle = command.p3 * 0.01 if kind == PERCENT else -1.0
-    if kind in (PULSE, PILOT):
-        least, most = bridge.parameter("MOT_PWM_MIN") or 0.0, bridge.parameter("MOT_PWM_MAX") or 0.0
-        pulse = command.p3 if kind == PULSE else _copter(bridge).throttle_pulse()
-        throttle = (pulse - least) / (most - least) if most > least else -1.0
+    throttle, (least, most) = -1.0, (bridge.parameter(f"MOT_PWM_{end}") or 0.0 for end in ("MIN", "MAX"))
+    if kind in (PERCENT, PULSE, PILOT) and most > least:
+        pulse = _copter(bridge).throttle_pulse() if kind == PILOT else command.p3
+        if kind == PERCENT:
+            pulse = math.floor(least + (most - least) * command.p3 * 0.01 + ROUNDING)
+        throttle = (pulse - least) / (most - least)
     tests = bridge.get(MotorTestService)
     return int(tests.begin(int(command.p1), int(command.p5), command.p6 != BOARD_ORDER, throttle, command.p4))
 
