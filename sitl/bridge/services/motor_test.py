@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Motor tests of copters (MAV_CMD_DO_MOTOR_TEST): one motor, or several in turn with a pause of half the time between."""
+"""Motor tests of copters (MAV_CMD_DO_MOTOR_TEST): one motor, or several in turn with pauses of half the time."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, cast
 
 from ..wire.port import NEVER
 from .service import ACCEPTED, FAILED, Service
@@ -29,11 +29,25 @@ class Series(NamedTuple):
     is_resting: bool
 
 
+class TestsMotors(Protocol):
+    """A firmware that tests motors one by one."""
+
+    def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
+        """Turn a motor."""
+
+    def is_testing_motor(self) -> bool:
+        """Whether a test is under way."""
+
+    def rest_tested_motor(self) -> None:
+        """No throttle, and the test goes on."""
+
+
 class MotorTestService(Service):
     """The series under way; the vehicle's own law ends the test of its last motor."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
+        self._autopilot = cast("TestsMotors", bridge.autopilot)
         self._series: Series | None = None
 
     def snapshot(self) -> Any:
@@ -54,14 +68,14 @@ class MotorTestService(Service):
         assert series is not None
         seconds = series.each_us * 1e-6
         longer = 0.5 * seconds + SPARE_S if series.left else 0.0
-        ok = self.bridge.autopilot.test_motor(series.motor, series.in_order, series.throttle, seconds + longer)
+        ok = self._autopilot.test_motor(series.motor, series.in_order, series.throttle, seconds + longer)
         self.bridge.say_pending()
-        goes_on = series.left > 0 and self.bridge.autopilot.is_testing_motor()
+        goes_on = series.left > 0 and self._autopilot.is_testing_motor()
         self.due_us = self.bridge.now_us + series.each_us if goes_on else NEVER
         return bool(ok)
 
     def service(self, now_us: int) -> None:
-        series, autopilot = self._series, self.bridge.autopilot
+        series, autopilot = self._series, self._autopilot
         if series is None or not autopilot.is_testing_motor():  # it was disarmed
             self._series, self.due_us = None, NEVER
         elif not series.is_resting:
