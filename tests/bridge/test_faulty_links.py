@@ -125,7 +125,7 @@ def test_one_link_of_several(simulation: Simulation) -> None:
 def test_bandwidth_holds_telemetry_back_and_lets_answers_pass(simulation: Simulation) -> None:
     client = Times(simulation)
     simulation.set_link_faults(LinkFaults(bandwidth=1200.0))
-    client.endpoint.set_interval("ATTITUDE", 400)  # 16 kB/s
+    client.endpoint.set_interval("ATTITUDE", 320)  # 13 kB/s
     client.advance(10_000_000)
     assert 0.9 * 12_000 < len(client.bytes) <= 12_100
     client.heard.clear()

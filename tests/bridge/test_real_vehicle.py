@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from sitl.client.endpoint import Endpoint
@@ -90,6 +92,12 @@ def test_a_motor_test_that_cannot_be_ends_as_it_begins(bench: Bench, p: tuple[fl
     assert ("Motor Test: cancelled" in said) == (p[0] in (0, 5))
 
 
+def test_a_percentage_in_single_precision_is_a_whole_pulse(bench: Bench) -> None:
+    assert bench.command(MOTOR_TEST, 1, 0, 90.1, 1, 1, 2) == ACCEPTED
+    bench.wait(0.1)
+    assert bench.pwm[0] == 1901
+
+
 def test_a_motor_is_tested_by_the_throttle_stick(bench: Bench) -> None:
     bench.simulation.v.autopilot.rc.channels[2] = 1400
     assert bench.command(MOTOR_TEST, 1, 2, 0, 1, 1, 2) == ACCEPTED
@@ -97,9 +105,31 @@ def test_a_motor_is_tested_by_the_throttle_stick(bench: Bench) -> None:
     assert bench.pwm[0] == 1400
 
 
-def test_several_motors_in_turn_are_refused(bench: Bench) -> None:
-    assert bench.command(MOTOR_TEST, 1, 0, 10, 1, 4) == FAILED
+def test_motors_are_tested_in_turn_with_pauses(bench: Bench) -> None:
+    """Two of them clockwise from the front of a plus frame, with half the time between."""
+    assert bench.command(MOTOR_TEST, 1, 0, 20, 1, 2) == ACCEPTED
+    seen = []
+    for _ in range(14):
+        seen.append([k for k in range(4) if bench.pwm[k] > 1000] if bench.armed else None)
+        bench.wait(0.2)
+    turning = [seen[0], *[b for a, b in pairwise(seen) if a != b]]
+    assert turning == [[2], [], [0], None]
+    assert [t for t in bench.texts if "test" in t] == ["starting motor test", "finished motor test"]
+
+
+def test_a_series_of_motor_tests_ends_where_there_is_no_further_motor(bench: Bench) -> None:
+    assert bench.command(MOTOR_TEST, 4, 0, 20, 0.2, 3) == ACCEPTED
+    bench.wait(1.0)
     assert not bench.armed
+    said = [t for t in bench.texts if "motor test" in t.lower()]
+    assert said == ["starting motor test", "Motor Test: cancelled", "finished motor test"]
+
+
+def test_a_series_of_motor_tests_ends_with_a_disarming(bench: Bench) -> None:
+    assert bench.command(MOTOR_TEST, 1, 0, 20, 1, 4) == ACCEPTED
+    assert bench.command(400, 0) == ACCEPTED
+    bench.wait(5.0)
+    assert not bench.armed and bench.pwm[:4] == [1000] * 4
 
 
 def test_a_motor_test_disarms_who_was_armed_and_waits_for_who_flies(bench: Bench) -> None:

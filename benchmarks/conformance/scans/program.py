@@ -12,7 +12,7 @@ from typing import Any
 from sitl import vehicles
 from sitl.client import Client
 from sitl.client.connection import Connection
-from sitl.client.errors import CommandRefusedError
+from sitl.client.errors import CommandRefusedError, WaitTimeoutError
 from sitl.logs.dataflash.log import attach
 from sitl.logs.dataflash.numbered import NumberedLogs
 from sitl.missions.manoeuvres import executable
@@ -88,7 +88,7 @@ class Program(Client):
         for patience in (5.0, 20.0, 60.0):  # its log is opened in wall time
             try:
                 return self.arm()
-            except CommandRefusedError:
+            except (CommandRefusedError, WaitTimeoutError):
                 if self.is_ours:
                     raise
                 self.delay(patience)

@@ -54,6 +54,11 @@ def start(v: Vehicle, motor: int, throttle: float, seconds: float) -> int:
     return OK
 
 
+def end(v: Vehicle) -> None:
+    """A test under way ends with the next tick."""
+    v.autopilot.control.motors.test_until_us = v.time_us
+
+
 @inlined
 def run(v: Vehicle) -> None:
     """Every tick of a test, behind the mode: keep the mode's hands off the motors; end in time."""

@@ -137,11 +137,20 @@ class CopterAutopilot(BaseAutopilot):
         if answer == motor_test.NOT_LANDED:
             self._say(CRITICAL, ["Motor Test: vehicle not landed"])
             return False
-        if answer == motor_test.BAD_MOTOR:
-            self._say(INFO, ["starting motor test", "Motor Test: cancelled", "finished motor test"])
-        elif answer == motor_test.BAD_THROTTLE:
-            self._say(INFO, ["starting motor test", "finished motor test"])
+        if answer != motor_test.OK:
+            began = [] if self.is_testing_motor() else ["starting motor test"]
+            cancelled = ["Motor Test: cancelled"] if answer == motor_test.BAD_MOTOR else []
+            self._say(INFO, [*began, *cancelled, *([] if self.is_testing_motor() else ["finished motor test"])])
+            motor_test.end(self._v)
         return True
+
+    def is_testing_motor(self) -> bool:
+        """Whether a motor test is under way."""
+        return int(self._v.autopilot.control.motors.test_motor) != 0
+
+    def rest_tested_motor(self) -> None:
+        """No throttle for the motor under test; the test goes on."""
+        self._v.autopilot.control.motors.test_actuator = 0.0
 
     def throttle_pulse(self) -> int:
         """Of the throttle stick [us]."""

@@ -14,6 +14,7 @@ from ..channel import Channel
 from ..services import command_table
 from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry, is_on_earth
 from ..services.command_table import set_mode
+from ..services.motor_test import MotorTestService
 from ..services.mount import MountService
 from ..services.other_commands import move_landing_gear
 from ..services.parachute import ParachuteService
@@ -50,23 +51,23 @@ def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 PERCENT, PULSE, PILOT = range(3)
 """MOTOR_TEST_THROTTLE_TYPE"""
+ROUNDING = 1e-4
+"""Pulses are whole, and a percentage comes in single precision: 90.1 % is 1901 us."""
 BOARD_ORDER = 2.0
 """MOTOR_TEST_ORDER: by motor number; the others go clockwise from the front."""
 
 
 def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p6 order. One motor (p5 0 or 1)."""
+    """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p5 motors in turn, p6 order."""
     kind = int(command.p2)
-    if command.p5 not in (0.0, 1.0):
-        return FAILED
-    throttle = command.p3 * 0.01 if kind == PERCENT else -1.0
-    if kind in (PULSE, PILOT):
-        least, most = bridge.parameter("MOT_PWM_MIN") or 0.0, bridge.parameter("MOT_PWM_MAX") or 0.0
-        pulse = command.p3 if kind == PULSE else _copter(bridge).throttle_pulse()
-        throttle = (pulse - least) / (most - least) if most > least else -1.0
-    ok = _copter(bridge).test_motor(int(command.p1), command.p6 != BOARD_ORDER, throttle, command.p4)
-    bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    throttle, (least, most) = -1.0, (bridge.parameter(f"MOT_PWM_{end}") or 0.0 for end in ("MIN", "MAX"))
+    if kind in (PERCENT, PULSE, PILOT) and most > least:
+        pulse = _copter(bridge).throttle_pulse() if kind == PILOT else command.p3
+        if kind == PERCENT:
+            pulse = math.floor(least + (most - least) * command.p3 * 0.01 + ROUNDING)
+        throttle = (pulse - least) / (most - least)
+    tests = bridge.get(MotorTestService)
+    return int(tests.begin(int(command.p1), int(command.p5), command.p6 != BOARD_ORDER, throttle, command.p4))
 
 
 KINDS_OF_SPEED = 4

@@ -15,6 +15,7 @@ from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
 from .mission import MissionService
+from .motor_test import MotorTestService
 from .mount import MountService
 from .old_points import OldPointService
 from .outputs import OutputService
@@ -55,6 +56,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     SprayerService,
     ParachuteService,
     MountService,
+    MotorTestService,
     CalibrationService,
     CompassCalibrationService,
     SigningService,
