@@ -28,7 +28,8 @@ from .arming_checks import (
     wants,
 )
 from .params.table import Values
-from .sensor_calibration import shown_field
+from .radio_checks import WORD
+from .sensor_calibration import field_of
 
 ALWAYS, ANY = -1, 0
 """In place of a bit of ARMING_CHECK: the check counts even when that is 0, or unless it is 0."""
@@ -101,10 +102,10 @@ def outputs(s: Subject) -> Iterable[str]:
     for k in range(1, OUTPUTS + 1):
         if values[f"SERVO{k}_FUNCTION"] <= 0.0:
             continue
-        rest = values[f"SERVO{k}_TRIM"]
-        if values[f"SERVO{k}_MIN"] > rest:
+        low, high, rest = (values[f"SERVO{k}_{of}"] % WORD for of in ("MIN", "MAX", "TRIM"))  # read without their signs
+        if low > rest:
             yield f"SERVO{k}_MIN is greater than SERVO{k}_TRIM"
-        if values[f"SERVO{k}_MAX"] < rest:
+        if high < rest:
             yield f"SERVO{k}_MAX is less than SERVO{k}_TRIM"
 
 
@@ -147,7 +148,7 @@ def compasses(s: Subject) -> Iterable[str]:
 def _field(s: Subject) -> Iterable[str]:
     """The first compass shows a field that cannot be here."""
     ap, limit = s.v.autopilot, s.values["ARMING_MAGTHRESH"]
-    shown = 1e3 * shown_field(0, s.v.sensors, ap.params.COMPASS)
+    shown = 1e3 * field_of(0, s.v.sensors, ap.params)
     size = norm(shown)
     if not COMPASS_LEAST <= size <= COMPASS_MOST:
         yield f"Check mag field: {size:4.0f}, max {COMPASS_MOST:.0f}, min {COMPASS_LEAST:.0f}"
@@ -175,10 +176,11 @@ def _difference(s: Subject) -> str:
     first, second = (
         by_component(shown - _axes(values, f"INS_ACC{k}OFFS"), _axes(values, f"INS_ACC{k}SCAL")) for k in ("", "2")
     )
-    if norm(first - second) > values["ARMING_ACCTHRESH"]:
+    apart, limit = first - second, values["ARMING_ACCTHRESH"]
+    if limit <= 0.0 or norm(Vec3(apart.x, apart.y, 0.5 * apart.z)) > limit:  # downwards it matters less
         return "Accels inconsistent"
-    apart = norm(_axes(values, "INS_GYROFFS") - _axes(values, "INS_GYR2OFFS"))
-    return "Gyros inconsistent" if apart > GYRO_DIFFERENCE else ""
+    drift = norm(_axes(values, "INS_GYROFFS") - _axes(values, "INS_GYR2OFFS"))
+    return "Gyros inconsistent" if drift > GYRO_DIFFERENCE else ""
 
 
 def inertial(s: Subject) -> Iterable[str]:
@@ -187,7 +189,7 @@ def inertial(s: Subject) -> Iterable[str]:
     third = [f"INS_ACC3{of}_{axis}" for of in ("OFFS", "SCAL") for axis in "XYZ"]
     if values["INS_GYR3_ID"] != 0.0:
         yield "Gyros not calibrated"
-    elif values["INS_ACC3_ID"] != 0.0 or any(values[name] != values.table[name].default for name in third):
+    elif values["INS_ACC3_ID"] != 0.0 or any(values[name] not in (0.0, values.table[name].default) for name in third):
         yield "3D Accel calibration needed"
     elif s.v.sensors.imu_state == 0 and (wrong := _difference(s)):
         yield wrong

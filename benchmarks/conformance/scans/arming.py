@@ -3,28 +3,36 @@
 
 Rows have the parameter and its value as names, "ANGLE_MAX 500"; rows of several have them all, and rows "arm ..." are
 what an attempt to arm says. Only what somebody objects to has a row. Parameters are tried a dozen at once, and one by
-one where the dozen is not taken.
+one where the dozen is not taken. Of all parameters (some 1,300 a vehicle) those are scanned that ours or a real one
+has objected to before (``NAMES``); ``--rows PATTERN`` scans any.
 """
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 
+from sitl.autopilot.params.parameter import INT8, INT16
 from sitl.bridge.services.parameters import ParameterService
 from sitl.errors import SitlError
 from sitl.vehicle.kinds import KINDS
 
+from .kept import FOLDER
 from .program import Program, Programs
 
 SKIPPED = (
     "SIM_", "SERIAL", "MAV", "BRD_", "SCHED_", "LOG_", "NET_", "CAN_", "SCR_", "FORMAT_", "STAT_", "SYSID", "DDS_",
     "NMEA_", "FLTMODE", "MODE", "INITIAL_MODE", "ARMING_CHECK", "ARMING_SKIPCHK", "ARMING_REQUIRE", "AHRS_EKF_TYPE",
     "EK3_ENABLE", "TERRAIN_", "RCMAP_", "GPS_INJECT", "INS_TCAL", "EAHRS", "FFT_", "TEMP", "ESC_TLM", "OSD", "FRSKY_",
-    "MSP_",
+    "MSP_", "PSC_POS", "PSC_VEL", "PSC_ACC", "PSC_JERK",
 )  # fmt: skip
 """Beginnings of names of links, storage, the simulation itself, and of what changes which checks are made."""
 AT_ONCE = 12
+NAMES = FOLDER / "arming-names.json"
+MOST = {INT8: 127.0, INT16: 32767.0}
+NUMBER = re.compile(r" *\d+(\.\d+)?")
 COMMANDS = {"RUN_PREARM_CHECKS": (401, 0.0), "COMPONENT_ARM_DISARM": (400, 1.0)}
 CASES: tuple[Mapping[str, float], ...] = (
     {"FS_THR_VALUE": 900}, {"ANGLE_MAX": 500}, {"SERVO1_FUNCTION": 0}, {"SERVO3_FUNCTION": -1}, {"ATC_ANG_RLL_P": 0},
@@ -45,8 +53,14 @@ def values_of(kind: str) -> dict[str, list[float]]:
             continue
         bounds = [b for b in (p.low, p.high) if p.has_effect and abs(b) < 1e6]
         values = (0.0, -1.0, *bounds, *(2.0 * b for b in bounds))
-        found[p.name] = list(dict.fromkeys(values))
+        most = MOST.get(p.kind, float("inf"))
+        found[p.name] = [value for value in dict.fromkeys(values) if abs(value) <= most]
     return found
+
+
+def agrees(ours: str | None, theirs: str | None) -> bool:
+    """Whether two rows say the same; numbers in texts may differ."""
+    return ours is not None and theirs is not None and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
 
 
 class Asked:
@@ -112,7 +126,11 @@ class Asked:
 
 def batches(kind: str, pattern: str) -> Iterator[list[tuple[str, float]]]:
     """Parameters and values that are tried together: each parameter once."""
-    wanted = {name: values for name, values in values_of(kind).items() if fnmatchcase(name, pattern.split(" ")[0])}
+    if pattern == "*":
+        chosen = frozenset(json.loads(NAMES.read_text(encoding="utf-8"))[kind])
+    else:
+        chosen = frozenset(name for name in values_of(kind) if fnmatchcase(name, pattern.split(" ")[0]))
+    wanted = {name: values for name, values in values_of(kind).items() if name in chosen}
     for k in range(max(map(len, wanted.values()), default=0)):
         row = [(name, values[k]) for name, values in wanted.items() if k < len(values)]
         for at in range(0, len(row), AT_ONCE):

@@ -33,7 +33,10 @@ def motors(s: Subject) -> Iterable[str]:
             return
     least, low, high = values["MOT_SPIN_MIN"], values["MOT_PWM_MIN"], values["MOT_PWM_MAX"]
     if m.count == 0:
-        return  # the frame is wrong
+        return  # that is a check of its own
+    if values["FRAME_TYPE"] < 0.0:
+        yield "Motors: Check frame class and type"
+        return
     if least > SPIN_MIN_MOST:
         yield f"Motors: MOT_SPIN_MIN too high {least:.2f} > {SPIN_MIN_MOST}"
     elif values["MOT_SPIN_ARM"] > least:
