@@ -82,6 +82,8 @@ def look(subject: Subject, checks: Sequence[Check]) -> list[Found]:
 # ---------------------------------------------------------------------- what vehicles share
 
 OUTPUTS = 16
+WITH_CURRENT = 4
+"""BATT_MONITOR of a monitor that measures the current, too."""
 COMPASS_LEAST, COMPASS_MOST = 185.0, 875.0
 """Field that a compass can show on the earth [mGauss]."""
 _COMPASSES = ("", "2", "3")
@@ -203,6 +205,8 @@ def batteries(s: Subject) -> Iterable[str]:
             yield "Battery 1 capacity failsafe critical >= low"
         elif limits.LOW_VOLT > 0.0 and limits.CRT_VOLT >= limits.LOW_VOLT:
             yield "Battery 1 voltage failsafe critical >= low"
+        elif ap.battery.driver == WITH_CURRENT and s.values["BATT_CURR_PIN"] == -1.0:
+            yield "Battery 1 unhealthy"
     for k, name in enumerate(_BATTERIES, 2):
         if s.values[f"BATT{name}_MONITOR"] != 0.0:
             yield f"Battery {k} unhealthy"

@@ -77,7 +77,8 @@ def item(k: int) -> Order:
     """The mission from an item on; the next order is the item after it."""
 
     def order(program: Program, number: int) -> None:
-        program.command("DO_SET_MISSION_CURRENT", k + number)
+        if k + number > LEG:  # AUTO itself begins at the first item
+            program.command("DO_SET_MISSION_CURRENT", k + number)
 
     return order
 
@@ -142,8 +143,7 @@ CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
         ("CIRC_SPEED", "CIRCLE", 2, 1), ("CRUISE_SPEED", "ACRO throttle", 5, 2),
         ("CRUISE_SPEED", "STEERING throttle", 5, 2), ("CRUISE_THROTTLE", "ACRO throttle", 30, 60),
         ("MOT_THR_MAX", "MANUAL throttle", 100, 30), ("ACRO_TURN_RATE", "ACRO roll", 60, 20),
-        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("ATC_SPEED_P", "GUIDED", 0.1, 0.3),
-        ("SPEED_MAX", "ACRO throttle", 0, 2),
+        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("SPEED_MAX", "ACRO throttle", 0, 2),
     ),
 }  # fmt: skip
 """Parameter, manoeuvre, old and new value."""
