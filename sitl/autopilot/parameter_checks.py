@@ -140,7 +140,7 @@ def compasses(s: Subject) -> Iterable[str]:
     if any(_is_uncalibrated(values, k) for k in used):
         yield "Compass not calibrated"
         return
-    if norm(Vec3(*(values[f"COMPASS_OFS_{axis}"] for axis in "XYZ"))) > values["COMPASS_OFFS_MAX"]:
+    if norm(Vec3(*(values[f"COMPASS_OFS_{axis}"] for axis in "XYZ"))) > values["COMPASS_OFFS_MAX"] % WORD:
         yield "Compass offsets too high"
         return
     if norm(v.sensors.mag) > 0.0:  # there is one

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""When parameters act that are set while a vehicle moves, as a real ArduPilot does (tests/conformance/kept/in-flight-*.json)."""
+"""When parameters act that are set in motion, as with a real ArduPilot (tests/conformance/kept/in-flight-*.json)."""
 
 from __future__ import annotations
 

@@ -33,6 +33,7 @@ AT_ONCE = 12
 """Of parameters that nobody has objected to: others could hide one another (a RCn_MIN and its RCn_TRIM)."""
 NAMES = FOLDER / "arming-names.json"
 MOST = {INT8: 127.0, INT16: 32767.0}
+OF_THE_FILTER = ("EKF ", "AHRS: EKF3 ", "GPS and AHRS differ")
 NUMBER = re.compile(r" *\d+(\.\d+)?")
 COMMANDS = {"RUN_PREARM_CHECKS": (401, 0.0), "COMPONENT_ARM_DISARM": (400, 1.0)}
 CASES: tuple[Mapping[str, float], ...] = (
@@ -60,8 +61,13 @@ def values_of(kind: str) -> dict[str, list[float]]:
 
 
 def agrees(ours: str | None, theirs: str | None) -> bool:
-    """Whether two rows say the same; numbers in texts may differ."""
-    return ours is not None and theirs is not None and NUMBER.sub("#", ours) == NUMBER.sub("#", theirs)
+    """Whether two rows say the same; numbers in texts may differ, and what the filter says of a disturbance."""
+    return _said(ours) == _said(theirs)
+
+
+def _said(row: str | None) -> set[str]:
+    texts = [text for text in (row or "").split("; ") if text and not text.startswith(OF_THE_FILTER)]
+    return {NUMBER.sub("#", text) for text in texts}
 
 
 class Asked:

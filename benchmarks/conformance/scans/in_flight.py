@@ -90,9 +90,9 @@ def holds(**sticks: int) -> Order:
         names = ("roll", "pitch", "throttle", "yaw") if program.of == "copter" else ("steering", "throttle")
         rest = dict.fromkeys(names, 1500)
         if number:
-            program.rc(**rest)
+            program.rc(None, **rest)
             program.delay(3.0)
-        program.rc(**{**rest, **sticks})
+        program.rc(None, **{**rest, **sticks})
 
     return order
 

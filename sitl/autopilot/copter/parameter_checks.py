@@ -11,6 +11,7 @@ from ..radio import THROTTLE, stick_channel
 from ..radio_checks import STICK_NAMES, calibration_texts
 
 SPIN_MIN_MOST = 0.3
+_ROUNDING = 1e-6
 THR_VALUE_LEAST, THR_VALUE_ROOM = 910.0, 10.0
 """FS_THR_VALUE is above the pulse of a receiver that has lost its transmitter, and below the stick's least [us]."""
 ANGLE_LEAST, ANGLE_MOST = 1000.0, 8000.0
@@ -37,7 +38,7 @@ def motors(s: Subject) -> Iterable[str]:
     if values["FRAME_TYPE"] < 0.0:
         yield "Motors: Check frame class and type"
         return
-    if least > SPIN_MIN_MOST:
+    if least > SPIN_MIN_MOST + _ROUNDING:
         yield f"Motors: MOT_SPIN_MIN too high {least:.2f} > {SPIN_MIN_MOST}"
     elif values["MOT_SPIN_ARM"] > least:
         yield "Motors: MOT_SPIN_ARM > MOT_SPIN_MIN"
