@@ -28,7 +28,8 @@ from .arming_checks import (
     wants,
 )
 from .params.table import Values
-from .sensor_calibration import shown_field
+from .radio_checks import WORD
+from .sensor_calibration import field_of
 
 ALWAYS, ANY = -1, 0
 """In place of a bit of ARMING_CHECK: the check counts even when that is 0, or unless it is 0."""
@@ -81,6 +82,8 @@ def look(subject: Subject, checks: Sequence[Check]) -> list[Found]:
 # ---------------------------------------------------------------------- what vehicles share
 
 OUTPUTS = 16
+WITH_CURRENT = 4
+"""BATT_MONITOR of a monitor that measures the current, too."""
 COMPASS_LEAST, COMPASS_MOST = 185.0, 875.0
 """Field that a compass can show on the earth [mGauss]."""
 _COMPASSES = ("", "2", "3")
@@ -101,10 +104,10 @@ def outputs(s: Subject) -> Iterable[str]:
     for k in range(1, OUTPUTS + 1):
         if values[f"SERVO{k}_FUNCTION"] <= 0.0:
             continue
-        rest = values[f"SERVO{k}_TRIM"]
-        if values[f"SERVO{k}_MIN"] > rest:
+        low, high, rest = (values[f"SERVO{k}_{of}"] % WORD for of in ("MIN", "MAX", "TRIM"))  # read without their signs
+        if low > rest:
             yield f"SERVO{k}_MIN is greater than SERVO{k}_TRIM"
-        if values[f"SERVO{k}_MAX"] < rest:
+        if high < rest:
             yield f"SERVO{k}_MAX is less than SERVO{k}_TRIM"
 
 
@@ -137,7 +140,7 @@ def compasses(s: Subject) -> Iterable[str]:
     if any(_is_uncalibrated(values, k) for k in used):
         yield "Compass not calibrated"
         return
-    if norm(Vec3(*(values[f"COMPASS_OFS_{axis}"] for axis in "XYZ"))) > values["COMPASS_OFFS_MAX"]:
+    if norm(Vec3(*(values[f"COMPASS_OFS_{axis}"] for axis in "XYZ"))) > values["COMPASS_OFFS_MAX"] % WORD:
         yield "Compass offsets too high"
         return
     if norm(v.sensors.mag) > 0.0:  # there is one
@@ -147,7 +150,7 @@ def compasses(s: Subject) -> Iterable[str]:
 def _field(s: Subject) -> Iterable[str]:
     """The first compass shows a field that cannot be here."""
     ap, limit = s.v.autopilot, s.values["ARMING_MAGTHRESH"]
-    shown = 1e3 * shown_field(0, s.v.sensors, ap.params.COMPASS)
+    shown = 1e3 * field_of(0, s.v.sensors, ap.params)
     size = norm(shown)
     if not COMPASS_LEAST <= size <= COMPASS_MOST:
         yield f"Check mag field: {size:4.0f}, max {COMPASS_MOST:.0f}, min {COMPASS_LEAST:.0f}"
@@ -175,10 +178,11 @@ def _difference(s: Subject) -> str:
     first, second = (
         by_component(shown - _axes(values, f"INS_ACC{k}OFFS"), _axes(values, f"INS_ACC{k}SCAL")) for k in ("", "2")
     )
-    if norm(first - second) > values["ARMING_ACCTHRESH"]:
+    apart, limit = first - second, values["ARMING_ACCTHRESH"]
+    if limit <= 0.0 or norm(Vec3(apart.x, apart.y, 0.5 * apart.z)) > limit:  # downwards it matters less
         return "Accels inconsistent"
-    apart = norm(_axes(values, "INS_GYROFFS") - _axes(values, "INS_GYR2OFFS"))
-    return "Gyros inconsistent" if apart > GYRO_DIFFERENCE else ""
+    drift = norm(_axes(values, "INS_GYROFFS") - _axes(values, "INS_GYR2OFFS"))
+    return "Gyros inconsistent" if drift > GYRO_DIFFERENCE else ""
 
 
 def inertial(s: Subject) -> Iterable[str]:
@@ -187,7 +191,7 @@ def inertial(s: Subject) -> Iterable[str]:
     third = [f"INS_ACC3{of}_{axis}" for of in ("OFFS", "SCAL") for axis in "XYZ"]
     if values["INS_GYR3_ID"] != 0.0:
         yield "Gyros not calibrated"
-    elif values["INS_ACC3_ID"] != 0.0 or any(values[name] != values.table[name].default for name in third):
+    elif values["INS_ACC3_ID"] != 0.0 or any(values[name] not in (0.0, values.table[name].default) for name in third):
         yield "3D Accel calibration needed"
     elif s.v.sensors.imu_state == 0 and (wrong := _difference(s)):
         yield wrong
@@ -201,6 +205,8 @@ def batteries(s: Subject) -> Iterable[str]:
             yield "Battery 1 capacity failsafe critical >= low"
         elif limits.LOW_VOLT > 0.0 and limits.CRT_VOLT >= limits.LOW_VOLT:
             yield "Battery 1 voltage failsafe critical >= low"
+        elif ap.battery.driver == WITH_CURRENT and s.values["BATT_CURR_PIN"] == -1.0:
+            yield "Battery 1 unhealthy"
     for k, name in enumerate(_BATTERIES, 2):
         if s.values[f"BATT{name}_MONITOR"] != 0.0:
             yield f"Battery {k} unhealthy"

@@ -26,6 +26,7 @@ PARAMETERS = 1 << 59
 """Parameters of any kind: their texts are those of ``parameter_checks``."""
 
 STICK_NAMES = {ROLL: "Roll", PITCH: "Pitch", THROTTLE: "Throttle", YAW: "Yaw"}
+WORD = 65536.0
 HIGHEST_MIN, LOWEST_MAX = 1300.0, 1700.0
 """Calibrated sticks reach these pulses at least [us]."""
 
@@ -44,24 +45,19 @@ def off_centre(rc: Radio, params: Parameters, stick: int, bit: int) -> int:
     return bit if radio.stick_position(rc, params, stick) != 0.0 else 0
 
 
-def _pulse(values: Values, name: str) -> float:
-    """A pulse, as the receiver's side of the firmware reads what was set: without a sign."""
-    return values[name] % 65536.0
-
-
 def calibration_texts(values: Values, params: Parameters, sticks: Mapping[int, str]) -> Iterable[str]:
     """What is wrong with the channels; ``sticks``: those that must be calibrated, and what the firmware calls them."""
     for stick, name in sticks.items():
         channel = radio.stick_channel(params.RCMAP, stick) + 1
-        if _pulse(values, f"RC{channel}_MIN") > HIGHEST_MIN:
+        if values[f"RC{channel}_MIN"] > HIGHEST_MIN:
             yield f"{name} radio min too high"
-        if _pulse(values, f"RC{channel}_MAX") < LOWEST_MAX:
+        if values[f"RC{channel}_MAX"] < LOWEST_MAX:
             yield f"{name} radio max too low"
     for number in range(1, RC_INPUTS + 1):
-        rest = _pulse(values, f"RC{number}_TRIM")
-        if _pulse(values, f"RC{number}_MIN") > rest:
+        rest = values[f"RC{number}_TRIM"] % WORD  # ArduPilot reads it without its sign
+        if values[f"RC{number}_MIN"] > rest:
             yield f"RC{number}_MIN is greater than RC{number}_TRIM"
-        if _pulse(values, f"RC{number}_MAX") < rest:
+        if values[f"RC{number}_MAX"] < rest:
             yield f"RC{number}_MAX is less than RC{number}_TRIM"
 
 

@@ -102,6 +102,8 @@ class BaseAutopilot:
         ok, texts = self._arming.arm(self._v, BY_MAVLINK, force)
         if not (ok or force):
             texts = [*texts, *self._parameter_texts(self._arming.check(self._v) == 0, "Arm: ")]
+        elif not force:
+            texts = [f"Arm: {each.text}" for each in self._found if not each.forbids]
         self._say(CRITICAL, texts)
         return bool(ok)
 

@@ -183,6 +183,7 @@ def test_an_action_that_is_gone_is_told_and_does_not_forbid() -> None:
     autopilot.run_prearm_checks()
     assert texts(autopilot) == ["PreArm: FS_GCS_ENABLE=2 removed, see FS_OPTIONS"]
     assert autopilot.arm(False)
+    assert texts(autopilot) == ["Arm: FS_GCS_ENABLE=2 removed, see FS_OPTIONS"]
 
 
 def test_the_mission_has_what_it_must_have() -> None:

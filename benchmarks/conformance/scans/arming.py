@@ -2,29 +2,39 @@
 """Arming checks: what RUN_PREARM_CHECKS says of every parameter at 0, -1, its bounds and twice its bounds.
 
 Rows have the parameter and its value as names, "ANGLE_MAX 500"; rows of several have them all, and rows "arm ..." are
-what an attempt to arm says. Only what somebody objects to has a row. Parameters are tried a dozen at once, and one by
-one where the dozen is not taken.
+what an attempt to arm says. Only what somebody objects to has a row. Of all parameters (some 1,300 a vehicle) those
+are scanned, one by one, that ours or a real one has objected to before (``NAMES``); ``--rows PATTERN`` scans any, a
+dozen at once, and one by one where the dozen is not taken.
 """
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 
+from sitl.autopilot.params.parameter import INT8, INT16
 from sitl.bridge.services.parameters import ParameterService
 from sitl.errors import SitlError
 from sitl.vehicle.kinds import KINDS
 
+from .kept import FOLDER
 from .program import Program, Programs
 
 SKIPPED = (
     "SIM_", "SERIAL", "MAV", "BRD_", "SCHED_", "LOG_", "NET_", "CAN_", "SCR_", "FORMAT_", "STAT_", "SYSID", "DDS_",
     "NMEA_", "FLTMODE", "MODE", "INITIAL_MODE", "ARMING_CHECK", "ARMING_SKIPCHK", "ARMING_REQUIRE", "AHRS_EKF_TYPE",
     "EK3_ENABLE", "TERRAIN_", "RCMAP_", "GPS_INJECT", "INS_TCAL", "EAHRS", "FFT_", "TEMP", "ESC_TLM", "OSD", "FRSKY_",
-    "MSP_",
+    "MSP_", "PSC_POS", "PSC_VEL", "PSC_ACC", "PSC_JERK",
 )  # fmt: skip
 """Beginnings of names of links, storage, the simulation itself, and of what changes which checks are made."""
 AT_ONCE = 12
+"""Of parameters that nobody has objected to: others could hide one another (a RCn_MIN and its RCn_TRIM)."""
+NAMES = FOLDER / "arming-names.json"
+MOST = {INT8: 127.0, INT16: 32767.0}
+OF_THE_FILTER = ("EKF ", "AHRS: EKF3 ", "GPS and AHRS differ")
+NUMBER = re.compile(r" *\d+(\.\d+)?")
 COMMANDS = {"RUN_PREARM_CHECKS": (401, 0.0), "COMPONENT_ARM_DISARM": (400, 1.0)}
 CASES: tuple[Mapping[str, float], ...] = (
     {"FS_THR_VALUE": 900}, {"ANGLE_MAX": 500}, {"SERVO1_FUNCTION": 0}, {"SERVO3_FUNCTION": -1}, {"ATC_ANG_RLL_P": 0},
@@ -43,10 +53,21 @@ def values_of(kind: str) -> dict[str, list[float]]:
     for p in KINDS[kind].firmware.table:
         if p.read_only or p.name.startswith(SKIPPED):
             continue
-        bounds = [b for b in (p.low, p.high) if p.has_effect and abs(b) < 1e6]
+        bounds = [b for b in (p.low, p.high) if p.has_effect and abs(b) < 1e6 and -p.low != p.high]
         values = (0.0, -1.0, *bounds, *(2.0 * b for b in bounds))
-        found[p.name] = list(dict.fromkeys(values))
+        most = MOST.get(p.kind, float("inf"))
+        found[p.name] = [value for value in dict.fromkeys(values) if abs(value) <= most]
     return found
+
+
+def agrees(ours: str | None, theirs: str | None) -> bool:
+    """Whether two rows say the same; numbers in texts may differ, and what the filter says of a disturbance."""
+    return _said(ours) == _said(theirs)
+
+
+def _said(row: str | None) -> set[str]:
+    texts = [text for text in (row or "").split("; ") if text and not text.startswith(OF_THE_FILTER)]
+    return {NUMBER.sub("#", text) for text in texts}
 
 
 class Asked:
@@ -86,8 +107,10 @@ class Asked:
         self._set(params)
         self.program.delay(0.2 if self.program.is_ours else 1.0)
         said = self.texts("COMPONENT_ARM_DISARM", "Arm: ") if arming else self.texts()
-        if arming and self.program.armed:
-            self.program.disarm()
+        if arming:
+            self.program.delay(0.3)  # the HEARTBEAT that says so
+            if self.program.armed:
+                self.program.disarm()
         self._set({name: self.usual[name] for name in params})
         if said and not self._is_well():
             self.close()
@@ -112,11 +135,16 @@ class Asked:
 
 def batches(kind: str, pattern: str) -> Iterator[list[tuple[str, float]]]:
     """Parameters and values that are tried together: each parameter once."""
-    wanted = {name: values for name, values in values_of(kind).items() if fnmatchcase(name, pattern.split(" ")[0])}
+    at_once = 1 if pattern == "*" else AT_ONCE
+    if pattern == "*":
+        chosen = frozenset(json.loads(NAMES.read_text(encoding="utf-8"))[kind])
+    else:
+        chosen = frozenset(name for name in values_of(kind) if fnmatchcase(name, pattern.split(" ")[0]))
+    wanted = {name: values for name, values in values_of(kind).items() if name in chosen}
     for k in range(max(map(len, wanted.values()), default=0)):
         row = [(name, values[k]) for name, values in wanted.items() if k < len(values)]
-        for at in range(0, len(row), AT_ONCE):
-            yield row[at : at + AT_ONCE]
+        for at in range(0, len(row), at_once):
+            yield row[at : at + at_once]
 
 
 def try_all(asked: Asked, items: Sequence[tuple[str, float]]) -> dict[str, str]:

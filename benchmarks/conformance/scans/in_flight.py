@@ -20,6 +20,8 @@ SEEN = 0.5
 LEAST = 0.08
 """A figure that changes by less, as a share of it, has not changed."""
 FAR = 2000.0
+LEG_S = 14.0
+"""A leg has its speed by then: ArduCopter forgets a WPNAV_SPEED that is set while it still speeds up [s]."""
 Order = Callable[[Program, int], None]
 Figure = Callable[[Program], float]
 
@@ -75,7 +77,8 @@ def item(k: int) -> Order:
     """The mission from an item on; the next order is the item after it."""
 
     def order(program: Program, number: int) -> None:
-        program.command("DO_SET_MISSION_CURRENT", k + number)
+        if k + number > LEG:  # AUTO itself begins at the first item
+            program.command("DO_SET_MISSION_CURRENT", k + number)
 
     return order
 
@@ -101,10 +104,10 @@ def nothing(program: Program, number: int) -> None:
 LEG, CLIMB, DESCENT = 1, 5, 9
 """Items of the mission at which its legs begin, each with three more of the same kind."""
 COPTER = {
-    "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed),
+    "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed, settle_s=LEG_S),
     "GUIDED climb": Manoeuvre("GUIDED", goes(0.0, 0.0, 150.0), climb),
     "GUIDED descent": Manoeuvre("GUIDED", goes(0.0, 0.0, -70.0), climb, height_m=80.0),
-    "AUTO": Manoeuvre("AUTO", item(LEG), speed),
+    "AUTO": Manoeuvre("AUTO", item(LEG), speed, settle_s=LEG_S),
     "AUTO climb": Manoeuvre("AUTO", item(CLIMB), climb),
     "AUTO descent": Manoeuvre("AUTO", item(DESCENT), climb, height_m=80.0),
     "LOITER pitch": Manoeuvre("LOITER", holds(pitch=1000), speed, between="ALT_HOLD", settle_s=9.0),
@@ -117,8 +120,8 @@ COPTER = {
     "LAND": Manoeuvre("LAND", nothing, climb, height_m=9.0, settle_s=3.0),
 }
 ROVER = {
-    "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed, between="HOLD"),
-    "AUTO": Manoeuvre("AUTO", item(LEG), speed, between="HOLD"),
+    "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed, settle_s=LEG_S, between="HOLD"),
+    "AUTO": Manoeuvre("AUTO", item(LEG), speed, settle_s=LEG_S, between="HOLD"),
     "MANUAL throttle": Manoeuvre("MANUAL", holds(throttle=2000), speed, between="HOLD"),
     "ACRO throttle": Manoeuvre("ACRO", holds(throttle=1700), speed, between="HOLD"),
     "ACRO roll": Manoeuvre("ACRO", holds(throttle=1600, steering=2000), turn_rate, between="HOLD"),
@@ -140,8 +143,7 @@ CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
         ("CIRC_SPEED", "CIRCLE", 2, 1), ("CRUISE_SPEED", "ACRO throttle", 5, 2),
         ("CRUISE_SPEED", "STEERING throttle", 5, 2), ("CRUISE_THROTTLE", "ACRO throttle", 30, 60),
         ("MOT_THR_MAX", "MANUAL throttle", 100, 30), ("ACRO_TURN_RATE", "ACRO roll", 60, 20),
-        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("ATC_SPEED_P", "GUIDED", 0.1, 0.3),
-        ("SPEED_MAX", "ACRO throttle", 0, 2),
+        ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("SPEED_MAX", "ACRO throttle", 0, 2),
     ),
 }  # fmt: skip
 """Parameter, manoeuvre, old and new value."""
@@ -197,7 +199,9 @@ def scan(programs: Programs) -> dict[str, str]:
         if fnmatchcase(row, programs.rows):
             m = manoeuvres[manoeuvre]
             with programs.started() as program:
-                upload(program)
+                program.be_ready()
+                if m.mode == "AUTO":
+                    upload(program)
                 program.be_flying(m.height_m)
                 rows[row] = when(program, name, m, old, new)
     return rows

@@ -11,6 +11,7 @@ from ..radio import THROTTLE, stick_channel
 from ..radio_checks import STICK_NAMES, calibration_texts
 
 SPIN_MIN_MOST = 0.3
+_ROUNDING = 1e-6
 THR_VALUE_LEAST, THR_VALUE_ROOM = 910.0, 10.0
 """FS_THR_VALUE is above the pulse of a receiver that has lost its transmitter, and below the stick's least [us]."""
 ANGLE_LEAST, ANGLE_MOST = 1000.0, 8000.0
@@ -33,8 +34,11 @@ def motors(s: Subject) -> Iterable[str]:
             return
     least, low, high = values["MOT_SPIN_MIN"], values["MOT_PWM_MIN"], values["MOT_PWM_MAX"]
     if m.count == 0:
-        return  # the frame is wrong
-    if least > SPIN_MIN_MOST:
+        return  # that is a check of its own
+    if values["FRAME_TYPE"] < 0.0:
+        yield "Motors: Check frame class and type"
+        return
+    if least > SPIN_MIN_MOST + _ROUNDING:
         yield f"Motors: MOT_SPIN_MIN too high {least:.2f} > {SPIN_MIN_MOST}"
     elif values["MOT_SPIN_ARM"] > least:
         yield "Motors: MOT_SPIN_ARM > MOT_SPIN_MIN"

@@ -27,8 +27,14 @@ def motors(s: Subject) -> Iterable[str]:
         yield "check steering and throttle config"
 
 
+def radio(s: Subject) -> Iterable[str]:
+    """The first stick that is not calibrated; else all that is wrong with channels."""
+    found = list(calibration_texts(s.values, s.v.autopilot.params, STICKS))
+    return found[:1] if found and " radio " in found[0] else found
+
+
 CHECKS = (
     Check(ANY, motors), *SHARED,
-    Check(CHECK_RC, lambda s: calibration_texts(s.values, s.v.autopilot.params, STICKS)),
+    Check(CHECK_RC, radio),
     Check(CHECK_RC, lambda s: switches(s, "MODE_CH"), when_arming=True),
 )  # fmt: skip
