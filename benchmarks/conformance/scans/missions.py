@@ -22,7 +22,7 @@ WAYPOINT, STAY = (16, (0, 0, 0, 0, *HERE)), (17, (0, 0, 0, 0, *HERE))
 PLACED = (31, 36, 82)
 """Need a place of their own: those of ``HERE``."""
 WITH: dict[int, tuple[float, ...]] = {
-    **{number: (0, 0, 0, 0, *HERE) for number in PLACED},
+    **dict.fromkeys(PLACED, (0, 0, 0, 0, *HERE)),
     218: (9, 0, 0, 0, 0, 0, 0, 0),
     42702: (1, 1, 0, 0, 0, 0, 0, 0),
     42703: (1, 0, 0, 0, 0, 0, 0, 0),

@@ -210,4 +210,3 @@ def test_what_it_does_not_carry_out_is_passed_over() -> None:
         "Skipping invalid cmd #115",
     ]
     assert ItemReached(2) in notes and p.ap.modes.nav.command_seq == 3
-
