@@ -441,7 +441,7 @@ def _takes_off(mission: Mission) -> bool:
 
 
 def _end_first(notes: list[Note], ends: list[Note]) -> None:
-    """The first do-command behind a navigation command is done when that is: clients are told of the do-command alone."""
+    """The first do-command behind a navigation command is done when that is: clients are told of the first alone."""
     if any(isinstance(note, ItemReached) for note in ends):
         notes[:] = [replace(note, is_sent=False) if isinstance(note, ItemReached) else note for note in notes]
     notes += ends

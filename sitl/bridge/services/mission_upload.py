@@ -39,7 +39,8 @@ def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
     for value, most, refusal in ((fields.x, 90.0, INVALID_PARAM5_X), (fields.y, 180.0, INVALID_PARAM6_Y)):
         if not abs(value) <= most:
             return _checked(fields, 0, 0, taken)[0], refusal
-    return _checked(fields, *(whole(float(np.float32(v) * _DEGE7)) for v in (fields.x, fields.y)), taken)
+    x, y = (whole(float(np.float32(value) * _DEGE7)) for value in (fields.x, fields.y))
+    return _checked(fields, x, y, taken)
 
 
 def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[MissionItem, int]:
