@@ -52,7 +52,7 @@ def upload(program: Program, items: list[tuple[int, tuple[float, ...]]]) -> int 
     with program.messages("MISSION_REQUEST") as asked, program.messages("MISSION_ACK") as acks:
         program.send("MISSION_COUNT", count=len(items), mission_type=0)
         for seq, (command, (p1, p2, p3, p4, x, y, z, frame)) in enumerate(items):
-            if not program.passes(lambda seq=seq: acks or any(m.seq == seq for m in asked), UPLOAD_S) or acks:
+            if not program.passes(lambda: acks or _asks(asked, seq), UPLOAD_S) or acks:  # noqa: B023
                 break
             program.send(
                 "MISSION_ITEM_INT", seq=seq, command=command, frame=int(frame), autocontinue=1, mission_type=0,
@@ -60,6 +60,10 @@ def upload(program: Program, items: list[tuple[int, tuple[float, ...]]]) -> int 
             )  # fmt: skip
         program.passes(lambda: acks, UPLOAD_S)
         return acks[0].type if acks else None
+
+
+def _asks(asked: list[Any], seq: int) -> bool:
+    return any(m.seq == seq for m in asked)
 
 
 def read_back(program: Program, seq: int) -> list[float | str] | None:
