@@ -106,6 +106,8 @@ class Telemetry:
     texts: list[Text] = field(default_factory=list)
     reached: list[tuple[float, int]] = field(default_factory=list)
     """(time [s], mission item)"""
+    untold: tuple[int, ...] = ()
+    """The last items that were under way, and were not yet said to be reached."""
     pieces: dict[int, str] = field(default_factory=dict)
     """Beginnings of long texts."""
     disarmed_since: float = math.nan
@@ -149,6 +151,15 @@ class Telemetry:
         """Upward [m/s]."""
         return -self.velocity[2]
 
+    def _reached(self, time: float, seq: int) -> None:
+        """An item was reached; of a waypoint and a do-command behind it vehicles tell only the do-command."""
+        if seq not in self.untold:
+            passed = [a for a in self.untold if 0 < a < seq and (a == self.item or seq < self.item)]
+            self.reached.extend((time, a) for a in passed[-1:])
+            self.untold = tuple(a for a in self.untold if a not in passed)
+        self.untold = tuple(a for a in self.untold if a != seq)
+        self.reached.append((time, seq))
+
     def take(self, time: float, name: str, m: Any) -> None:
         """A message, received at a simulated time [s]."""
         if name == "GLOBAL_POSITION_INT":
@@ -166,8 +177,10 @@ class Telemetry:
         elif name == "STATUSTEXT":
             self._text(time, m)
         elif name == "MISSION_ITEM_REACHED":
-            self.reached.append((time, int(m.seq)))
+            self._reached(time, int(m.seq))
         elif name == "MISSION_CURRENT":
+            if m.seq != self.item:
+                self.untold = (*self.untold[-1:], int(m.seq))
             self.item = int(m.seq)
             if m.mission_state:  # else it is an autopilot that does not tell
                 self.last_item, self.mission_at = 0 if m.mission_state == NO_MISSION else int(m.total), time

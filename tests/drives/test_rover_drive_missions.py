@@ -249,10 +249,10 @@ def test_a_mission_goes_on_where_it_was_left(core: Core) -> None:
     assert list(d.reached) == [1, 2, 3, 4]
 
 
-def test_what_only_copters_fly_is_refused(core: Core) -> None:
+def test_what_only_copters_fly_is_taken_and_passed_over(core: Core) -> None:
     d = driver(core, "erle_rover")
-    assert d.upload(Item(c.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) != 0
-    assert d.upload(*way((10.0, 0.0)), Item(c.NAV_LAND)) != 0
+    assert d.upload(Item(c.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) == 0
+    assert d.upload(*way((10.0, 0.0)), Item(c.NAV_LAND)) == 0
     assert d.upload(Item(c.DO_SET_ROI_LOCATION, (5.0, 5.0)), *way((10.0, 0.0))) == 0
     assert d.mode == rover.GUIDED
 

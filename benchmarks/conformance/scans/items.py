@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from fnmatch import fnmatchcase
-from functools import partial
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega
@@ -48,17 +47,12 @@ UPLOAD_S = 10.0
 """An upload is answered within [simulated s]."""
 
 
-def _is_asked_for(asked: list[Any], acks: list[Any], seq: int) -> bool:
-    return bool(acks) or any(m.seq == seq for m in asked)
-
-
 def upload(program: Program, items: list[tuple[int, tuple[float, ...]]]) -> int | None:
     """Send a mission, home first; the MAV_MISSION_RESULT, None without one."""
     with program.messages("MISSION_REQUEST") as asked, program.messages("MISSION_ACK") as acks:
         program.send("MISSION_COUNT", count=len(items), mission_type=0)
         for seq, (command, (p1, p2, p3, p4, x, y, z, frame)) in enumerate(items):
-            wanted = partial(_is_asked_for, asked, acks, seq)
-            if not program.passes(wanted, UPLOAD_S) or acks:
+            if not program.passes(lambda: acks or _asks(asked, seq), UPLOAD_S) or acks:  # noqa: B023
                 break
             program.send(
                 "MISSION_ITEM_INT", seq=seq, command=command, frame=int(frame), autocontinue=1, mission_type=0,
@@ -66,6 +60,10 @@ def upload(program: Program, items: list[tuple[int, tuple[float, ...]]]) -> int 
             )  # fmt: skip
         program.passes(lambda: acks, UPLOAD_S)
         return acks[0].type if acks else None
+
+
+def _asks(asked: list[Any], seq: int) -> bool:
+    return any(m.seq == seq for m in asked)
 
 
 def read_back(program: Program, seq: int) -> list[float | str] | None:

@@ -27,6 +27,8 @@ class ItemReached:
     """MISSION_ITEM_REACHED."""
 
     seq: int
+    is_sent: bool = True
+    """False: only logs have it."""
 
 
 @dataclass(frozen=True, slots=True)

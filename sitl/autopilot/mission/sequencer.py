@@ -15,6 +15,7 @@ the mission. Every method takes the vehicle's record ``v`` and returns what the 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Protocol
 
 from .. import events
@@ -440,9 +441,9 @@ def _takes_off(mission: Mission) -> bool:
 
 
 def _end_first(notes: list[Note], ends: list[Note]) -> None:
-    """Tell of the first do-command behind a navigation command: it is done when that is, and is told in place of it."""
+    """The first do-command behind a navigation command is done when that is: clients are told of the first alone."""
     if any(isinstance(note, ItemReached) for note in ends):
-        notes[:] = [note for note in notes if not isinstance(note, ItemReached)]
+        notes[:] = [replace(note, is_sent=False) if isinstance(note, ItemReached) else note for note in notes]
     notes += ends
 
 

@@ -19,8 +19,9 @@ from .item import COMMANDS, GLOBAL, MISSION, MissionItem, home_item
 Keep = Callable[[float], float]
 _SAME_FRAME = {MISSION: GLOBAL, c.GLOBAL_INT: GLOBAL, c.RELATIVE_INT: c.RELATIVE, c.TERRAIN_INT: c.TERRAIN}
 _CENTI, _HUNDRED = np.float32(0.01), np.float32(100.0)
-RADIUS_MAX, FINE_MAX, TURNS_MAX = 2550.0, 255.0, 255.0
-"""Circles of LOITER_TURNS: greatest radius, greatest one to the metre [m]; most turns."""
+_RANGE = 1 << 31
+FINE_MAX, TURNS_MAX = 255.0, 255.0
+"""Circles of LOITER_TURNS: greatest radius to the metre [m]; most turns."""
 MAVLINK_TARGETING = 2.0
 """MAV_MOUNT_MODE of every stored DO_MOUNT_CONTROL."""
 ALLOWS_START_DISARMED = 1
@@ -29,16 +30,16 @@ ALLOWS_START_DISARMED = 1
 
 def whole(value: float) -> int:
     """As a processor of SITL's makes a whole number of it: towards zero; what does not fit becomes the least one."""
-    return int(value) if -(2.0**31) - 1.0 < value < 2.0**31 else -(2**31)
+    return int(value) if -_RANGE - 1 < value < _RANGE else -_RANGE
 
 
 def _unsigned(bits: int) -> Keep:
-    return lambda value: float(whole(value) % 2**bits)
+    return lambda value: float(whole(value) % (1 << bits))
 
 
 def _signed(bits: int) -> Keep:
-    half = 2 ** (bits - 1)
-    return lambda value: float((whole(value) + half) % 2**bits - half)
+    most = 1 << (bits - 1)
+    return lambda value: float((whole(value) + most) % (2 * most) - most)
 
 
 u8, u16, i8, i16 = _unsigned(8), _unsigned(16), _signed(8), _signed(16)
@@ -199,7 +200,7 @@ def stored_home(lat: int, lon: int, alt: float) -> MissionItem:
 def _circle(turns: float, radius: float) -> tuple[float, float]:
     """Turns in 8 bits, parts of one in 256ths; radius in 8 bits, beyond 255 m in tens of metres. They share 16 bits:
     less than no turns also fills those of the radius."""
-    count = int(turns * 256.0) if 0.0 < turns < 1.0 else whole(min(TURNS_MAX, turns)) % 2**16
+    count = int(turns * 256.0) if 0.0 < turns < 1.0 else whole(min(TURNS_MAX, turns)) % (1 << 16)
     share = 1.0 / 256.0 if 0.0 < turns < 1.0 else 1.0
     size = abs(radius)
     step = 1.0 if size <= FINE_MAX else 10.0

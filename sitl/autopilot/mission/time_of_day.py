@@ -19,7 +19,8 @@ def seconds_until(item: MissionItem, now_us: int) -> float:
         told.pop(0)
     if not told:
         return 0.0
-    until_us = sum(count * unit for count, unit, _ in told) * 1_000_000
     round_us = told[0][2] * 1_000_000
-    left_us = until_us - now_us % round_us
+    left_us = -(now_us % round_us)
+    for count, unit, _ in told:
+        left_us += count * unit * 1_000_000
     return (left_us + round_us if left_us < 0 else left_us) * 1e-6

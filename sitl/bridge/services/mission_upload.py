@@ -39,7 +39,7 @@ def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
     for value, most, refusal in ((fields.x, 90.0, INVALID_PARAM5_X), (fields.y, 180.0, INVALID_PARAM6_Y)):
         if not abs(value) <= most:
             return _checked(fields, 0, 0, taken)[0], refusal
-    x, y = (whole(float(np.float32(v) * _DEGE7)) for v in (fields.x, fields.y))
+    x, y = (whole(float(np.float32(value) * _DEGE7)) for value in (fields.x, fields.y))
     return _checked(fields, x, y, taken)
 
 

@@ -176,8 +176,9 @@ class EventService(Service):
             if isinstance(note, Text):
                 self.bridge.get(StatusTextService).say(note.severity, note.text)
             elif isinstance(note, ItemReached):
-                self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
-                self.bridge.get(FlightStateService).reached(note.seq)
+                if note.is_sent:
+                    self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
+                    self.bridge.get(FlightStateService).reached(note.seq)
                 for listener in self.bridge.listeners:
                     listener.reached(note.seq)
             elif isinstance(note, OutputItem):

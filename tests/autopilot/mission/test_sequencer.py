@@ -497,7 +497,7 @@ def test_a_do_command_behind_a_waypoint_is_told_in_place_of_it() -> None:
     """As ArduPilot, which sends one MISSION_ITEM_REACHED for both."""
     p = Vehicle(WP, SPEED, SPEED, WP).start()
     p.complete()
-    assert [n.seq for n in p.told if isinstance(n, ItemReached)] == [2, 3]
+    assert [(n.seq, n.is_sent) for n in p.told if isinstance(n, ItemReached)] == [(1, False), (2, True), (3, True)]
 
 
 def test_what_is_not_carried_out_is_passed_over() -> None:
