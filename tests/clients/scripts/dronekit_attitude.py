@@ -10,7 +10,7 @@ import time
 collections.MutableMapping = collections.abc.MutableMapping
 from dronekit import VehicleMode, connect  # noqa: E402
 
-NO_YAW_RATE = 0b100
+NO_RATES = 0b111
 vehicle = connect(sys.argv[1], wait_ready=True, timeout=60)
 
 
@@ -31,7 +31,7 @@ def hold(seconds, pitch_deg=0.0, thrust=0.5):
     """Keep an attitude, then level out."""
     end = time.monotonic() + seconds
     while True:
-        send(math.radians(pitch_deg), vehicle.attitude.yaw, NO_YAW_RATE, thrust)
+        send(math.radians(pitch_deg), vehicle.attitude.yaw, NO_RATES, thrust)
         if time.monotonic() >= end:
             break
         time.sleep(0.1)

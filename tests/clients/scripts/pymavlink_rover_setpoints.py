@@ -78,8 +78,10 @@ pilot.mav.set_position_target_global_int_send(
 )
 pilot.expect("global position", ("GLOBAL_POSITION_INT",), there(start.lat - DEGE7_OF_10_M), 40.0)
 pilot.mode("HOLD")
-pilot.mav.command_int_send(1, 1, 3, 192, 0, 0, 0.6, 1, 0, 0, start.lat, start.lon, 0)
-check("reposition", pilot.expect("answer", ("COMMAND_ACK",), lambda a: a.command == 192).result == 0)
+for speed, result in ((0.6, 4), (-1.0, 0), (0.6, 0)):  # a speed is taken once it drives to a place
+    pilot.mav.command_int_send(1, 1, 3, 192, 0, 0, speed, 1, 0, 0, start.lat, start.lon, 0)
+    answer = pilot.expect("answer", ("COMMAND_ACK",), lambda a: a.command == 192).result
+    check(f"reposition at {speed:g}", answer == result, answer)
 pilot.wait((), seconds=14.0)  # it turns round
 check("as fast as told", abs(ahead() - 0.6) < 0.15, ahead())
 check("speed", pilot.command(178, 1, 1.0, -1) == 0)
