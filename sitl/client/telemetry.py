@@ -106,8 +106,6 @@ class Telemetry:
     texts: list[Text] = field(default_factory=list)
     reached: list[tuple[float, int]] = field(default_factory=list)
     """(time [s], mission item)"""
-    untold: tuple[int, ...] = ()
-    """The last items that were under way, and were not yet said to be reached."""
     pieces: dict[int, str] = field(default_factory=dict)
     """Beginnings of long texts."""
     disarmed_since: float = math.nan
@@ -118,6 +116,8 @@ class Telemetry:
     """Of its mission, 0: it has none; -1: it does not say."""
     mission_at: float = -math.inf
     """Time at which it said so last [s]."""
+    untold: tuple[int, ...] = ()
+    """The last items that were under way, and were not yet said to be reached."""
 
     def copy(self) -> Telemetry:
         """As it is now."""
