@@ -19,6 +19,7 @@ from .dialect import message
 from .profile import Profile, load
 from .services import ALL_SERVICES
 from .services.camera import CameraService
+from .services.flight_state import FlightStateService
 from .services.mount import MountService
 from .services.streams import RATE_PREFIX
 from .services.winch import WinchService
@@ -120,6 +121,9 @@ def received() -> str:
 BY_SERVICES: dict[str, Callable[..., Any]] = {
     "CAMERA_FEEDBACK": CameraService.feedback,
     "WINCH_STATUS": WinchService.status,
+    "FLIGHT_INFORMATION": FlightStateService.flight,
+    "AUTOPILOT_STATE_FOR_GIMBAL_DEVICE": FlightStateService.for_gimbal,
+    "MISSION_ITEM_REACHED": FlightStateService.last_reached,
     "GIMBAL_MANAGER_INFORMATION": MountService.information,
     "GIMBAL_MANAGER_STATUS": MountService.status,
     "GIMBAL_DEVICE_ATTITUDE_STATUS": MountService.attitude,

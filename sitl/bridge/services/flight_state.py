@@ -33,18 +33,22 @@ class FlightStateService(Service):
 
     def messages(self) -> dict[str, Callable[[], bytes]]:
         return {
-            "FLIGHT_INFORMATION": self._flight,
-            "AUTOPILOT_STATE_FOR_GIMBAL_DEVICE": self._for_gimbal,
-            "MISSION_ITEM_REACHED": lambda: message("MISSION_ITEM_REACHED").payload(seq=self._reached),
+            "FLIGHT_INFORMATION": self.flight,
+            "AUTOPILOT_STATE_FOR_GIMBAL_DEVICE": self.for_gimbal,
+            "MISSION_ITEM_REACHED": self.last_reached,
         }
 
     def reached(self, seq: int) -> None:
         """An item of the mission was reached."""
         self._reached = seq
 
-    def _flight(self) -> bytes:
-        """Times since boot [us], whatever the fields' names say; that of the take-off is when somebody first asked in
-        flight, as in ArduPilot."""
+    def last_reached(self) -> bytes:
+        """MISSION_ITEM_REACHED: the item of the mission that was reached last, 65535: none."""
+        return message("MISSION_ITEM_REACHED").payload(seq=self._reached)
+
+    def flight(self) -> bytes:
+        """FLIGHT_INFORMATION: arming and take-off [us since boot, whatever the fields' names say]; the take-off is when
+        somebody first asked in flight, as in ArduPilot."""
         now, ap = self.bridge.now_us, self.bridge.vehicle.v.autopilot
         told_state = told(self.bridge.profile, self.bridge.vehicle.v, "EXTENDED_SYS_STATE")
         state = int(getattr(told_state, "landed_state", 0))
@@ -58,7 +62,8 @@ class FlightStateService(Service):
             takeoff_time_utc=self._took_off_us,
         )
 
-    def _for_gimbal(self) -> bytes:
+    def for_gimbal(self) -> bytes:
+        """AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: attitude, velocity [m/s], yaw rate [rad/s], status of the estimate."""
         estimate = self.bridge.vehicle.v.autopilot.estimate
         q, velocity = estimate.q, estimate.vel
         return message("AUTOPILOT_STATE_FOR_GIMBAL_DEVICE").payload(

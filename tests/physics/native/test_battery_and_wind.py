@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -7,11 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx
 
+from sitl import vehicles
 from sitl.core import rng as random
 from sitl.core.rng import Rng
 from sitl.physics.native import battery, wind
 from sitl.physics.native.atmosphere import density
-from sitl.physics.native.records import Wind
+from sitl.physics.native.records import BatteryState, Wind
 
 
 @given(st.floats(-0.5, 1.5), st.floats(0.0, 0.5))
@@ -112,3 +114,18 @@ def test_turbulence_has_its_deviation_and_correlation_time():
 @pytest.mark.parametrize("altitude, expected", [(0.0, 1.225), (593.0, 1.15682), (5000.0, 0.73612)])
 def test_standard_density(altitude, expected):
     assert density(altitude) == approx(expected, rel=1e-4)
+
+
+def test_a_rover_without_a_capacity_sags_under_load() -> None:
+    """ArduPilot's simulator: 0.7 V at 50 A."""
+    figures = SimpleNamespace(battery_voltage_full=12.6, battery_resistance=0.7 / 50.0)
+    assert vehicles.load("ardupilot_rover").figures["battery_resistance"] == figures.battery_resistance
+    state = BatteryState()
+    state.voltage, state.current, state.capacity = 12.6, 13.7, 0.0
+    battery.sag(state, figures, 0.0)
+    assert state.voltage == pytest.approx(12.6 - 0.014 * 13.7)
+    battery.sag(state, figures, 1e-6)
+    assert state.voltage == pytest.approx(12.6 - 0.014 * 13.7), "with a capacity ``discharge`` has it"
+    state.current = 1e6
+    battery.sag(state, figures, 0.0)
+    assert state.voltage == pytest.approx(1.26)

@@ -245,5 +245,5 @@ def test_after_jamming_the_receiver_shows_where_it_is(rig):
     r.p.sensors.gps[0].jammed = False
     r.step(800)
     s = r.v.sensors
-    assert s.gps_fix == 3 and abs(1e-7 * s.gps_lat - HOME_LAT) < 1e-4 and abs(s.gps_vel.x) < 100
+    assert s.gps_fix == 6 and abs(1e-7 * s.gps_lat - HOME_LAT) < 1e-4 and abs(s.gps_vel.x) < 100
     assert s.gps_satellites == int(r.p.airframe.gps_satellites)
