@@ -104,7 +104,7 @@ class BaseAutopilot:
             texts = [*texts, *self._parameter_texts(self._arming.check(self._v) == 0, "Arm: ")]
         elif not force:
             texts = [f"Arm: {each.text}" for each in self._found if not each.forbids]
-        self._say(CRITICAL, texts)
+        self._say(CRITICAL, self._worded(texts))
         return bool(ok)
 
     def disarm(self, force: bool) -> bool:
@@ -147,7 +147,11 @@ class BaseAutopilot:
         said = list(self._arming.texts(v, failed, prefix))
         if failed & PARAMETERS or told:
             said += self._parameter_texts(prefix == "Arm: " and self._arming.check(v) == 0, prefix)
-        return said
+        return self._worded(said)
+
+    def _worded(self, texts: list[str]) -> list[str]:
+        """Texts of failed checks, as the firmware says them with its present parameters."""
+        return texts
 
     def set_mode(self, number: int) -> bool:
         if number != modes.shown(self._v.autopilot.modes) and self._is_blocked(number):

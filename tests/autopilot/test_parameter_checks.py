@@ -14,6 +14,7 @@ from sitl.autopilot.copter.parameters import TABLE as COPTER
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.params.table import Values
+from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.parameters import TABLE as ROVER
 from sitl.autopilot.sensor_calibration import NEEDS_LOCATION, PARAMETERS_BAD, SWITCHES_BAD
 from sitl.bridge.base_autopilot import BaseAutopilot
@@ -207,3 +208,17 @@ def test_a_location_may_be_needed_in_any_mode(make_autopilot: Any) -> None:
     autopilot.run_prearm_checks()
     assert len(texts(autopilot)) == 1
     assert not autopilot.arm(False)
+
+
+@pytest.mark.parametrize(
+    ("gps_use", "text"), ((1.0, "AHRS: not using configured AHRS type"), (0.0, "Need Position Estimate"))
+)
+def test_a_rover_without_a_position_says_why(gps_use: float, text: str) -> None:
+    autopilot, vehicle = rover()
+    vehicle.v.autopilot.estimate.position_ok = False
+    vehicle.v.autopilot.modes.number = GUIDED
+    vehicle.parameters["AHRS_GPS_USE"] = gps_use
+    autopilot.run_prearm_checks()
+    assert texts(autopilot) == [f"PreArm: {text}"]
+    assert not autopilot.arm(False)
+    assert texts(autopilot) == [f"Arm: {text}"]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...autopilot import events, home
+from ...autopilot.arming_checks import AHRS_TYPE, NEED_POSITION, TEXTS
 from ...autopilot.mission.notes import ItemReached, Text
 from ...autopilot.rover import arming, failsafe, motor_test, parameter_checks, texts
 from ...autopilot.rover.control import servos
@@ -62,6 +63,12 @@ class RoverAutopilot(BaseAutopilot):
     def _modes(self) -> Modes:
         modes: Modes = self._v.autopilot.modes
         return modes
+
+    def _worded(self, texts: list[str]) -> list[str]:
+        """Without GPS in the simple filter (AHRS_GPS_USE 0) there is none to fall back to: the position is missing."""
+        if self._vehicle.parameters["AHRS_GPS_USE"] != 0.0:
+            return texts
+        return [text.replace(TEXTS[AHRS_TYPE], TEXTS[NEED_POSITION]) for text in texts]
 
     def is_guided_in_auto(self) -> bool:
         """Whether a mission waits for set-points (NAV_GUIDED_ENABLE)."""
