@@ -44,6 +44,14 @@ def test_the_start_of_an_episode_is_known_as_well_as_the_set_knows_it(sensors, w
     assert math.sqrt(x * x + y * y + z * z) < within
 
 
+@pytest.mark.parametrize(("sensors", "source"), [("rtk", 3), ("mocap", 3), ("uwb", None)])
+def test_the_height_is_that_of_the_system_where_it_has_one(sensors, source):
+    own, made = load("erle_copter"), equipped(load("erle_copter"), sensors)
+    assert made.parameters.get("EK3_SRC1_POSZ") == source
+    for figure in ("baro_noise", "baro_drift", "baro_drift_time"):
+        assert made.value(figure) == own.value(figure), "the barometer is the airframe's"
+
+
 def test_the_command_line_takes_a_set():
     parser = argparse.ArgumentParser()
     add_vehicle_options(parser)

@@ -118,14 +118,14 @@ def test_two_scalars_one_after_the_other_are_the_joint_update(seed: int) -> None
     for k in range(2):
         fusion.clear_row(ekf)
         ekf.h[:] = H[k]
-        fusion.correct(ekf, fusion.innovate(ekf, z[k], R[k, k]), fusion.NIS_BAROMETER)
+        fusion.correct(ekf, fusion.innovate(ekf, z[k], R[k, k]), fusion.NIS_HEIGHT)
     S = H @ P @ H.T + R
     K = P @ H.T @ np.linalg.inv(S)
     assert np.allclose(ekf.dx, K @ z)
     assert np.allclose(ekf.P, P - K @ S @ K.T)
     # whitened innovations: their sum is the joint normalised innovation squared
-    assert ekf.nis_sum[fusion.NIS_BAROMETER] == pytest.approx(z @ np.linalg.solve(S, z))
-    assert ekf.nis_count[fusion.NIS_BAROMETER] == 2
+    assert ekf.nis_sum[fusion.NIS_HEIGHT] == pytest.approx(z @ np.linalg.solve(S, z))
+    assert ekf.nis_count[fusion.NIS_HEIGHT] == 2
 
 
 def test_injection_moves_state_past_and_keeps_the_output_steady() -> None:
