@@ -84,7 +84,7 @@ class Controls(Waits):
     def disarm(self, force: bool = False) -> None:
         """Disarm; ``force``: even in the air."""
         self.command("COMPONENT_ARM_DISARM", 0, FORCED if force else 0, subject="disarming")
-        self.wait_disarmed(2.0)
+        self.wait_disarmed(5.0)  # heartbeats, of which a bad link loses some
 
     def reboot(self) -> None:
         """Restart the autopilot where it stands; parameters and mission stay. ``wait_ready`` is what comes next."""
@@ -140,7 +140,7 @@ class Controls(Waits):
             CommandRefusedError: there is no home yet.
         """
         if self.telemetry.home is None:
-            self.message("HOME_POSITION")
+            self.message("HOME_POSITION", 10.0)
         assert self.telemetry.home is not None
         return self.telemetry.home
 

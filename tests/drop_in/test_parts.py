@@ -228,7 +228,7 @@ def test_logs_tell_defaults_of_files_and_what_is_counted(
     rows = [(m.Name, m.Value, m.Default) for m in read_log(tmp_path / "logs" / "00000001.BIN")["PARM"]]
     assert ("WP_SPEED", 3.0, 1.5) in rows and ("LOG_DISARMED", 1.0, 1.0) in rows
     later = [(name, value) for name, value, default in rows if math.isnan(default)]
-    assert later == [("STAT_RUNTIME", 30.0)]
+    assert later == [("MIS_TOTAL", 1.0), ("STAT_RUNTIME", 30.0)]
 
 
 def test_a_model_that_there_is_not_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,7 +59,7 @@ def test_body_rates(core: Core, frame: str) -> None:
     p = Aviator(core, frame).hover()
     for _ in range(60):
         p.send(
-            "SET_ATTITUDE_TARGET", type_mask=0b10000011, thrust=0.5,
+            "SET_ATTITUDE_TARGET", type_mask=0b10000000, thrust=0.5,
             body_yaw_rate=0.5,
         )  # fmt: skip
         p.fly(0.05)

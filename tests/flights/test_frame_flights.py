@@ -74,7 +74,9 @@ def test_motors_are_tested_in_their_order(core: Core) -> None:
         turned.append(int(np.argmax(pulses)) + 1)
         p.fly(1.5)
     assert turned == [5, 1, 4, 6, 2, 3]
-    assert p.ask(209, 7, 0, 20, 1, 1, 1) != 0
+    assert p.ask(209, 7, 0, 20, 1, 1, 1) == 0, "as of ArduPilot, though no motor is there"
+    p.fly(0.5)
+    assert np.ptp(p.simulation.v.actuators.pwm[:6]) == 0
 
 
 def test_a_frame_that_there_is_not_is_not_armed(core: Core) -> None:

@@ -28,6 +28,7 @@ def _records() -> dict[str, type]:
     from sitl.autopilot.mission.mission import Mission
     from sitl.bridge.bridge import BridgeState
     from sitl.bridge.channel import ChannelState
+    from sitl.bridge.services.client_files import State as ClientFiles
     from sitl.envs.latency import Memory
     from sitl.envs.robots.vehicles import EpisodeState
     from sitl.envs.session import Snapshot
@@ -36,6 +37,7 @@ def _records() -> dict[str, type]:
     return {
         "environment": Snapshot, "latency": Memory, "vehicle": EpisodeState, "simulation": SimulationSnapshot,
         "mission": Mission, "mission item": MissionItem, "bridge": BridgeState, "channel": ChannelState,
+        "client files": ClientFiles,
     }  # fmt: skip
 
 

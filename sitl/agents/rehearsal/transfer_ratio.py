@@ -35,8 +35,9 @@ def times_drawn(boots: Sequence[int], rng: np.random.Generator, resamples: int =
     kinds, which = np.unique(np.asarray(boots, np.int64), return_inverse=True)
     if len(kinds) < 2 or len(kinds) == len(which):
         return None
-    counts = rng.multinomial(len(kinds), np.full(len(kinds), 1.0 / len(kinds)), resamples)
-    return counts[:, which].astype(np.float64)
+    counts = np.zeros((resamples, len(kinds)))
+    np.add.at(counts, (np.arange(resamples)[:, None], rng.integers(len(kinds), size=counts.shape)), 1.0)
+    return counts[:, which]
 
 
 def drawn(rewards: Floats, rows: Ints, times: Floats) -> Floats:

@@ -36,7 +36,7 @@ def targets(v: Any) -> Targets:
         altitude, climb = altitude - d.pos_error, d.vel_target
     if is_active_ne(control):
         moves = (ne.x, ne.y)
-    return Targets(altitude, math.hypot(*moves, climb), _NO_WIND)
+    return Targets(altitude, math.sqrt(moves[0] * moves[0] + moves[1] * moves[1] + climb * climb), _NO_WIND)
 
 
 PROFILE = Profile(

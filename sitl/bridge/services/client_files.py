@@ -19,7 +19,7 @@ LOGS = "logs"
 class State(NamedTuple):
     """What is there: immutable."""
 
-    folders: frozenset[str] = frozenset()
+    folders: tuple[str, ...] = ()
     files: tuple[tuple[str, bytes], ...] = ()
 
 
@@ -32,7 +32,7 @@ class ClientFiles:
 
     def state(self) -> State:
         """What is there now."""
-        return State(frozenset(self._folders), tuple(self._files.items()))
+        return State(tuple(sorted(self._folders)), tuple(self._files.items()))
 
     def restore(self, state: State) -> None:
         """Have what was there."""

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from sitl.bridge.dialect import message
 from sitl.missions.pilot import Pilot
 from sitl.physics.native.power_on import DEFAULT_HOME
 from sitl.plants.local import stand_alone
@@ -62,15 +63,21 @@ class PhysicsProcess:
         return self._process.returncode, out
 
 
+OF_OTHER_SENSORS = {message(n).id for n in ("SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE2", "ESC_TELEMETRY_1_TO_4")}
+"""Messages of sensors that physics at a connection does not have."""
+
+
 class ReceivedFrames:
-    """A tap: every frame with its simulated time, in and out."""
+    """A tap: every frame with its simulated time, in and out, without sequence number and check sum; those of
+    ``OF_OTHER_SENSORS`` are left out."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.frames: list[tuple[int, bytes]] = []
         simulation.bridge.taps.append(self)
 
     def frame(self, time_us: int, raw: bytes) -> None:
-        self.frames.append((time_us, raw))
+        if raw[0] != 0xFD or int.from_bytes(raw[7:10], "little") not in OF_OTHER_SENSORS:
+            self.frames.append((time_us, raw[:4] + b"\0" + raw[5:-2]))
 
     def names(self) -> set[int]:
         """Numbers of the messages."""

@@ -25,7 +25,7 @@ def test_both_receivers_and_barometers_that_differ_are_logged(core: Core, tmp_pa
     log = read_log(tmp_path / "a.bin")
     one, other = ([m for m in log["GPS"] if k == m.I] for k in (0, 1))
     assert len(other) == pytest.approx(len(one) + 25, abs=3), "the first one has been silent for five seconds"
-    assert other[-1].Lat == pytest.approx(one[-1].Lat, abs=1e-5) and other[-1].Status == 3
+    assert other[-1].Lat == pytest.approx(one[-1].Lat, abs=1e-5) and other[-1].Status == 6
     assert (other[0].U, other[-1].U, one[0].U) == (0, 1, 1)
     assert {m.I for m in log["GPA"]} == {0, 1}
     barometers = [[m for m in log["BARO"] if k == m.I] for k in (0, 1)]

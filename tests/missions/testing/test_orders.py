@@ -395,8 +395,8 @@ def test_messages_are_collected(make: VehicleFactory) -> None:
         copter.delay(1)
     assert 49 <= len(seen) <= 56
     assert copter.message("AUTOPILOT_VERSION").flight_sw_version > 0
-    with pytest.raises(AssertionError, match="the request for TERRAIN_REQUEST was refused"):
-        copter.message("TERRAIN_REQUEST")
+    with pytest.raises(AssertionError, match="the request for HWSTATUS was refused"):
+        copter.message("HWSTATUS")
 
 
 def test_a_reboot_is_survived(make: VehicleFactory, tmp_path: Path) -> None:

@@ -156,13 +156,13 @@ def test_a_log_of_the_vehicle_alone_is_flown(
 
 def test_what_is_refused_now_is_said(flight_log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made = rows(flight_log)
-    command = frame("COMMAND_LONG", 255, 190, target_system=1, target_component=1, command=2520)
+    command = frame("COMMAND_LONG", 255, 190, target_system=1, target_component=1, command=213)
     wrong = frame("PARAM_SET", 255, 190, target_system=1, target_component=1, param_id=b"NO_SUCH", param_value=1.0)
-    made += [(50.0, command), (50.1, frame("COMMAND_ACK", command=2520, result=0)), (50.2, wrong)]
+    made += [(50.0, command), (50.1, frame("COMMAND_ACK", command=213, result=0)), (50.2, wrong)]
     log = write(tmp_path / "more.tlog", sorted(made, key=lambda row: row[0]))
     assert typed(f"replay {log}") == 1
     said = capsys.readouterr().out
-    assert re.search(r"otherwise than in the log: 50\.\d s: command 2520 was ACCEPTED then, is UNSUPPORTED now\n", said)
+    assert re.search(r"otherwise than in the log: 50\.\d s: command 213 was ACCEPTED then, is UNSUPPORTED now\n", said)
     assert re.search(r"note: 50\.\d s: there is no parameter NO_SUCH\n", said)
 
 

@@ -8,6 +8,7 @@ d = 1.8 sin 35 deg / sin(35 deg steering); no slip, no lag.
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 from sitl.autopilot import events
@@ -164,6 +165,7 @@ class Rover:
             RoverAutopilot
         )  # it has no shell: what it says of an event takes the record only
         pilot._v = self.v
+        pilot._vehicle = SimpleNamespace(parameters={"AHRS_GPS_USE": 1.0})  # type: ignore[assignment]
         return [note.text for event in self.events() for note in pilot.texts_of(*event) if isinstance(note, Text)]
 
 
