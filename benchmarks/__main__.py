@@ -105,6 +105,7 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
     """A client that sends a velocity set-point and reads telemetry as MAVLink bytes at ``rate_hz``, in lockstep."""
     simulation, client = pilot.simulation, pilot.connection.endpoint
     client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)  # stops all streams, a rover's own too
+    simulation.bridge.is_stepped = True  # a message a loop is allowed
     for name in messages:
         client.set_interval(name, rate_hz)
     kind = message("SET_POSITION_TARGET_LOCAL_NED")
@@ -132,6 +133,7 @@ def streaming_compiled(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) ->
     The client looks at the numbers in arrays, as environments do."""
     simulation, client = pilot.simulation, pilot.connection.endpoint
     client.send("REQUEST_DATA_STREAM", target_system=1, target_component=1)
+    simulation.bridge.is_stepped = True  # a message a loop is allowed
     for name in messages:
         client.set_interval(name, rate_hz)
     simulation.advance_to(simulation.time_us)

@@ -7,7 +7,7 @@ from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
 from mavsdk.plugins.telemetry import FlightMode
 from sdk import Session, check, refused, wait
 
-WAYPOINT, RETURN, TAKEOFF, CHANGE_SPEED, SET_REVERSE, JUMP = 16, 20, 22, 178, 194, 177
+WAYPOINT, RETURN, UNKNOWN, CHANGE_SPEED, SET_REVERSE, JUMP = 16, 20, 65000, 178, 194, 177
 
 session = Session()
 action, telemetry = session.action, session.telemetry
@@ -44,7 +44,7 @@ wait("finished", lambda: mission.is_mission_finished(), 60.0)
 action.hold()
 action.disarm()
 wait("disarmed", lambda: not telemetry.armed(), 5.0)
-refused("a take-off item", mission.upload_mission, [item(0, WAYPOINT), item(1, TAKEOFF)], result="UNSUPPORTED")
+refused("an unknown item", mission.upload_mission, [item(0, WAYPOINT), item(1, UNKNOWN)], result="UNSUPPORTED")
 session.check_clear_and_plan(
     mission,
     10,
