@@ -67,7 +67,8 @@ class BaseAutopilot:
             return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
         if code == events.ARMING_REFUSED:
             failed, method = refusal(a, b)
-            said = [] if method == BY_MAVLINK else self._arming_texts(self._v, failed, "Arm: ")  # arm() gives its own
+            # arm() gives its own
+            said = [] if method == BY_MAVLINK else self._arming_texts(self._v, failed, "Arm: ", arming=True)
             return [Text(CRITICAL, text) for text in said]
         fence = fence_texts.note(code, a, b)
         if fence is not None:
@@ -116,7 +117,7 @@ class BaseAutopilot:
 
     def prearm_texts(self, v: Any, prefix: str = "") -> list[str]:
         """What keeps a vehicle of this firmware from arming; ``v``: its record, or a copy of one."""
-        return self._arming_texts(v, self._arming.check(v), prefix, any(not each.forbids for each in self._found))
+        return self._arming_texts(v, self._arming.check(v), prefix, told=any(not each.forbids for each in self._found))
 
     def check_parameters(self) -> None:
         """Make the arming checks of parameters, for the core to know."""
@@ -142,11 +143,19 @@ class BaseAutopilot:
         """What is wrong with parameters, each after ``prefix``; ``arming``: with what counts at that moment."""
         return [prefix + each.text for each in self._found if arming or not each.when_arming]
 
-    def _arming_texts(self, v: Any, failed: int, prefix: str, told: bool = False) -> list[str]:
-        """Texts of failed checks; ``told``: parameters have something to say that does not forbid arming."""
+    def _arming_texts(self, v: Any, failed: int, prefix: str, *, arming: bool = False, told: bool = False) -> list[str]:
+        """Texts of failed checks, each after ``prefix``.
+
+        Args:
+            v: the vehicle's record, or a copy of one.
+            failed: bits of the checks.
+            prefix: "PreArm: ", "Arm: " or nothing.
+            arming: at the moment of arming some parameters count that do not before.
+            told: parameters have something to say that does not forbid arming.
+        """
         said = list(self._arming.texts(v, failed, prefix))
         if failed & PARAMETERS or told:
-            said += self._parameter_texts(prefix == "Arm: " and self._arming.check(v) == 0, prefix)
+            said += self._parameter_texts(arming and self._arming.check(v) == 0, prefix)
         return self._worded(said)
 
     def _worded(self, texts: list[str]) -> list[str]:

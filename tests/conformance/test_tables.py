@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tables of scans: our vehicles beside what a real ArduPilot does, as it is kept (tests/conformance/kept)."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks.conformance.scans.run import compare_kept
+
+TABLES = (
+    "acks",
+    "fields",
+    "items",
+    "logs",
+    "missions",
+    pytest.param("arming", marks=pytest.mark.slow),
+    pytest.param("in-flight", marks=pytest.mark.slow),
+)
+
+
+@pytest.mark.parametrize("vehicle", ["copter", "rover"])
+@pytest.mark.parametrize("table", TABLES)
+def test_it_is_as_kept(table: str, vehicle: str) -> None:
+    assert compare_kept(table, vehicle) == []
