@@ -37,6 +37,18 @@ def test_uniform_and_normal_have_their_moments() -> None:
     assert abs(np.corrcoef(n[:-1], n[1:])[0, 1]) < 0.03
 
 
+@pytest.mark.parametrize("before", [0, 1])
+def test_two_vectors_at_once_are_those_of_two_calls(before: int) -> None:
+    """With a deviate kept from before, and without."""
+    one, other = generator(3), generator(3)
+    for r in (one, other):
+        for _ in range(before):
+            rng.normal(r)
+    for _ in range(50):
+        assert rng.normal_vectors(one) == (rng.normal_vector(other), rng.normal_vector(other))
+        assert (list(one.s), one.spare, one.has_spare) == (list(other.s), other.spare, other.has_spare)
+
+
 def test_seeds_differ_and_repeat() -> None:
     def first(seed: int) -> list[int]:
         r = generator(seed)

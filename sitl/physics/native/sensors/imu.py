@@ -10,7 +10,7 @@ from __future__ import annotations
 from ....core.algebra import by_component, rotate
 from ....core.border import Sensors
 from ....core.kernels import law
-from ....core.rng import Rng, normal, normal_vector
+from ....core.rng import Rng, normal, normal_vectors
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Figures
 from ..records import Derived, Physics, SensorState
@@ -22,9 +22,9 @@ WALK_TICKS = 40
 
 
 @law
-def measure(truth: Vec3, scale: Vec3, bias: Vec3, noise: float, rng: Rng) -> Vec3:
-    """What a sensor of three axes shows; ``noise``: standard deviation of a sample."""
-    return by_component(truth, scale) + bias + noise * normal_vector(rng)
+def measure(truth: Vec3, scale: Vec3, bias: Vec3, noise: Vec3) -> Vec3:
+    """What a sensor of three axes shows."""
+    return by_component(truth, scale) + bias + noise
 
 
 @law
@@ -32,8 +32,9 @@ def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     """Write acc [m/s^2] and gyro [rad/s], body frame."""
     a, s, d, body = p.airframe, p.sensors, p.derived, p.body
     force = rotate(s.acc_mount, body.specific_force) if s.acc_is_turned else body.specific_force
-    acc = measure(force, s.acc_scale, s.acc_bias + s.acc_walk, d.acc_noise, rng)
-    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise, rng)
+    acc_noise, gyro_noise = normal_vectors(rng)
+    acc = measure(force, s.acc_scale, s.acc_bias + s.acc_walk, d.acc_noise * acc_noise)
+    gyro = measure(body.rates_mean, s.gyro_scale, s.gyro_bias + s.gyro_walk, d.gyro_noise * gyro_noise)
     if s.imus_faulty:
         show(p, sensors, rng, Sample(acc, gyro), Sample(force, body.rates_mean))
         return
