@@ -40,8 +40,11 @@ from .state import BG, BM, THETA, Ekf
 
 NEVER, ALWAYS = 2.0, 4.0
 """EK3_MAG_CAL: biases of the magnetometer are never learnt, always."""
-PERIOD = 0.1
-"""ArduPilot reads compasses so often [s]: a mean over another time counts for as much as its share of this."""
+STEP = 0.0125
+"""Step of ArduPilot's filter [s]. Each adds the noise of EK3_GYRO_P_NSE and EK3_GBIAS_P_NSE for its time: their density
+is the parameter times the root of this."""
+LONGEST = 0.1
+"""Noise grows for so long at most from one fusion to the next [s]."""
 MAX_INNOVATION = 0.5
 """More of an innovation does not count at once [rad]."""
 UNKNOWN_BIAS = math.radians(2.5)
@@ -78,6 +81,15 @@ def align_in_flight(ekf: Ekf, estimate: Estimate, residual: float, params: Ekf3)
 
 
 @law
+def add_noise(ekf: Ekf, params: Ekf3, elapsed: float) -> None:
+    """Add to yaw and to the gyro's bias what noise.py leaves of the parameters' noise in a time [s]."""
+    gyro, bias = params.GYRO_P_NSE * params.GYRO_P_NSE, params.GBIAS_P_NSE * params.GBIAS_P_NSE
+    ekf.P[THETA + 2, THETA + 2] += (STEP - noise.GYRO * noise.GYRO) * gyro * elapsed
+    for k in range(3):
+        ekf.P[BG + k, BG + k] += (STEP - noise.GYRO_BIAS * noise.GYRO_BIAS) * bias * elapsed
+
+
+@law
 def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: bool) -> bool:
     """Align or fuse yaw when there are enough samples; whether something was fused."""
     if ekf.mag_n < FUSE_SAMPLES:
@@ -101,9 +113,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
         events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED_IN_FLIGHT, float(ekf.imu), float(ekf.compass))
         align_in_flight(ekf, estimate, residual, params)
         return True
-    elapsed = constrain(1e-6 * (ekf.now_us - ekf.mag_fused_us), 0.01, PERIOD)
-    extra = noise.DOUBTED_GYRO * noise.DOUBTED_GYRO - noise.GYRO * noise.GYRO
-    ekf.P[THETA + 2, THETA + 2] += extra * params.GYRO_P_NSE * params.GYRO_P_NSE * elapsed
+    add_noise(ekf, params, min(1e-6 * (ekf.now_us - ekf.mag_fused_us), LONGEST))
     sigma = params.YAW_M_NSE
     if learns:
         expected = ekf.earth_field
@@ -112,7 +122,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     else:
         clear_row(ekf)
         ekf.h[THETA + 2] = 1.0
-    innovation = innovate(ekf, residual, sigma * sigma * PERIOD / elapsed)
+    innovation = innovate(ekf, residual, sigma * sigma)
     ekf.innovation_yaw = innovation.value
     ratio = gate_ratio(innovation.value * innovation.value, innovation.variance, 0.0, params.YAW_I_GATE)
     estimate.variance_mag = math.sqrt(ratio)
