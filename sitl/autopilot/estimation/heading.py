@@ -36,7 +36,7 @@ from .magnetometer import (
     take_mean,
     turn,
 )
-from .state import BG, BM, THETA, Ekf
+from .state import BG, BM, THETA, VEL, Ekf
 
 NEVER, ALWAYS = 2.0, 4.0
 """EK3_MAG_CAL: biases of the magnetometer are never learnt, always."""
@@ -45,6 +45,9 @@ STEP = 0.0125
 is the parameter times the root of this."""
 LONGEST = 0.1
 """Noise grows for so long at most from one fusion to the next [s]."""
+TIED = 0.8
+"""What a fusion leaves of the covariance of yaw with velocity and position. The receiver is more exact than EK3_VELNE_M_NSE
+and EK3_POSNE_M_NSE say (noise.py): yaw would be learnt from an acceleration sooner than ArduPilot's filter learns it."""
 MAX_INNOVATION = 0.5
 """More of an innovation does not count at once [rad]."""
 UNKNOWN_BIAS = math.radians(2.5)
@@ -90,6 +93,16 @@ def add_noise(ekf: Ekf, params: Ekf3, elapsed: float) -> None:
 
 
 @law
+def loosen(ekf: Ekf) -> None:
+    """Let yaw, and the gyro's bias about it, be less tied to velocity and position."""
+    P = ekf.P
+    for j in range(VEL, BG):
+        for k in (THETA + 2, BG + 2):
+            P[k, j] *= TIED
+            P[j, k] *= TIED
+
+
+@law
 def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: bool) -> bool:
     """Align or fuse yaw when there are enough samples; whether something was fused."""
     if ekf.mag_n < FUSE_SAMPLES:
@@ -114,6 +127,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
         align_in_flight(ekf, estimate, residual, params)
         return True
     add_noise(ekf, params, min(1e-6 * (ekf.now_us - ekf.mag_fused_us), LONGEST))
+    loosen(ekf)
     sigma = params.YAW_M_NSE
     if learns:
         expected = ekf.earth_field
