@@ -46,8 +46,8 @@ is the parameter times the root of this."""
 LONGEST = 0.1
 """Noise grows for so long at most from one fusion to the next [s]."""
 TIED = 0.8
-"""What a fusion leaves of the covariance of yaw with velocity and position. The receiver is more exact than EK3_VELNE_M_NSE
-and EK3_POSNE_M_NSE say (noise.py): yaw would be learnt from an acceleration sooner than ArduPilot's filter learns it."""
+"""What a fusion leaves of the covariance of yaw with velocity and position. The receiver is more exact than
+EK3_VELNE_M_NSE and EK3_POSNE_M_NSE say (noise.py): yaw would be learnt sooner from accelerations than by ArduPilot."""
 MAX_INNOVATION = 0.5
 """More of an innovation does not count at once [rad]."""
 UNKNOWN_BIAS = math.radians(2.5)
