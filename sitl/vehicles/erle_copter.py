@@ -68,6 +68,7 @@ AIRFRAME = CopterAirframe(
         **sensor_sets.HMC5883,
     },
     parameters={
+        "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start
         "FRAME_CLASS": 1,  # quad
         "FRAME_TYPE": 1,  # X
         "ANGLE_MAX": 3000,  # [cdeg] the airframe's own parameter file

@@ -70,6 +70,7 @@ AIRFRAME = RoverAirframe(
         **sensor_sets.HMC5883,
     },
     parameters={
+        "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start
         "CRUISE_SPEED": 1.2,  # [m/s]
         "CRUISE_THROTTLE": 76,  # [%] for it: (1.2 + 0.044) / 1.632, of what MOT_THR_MIN leaves
         "MOT_THR_MIN": 3,  # [%] less does not overcome the rolling resistance

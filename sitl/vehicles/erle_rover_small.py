@@ -69,6 +69,7 @@ AIRFRAME = RoverAirframe(
         **sensor_sets.HMC5883,
     },
     parameters={
+        "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start
         "CRUISE_SPEED": 0.25,  # [m/s]
         "CRUISE_THROTTLE": 79,  # [%] for it: (0.25 + 0.029) / 0.347, of what MOT_THR_MIN leaves
         "MOT_THR_MIN": 8,  # [%] less does not overcome the rolling resistance

@@ -46,6 +46,7 @@ AIRFRAME = RoverAirframe(
         **sensor_sets.HMC5883,
     },
     parameters={
+        "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start
         "SERVO1_FUNCTION": 73,  # left motors
         "SERVO3_FUNCTION": 74,  # right motors
         "CRUISE_SPEED": 1.0,  # [m/s]

@@ -304,7 +304,7 @@ def fuse(
     fix = fix_of(receiver, sensors)
     if not count_fix(ekf, fix, params.EK3, source):
         return False
-    if not ekf.field_known and ekf.yaw_aligned:
+    if not ekf.field_known and ekf.yaw_aligned and (ekf.gps_fixes > 1 or not ekf.heading_only):
         learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
         place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))

@@ -4,6 +4,8 @@
 Samples are turned to NED with the attitude of their moment and averaged. The declination comes from the
 model of the earth's field as soon as a GPS fix tells where the vehicle is; until then it is zero. What is
 left of hard iron is estimated: yaw turns and accelerations under GPS tell it from a yaw error.
+
+So it is with EK3_MAG_CAL 4; otherwise heading.py fuses the means.
 """
 
 from __future__ import annotations
@@ -77,17 +79,42 @@ def turn(ekf: Ekf, estimate: Estimate, angle: float) -> None:
 
 @law
 def learn_field(ekf: Ekf, estimate: Estimate, lat_e7: int, lon_e7: int) -> None:
-    """Take the earth's field at a place [degE7]; yaw turns by the declination that was missing until now."""
+    """Take the earth's field at a place [degE7]; yaw turns by the declination that was missing until now.
+
+    Where the heading alone is fused it does not turn: fusion brings the declination in.
+    """
     ekf.earth_field = field_ned(1e-7 * lat_e7, 1e-7 * lon_e7)
     before = ekf.declination
     ekf.declination = atan2(ekf.earth_field.y, ekf.earth_field.x)
     ekf.field_known = True
-    if ekf.yaw_aligned and not ekf.without_compass:
+    if ekf.yaw_aligned and not ekf.without_compass and not ekf.heading_only:
         turn(ekf, estimate, ekf.declination - before)
 
 
 @law
-def _set_row(ekf: Ekf) -> None:
+def take_mean(ekf: Ekf) -> Vec3:
+    """Mean of the samples [gauss], NED; the next one begins."""
+    field = ekf.mag_sum / ekf.mag_n
+    clear_samples(ekf)
+    return field
+
+
+@law
+def shows_yaw(ekf: Ekf, field: Vec3) -> bool:
+    """Whether a mean has a direction that can be told: tilt is known, and not all of the field is vertical."""
+    n, e = field.x, field.y
+    return ekf.tilt_aligned and n * n + e * e >= MIN_HORIZONTAL * MIN_HORIZONTAL
+
+
+@law
+def assume_field(ekf: Ekf, field: Vec3) -> None:
+    """While nothing is known of the earth's field: the mean is it, and its horizontal part points north."""
+    if not ekf.field_known and not ekf.yaw_aligned:
+        ekf.earth_field = Vec3(norm2(horizontal(field)), 0.0, field.z)
+
+
+@law
+def set_row(ekf: Ekf) -> None:
     """Measurement row of the yaw that the magnetometer shows.
 
     A tilt error lets the vertical field leak into the horizontal one; a bias turns with the body. The field
@@ -107,7 +134,7 @@ def _realign(ekf: Ekf, estimate: Estimate, residual: float, variance: float) -> 
     """Turn to the yaw that the field shows; fusing it then ties yaw to tilt and biases in the covariance."""
     turn(ekf, estimate, residual)
     clear(ekf.P, THETA + 2, 1, noise.INITIAL_YAW * noise.INITIAL_YAW)
-    _set_row(ekf)
+    set_row(ekf)
     correct(ekf, innovate(ekf, 0.0, variance), NO_NIS)
     ekf.mag_fused_us = ekf.now_us
 
@@ -130,24 +157,21 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     count = ekf.mag_n
     if count < FUSE_SAMPLES:
         return False
-    field = ekf.mag_sum / count
-    clear_samples(ekf)
-    n, e = field.x, field.y
-    if not ekf.tilt_aligned or n * n + e * e < MIN_HORIZONTAL * MIN_HORIZONTAL:
+    field = take_mean(ekf)
+    if not shows_yaw(ekf, field):
         return False
-    if not ekf.field_known and not ekf.yaw_aligned:
-        ekf.earth_field = Vec3(norm2(horizontal(field)), 0.0, field.z)
+    assume_field(ekf, field)
     expected = ekf.earth_field
     h2 = expected.x * expected.x + expected.y * expected.y
     mag, yaw = noise.MAG * params.MAG_M_NSE, noise.YAW * params.YAW_M_NSE
     variance = mag * mag / (count * h2) + yaw * yaw
-    residual = wrap_pi(ekf.declination - atan2(e, n))
+    residual = wrap_pi(ekf.declination - atan2(field.y, field.x))
     if not ekf.yaw_aligned:
         ekf.yaw_aligned = True
         events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))
         _realign(ekf, estimate, residual, variance)
         return True
-    _set_row(ekf)
+    set_row(ekf)
     innovation = innovate(ekf, residual, variance)
     ekf.innovation_yaw = innovation.value
     nominal = params.MAG_M_NSE / math.sqrt(h2)

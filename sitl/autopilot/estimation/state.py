@@ -94,6 +94,7 @@ class Ekf(Record):
     earth_field: Vec3  # NED [gauss]
     declination: float  # [rad], east positive
     field_known: bool  # from the model of the earth's field, at the first GPS fix
+    heading_only: bool  # the heading is fused as ArduPilot does it (heading.py), EK3_MAG_CAL is not 4
     # GPS
     gps_seen: int
     gps_new: bool  # a message waits for the next filter step

@@ -22,6 +22,7 @@ from . import (
     flow,
     fusion,
     gps,
+    heading,
     history,
     lanes,
     magnetometer,
@@ -135,7 +136,11 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
     ekf.without_compass = ekf.compass_lies or otherwise
     if not ekf.without_compass:
         compass.watch(ekf, ap.events, v.sensors, ap.params, armed, ap.second_lane.runs == 0)
-        fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
+        ekf.heading_only = params.MAG_CAL != heading.ALWAYS
+        if ekf.heading_only:
+            fused |= heading.fuse(ekf, estimate, ap.events, params, armed)
+        else:
+            fused |= magnetometer.fuse(ekf, estimate, ap.events, params, armed)
     else:
         magnetometer.clear_samples(ekf)
     has_fix = 1 if ekf.gps_new else 0

@@ -22,6 +22,7 @@ class Ekf3(ParameterGroup):
     ALT_M_NSE: float = param(2.0, 0.01, 1000, "m", "barometer height noise")
     HGT_I_GATE: float = param(500, 100, 32767, "", f"height {_GATE}", INT16)
     MAG_M_NSE: float = param(0.05, 0.001, 5, "gauss", "magnetometer noise")
+    MAG_CAL: float = param(3, 0, 6, "", "magnetometer biases are learnt: 4 always, 2 never, else in the air", INT8)
     YAW_M_NSE: float = param(0.5, 0.001, 10, "rad", "error of the magnetometer's yaw besides its noise")
     YAW_I_GATE: float = param(300, 100, 32767, "", f"yaw {_GATE}", INT16)
     GYRO_P_NSE: float = param(0.015, 0.0001, 1, "rad/s", "gyro noise")

@@ -33,6 +33,7 @@ def new() -> np.ndarray:
     fleet = Copter.fleet(1)
     params = Copter.of(fleet, 0).autopilot.params
     TABLE.set_defaults(params)
+    params.EK3.MAG_CAL = 4.0  # biases of the magnetometer are learnt from the start
     params.INS.GYRO_FILTER = params.INS.ACCEL_FILTER = 0.0
     return fleet
 

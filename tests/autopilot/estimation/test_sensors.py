@@ -103,6 +103,14 @@ def test_yaw_turns_by_the_declination_learnt(ap) -> None:
     assert ap.estimate.reset_yaw_count == 1
 
 
+def test_yaw_stays_where_the_heading_alone_is_fused(ap) -> None:
+    ap.ekf.q, ap.ekf.yaw_aligned, ap.ekf.heading_only = IDENTITY, True, True
+    aiding.place_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(-353632620, 1491652370, 584.0))
+    assert math.degrees(ap.ekf.declination) == pytest.approx(12.7, abs=0.3)
+    assert tuple(ap.ekf.q) == tuple(IDENTITY)
+    assert ap.estimate.reset_yaw_count == 0
+
+
 def test_truth_in_truth_out() -> None:
     """Perfect samples of a minute's flight with turns: attitude to 0.001 degree, position to 5 cm."""
     truth = sf.fly(30.0, 2.0)

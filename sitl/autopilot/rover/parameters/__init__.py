@@ -52,7 +52,7 @@ class Parameters(shared.Parameters):
     CRASH_ANGLE: float = param(0, 0, 60, "deg", "Lean that counts as a crash at once; 0: none does", INT8)
     CRUISE: Cruise
     SPEED_MAX: float = param(0.0, 0.0, 30.0, "m/s", "Speed at full throttle; 0: extrapolated from CRUISE_SPEED")
-    EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7)
+    EK3: Ekf3 = group(VELNE_M_NSE=0.5, VELD_M_NSE=0.7, MAG_CAL=2)
     FENCE: Fence
     FOLL: Follow
     FRAME_CLASS: float = param(1, 1, 1, "", "1: a wheeled or tracked vehicle", INT8)
