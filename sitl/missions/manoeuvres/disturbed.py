@@ -85,7 +85,8 @@ def _without_gps(f: Flyer, name: str) -> None:
     t = f.fly(30.0, lambda: f.mode != mode)
     f.note(f"{name}: changes its mode", "s", f.now - start if f.mode != mode else math.nan)
     f.note(f"{name}: covered until then", "m", t.covered)
-    f.note(f"{name}: speed then", "m/s", float(t.speed[-1]))
+    if mode == "GUIDED":
+        f.note(f"{name}: speed then", "m/s", float(t.speed[-1]))
     changed = f.now
     t = f.fly(20.0, lambda: f.altitude < LOW_HEIGHT)
     f.note(f"{name}: {LOW_HEIGHT:g} m high", "s", f.now - changed if f.altitude < LOW_HEIGHT else math.nan)
@@ -149,7 +150,8 @@ def at_rest(f: Flyer) -> None:
         f.set_mode(mode)
         f.sticks(sticks)
         t = f.fly(6.0)
-        f.note(f"{name}: speed after 6 s", "m/s", float(t.speed[-1]))
+        if ROLL in sticks or PITCH in sticks:
+            f.note(f"{name}: speed after 6 s", "m/s", float(t.speed[-1]))
         f.note(f"{name}: covered in 6 s", "m", t.covered)
         f.note(f"{name}: climb after 6 s", "m/s", float(t.climb[-1]))
         f.note(f"{name}: height after 6 s", "m", float(t.height[-1] - t.height[0]))

@@ -35,6 +35,31 @@ def slower_on_the_way(f: Flyer) -> None:
         f.delay(6.0)
 
 
+def slower_in_auto(f: Flyer) -> None:
+    """AUTO: a leg of 80 m whose speed is lowered while it accelerates."""
+    f.be_ready()
+    items = [
+        f.item("NAV_WAYPOINT", 0.0, 0.0),
+        f.item("NAV_TAKEOFF", altitude=10.0),
+        f.item("NAV_WAYPOINT", 80.0, 0.0, 10.0, param1=1.0),
+    ]
+    f.transfer(items)
+    f.arm()
+    f.delay(1.0)
+    f.change_mode("AUTO")
+    f.send_command("MISSION_START")
+    f.fly(60.0, lambda: 1 in f.reached)
+    begun = f.now
+    f.delay(2.5)
+    f.send_command("DO_CHANGE_SPEED", 1, 3.0, -1)
+    t = f.fly(6.0)
+    f.note("AUTO, 80 m, lowered to 3 m/s: speed 6 s later", "m/s", float(t.speed[-1]))
+    f.note("AUTO, 80 m, lowered to 3 m/s: fastest", "m/s", float(t.speed.max()))
+    f.note("AUTO, 80 m, lowered to 3 m/s: covered in 6 s", "m", t.covered)
+    f.fly(60.0, lambda: 2 in f.reached)
+    f.note("AUTO, 80 m, lowered to 3 m/s: reached", "s", arrivals(f, begun, ()).get(2, float("nan")))
+
+
 def reversed_heights(f: Flyer) -> None:
     """GUIDED: a climb that becomes a descent on the way, and the reverse; the same with a way along."""
     f.airborne(HEIGHT)
@@ -86,7 +111,7 @@ def splines(f: Flyer) -> None:
     _pause(f, CONTINUE)
     begun = f.now
     t = f.fly(90.0, lambda: 7 in f.reached)
-    reached = arrivals(f, begun, ())
+    reached = arrivals(f, begun, (3,))
     for seq in (3, 5, 6, 7):
         f.note(f"splines: item {seq} reached after the pause", "s", reached.get(seq, float("nan")))
     second = t.t < reached.get(3, 0.0)
@@ -130,4 +155,4 @@ def paused(f: Flyer) -> None:
     f.note("paused: last item reached", "s", reached.get(3, float("nan")))
 
 
-FLIGHTS = {flight.__name__: flight for flight in (slower_on_the_way, reversed_heights, splines, paused)}
+FLIGHTS = {flight.__name__: flight for flight in (slower_on_the_way, slower_in_auto, reversed_heights, splines, paused)}
