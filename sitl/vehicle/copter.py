@@ -148,7 +148,9 @@ def meet(fleet: Sequence[Copter], index: int, mover: int, shows: int) -> None:
 def apply_sim_parameters(v: Copter) -> None:
     """SIM_ parameters of all kinds, those of a copter's motors, and its shove."""
     sim_parameters.apply(v)
-    params, rotors = v.autopilot.params, v.physics.rotors
+    params, rotors, figures = v.autopilot.params, v.physics.rotors, v.physics.airframe
+    v.physics.wind.time_constant *= figures.wind_lag
+    v.autopilot.control.motors.learns_at_rest = figures.learns_at_rest != 0
     rotors.telemetry = params.SIM.ESC_TELEM != 0
     rotors.rpm_armed, rotors.rpm_max = params.SIM.ESC_ARM_RPM, 60.0 * params.SIM.VIB_MOT_MAX
     _vibrate(v)

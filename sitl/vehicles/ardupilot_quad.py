@@ -69,6 +69,9 @@ def multicopter(
             ),
             "drag_area": (drag_area(), drag_area(), drag_area()),  # [m^2]
             "angular_damping": math.radians(400.0) / 120.0,  # [1/s] 0.058; the recorded yaw turns agree
+            "gyroscopic": 0,  # its bodies have moments of inertia, and no angular momentum
+            "wind_lag": 1.0 / math.tau,  # it low-passes the wind at 1 / SIM_WIND_TC [Hz]
+            "learns_at_rest": 1,
             "thrust_model": THRUST_MOMENTUM,
             "control_min": 0.15,  # spin range of 1000 .. 2000 us
             "control_max": 0.95,
@@ -105,6 +108,7 @@ def multicopter(
             "MOT_BAT_VOLT_MIN": 9.6,  # [V]
             "MOT_THST_HOVER": 0.39,
             "GPS1_DELAY_MS": 100,  # as gps_delay
+            "SIM_WIND_T": 0,
         },
     )
 

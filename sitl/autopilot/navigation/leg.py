@@ -46,6 +46,10 @@ class Limits(NamedTuple):
     """Time in which jerk rises from zero to its limit: snap = jerk / rise."""
 
 
+SLOWING_S = 1.8
+"""Time at one speed in the middle of a leg [s] with which ArduPilot finds room for slowing down there."""
+
+
 def bounded(limits: Limits) -> Limits:
     """Limits that every leg can be planned within: each at least ``MIN_LIMIT``, ``rise`` at most ``MAX_RISE``.
 
@@ -161,16 +165,45 @@ def plan(length: float, limits: Limits, v0: float = 0.0, a0: float = 0.0, v1: fl
         if limits.rise > 0.0:
             phases = [piece for phase in phases for piece in _soften(phase, min(limits.rise, 0.5 * pulse))]
         return _profile(phases, length, v0, a0, v1)
-    pulse = pulse_duration(max(length, SHORTEST), limits)
-    top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
-    within = limits._replace(jerk=pulse_acceleration(top, limits) / top)
-    start = State(0.0, v0, a0)
+    within, start = _with_mean_jerk(length, limits), State(0.0, v0, a0)
     phases = _hasty_phases(length, within, start, v1) or _phases(length, within, start, v1)
     profile = _profile(phases, length, v0, a0, v1)
     farthest = max(abs(segment.p) for segment in profile.segments)
     if farthest > length + ASTRAY:
         raise LegError(f"leg: from {v0} m/s and {a0} m/s^2 it would lead {farthest / 1e3:.0f} km away within {limits}")
     return profile
+
+
+def _with_mean_jerk(length: float, limits: Limits) -> Limits:
+    """Limits whose jerk is the mean of a pulse that rises and falls."""
+    pulse = pulse_duration(max(length, SHORTEST), limits)
+    top = pulse_duration(max(length, 1e3 * limits.speed * pulse), limits)
+    return limits._replace(jerk=pulse_acceleration(top, limits) / top)
+
+
+def plan_slower(length: float, limits: Limits, start: State, rise: Sequence[Phase], v1: float) -> Profile:
+    """Profile over ``length`` [m] of a leg that speeds up (``start``, at 0 m) beyond a speed limit which is new.
+
+    As in ArduPilot what is left of speeding up (``rise``) is flown: only its steady acceleration is cut short. Then it
+    slows down, where it would go on for ``SLOWING_S`` at the speed that it came to.
+
+    Raises:
+        LegError: it takes too many segments.
+    """
+    top, phases = start.after_all(rise).v, []
+    for phase in rise:
+        steady = phase.jerk == 0.0 and phase.snap == 0.0
+        acceleration = start.after_all(phases).a
+        cut = min(max(top - limits.speed, 0.0) / acceleration, phase.duration) if steady and acceleration > 0.0 else 0.0
+        top -= cut * acceleration
+        if phase.duration > cut:
+            phases.append(phase._replace(duration=phase.duration - cut))
+    risen = start.after_all(phases)
+    left, then, within = length - risen.p, State(0.0, risen.v, 0.0), _with_mean_jerk(length, limits)
+    stop = then.after_all(change_speed(then.v, 0.0, v1, within.acceleration, within.jerk)).p
+    slowed = _slowing_phases(left, within, then, v1) if left - stop >= SLOWING_S * then.v else []
+    phases += slowed or _phases(left, within._replace(speed=max(then.v, limits.speed)), then, v1)
+    return _profile(phases, length, start.v, start.a, v1)
 
 
 def _phases(length: float, limits: Limits, start: State, v1: float) -> list[Phase]:

@@ -13,12 +13,15 @@ from sitl.errors import OptionError
 from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
-from . import copter, executable, rover, table
+from . import copter, disturbed, executable, paths, rover, table
 from .flyer import Figures, Flyer
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 FRAMES = {"copter": "ardupilot_quad", "rover": "ardupilot_rover"}
-FLIGHTS: dict[str, Mapping[str, Callable[[Flyer], None]]] = {"copter": copter.FLIGHTS, "rover": rover.FLIGHTS}
+FLIGHTS: dict[str, Mapping[str, Callable[[Flyer], None]]] = {
+    "copter": {**copter.FLIGHTS, **disturbed.FLIGHTS, **paths.FLIGHTS},
+    "rover": rover.FLIGHTS,
+}
 RATES_HZ = {"copter": 50.0, "rover": 25.0}
 BOOT_SPEEDUP = 60
 WHY = """

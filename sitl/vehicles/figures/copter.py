@@ -31,6 +31,8 @@ class Air(Record):
 
     drag_area: Vec3 = figure("m^2", "drag coefficient times area along body x, y, z", default=(0.0, 0.0, 0.0))
     angular_damping: float = figure("1/s", "rotational air resistance: angular acceleration per rate", default=0.0)
+    gyroscopic: int = figure("", "1: a body that turns about two axes is turned about the third; 0: it is not", 0, 1, 1)
+    wind_lag: float = figure("", "time constant of the wind by SIM_WIND_TC", 0.001, 10.0, 1.0)
     substeps: int = figure("", "integration steps a tick", 1, 100, 1)
 
 
@@ -81,5 +83,11 @@ class Legs(Record):
     hit_speed: float = figure("m/s", "slowest touch that is reported")
 
 
-class Figures(body.Figures, Body, Air, Hubs, Rotors, Battery, Legs, Sensors, Outline, Ranging):
+class Firmware(Record):
+    """What the firmware has to know of it and no parameter says."""
+
+    learns_at_rest: int = figure("", "1: the hover throttle is learnt only while the path stands still", 0, 1, 0)
+
+
+class Figures(body.Figures, Body, Air, Hubs, Rotors, Battery, Legs, Firmware, Sensors, Outline, Ranging):
     """All figures of a multicopter."""

@@ -9,11 +9,13 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from sitl import vehicles
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.core import rng as random
 from sitl.core.rng import Rng
 from sitl.physics.native import battery, wind
 from sitl.physics.native.atmosphere import density
 from sitl.physics.native.records import BatteryState, Wind
+from sitl.vehicle.copter import Copter, apply_sim_parameters
 
 
 @given(st.floats(-0.5, 1.5), st.floats(0.0, 0.5))
@@ -96,6 +98,16 @@ def test_wind_follows_its_setting():
     assert w.vel.y == approx(-5.0 * (1.0 - math.exp(-1.0)), rel=0.02)
     assert w.vel.x == approx(0.0, abs=1e-12)
     assert rng.s.tolist() == before  # without turbulence the random numbers stay as they are
+
+
+@pytest.mark.parametrize(("frame", "time_constant"), [("ardupilot_quad", 5.0 / math.tau), ("erle_copter", 5.0)])
+def test_ardupilots_wind_changes_by_a_low_pass_of_one_over_its_time_constant(frame, time_constant):
+    v = Copter()
+    TABLE.set_defaults(v.autopilot.params)
+    v.physics.airframe.wind_lag = vehicles.load(frame).value("wind_lag")
+    for _ in range(2):
+        apply_sim_parameters(v)
+        assert v.physics.wind.time_constant == approx(time_constant)
 
 
 def test_turbulence_has_its_deviation_and_correlation_time():

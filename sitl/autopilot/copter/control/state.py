@@ -157,6 +157,7 @@ class MotorsState(Record):
     boosting: bool  # thrust is being lost: the strongest motor does not limit the others
     boost_ratio: float  # 0 .. 1, follows while unbalanced
     loss_ticks: int  # for which thrust seemed to be lost
+    learns_at_rest: bool  # hover throttle is learnt only while the path stands still, not while it is slow
     yaw_trim: float  # size of the yaw rate loop's integrator, low-passed
     yaw_trim_told_us: int  # when that was last told to be large
     voltage_ratio: float  # resting voltage over MOT_BAT_VOLT_MAX, filtered; 1 when not compensated

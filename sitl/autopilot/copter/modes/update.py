@@ -43,6 +43,8 @@ _THIRD = 133
 _LEARN_TICKS = 4
 _LEARN_COS_LEAN = 0.9962  # 5 degrees
 _LEARN_SPEED = 0.6  # [m/s]
+_SLOW_PATH = 0.01  # [m/s]
+_AT_REST = 1.2e-7  # [m/s] what ArduPilot takes for 0
 
 
 def init(v: Vehicle) -> None:
@@ -164,6 +166,7 @@ def holds_height(arming: Arming, modes: Modes) -> bool:
 @inlined
 def hovers(control: Control, vel_d: float) -> bool:
     """Whether a vehicle that holds height hovers level: its throttle is the hover throttle; ``vel_d``: down [m/s]."""
-    if abs(control.pos_d.vel_desired) > 0.01 or abs(vel_d) >= _LEARN_SPEED:
+    slow = _AT_REST if control.motors.learns_at_rest else _SLOW_PATH
+    if abs(control.pos_d.vel_desired) > slow or abs(vel_d) >= _LEARN_SPEED:
         return False
     return control.attitude.cos_lean >= _LEARN_COS_LEAN and control.motors.throttle > 0.0

@@ -9,9 +9,21 @@ from typing import NamedTuple
 from ....core.algebra import ZERO, dot, norm, with_down
 from ....core.sums import separation
 from ....core.vectors import Vec3
-from ...navigation.leg import SHORTEST, Limits, axis_limits, bounded, plan, speed_within, write
+from ...navigation.leg import (
+    SHORTEST,
+    SLOWING_S,
+    LegError,
+    Limits,
+    axis_limits,
+    bounded,
+    plan,
+    plan_slower,
+    speed_within,
+    write,
+)
+from ...navigation.phases import Phase, State
 from ...navigation.planner import Planner, end
-from ...navigation.profile import clear
+from ...navigation.profile import clear, evaluate
 from ...navigation.state import LOITER_TURNS, TAKEOFF, Leg
 from ...terrain.ground import Ground
 from ..control.altitude_start import stopping_point_d
@@ -26,8 +38,8 @@ from .state import Spline
 GRAVITY = 9.80665
 _ALONG = 0.999
 """Cosine of the angle to the path under way within which a leg goes on with its speed."""
-_SLOWING_S = 1.8
-"""A leg with less time than this between its phases of speeding up and slowing down [s] has no room for another."""
+_AT_REST = 1e-9
+"""Acceleration [m/s^2] and jerk that are rounding."""
 _POINT = Limits(1.0, 1.0, 1.0)
 """Of a leg without length, which needs none."""
 
@@ -53,6 +65,19 @@ def jerk_limits(params: Parameters) -> tuple[float, float]:
     if lean_acceleration > 0.0:
         snap = min(snap, lean_acceleration * GRAVITY)
     return jerk, 0.5 * math.pi * jerk / (0.5 * snap)
+
+
+def rest_of_rise(leg: Leg) -> list[Phase]:
+    """What is left of a leg's speeding up; empty once that is over, and where it goes over into slowing down."""
+    phases = []
+    for k in range(leg.segments - 1):
+        if leg.t[k + 1] <= leg.elapsed:
+            continue
+        if leg.a[k] <= _AT_REST and leg.j[k] <= _AT_REST and leg.s[k] <= _AT_REST:
+            return phases if abs(leg.a[k]) <= _AT_REST else []
+        begin = max(leg.t[k], leg.elapsed)
+        phases.append(Phase(leg.t[k + 1] - begin, leg.j[k] + leg.s[k] * (begin - leg.t[k]), leg.s[k]))
+    return []
 
 
 class Following(NamedTuple):
@@ -248,13 +273,22 @@ class CopterPlanner(Planner[Autopilot]):
             spline_curve.set_limits(s, self.spline_limits(ap), s.end_speed)
 
     def _replan(self, ap: Autopilot, leg: Leg) -> None:
-        """A lower speed comes too late for a leg that still speeds up, has no steady acceleration, and is too short to
-        slow down again before its end: as in ArduPilot it goes on as planned."""
+        """A leg that still speeds up goes on with that before it slows down to a lower speed (``plan_slower``)."""
         wanted = bounded(self.limits(ap, leg.unit))
-        speeds_up = leg.started and leg.elapsed < leg.turn_in and wanted.speed < leg.top_speed
-        if speeds_up and leg.turn_out - leg.turn_in < _SLOWING_S and max(leg.a[: leg.segments]) < wanted.acceleration:
+        now, rise = evaluate(leg, leg.elapsed), rest_of_rise(leg)
+        if not (leg.started and rise and now.vel > 0.0 and wanted.speed < leg.top_speed):
+            super()._replan(ap, leg)
             return
-        super()._replan(ap, leg)
+        if leg.turn_out - leg.turn_in < SLOWING_S and max(leg.a[: leg.segments]) < wanted.acceleration:
+            return  # nothing can be cut short, and there is no room for slowing down
+        left, last = leg.length - now.pos, min(end_speed(leg), wanted.speed)
+        try:
+            profile = plan_slower(left, wanted, State(0.0, now.vel, now.acc), rise, last)
+        except LegError:
+            return
+        fast = leg.fast
+        write(leg, profile, leg.origin + leg.unit * now.pos, leg.unit, left)
+        leg.fast, leg.started, leg.top_speed = fast, True, wanted.speed
 
     def start(self, ap: Autopilot, time_us: int) -> None:
         """Hand the legs to the follower."""

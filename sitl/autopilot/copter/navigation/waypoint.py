@@ -121,6 +121,8 @@ def advance(nav: CopterNav, control: Control, est: Estimate, p: Parameters, time
     if nav.spline.active:
         part = spline.ACCEL_PART * CM
         done = spline.move(nav, step, max(part * legs.ACCEL, 0.05), max(part * legs.ACCEL_Z, 0.05))
+        # ArduPilot's goes on from the slower target: it stops at once, and waits for the end of a pause's ramp.
+        nav.spline.speed *= nav.pause_scale
     else:
         done = path.move(nav, step, CM * legs.RADIUS, corner_accel(legs))
     nav.acc = nav.acc * nav.pause_scale * nav.pause_scale + nav.vel * nav.pause_rate

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ....core.algebra import by_component, rotate_inverse
+from ....core.algebra import by_component, cross, rotate_inverse
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
@@ -30,6 +30,8 @@ def add_air(wrench: Wrench, spin_up: float, flow: Flow, figures: Figures, densit
         m.y - damping * inertia.y * rates.y,
         m.z + (spin_up - damping * inertia.z * rates.z),
     )
+    if figures.gyroscopic == 0:
+        torque += cross(rates, by_component(inertia, rates))  # what ``fly`` will take away
     return Wrench(force, torque)
 
 

@@ -98,3 +98,19 @@ def test_mission_changed_before_the_curve_ends() -> None:
     assert reached(p, 1) is not None
     assert np.linalg.norm(rows[-1, 3:6]) == pytest.approx(0.0, abs=0.01)
     assert 38.0 < rows[-1, 0] < 65.0
+
+
+def test_a_pause_stops_it_at_once_and_it_waits_before_it_goes_on() -> None:
+    """As ArduPilot's: from 4.9 m/s it stands after 0.9 m, and moves on 5 s after DO_PAUSE_CONTINUE; on a straight leg
+    it brakes with WPNAV_ACCEL."""
+    p = vehicle(curve(100.0, 0.0), follow=False)
+    before = path(p, 4.0)[-1]
+    assert before[3] > 4.0
+    p.v.autopilot.modes.nav.paused = True
+    stopped = path(p, 6.0)
+    assert stopped[-1, 0] - before[0] < 1.5
+    assert stopped[400, 3] < 0.1
+    p.v.autopilot.modes.nav.paused = False
+    gone_on = path(p, 12.0)
+    assert 2.5 < np.argmax(gone_on[:, 3] > 0.5) * DT < 6.5
+    assert gone_on[-1, 3] > 4.0
