@@ -74,6 +74,7 @@ class Loiter(ParameterGroup):
     BRK_ACCEL: float = param(250.0, 25.0, 2500.0, "cm/s/s", "Greatest deceleration with sticks centred")
     BRK_JERK: float = param(500.0, 50.0, 10000.0, "cm/s/s/s", "Jerk of the braking")
     BRK_DELAY: float = param(1.0, 0.0, 10.0, "s", "From centring the sticks to braking")
+    OPTIONS: float = param(1, 0, 1, "", "Bit 0: the velocity turns with the heading (coordinated turn)", INT8)
 
 
 class Pilot(ParameterGroup):
