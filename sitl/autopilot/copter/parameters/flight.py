@@ -129,6 +129,7 @@ class Rtl(ParameterGroup):
     SPEED: float = param(0, 0, 2000, "cm/s", "Speed of the way home; 0 as WPNAV_SPEED", INT16)
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
     ALT_TYPE: float = param(0, 0, 1, "", "Height of the way home: 0 above home, 1 above the ground", INT8)
+    OPTIONS: float = param(0, *BITS32, "", "4: the yaw stick does nothing on the way home", INT32)
 
 
 class SmartRtl(system.SmartRtl):
