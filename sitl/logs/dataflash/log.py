@@ -2,7 +2,8 @@
 """The on-board logger keeps DataFlash logs of a vehicle in files, and hands them out.
 
 LOG_BACKEND_TYPE, LOG_DISARMED and LOG_BITMASK decide, as in ArduPilot: unless LOG_DISARMED says so, a log begins with
-the first arming, or attempt at it, and pauses 15 s after each disarming or refusal. A reboot begins another.
+the first arming, or attempt at it, and pauses 15 s after each disarming or refusal. A reboot begins another; with
+LOG_FILE_DSRMROT so does the arming after a disarming.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from ... import __version__
 from ...autopilot.events import ARMING_REFUSED, EVENT_RING
+from ...autopilot.shell_parameters import rotates_logs
 from ...vehicle.sampler import LONGEST_US, NEVER, next_row_us
 from ..tlog import LogError
 from .encoder import LogEncoder, Vehicle
@@ -95,7 +97,7 @@ class DataFlash:
         self._boot_us = self._vehicle.before_boot_us
         self._encoder: LogEncoder | None = None
         self._file: LogFile | None = None
-        self._paused = False
+        self._paused = self._rotates_next = False
         self._disarmed_us = self._refused_us = -PERSIST_US
         self._since_us = self._read = 0
         self._texts: list[tuple[int, str]] = []
@@ -107,6 +109,7 @@ class DataFlash:
         params = self._vehicle.v.autopilot.params
         self._on = int(params.LOG.BACKEND_TYPE) & 1 != 0 and not self._closed
         self._disarmed = int(params.LOG.DISARMED)
+        self._rotates = rotates_logs(self._vehicle.parameters)
         if self._encoder is not None:
             self._encoder.set_bitmask(int(params.LOG.BITMASK))
 
@@ -201,6 +204,10 @@ class DataFlash:
         now = self._words[self._time_at]
         if armed:
             self._disarmed_us = now
+            if self._rotates_next:
+                self._rotate()
+        elif self._rotates and self._file is not None and self._file.flown:
+            self._rotates_next = True
         wanted = self._on and (self._disarmed in _ALWAYS or self._is_awake())
         if self._encoder is None or self._paused:
             if wanted:
@@ -210,6 +217,8 @@ class DataFlash:
         elif not wanted:
             self._paused, self._since_us = True, now
             self._flush()
+            if self._rotates_next:
+                self._rotate()
         encoder = self._encoder
         if encoder is not None and not self._paused:
             if self._words[self._count_at] != self._count:
@@ -223,6 +232,12 @@ class DataFlash:
         if armed and self._file is not None:
             self._file.flown = True
         self._find_due()
+
+    def _rotate(self) -> None:
+        """End the log: another one begins with the next arming."""
+        self._end()
+        self._encoder = self._file = None
+        self._rotates_next = False
 
     def _follow_reboot(self) -> None:
         if self._vehicle.before_boot_us != self._boot_us:

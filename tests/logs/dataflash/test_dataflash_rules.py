@@ -69,6 +69,20 @@ def test_logging_pauses_after_disarming_and_goes_on_in_the_same_file(tmp_path: P
     assert list(tmp_path.iterdir()) == [run.path]
 
 
+@pytest.mark.parametrize("disarmed", [0.0, 1.0])
+@pytest.mark.parametrize("pause", [1.0, 30.0])
+def test_a_disarming_can_end_the_log(tmp_path: Path, pause: float, disarmed: float) -> None:
+    run = Run(tmp_path, "rover", LOG_FILE_DSRMROT=1.0, LOG_DISARMED=disarmed)
+    for _ in range(2):
+        run.arm()
+        run.client.command(400, 0)
+        run.simulation.advance(pause)
+    run.simulation.close()
+    logs = [read_log(path) for path in sorted(tmp_path.iterdir(), key=lambda path: len(path.name))]
+    assert [[m.ArmState for m in log["ARM"]] for log in logs] == [[1, 0], [1, 0]]
+    assert all(len(log["PARM"]) > 1000 for log in logs)
+
+
 @pytest.mark.parametrize("kind", ["copter", "rover"])
 def test_a_refused_arming_is_logged_for_15_s_with_its_reason(tmp_path: Path, kind: str) -> None:
     run = Run(tmp_path, kind)
