@@ -301,7 +301,10 @@ class DataFlash:
             self._catch_up()
             self._encoder.parameter(self._now_us, name)
         if name.startswith("LOG_"):
+            before = self._disarmed
             self._settings()
+            if self._disarmed in _ALWAYS and before not in _ALWAYS:
+                self._since_us = self._now_us  # not what has happened since boot
             self._find_due()
 
     def reached(self, seq: int) -> None:

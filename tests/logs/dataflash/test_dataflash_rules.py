@@ -38,6 +38,16 @@ def test_log_disarmed_logs_from_boot_on(tmp_path: Path) -> None:
     assert "ArduPilot Ready" in [m.Message for m in log["MSG"]]
 
 
+def test_log_disarmed_that_is_set_later_logs_from_there_on(tmp_path: Path) -> None:
+    run = Run(tmp_path, "rover")
+    run.simulation.advance(3.0)
+    run.set("LOG_DISARMED", 1.0)
+    run.simulation.advance(2.0)
+    run.simulation.close()
+    stamps = [m.TimeUS for found in read_log(run.path).values() for m in found if hasattr(m, "TimeUS")]
+    assert min(stamps) >= 3_000_000 and max(stamps) > 4_900_000
+
+
 def test_log_disarmed_3_keeps_flights_alone(tmp_path: Path) -> None:
     run = Run(tmp_path, LOG_DISARMED=3.0)
     run.simulation.advance(1.0)
