@@ -199,15 +199,11 @@ class DataFlash:
 
     def _look(self) -> None:
         """Take a sample, or start a log when it is due."""
-        self._follow_reboot()
+        self._follow()
         armed = self._words[self._armed_at]
         now = self._words[self._time_at]
         if armed:
             self._disarmed_us = now
-            if self._rotates_next:
-                self._rotate()
-        elif self._rotates and self._file is not None and self._file.flown:
-            self._rotates_next = True
         wanted = self._on and (self._disarmed in _ALWAYS or self._is_awake())
         if self._encoder is None or self._paused:
             if wanted:
@@ -239,10 +235,19 @@ class DataFlash:
         self._encoder = self._file = None
         self._rotates_next = False
 
-    def _follow_reboot(self) -> None:
+    def _follow(self) -> None:
+        """End the log at a reboot, or at an arming for which another one is wanted."""
         if self._vehicle.before_boot_us != self._boot_us:
             self._end()
             self._boot()
+            return
+        if not self._words[self._armed_at]:
+            self._rotates_next = self._rotates and self._file is not None and self._file.flown
+            return
+        if self._rotates_next:
+            self._rotate()
+        if self._file is not None:
+            self._file.flown = True
 
     def _begin(self, now: int) -> None:
         """Start a log or continue one, from the events since arming (or since boot, where LOG_DISARMED says so)."""
@@ -284,7 +289,7 @@ class DataFlash:
 
     def said(self, severity: int, text: str) -> None:
         """Log a status text that the vehicle sent."""
-        self._follow_reboot()
+        self._follow()
         now = self._now_us
         if self._encoder is None or self._paused:
             self._texts.append((now, text))
@@ -296,7 +301,7 @@ class DataFlash:
 
     def parameter_set(self, name: str) -> None:
         """A parameter was set."""
-        self._follow_reboot()
+        self._follow()
         if self._encoder is not None and not self._paused:
             self._catch_up()
             self._encoder.parameter(self._now_us, name)
