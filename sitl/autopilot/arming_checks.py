@@ -23,7 +23,8 @@ from .params.parameters import Parameters
 from .params.system import Arming, Compass
 from .radio_checks import RC_MISSING, THROTTLE_FAILSAFE
 from .sensor_calibration import differs, is_heard, shown_field
-from .state import BatteryState, Sensors
+from .state import Arming as ArmingState
+from .state import BatteryState, Sensors, Vehicle
 
 # Who arms or disarms (ArduPilot's AP_Arming::Method)
 BY_RUDDER = 0
@@ -146,6 +147,7 @@ ACC_DIFFERENCE, GYRO_DIFFERENCE = 0.75, math.radians(5.0)
 _BARO_US = 500_000
 """A barometer that is silent for longer is not healthy."""
 _READY_US = 2_450_000
+_AGREE_US = 10_000_000
 _ACCELS_US = 13_400_000
 _GYROS_US = 23_400_000
 """Inertial sensors count as consistent from here on: ten seconds of agreement each, as a real one boots."""
@@ -207,25 +209,32 @@ def switch_checks(state: int, receiver_ok: bool) -> int:
 
 
 @law
-def imu_checks(sensors: Sensors) -> int:
-    """Failed checks of two IMUs that show different things, or of which one is silent."""
+def imu_checks(arming: ArmingState, sensors: Sensors, time_us: int) -> int:
+    """Failed checks of two IMUs that show different things, or did ten seconds ago, or of which one is silent."""
     state = sensors.imu_state
     if state & 3 * border.ACC_SILENT:
         return ACCELS_SILENT
-    if norm(sensors.acc2 - sensors.acc) > ACC_DIFFERENCE:
+    if state != 0 and norm(sensors.acc2 - sensors.acc) > ACC_DIFFERENCE:
+        arming.accels_apart_us = time_us
+    if arming.accels_apart_us > 0 and time_us - arming.accels_apart_us < _AGREE_US:
         return ACCELS
     if state & 3 * border.GYRO_SILENT:
         return GYROS_SILENT
-    return GYROS if norm(sensors.gyro2 - sensors.gyro) > GYRO_DIFFERENCE else 0
+    if state != 0 and norm(sensors.gyro2 - sensors.gyro) > GYRO_DIFFERENCE:
+        arming.gyros_apart_us = time_us
+    return GYROS if arming.gyros_apart_us > 0 and time_us - arming.gyros_apart_us < _AGREE_US else 0
 
 
 @law
-def sensor_checks(time_us: int, sensors: Sensors, baro_us: int, attitude_ok: bool, p: Parameters) -> int:
-    """Failed checks of sensors and attitude; ``baro_us``: when the filter last heard the barometer, 0 never."""
-    failed, params = 0, p.ARMING
+def sensor_checks(v: Vehicle) -> int:
+    """Failed checks of sensors and attitude."""
+    ap, sensors, time_us = v.autopilot, v.sensors, v.time_us
+    failed, p = 0, ap.params
+    params = p.ARMING
     if time_us < _READY_US:
         failed |= NOT_INITIALISED
-    silent = baro_us > 0 and time_us - baro_us > _BARO_US
+    heard_us = ap.ekf.baro_us  # by the filter; 0 never
+    silent = heard_us > 0 and time_us - heard_us > _BARO_US
     if (sensors.baro_count == 0 or silent) and wants(params, CHECK_BARO):
         failed |= BAROMETER
     if not is_heard(0, sensors, time_us) and wants(params, CHECK_COMPASS):
@@ -237,10 +246,9 @@ def sensor_checks(time_us: int, sensors: Sensors, baro_us: int, attitude_ok: boo
             failed |= ACCELS
         elif time_us < _GYROS_US:
             failed |= GYROS
-        elif sensors.imu_state != 0:
-            failed |= imu_checks(sensors)
-        elif not attitude_ok:
-            failed |= ATTITUDE
+        else:
+            apart = imu_checks(ap.arming, sensors, time_us)
+            failed |= apart if apart != 0 or ap.estimate.attitude_ok or sensors.imu_state != 0 else ATTITUDE
     return failed
 
 

@@ -27,8 +27,6 @@ from .control.shaping import (
 from .params.follow import Follow
 from .state import FollowState
 
-TIMEOUT_US = 3_000_000
-"""A lead that was silent for so long is not followed."""
 FORGET_US = 10_000_000
 """And after so long, another one may be taken (FOLL_SYSID 0)."""
 RELATIVE = 1
@@ -75,9 +73,8 @@ def take(lead: FollowState, p: Follow, sender: int, report: Report, time_us: int
 
 
 @law
-def velocity_change_max(accel_max: float, jerk_max: float) -> float:
-    """Largest change of velocity within the time of silence that is borne, at these limits."""
-    timeout = TIMEOUT_US * 1e-6
+def velocity_change_max(accel_max: float, jerk_max: float, timeout: float) -> float:
+    """Largest change of velocity within the time of silence that is borne [s], at these limits."""
     rise = accel_max / jerk_max
     if timeout >= 2.0 * rise:
         return accel_max * (timeout - rise)
@@ -90,12 +87,12 @@ def is_far(lead: FollowState, p: Follow) -> bool:
     if not is_shaped(p):
         return False
     pos, vel = lead.pos - lead.told_pos, lead.vel - lead.told_vel
-    time = 0.5e-6 * TIMEOUT_US
+    time = 0.5 * p.TIMEOUT
     if norm2(horizontal(pos)) > p.ACCEL_NE * time * time or abs(pos.z) > p.ACCEL_D * time * time:
         return True
-    if norm2(horizontal(vel)) > velocity_change_max(p.ACCEL_NE, p.JERK_NE):
+    if norm2(horizontal(vel)) > velocity_change_max(p.ACCEL_NE, p.JERK_NE, p.TIMEOUT):
         return True
-    return abs(vel.z) > velocity_change_max(p.ACCEL_D, p.JERK_D)
+    return abs(vel.z) > velocity_change_max(p.ACCEL_D, p.JERK_D, p.TIMEOUT)
 
 
 @law
@@ -107,7 +104,7 @@ def is_shaped(p: Follow) -> bool:
 @law
 def follow(lead: FollowState, p: Follow, pos: Vec3, time_us: int, dt: float) -> bool:
     """One period of ``dt`` [s] of a vehicle at ``pos`` [m]: the lead's motion now; False: there is none to follow."""
-    if p.ENABLE == 0.0 or lead.update_us == 0 or time_us - lead.update_us > TIMEOUT_US:
+    if p.ENABLE == 0.0 or lead.update_us == 0 or time_us - lead.update_us > p.TIMEOUT * 1e6:
         lead.is_known = False
         return False
     age = (time_us - lead.update_us) * 1e-6

@@ -89,6 +89,8 @@ COMPASS_LEAST, COMPASS_MOST = 185.0, 875.0
 _COMPASSES = ("", "2", "3")
 _BATTERIES, _RANGEFINDERS = "23456789", "123456789A"
 _SOURCES_OF_YAW = (0, 1, 2, 3, 6, 8)
+_SENSORS_OF_YAW = {3: "Compass", 8: "GPS", 6: "VisualOdom"}
+"""What each of them needs, in the order in which a missing one is told; the first compass may be missing (1)."""
 _ITEMS = {
     1: (21, "land"), 2: (85, "vtol land"), 4: (189, "do land start"), 8: (22, "takeoff"), 16: (84, "vtol takeoff"),
     64: (20, "RTL"),
@@ -234,6 +236,18 @@ def sources(s: Subject) -> Iterable[str]:
         if int(s.values[f"EK3_SRC{k}_YAW"]) not in _SOURCES_OF_YAW:
             yield f"AHRS: Check EK3_SRC{k}_YAW"
             return
+    yaws = {int(s.values[f"EK3_SRC{k}_YAW"]) for k in (1, 2, 3)}
+    missing = [sensor for yaw, sensor in _SENSORS_OF_YAW.items() if yaw in yaws and not _is_there(s.values, sensor)]
+    if missing:
+        yield f"AHRS: EK3 sources require {missing[0]}"
+
+
+def _is_there(values: Values, sensor: str) -> bool:
+    """Whether parameters speak of a ``sensor`` that is there and in use."""
+    if sensor == "Compass":
+        return values["COMPASS_ENABLE"] != 0.0 and any(values[f"COMPASS_USE{k}"] != 0.0 for k in _COMPASSES)
+    names = ("GPS1_TYPE", "GPS2_TYPE") if sensor == "GPS" else ("VISO_TYPE",)
+    return any(values[name] != 0.0 for name in names)
 
 
 def mission_items(s: Subject) -> Iterable[str]:

@@ -27,15 +27,18 @@ SWITCH_RELAYS = {28: 0, 34: 1, 35: 2, 36: 3, 66: 4, 67: 5}
 
 BY_SERVO = 1
 """GRIP_TYPE, WINCH_TYPE and MNT1_TYPE."""
+BY_MAGNET = 2
+"""GRIP_TYPE."""
 PARACHUTE_BY_SERVO = 10
 """CHUTE_TYPE."""
 
 MEANINGS = {
     "GRIP_ENABLE": "1: there is a gripper, from the next boot on; 0 refuses its commands at once",
-    "GRIP_TYPE": "1: a gripper moved by the outputs of function 28, from the next boot on",
+    "GRIP_TYPE": "1: a gripper moved by the outputs of function 28, 2: an electromagnet (EPM) on them; at boot",
     "GRIP_GRAB": "Pulse that closes the gripper [us]",
     "GRIP_RELEASE": "Pulse that opens the gripper [us]",
-    "GRIP_NEUTRAL": "Pulse of the gripper from boot until it is first told to move [us]",
+    "GRIP_NEUTRAL": "Pulse of the gripper from boot until it first moves; of an EPM, at rest [us]",
+    "GRIP_REGRAB": "An EPM that holds grabs again so often [s]; 0: it does not",
     "GRIP_AUTOCLOSE": "The gripper closes by itself so long after it was told to open [s]; 0: it stays open",
     "WINCH_TYPE": "1: a winch driven by the outputs of function 88, from the next boot on",
     "WINCH_RATE_MAX": "Fastest winding of the winch's line [m/s]",

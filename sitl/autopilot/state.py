@@ -150,6 +150,8 @@ class Arming(Record):
     interlock_used: bool  # a channel is the motor interlock
     interlock_on: bool  # and lets the motors turn
     parachute_released: bool
+    accels_apart_us: int  # when accelerometers last differed too much; 0 never
+    gyros_apart_us: int
 
 
 class Failsafe(Record):

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import MissionItem
-from ..autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, ParametersFound, Text
+from ..autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, ParametersFound, Switched, Text
 from ..autopilot.params.table import Values
 from ..physics.carried import Carried
 
@@ -65,7 +65,7 @@ class Vehicle(Protocol):
 
 
 Vector = tuple[float, float, float]
-Note = Text | ItemReached | CurrentChanged | OutputItem | ParametersFound
+Note = Text | ItemReached | CurrentChanged | OutputItem | Switched | ParametersFound
 
 
 class Autopilot(Protocol):

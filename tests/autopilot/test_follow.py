@@ -51,12 +51,24 @@ def test_only_the_lead_is_heard(p):
     assert not follow.is_lead(lead, p, 9, 2)
 
 
+def test_how_long_a_lead_may_be_silent(p):
+    lead = FollowState()
+    follow.take(lead, p, 7, report(50.0), 1_000_000)
+    p.TIMEOUT = 1.5
+    assert follow.follow(lead, p, HERE, 2_500_000, DT) and not follow.follow(lead, p, HERE, 2_502_500, DT)
+    p.TIMEOUT = 0.1
+    lead.pos, lead.vel = lead.told_pos + Vec3(1.0, 0.0, 0.0), lead.told_vel
+    assert follow.is_far(lead, p)
+    p.TIMEOUT = 3.0
+    assert not follow.is_far(lead, p)
+
+
 def test_a_silent_or_far_lead_is_not_followed(p):
     lead = FollowState()
     assert not follow.follow(lead, p, HERE, 1_000_000, DT)
     follow.take(lead, p, 7, report(50.0), 1_000_000)
     assert follow.follow(lead, p, HERE, 1_002_500, DT)
-    assert not follow.follow(lead, p, HERE, 1_000_000 + follow.TIMEOUT_US + 1, DT)
+    assert not follow.follow(lead, p, HERE, 1_000_000 + 4_000_000, DT)
     follow.take(lead, p, 7, report(150.0), 5_000_000)
     assert not follow.follow(lead, p, HERE, 5_002_500, DT)
     p.DIST_MAX = 0.0

@@ -76,6 +76,13 @@ COPTER_ROWS: list[tuple[dict[str, float], str]] = [
     ({"RNGFND2_TYPE": 1}, "Rangefinder 2: Not Detected"),
     ({"MNT2_TYPE": 1}, "Mount: check TYPE"),
     ({"EK3_SRC2_YAW": 9}, "AHRS: Check EK3_SRC2_YAW"),
+    (
+        {"EK3_SRC3_YAW": 3, "COMPASS_USE": 0, "COMPASS_USE2": 0, "COMPASS_USE3": 0},
+        "AHRS: EK3 sources require Compass",
+    ),
+    ({"EK3_SRC2_YAW": 3, "COMPASS_ENABLE": 0}, "AHRS: EK3 sources require Compass"),
+    ({"EK3_SRC2_YAW": 6}, "AHRS: EK3 sources require VisualOdom"),
+    ({"EK3_SRC2_YAW": 8, "GPS1_TYPE": 0}, "AHRS: EK3 sources require GPS"),
     ({"ARMING_MIS_ITEMS": 8}, "Missing mission item: takeoff"),
 ]
 ROVER_ROWS: list[tuple[dict[str, float], str]] = [
@@ -108,6 +115,14 @@ def test_copter(params: dict[str, float], text: str) -> None:
 @pytest.mark.parametrize(("params", "text"), ROVER_ROWS)
 def test_rover(params: dict[str, float], text: str) -> None:
     assert refused(rover(), params) == [f"PreArm: {text}"]
+
+
+def test_wrong_motors_are_told_alone() -> None:
+    autopilot, vehicle = copter()
+    vehicle.v.time_us = 14_000_000
+    autopilot.run_prearm_checks()
+    assert texts(autopilot) == ["PreArm: Gyros inconsistent"]
+    assert refused((autopilot, vehicle), {"MOT_PWM_MIN": 0}) == ["PreArm: Motors: Check MOT_PWM_MIN and MOT_PWM_MAX"]
 
 
 @pytest.mark.parametrize("make_autopilot", (copter, rover))

@@ -365,8 +365,10 @@ def test_set_current(bench: Bench) -> None:
     assert bench.ask(mavlink.MAVLink_mission_set_current_message(1, 1, 99)) == []
     answers = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 3))
     assert answers[0].current == 0  # as of ArduPilot, which compares the number of the command
-    (ack,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 99))
-    assert ack.type == INVALID_SEQUENCE
+    for kind, size in ((0, len(SQUARE)), (1, 0), (2, 0)):
+        size_told, ack = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, 99, kind))
+        assert (size_told.get_type(), size_told.count, size_told.mission_type) == ("MISSION_COUNT", size, kind)
+        assert (ack.type, ack.mission_type) == (INVALID_SEQUENCE, kind)
 
 
 def test_a_client_that_leaves_frees_the_upload(bench: Bench) -> None:

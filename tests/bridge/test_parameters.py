@@ -7,6 +7,7 @@ import json
 import math
 import random
 import struct
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,7 +42,8 @@ def test_read_by_name_and_index(bench: Bench) -> None:
     assert (answer.param_index, answer.param_count) == (65535, len(listed))
     (answer,) = read(bench, index=listed.index("MAV_GCS_SYSID"))
     assert (answer.param_id, answer.param_index) == ("MAV_GCS_SYSID", listed.index("MAV_GCS_SYSID"))
-    assert read(bench, "NO_SUCH") == read(bench, index=len(listed)) == read(bench, index=32767) == []
+    (answer,) = read(bench, index=len(listed))
+    assert answer.get_type() == "PARAM_ERROR"
 
 
 def test_set_truncates_integers_and_tells_everyone(bench: Bench) -> None:
@@ -51,7 +53,6 @@ def test_set_truncates_integers_and_tells_everyone(bench: Bench) -> None:
     assert [m.param_value for m in other.receive("PARAM_VALUE")] == [33.0]
     assert bench.vehicle.v.autopilot.params.MAV_GCS_SYSID == 33.0
     assert ("parameter_changed", "MAV_GCS_SYSID") in bench.autopilot.calls
-    assert write(bench, "NO_SUCH", 1.0) == []
 
 
 @pytest.mark.parametrize(("value", "kept"), [(300, 127), (-300, -128), (33.7, 33), (-33.7, -33)])
@@ -296,6 +297,8 @@ def values_of(answers: list[object]) -> dict[str, float]:
     (
         ("PSC_NE_POS_P", -1.0, "PSC_POSXY_P", -1.0),
         ("PSC_D_VEL_P", 4.0, "PSC_VELZ_P", 4.0),
+        ("PSC_JERK_D", 3.0, "PSC_JERK_Z", 3.0),
+        ("EK3_FLOW_MAX", 2.0, "EK3_MAX_FLOW", 2.0),
         ("PSC_NE_VEL_IMAX", 5.0, "PSC_VELXY_IMAX", 500.0),
         ("ARMING_SKIPCHK", -1.0, "ARMING_CHECK", 0.0),
         ("ARMING_SKIPCHK", 0.0, "ARMING_CHECK", 1.0),
@@ -314,4 +317,22 @@ def test_names_of_the_development_version_are_read_and_set(
 
 def test_other_names_of_other_versions_are_not_there(bench: Bench) -> None:
     for name in ("SYSID_MYGCS", "WP_SPD", "PSC_NE_NO_P", "PSC_NE_POS_PP"):
-        assert read(bench, name) == [] and write(bench, name, 3.0) == []
+        assert values_of([*read(bench, name), *write(bench, name, 3.0)]) == {}
+
+
+@pytest.mark.parametrize(
+    ("ask", "told"),
+    (
+        (lambda b: read(b, "BOB"), ("BOB", -1, 1)),
+        (lambda b: read(b, index=32764), ("", 32764, 1)),
+        (lambda b: write(b, "BOB", 1.0), ("BOB", -1, 1)),
+        (lambda b: write(b, "SPRAY_ENABLE", math.nan), ("SPRAY_ENABLE", -1, 2)),
+        (lambda b: write(b, "PSC_NE_POS_P", math.inf), ("PSC_NE_POS_P", -1, 2)),
+        (lambda b: write(b, "MIS_TOTAL", 7.0), ("MIS_TOTAL", -1, 3)),
+        (lambda b: write(b, "LAND_SPEED", 60.0), None),
+    ),
+)
+def test_who_asks_for_what_is_not_there_is_told_so(bench: Bench, ask: Any, told: Any) -> None:
+    found = [m for m in ask(bench) if m.get_type() == "PARAM_ERROR"]
+    assert [(m.param_id, m.param_index, m.error) for m in found] == ([told] if told else [])
+    assert all((m.target_system, m.target_component) == (255, 190) for m in found)

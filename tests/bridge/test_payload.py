@@ -80,8 +80,28 @@ def test_a_gripper_by_switch_and_by_mission_closes_by_itself() -> None:
     b.bridge.switched(19, MIDDLE)
     assert (texts(b, 1.0), pulse(b)) == (["Gripper load grabbing", "Gripper load grabbed"], 1700)
     b.bridge.carry_out(MissionItem(GRIPPER, p1=1.0, p2=0.0))
-    assert (texts(b, 2.9), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1300)
+    told = ["Gripper load releasing", "Gripper Released", "Gripper load released"]
+    assert (texts(b, 2.9), pulse(b)) == (told, 1300)
     assert (texts(b, 1.0), pulse(b)) == (["Gripper load grabbing", "Gripper load grabbed"], 1700)
+
+
+def test_an_electromagnet_rests_after_each_order_and_grabs_again() -> None:
+    b = bench(**{**GRIP, "GRIP_TYPE": 2.0}, GRIP_REGRAB=3.0)
+    texts(b, 3.0)
+    assert b.command(GRIPPER, 1, 0) == ACCEPTED
+    assert (texts(b, 0.4), pulse(b)) == (["Gripper load releasing"], 1100)
+    assert (texts(b, 4.0), pulse(b)) == ([], 1500)
+    assert b.command(GRIPPER, 1, 1) == ACCEPTED
+    assert (texts(b, 0.4), pulse(b)) == (["Gripper load grabbing"], 1900)
+    assert (texts(b, 2.0), pulse(b)) == ([], 1500)
+    assert (texts(b, 0.8), pulse(b)) == (["Gripper load grabbing"], 1900)
+
+
+def test_missions_tell_of_a_gripper_that_is_not_there() -> None:
+    b = bench()
+    for action in (1.0, 0.0):
+        b.bridge.carry_out(MissionItem(GRIPPER, p1=1.0, p2=action))
+    assert texts(b) == ["Gripper Grabbed", "Gripper Released"]
 
 
 def test_the_autopilot_knows_what_the_gripper_does() -> None:

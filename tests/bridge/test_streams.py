@@ -248,6 +248,10 @@ def test_high_latency_by_request(bench: Bench) -> None:
     (beat,) = bench.telemetry("HEARTBEAT")
     assert m.custom0 & 0xFF == beat.base_mode and beat.base_mode & 0x80
     assert m.failure_flags & 0x803 == 2, "there is no airspeed sensor"
+    v.sensors.temperature = 21.7
+    for params, told in (({"ARSPD_ENABLE": 1.0}, -128), ({"ARSPD_TYPE": 7.0}, 21), ({"ARSPD_ENABLE": 0.0}, -128)):
+        bench.vehicle.parameters.update(params)
+        assert bench.telemetry("HIGH_LATENCY2")[0].temperature_air == told, params
     v.sensors.gps_fix = 1
     assert bench.telemetry("HIGH_LATENCY2")[0].failure_flags & 1 == 1
 

@@ -252,6 +252,9 @@ def test_gps_accuracies(bench: Bench) -> None:
     sensors.gps_fix = 3
     raw = get(bench, "GPS_RAW_INT")
     assert (raw.eph, raw.epv, raw.h_acc, raw.v_acc, raw.vel_acc) == (121, 200, 300, 300, 0)
+    sensors.gps_eph, sensors.gps_epv = 40121, 40000  # a jammed receiver's
+    raw = get(bench, "GPS_RAW_INT")
+    assert (raw.h_acc, raw.v_acc, raw.vel_acc) == (pytest.approx(99473, abs=1), 60000, 32000)
 
 
 def test_no_channels_without_receiver_or_override(bench: Bench) -> None:

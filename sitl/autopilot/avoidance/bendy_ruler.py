@@ -22,6 +22,7 @@ from ...core.vectors import Vec2, Vec3
 from ..events import BENDY_RULER_LOOKED, LEG_ENDING, emit, emit_and_return
 from ..fence import shapes
 from ..fence.checks import active
+from ..fence.checks import margin_of as wanted_margin
 from ..fence.state import AREAS, CIRCLE, MAX_ALT, FenceState
 from ..navigation.state import BENT, DETOUR_REQUEST, ENDED, STRAIGHT
 from ..state import Autopilot
@@ -129,9 +130,10 @@ def margin_of_fences(ap: Autopilot, a: Vec3, b: Vec3, upright: bool) -> float:
     if (on & AREAS) != 0 and fence.is_placed:
         for s in range(fence.shapes):
             margin = min(margin, margin_of_area(fence, s, horizontal(a), horizontal(b)))
+    margin -= wanted_margin(CIRCLE, p)
     if upright and (on & MAX_ALT) != 0:
-        margin = min(margin, min(a.z, b.z) - ap.estimate.pos.z - fence.over[0])
-    return margin - p.MARGIN
+        margin = min(margin, min(a.z, b.z) - ap.estimate.pos.z - fence.over[0] - wanted_margin(MAX_ALT, p))
+    return margin
 
 
 @law

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ...core.algebra import direction, dot2, horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2
-from ..fence.checks import active
+from ..fence.checks import active, margin_of
 from ..fence.shapes import place
 from ..fence.state import AREAS, CIRCLE
 from ..state import Autopilot, Vehicle
@@ -61,7 +61,7 @@ def watch(v: Vehicle, too_low: bool) -> None:
 def limit_by_fences(ap: Autopilot, vel: Vec2, b: Braking) -> Vec2:
     """``vel`` (NE [m/s]) that keeps FENCE_MARGIN from the circle around home and from the edges of areas."""
     avoid, p, pos = ap.avoid, ap.params.FENCE, horizontal(ap.estimate.pos)
-    margin = fences.Margin(p.MARGIN, b)
+    margin = fences.Margin(margin_of(CIRCLE, p), b)
     if (avoid.fences & CIRCLE) != 0 and ap.home.is_set:
         vel = fences.stay_within_circle(avoid, vel, horizontal(ap.home.pos) - pos, p.RADIUS, margin)
     if (avoid.fences & AREAS) != 0:

@@ -147,7 +147,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
-    failed = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
+    failed = sensor_checks(v)
     failed |= calibration_checks(ap.calibrated.state, p.ARMING) | parameter_checks(ap.calibrated.state)
     failed |= failsafe_checks(ap.modes, p) | location_checks(v)
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3

@@ -14,6 +14,7 @@ import math
 from ...core.algebra import euler_of, norm
 from ...core.kernels import inlined, law
 from ...core.vectors import Quat
+from ..arming_checks import BY_LANDING
 from ..events import LANDED, emit
 from ..state import Arming
 from .control import throttle_mix
@@ -22,6 +23,7 @@ from .control.motors import hover_throttle
 from .control.state import AttitudeState, Control, MotorsState
 from .modes import ground, table
 from .modes.state import LandingState, Modes
+from .parameters import Parameters
 from .parameters.control import Attitude
 from .state import Vehicle
 
@@ -39,6 +41,8 @@ _FILTER = 0.0025 / (0.0025 + 1.0 / (2.0 * math.pi))
 """Gain of a 1 Hz low-pass at 400 Hz."""
 _MIX_AT_MIN = 1.25
 _STOPPED = 0.1  # [m/s]
+_DISARM_BEHAVIOUR = 4
+"""PILOT_THR_BHV"""
 
 
 @inlined
@@ -82,6 +86,16 @@ def detect(v: Vehicle) -> None:
             ground.set_landed(arming, False)
     elif count_rest(arming, is_at_rest(ap.control, modes, ap.estimate.vel.z, ap.params.ATC)):
         emit(ap.events, v.time_us, LANDED, 0.0, 0.0)
+        if disarms(modes.number, ap.params):
+            ground.disarm(v, BY_LANDING)
+
+
+@law
+def disarms(mode: int, p: Parameters) -> bool:
+    """Whether a vehicle that has landed in a ``mode`` disarms at once (PILOT_THR_BHV)."""
+    if int(p.PILOT.THR_BHV) & _DISARM_BEHAVIOUR == 0 or table.has_manual_throttle(mode):
+        return False
+    return table.may_arm(mode, p, BY_LANDING)
 
 
 @inlined

@@ -7,13 +7,13 @@ from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..params.fence import Fence
 from ..state import Estimate, HomeState
-from .checks import kinds
+from .checks import kinds, margin_of
 from .state import AREAS, CIRCLE, MAX_ALT, MIN_ALT, FenceState
 from .texts import names
 
 READY = 0
 NONE_CHOSEN, NEEDS_POSITION, BAD_RADIUS, BAD_ALT_MAX, BAD_ALT_MIN, BAD_ORDER, BAD_MARGIN, BIG_MARGIN = range(16, 24)
-SMALL_CIRCLE = 24
+SMALL_CIRCLE, BAD_MARGIN_XY = 24, 25
 
 _TEXTS = {
     NONE_CHOSEN: "Fences enabled, but none selected",
@@ -23,6 +23,7 @@ _TEXTS = {
     BAD_ALT_MIN: "Invalid FENCE_ALT_MIN value",
     BAD_ORDER: "FENCE_ALT_MAX < FENCE_ALT_MIN",
     BAD_MARGIN: "Invalid FENCE_MARGIN value",
+    BAD_MARGIN_XY: "Invalid FENCE_MARGIN_XY value",
     BIG_MARGIN: "FENCE_MARGIN too big",
     SMALL_CIRCLE: "Circle FENCE_MARGIN is greater than FENCE_RADIUS",
 }
@@ -67,7 +68,9 @@ def refusal(
         return fence.breached
     if params.MARGIN < 0.0:
         return BAD_MARGIN
-    if chosen & CIRCLE != 0 and params.RADIUS < params.MARGIN:
+    if params.MARGIN_XY < 0.0:
+        return BAD_MARGIN_XY
+    if chosen & CIRCLE != 0 and margin_of(CIRCLE, params) > params.RADIUS:
         return SMALL_CIRCLE
     if chosen & (MAX_ALT | MIN_ALT) == MAX_ALT | MIN_ALT:
         if alt_max < alt_min:

@@ -172,6 +172,14 @@ def switch_floor(fence: FenceState, params: Fence, autoenable: int, events: Even
 
 
 @law
+def margin_of(kind: int, params: Fence) -> float:
+    """Room that is kept to a fence of a ``kind`` [m]: FENCE_MARGIN_XY to the circle and to areas, if it is given."""
+    if kind & (CIRCLE | AREAS) != 0 and params.MARGIN_XY > 0.0:
+        return params.MARGIN_XY
+    return params.MARGIN
+
+
+@law
 def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, time_us: int) -> None:
     """FENCE_OPTIONS 4: within the margin of which fences the vehicle is, breached ones, too, and how far the first of
     them is; anew with each further fence, while not all of them are breached. And that it has left a margin."""
@@ -216,7 +224,7 @@ def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
         switch_floor(fence, params, autoenable, events, time_us)
     watched, new, near = active(fence, params), 0, fence.near
     for k in range(FENCES):
-        if watched >> k & 1 != 0 and judge(fence, k, params.MARGIN, time_us):
+        if watched >> k & 1 != 0 and judge(fence, k, margin_of(1 << k, params), time_us):
             new |= 1 << k
     tell_margin(fence, near, params, events, time_us)
     if fence.recovery_us != 0:

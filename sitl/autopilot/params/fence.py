@@ -16,6 +16,7 @@ class Fence(ParameterGroup):
     ACTION: float = param(1, -128, 127, "", "When breached: 0 nothing, 1 RTL or LAND, ...", INT8)
     RADIUS: float = param(300.0, -_FAR, _FAR, "m", "Of the circle around home")
     MARGIN: float = param(2.0, -_FAR, _FAR, "m", "Room that is kept to the fences")
+    MARGIN_XY: float = param(0.0, -_FAR, _FAR, "m", "The same for the circle and areas; 0: as FENCE_MARGIN")
     TOTAL: float = param(0, -128, 127, "", "Points of areas that are loaded, as FENCE_POINT counts them", INT8)
     OPTIONS: float = param(
         0, *BITS16, "",

@@ -18,6 +18,7 @@ class Follow(ParameterGroup):
     )
     OFS_Y: float = param(0.0, -100000.0, 100000.0, "m", "East or right")
     OFS_Z: float = param(0.0, -100000.0, 100000.0, "m", "Down")
+    TIMEOUT: float = param(3.0, 0.0, 100.0, "s", "A lead that was silent for so long is not followed")
     POS_P: float = param(0.1, 0.01, 1.0, "1/s", "Speed asked for per distance from the place (rovers)")
     ACCEL_NE: float = param(
         2.5, 0.0, 50.0, "m/s/s", "Horizontal acceleration of what is taken for the lead's motion; 0: as it is told"

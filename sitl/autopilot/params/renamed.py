@@ -27,6 +27,7 @@ RENAMED: dict[str, tuple[str, float]] = {
     "TELEM_DELAY": ("MAV_TELEM_DELAY", 1.0),
     "ACRO_RP_P": ("ACRO_RP_RATE", _DEG_A_P),
     "ACRO_YAW_P": ("ACRO_Y_RATE", _DEG_A_P),
+    "EK3_FLOW_MAX": ("EK3_MAX_FLOW", 1.0),
     "PSC_JERK_NE": ("PSC_JERK_XY", 1.0),
     "PSC_JERK_D": ("PSC_JERK_Z", 1.0),
     "PHLD_BRK_RATE": ("PHLD_BRAKE_RATE", 1.0),
@@ -70,6 +71,10 @@ ALL_CHECKS = (1 << 21) - 2
 """Bits of ARMING_SKIPCHK."""
 
 
+_DEVELOPMENT = ("EK3_FLOW_MAX", "PSC_JERK_NE", "PSC_JERK_D")
+"""Names of the development version; those of the position controller's loops besides."""
+
+
 class Alias(NamedTuple):
     """A name of ArduPilot's development version by which clients may read and set a parameter; lists do not have it."""
 
@@ -96,7 +101,7 @@ def alias(name: str) -> Alias | None:
     """What ArduPilot's development version calls ``name``; None: nothing, or it is called so here, too."""
     if name == "ARMING_SKIPCHK":
         return Alias("ARMING_CHECK", _checks, _skipped)
-    found = here(name) if _LOOP.fullmatch(name) else None
+    found = here(name) if name in _DEVELOPMENT or _LOOP.fullmatch(name) else None
     if found is None:
         return None
     own, factor = found

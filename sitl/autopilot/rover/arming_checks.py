@@ -83,7 +83,7 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     modes, p = ap.modes, ap.params
-    sensors = sensor_checks(v.time_us, v.sensors, ap.ekf.baro_us, ap.estimate.attitude_ok, p)
+    sensors = sensor_checks(v)
     sensors |= calibration_checks(ap.calibrated.state, p.ARMING) | arming_checks.parameter_checks(ap.calibrated.state)
     if p.ARMING.CHECK == 0.0:
         return sensors & NOT_INITIALISED

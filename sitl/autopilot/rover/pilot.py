@@ -19,8 +19,6 @@ from .control.state import Control
 from .modes.state import PilotState
 from .parameters import Parameters
 
-RECEIVER_TIMEOUT_S = 0.5
-"""Silence of the receiver that counts as lost (ArduRover's)."""
 THROTTLE_AT_REST = 1500
 """[us]"""
 MIXING_RANGE = 400.0  # [us]
@@ -62,7 +60,7 @@ def init(pilot: PilotState, rc: Radio) -> None:
 @law
 def read(pilot: PilotState, rc: Radio, sensors: Sensors, params: Parameters, time_us: int) -> None:
     """One frame: effective channels, then the sticks. Called at 50 Hz."""
-    receive(rc, sensors, params, time_us, THROTTLE_AT_REST, RECEIVER_TIMEOUT_S)
+    receive(rc, sensors, params, time_us, THROTTLE_AT_REST, params.RC_FS_TIMEOUT)
     pilot.steering = stick_position(rc, params, ROLL)
     pilot.throttle = whole_percent(stick_position(rc, params, THROTTLE))
     channel = stick_channel(params.RCMAP, ROLL)

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot import arming_checks, events, radio, smart_rtl_path
+from ...autopilot import arming_checks, events, payload, radio, smart_rtl_path
+from ...autopilot.aux_switch import LOW
 from ...autopilot.copter import arming, failsafe, motor_test, parameter_checks, takeoff_check
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
@@ -31,7 +32,7 @@ from ...autopilot.copter.modes.rtl import RTL as RTL_MODE
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.mission import returning
-from ...autopilot.mission.notes import ParametersFound, Text
+from ...autopilot.mission.notes import ParametersFound, Switched, Text
 from ...autopilot.navigation.state import RTL
 from ...autopilot.terrain.state import TEXTS as TERRAIN_TEXTS
 from ...core.scalars import constrain
@@ -44,6 +45,10 @@ LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SP
 _BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
 SPEED_MODES = (auto.AUTO, GUIDED, GUIDED_NOGPS, RTL_MODE, SMART_RTL)
 """In which DO_CHANGE_SPEED is taken."""
+OPENS_GRIPPER = 4
+"""FLIGHT_OPTIONS: at a loss of thrust."""
+FIRST = ("Motors: ", "Interlock/E-Stop Conflict", "Motor Interlock Enabled")
+"""Failed checks that are told alone: the others are not made then."""
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 _INSTEAD = {failsafe.DO_RTL: "Trying RTL Mode", failsafe.DO_LAND: "Using Land Mode"}
@@ -73,6 +78,8 @@ class CopterAutopilot(BaseAutopilot):
             return [Text(INFO, "starting motor test" if a else "finished motor test")]
         if code == events.TAKEOFF_BLOCKED:
             return [Text(CRITICAL, f"Takeoff blocked: {_BLOCKED[int(a)]}")]
+        if code == events.THRUST_LOST and int(self._v.autopilot.params.FLIGHT_OPTIONS) & OPENS_GRIPPER:
+            return [Switched(payload.SWITCH_GRIPPER, LOW)]
         if code == events.YAW_IMBALANCE:
             return [Text(EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")]
         if code == events.SIMPLE_CHANGED:
@@ -102,6 +109,10 @@ class CopterAutopilot(BaseAutopilot):
         if code == events.ZIGZAG_DID:
             return [Text(INFO, zigzag.text(int(a), int(b), int(self._v.autopilot.params.ZIGZ.LINE_NUM)))]
         return super().texts_of(code, a, b)
+
+    def _worded(self, texts: list[str]) -> list[str]:
+        first = [text for text in texts if any(each in text for each in FIRST)]
+        return first or texts
 
     def start_mission(self) -> bool:
         if self._v.autopilot.modes.shown == auto.AUTO_RTL and not self.set_mode(auto.AUTO):

@@ -10,7 +10,6 @@ from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.hold import HOLD
 from ...autopilot.rover.modes.initialising import INITIALISING
 from ...autopilot.rover.modes.table import MODES, is_autonomous
-from ...autopilot.rover.pilot import RECEIVER_TIMEOUT_S
 from ...core.kernels import law
 from ...core.records import Floats
 from ...vehicle.rover import GROUND_ROVER, Rover
@@ -91,7 +90,7 @@ def mission_current(m: MissionCurrent, v: Rover) -> bool:
 @law
 def rc_channels(m: RcChannels, v: Rover) -> bool:
     """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
-    return channels.rc_channels(m, v, RECEIVER_TIMEOUT_S)
+    return channels.rc_channels(m, v, v.autopilot.params.RC_FS_TIMEOUT)
 
 
 class ExtendedSysState(Message, name="EXTENDED_SYS_STATE"):

@@ -29,6 +29,7 @@ from .sprayer import SprayerService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
 from .terrain import TerrainService
+from .tuning import TuningService
 from .winch import WinchService
 
 ALL_SERVICES: tuple[type[Service], ...] = (
@@ -64,6 +65,7 @@ ALL_SERVICES: tuple[type[Service], ...] = (
     FaultService,
     TerrainService,
     FlightStateService,
+    TuningService,
 )
 """In the order in which they act when several are due at the same time."""
 _registered: list[type[Service]] = []

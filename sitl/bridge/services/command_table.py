@@ -290,7 +290,7 @@ def stop_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
 
 
 def grip(bridge: Bridge, channel: Channel, command: Command) -> int:
-    """211: p2 0 opens the gripper, 1 closes it; FAILED without GRIP_ENABLE and GRIP_TYPE 1."""
+    """211: p2 0 opens the gripper, 1 closes it; FAILED without GRIP_ENABLE and GRIP_TYPE 1 or 2."""
     return int(bridge.get(GripperService).act(command.p2))
 
 

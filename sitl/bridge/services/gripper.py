@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The gripper (GRIP_*): servo outputs of function 28 open and close it. Nothing is carried: it is told, not felt."""
+"""The gripper (GRIP_*): outputs of function 28 open and close it, by a servo or an electromagnet (EPM), which rests
+meanwhile. Nothing is carried: it is told, not felt."""
 
 from __future__ import annotations
 
@@ -21,6 +22,7 @@ MOVES_US = 500_000
 TEXTS = {RELEASE: ("Gripper load releasing", "Gripper load released"),
          GRAB: ("Gripper load grabbing", "Gripper load grabbed")}  # fmt: skip
 """By action: when it begins, and when it is done."""
+IN_MISSIONS = {RELEASE: "Gripper Released", GRAB: "Gripper Grabbed"}
 
 
 class State(NamedTuple):
@@ -38,7 +40,9 @@ class GripperService(PayloadService):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._there = self._value("GRIP_ENABLE") != 0.0 and self._value("GRIP_TYPE") == payload.BY_SERVO
+        kind = self._value("GRIP_TYPE")
+        self._is_magnet = kind == payload.BY_MAGNET
+        self._there = self._value("GRIP_ENABLE") != 0.0 and kind in (payload.BY_SERVO, payload.BY_MAGNET)
         self._state = State()
         if self._there:
             self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
@@ -66,8 +70,11 @@ class GripperService(PayloadService):
         self.bridge.autopilot.gripper_is(self.is_there, state.action == RELEASE and state.is_done)
 
     def carry_out(self, item: MissionItem) -> None:
-        """A mission's DO_GRIPPER."""
-        self.act(item.p2)
+        """A mission's DO_GRIPPER; it is told as done even where there is no gripper."""
+        action = int(item.p2)
+        self.act(action)
+        if action in IN_MISSIONS:
+            self.bridge.get(StatusTextService).say(INFO, IN_MISSIONS[action])
 
     def act(self, action: float) -> int:
         """RELEASE or GRAB, in whole numbers. Its MAV_RESULT."""
@@ -92,7 +99,7 @@ class GripperService(PayloadService):
     def _move(self, action: int, pulse: str) -> None:
         say, now, state = self.bridge.get(StatusTextService).say, self.bridge.now_us, self._state
         self._send(payload.GRIPPER, self._values[pulse])
-        if state.action == action:
+        if state.action == action and not self._is_magnet:
             if state.is_done:
                 say(INFO, TEXTS[action][1])
             return
@@ -106,9 +113,23 @@ class GripperService(PayloadService):
         if not state.is_done and now_us >= state.done_us:
             self._state = state._replace(is_done=True)
             self._tell()
-            self.bridge.get(StatusTextService).say(INFO, TEXTS[state.action][1])
+            if self._is_magnet:
+                self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
+            else:
+                self.bridge.get(StatusTextService).say(INFO, TEXTS[state.action][1])
+        if self._is_magnet and self._state.action == GRAB and self._state.is_done:
+            self._hold(now_us)
         if self._state.action == RELEASE and self._state.is_done:
             self._close_in_time(now_us)
+
+    def _hold(self, now_us: int) -> None:
+        """An electromagnet grabs again and again."""
+        again_us = self._state.done_us - MOVES_US + round(max(self._values["GRIP_REGRAB"], 0.0) * 1e6)
+        if self._values["GRIP_REGRAB"] > 0.0:
+            if now_us >= again_us:
+                self.grab()
+            else:
+                self.due_us = again_us
 
     def _close_in_time(self, now_us: int) -> None:
         wait_us = round(min(max(self._values["GRIP_AUTOCLOSE"], 0.0), 1e6) * 1e6)

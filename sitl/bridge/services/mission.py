@@ -354,8 +354,11 @@ class MissionService(Service):
         if kind not in self._taken:
             self._ack(channel, sender, UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
-            target = {"target_system": sender[0], "target_component": sender[1]}
-            channel.send(COUNT, COUNT.payload(count=len(self.items(kind)), mission_type=kind, **target))
+            self._tell_count(channel, sender, kind)
+
+    def _tell_count(self, channel: Channel, sender: Sender, kind: int) -> None:
+        target = {"target_system": sender[0], "target_component": sender[1]}
+        channel.send(COUNT, COUNT.payload(count=len(self.items(kind)), mission_type=kind, **target))
 
     def _request_int(self, channel: Channel, fields: Any, sender: Sender) -> None:
         self._send_item(channel, fields, sender, to_int)
@@ -373,6 +376,8 @@ class MissionService(Service):
             return
         items = self.items(kind) or self.home_alone(kind)
         if fields.seq >= len(items):
+            if pack is to_int:
+                self._tell_count(channel, sender, kind)  # what a client may ask for
             self._ack(channel, sender, INVALID_SEQUENCE, kind)
         else:
             item = items[fields.seq]

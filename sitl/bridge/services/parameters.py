@@ -25,7 +25,9 @@ from ..wire.port import NEVER
 from .service import INFO, WARNING, Handler, Sender, Service
 from .statustext import StatusTextService
 
-VALUE = message("PARAM_VALUE")
+VALUE, ERROR = message("PARAM_VALUE"), message("PARAM_ERROR")
+DOES_NOT_EXIST, OUT_OF_RANGE, PERMISSION_DENIED = 1, 2, 3
+"""MAV_PARAM_ERROR"""
 WIRE_TYPES = {INT8: 2, INT16: 4, INT32: 6, FLOAT: 9}
 """MAV_PARAM_TYPE"""
 NO_INDEX = 65535
@@ -110,12 +112,16 @@ class ParameterService(Service):
             if fields.param_index < len(listed):
                 name = listed[fields.param_index].name
                 channel.send(VALUE, self._payload(name, fields.param_index, len(listed)))
+            else:
+                _refuse(channel, sender, b"", fields.param_index, DOES_NOT_EXIST)
             return
         name = fields.param_id.decode("ascii", "replace")
         if name in self._table:
             channel.send(VALUE, self._one(name))
         elif (other := self._alias(name)) is not None:
             channel.send(VALUE, self._under_alias(name, other))
+        else:
+            _refuse(channel, sender, fields.param_id, fields.param_index, DOES_NOT_EXIST)
 
     def _alias(self, name: str) -> Alias | None:
         """The parameter that another version calls ``name``."""
@@ -137,9 +143,13 @@ class ParameterService(Service):
             channel.send(VALUE, self._under_alias(name, other))
             return
         if name not in self._table:
+            error = DOES_NOT_EXIST if other is None else OUT_OF_RANGE
+            _refuse(channel, sender, fields.param_id, -1, error)
             return
         refusal = self.set(name, fields.param_value)
         if refusal is not None:
+            error = PERMISSION_DENIED if math.isfinite(fields.param_value) else OUT_OF_RANGE
+            _refuse(channel, sender, fields.param_id, -1, error)
             self.bridge.get(StatusTextService).say(WARNING, refusal)
             channel.send(VALUE, self._one(name))
 
@@ -179,6 +189,15 @@ class ParameterService(Service):
             self.bridge.get(StatusTextService).say(INFO, f"{name} has no effect in this simulator")
         elif self._told == TOLD + 1:
             self.bridge.get(StatusTextService).say(INFO, "Others that are set have no effect either")
+
+
+def _refuse(channel: Channel, sender: Sender, name: bytes, index: int, error: int) -> None:
+    """PARAM_ERROR to who asked."""
+    system, component = sender
+    channel.send(
+        ERROR,
+        ERROR.payload(target_system=system, target_component=component, param_id=name, param_index=index, error=error),
+    )
 
 
 MAGIC, MAGIC_WITH_DEFAULTS = 0x671B, 0x671C

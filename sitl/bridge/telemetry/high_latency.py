@@ -30,7 +30,7 @@ UNIT = 5.0
 
 def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
     """HIGH_LATENCY2: place, target, speeds in 0.2 m/s, headings in 2 degrees, distance to the target in 10 m, failures;
-    ``custom0`` is HEARTBEAT's base_mode. No air temperature: that would be an airspeed sensor's."""
+    ``custom0`` is HEARTBEAT's base_mode. The air's temperature is an airspeed sensor's (ARSPD_ENABLE, ARSPD_TYPE)."""
     v = vehicle.v
     ap = v.autopilot
     names = ("HEARTBEAT", "VFR_HUD", "SYS_STATUS", "NAV_CONTROLLER_OUTPUT")
@@ -54,12 +54,20 @@ def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
         airspeed_sp=uint8(UNIT * targets.speed),
         groundspeed=uint8(UNIT * hud.groundspeed),
         wind_heading=targets.wind_heading,
-        temperature_air=NO_TEMPERATURE,
+        temperature_air=_air_temperature(vehicle),
         battery=percent(ap.battery.remaining_pct),
         wp_num=uint16(float(ap.modes.nav.mission_current)),
         failure_flags=failures(int(status.onboard_control_sensors_health)),
         custom0=_signed(int(beat.base_mode)),
     )
+
+
+def _air_temperature(vehicle: Vehicle) -> int:
+    """[degC]"""
+    values = vehicle.parameters
+    if values["ARSPD_ENABLE"] == 0.0 or values["ARSPD_TYPE"] <= 0.0:
+        return NO_TEMPERATURE
+    return int(vehicle.v.sensors.temperature)
 
 
 def failures(health: int) -> int:

@@ -18,8 +18,11 @@ from ..wire.message import Message
 from .units import DEG, boot_ms, heading_cdeg, int16, int32, uint16
 
 UNKNOWN = 65535
-ACCURACY_OF_HDOP, ACCURACY_OF_VDOP = 300.0 / 121.0, 300.0 / 200.0
+USUAL_HDOP, USUAL_VDOP = 121, 200
+ACCURACY_OF_HDOP, ACCURACY_OF_VDOP = 300.0 / USUAL_HDOP, 300.0 / USUAL_VDOP
 """Accuracy of a fix by a hundredth of its dilution [mm]: 0.3 m of ArduPilot's simulated receiver (1.21, 2.00)."""
+SPEED_ACCURACY = 0.8
+"""Of the speed, by a hundredth of what the dilution has beyond the usual [mm/s]: up to 48 m/s while it is jammed."""
 
 
 class GlobalPosition(NamedTuple):
@@ -190,6 +193,7 @@ class GpsRawInt(Message, name="GPS_RAW_INT"):
     alt_ellipsoid: int
     h_acc: int
     v_acc: int
+    vel_acc: int
 
 
 class Gps2Raw(Message, name="GPS2_RAW"):
@@ -206,13 +210,14 @@ class Gps2Raw(Message, name="GPS2_RAW"):
     alt_ellipsoid: int
     h_acc: int
     v_acc: int
+    vel_acc: int
 
 
 @law
 def fill_fix(m: GpsRawInt | Gps2Raw, s: GpsReading) -> None:
-    """A receiver's fix, course [cdeg], speed [cm/s]; h_acc and v_acc [mm] follow from the dilutions.
+    """A receiver's fix, course [cdeg], speed [cm/s]; h_acc, v_acc [mm] and vel_acc [mm/s] follow from the dilutions.
 
-    The accuracies of speed and heading are not known (0), as with ArduPilot's simulated receiver.
+    The accuracies of the speed, usually, and of the heading are not known (0), as with ArduPilot's simulated receiver.
     """
     vel = s.gps_vel
     m.time_usec = s.gps_time_us
@@ -229,6 +234,7 @@ def fill_fix(m: GpsRawInt | Gps2Raw, s: GpsReading) -> None:
         m.epv = uint16(s.gps_epv)
         m.h_acc = int32(ACCURACY_OF_HDOP * m.eph)
         m.v_acc = int32(ACCURACY_OF_VDOP * m.epv)
+        m.vel_acc = int32(SPEED_ACCURACY * max(m.eph - USUAL_HDOP, 0))
 
 
 @law

@@ -2,7 +2,8 @@
 """The on-board logger keeps DataFlash logs of a vehicle in files, and hands them out.
 
 LOG_BACKEND_TYPE, LOG_DISARMED and LOG_BITMASK decide, as in ArduPilot: unless LOG_DISARMED says so, a log begins with
-the first arming, or attempt at it, and pauses 15 s after each disarming or refusal. A reboot begins another.
+the first arming, or attempt at it, and pauses 15 s after each disarming or refusal. A reboot begins another; with
+LOG_FILE_DSRMROT so does the arming after a disarming.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from ... import __version__
 from ...autopilot.events import ARMING_REFUSED, EVENT_RING
+from ...autopilot.shell_parameters import rotates_logs
 from ...vehicle.sampler import LONGEST_US, NEVER, next_row_us
 from ..tlog import LogError
 from .encoder import LogEncoder, Vehicle
@@ -95,7 +97,7 @@ class DataFlash:
         self._boot_us = self._vehicle.before_boot_us
         self._encoder: LogEncoder | None = None
         self._file: LogFile | None = None
-        self._paused = False
+        self._paused = self._rotates_next = False
         self._disarmed_us = self._refused_us = -PERSIST_US
         self._since_us = self._read = 0
         self._texts: list[tuple[int, str]] = []
@@ -107,6 +109,7 @@ class DataFlash:
         params = self._vehicle.v.autopilot.params
         self._on = int(params.LOG.BACKEND_TYPE) & 1 != 0 and not self._closed
         self._disarmed = int(params.LOG.DISARMED)
+        self._rotates = rotates_logs(self._vehicle.parameters)
         if self._encoder is not None:
             self._encoder.set_bitmask(int(params.LOG.BITMASK))
 
@@ -196,7 +199,7 @@ class DataFlash:
 
     def _look(self) -> None:
         """Take a sample, or start a log when it is due."""
-        self._follow_reboot()
+        self._follow()
         armed = self._words[self._armed_at]
         now = self._words[self._time_at]
         if armed:
@@ -210,6 +213,8 @@ class DataFlash:
         elif not wanted:
             self._paused, self._since_us = True, now
             self._flush()
+            if self._rotates_next:
+                self._rotate()
         encoder = self._encoder
         if encoder is not None and not self._paused:
             if self._words[self._count_at] != self._count:
@@ -224,10 +229,25 @@ class DataFlash:
             self._file.flown = True
         self._find_due()
 
-    def _follow_reboot(self) -> None:
+    def _rotate(self) -> None:
+        """End the log: another one begins with the next arming."""
+        self._end()
+        self._encoder = self._file = None
+        self._rotates_next = False
+
+    def _follow(self) -> None:
+        """End the log at a reboot, or at an arming for which another one is wanted."""
         if self._vehicle.before_boot_us != self._boot_us:
             self._end()
             self._boot()
+            return
+        if not self._words[self._armed_at]:
+            self._rotates_next = self._rotates and self._file is not None and self._file.flown
+            return
+        if self._rotates_next:
+            self._rotate()
+        if self._file is not None:
+            self._file.flown = True
 
     def _begin(self, now: int) -> None:
         """Start a log or continue one, from the events since arming (or since boot, where LOG_DISARMED says so)."""
@@ -269,7 +289,7 @@ class DataFlash:
 
     def said(self, severity: int, text: str) -> None:
         """Log a status text that the vehicle sent."""
-        self._follow_reboot()
+        self._follow()
         now = self._now_us
         if self._encoder is None or self._paused:
             self._texts.append((now, text))
@@ -281,12 +301,15 @@ class DataFlash:
 
     def parameter_set(self, name: str) -> None:
         """A parameter was set."""
-        self._follow_reboot()
+        self._follow()
         if self._encoder is not None and not self._paused:
             self._catch_up()
             self._encoder.parameter(self._now_us, name)
         if name.startswith("LOG_"):
+            before = self._disarmed
             self._settings()
+            if self._disarmed in _ALWAYS and before not in _ALWAYS:
+                self._since_us = self._now_us  # not what has happened since boot
             self._find_due()
 
     def reached(self, seq: int) -> None:

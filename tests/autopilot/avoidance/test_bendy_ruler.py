@@ -81,6 +81,14 @@ def test_a_look_finds_what_the_real_one_finds(
     assert ap.modes.nav.detour.bend == (BENT if steers else STRAIGHT)
 
 
+def test_areas_may_have_a_margin_of_their_own() -> None:
+    ap = pilot(BOX)
+    before, _ = look(ap, (0.0, 0.0), (0.0, 0.0), NORTH)
+    ap = pilot(BOX)
+    ap.params.FENCE.MARGIN_XY = 6.0
+    assert look(ap, (0.0, 0.0), (0.0, 0.0), NORTH)[0] == pytest.approx(before - 4.0)
+
+
 def test_it_looks_further_while_the_way_is_free_and_less_far_while_none_is() -> None:
     ap = pilot(box(STAY_OUT, 0.0, 0.0, 30.0, 30.0))
     for _ in range(12):

@@ -9,6 +9,7 @@ from sitl.autopilot.arming_checks import BY_CRASH, BY_MAVLINK, BY_RUDDER
 from sitl.autopilot.copter import arming
 from sitl.autopilot.copter.modes.table import TITLES
 from sitl.autopilot.events import ARMED, ARMING_REFUSED, DISARMED
+from sitl.core.vectors import Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND, BRAKE, SMART_RTL = 0, 2, 3, 4, 5, 6, 9, 17, 21
@@ -44,6 +45,24 @@ def test_a_start_as_recorded(vehicle, mode, seconds, texts):
     booting(vehicle, mode, seconds)
     assert arming.texts(vehicle, arming.check(vehicle), "") == texts
     assert arming.arm(vehicle, BY_MAVLINK, False) == (not texts, [f"Arm: {t}" for t in texts])
+
+
+def test_imus_that_differed_are_trusted_after_ten_seconds(vehicle):
+    v = booting(vehicle, STABILIZE, 30)
+    sensors = v.sensors
+
+    def said_at(seconds):
+        v.time_us = seconds * S
+        return arming.texts(v, arming.check(v), "")
+
+    sensors.imu_state, sensors.acc2 = 256, sensors.acc + Vec3(0.0, 0.0, 1.0)
+    assert said_at(31) == ["Accels inconsistent"]
+    sensors.imu_state, sensors.acc2 = 0, Vec3(0.0, 0.0, 0.0)  # as with one IMU
+    assert (said_at(40), said_at(41)) == (["Accels inconsistent"], [])
+    sensors.imu_state, sensors.acc2, sensors.gyro2 = 256, sensors.acc, sensors.gyro + Vec3(0.1, 0.0, 0.0)
+    assert said_at(42) == ["Gyros inconsistent"]
+    sensors.gyro2 = sensors.gyro
+    assert (said_at(51), said_at(52)) == (["Gyros inconsistent"], [])
 
 
 def test_forcing_skips_all_but_the_position_that_the_mode_needs(vehicle):

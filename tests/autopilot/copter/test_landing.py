@@ -50,6 +50,18 @@ def ticks(v, n, law=landing.detect):
         law(v)
 
 
+@pytest.mark.parametrize(
+    ("mode", "behaviour", "armed"),
+    ((LOITER, 0, True), (LOITER, 4, False), (ALT_HOLD, 4, False), (STABILIZE, 4, True), (LAND, 4, True)),
+)
+def test_a_landing_may_disarm(flying, mode, behaviour, armed):
+    touch(fly(flying, mode))
+    flying.autopilot.params.PILOT.THR_BHV = behaviour
+    ticks(flying, 400)
+    assert flying.autopilot.arming.landed == 1
+    assert flying.autopilot.arming.armed == armed
+
+
 def test_landed_after_a_second_on_the_ground(flying):
     touch(fly(flying, LAND))
     arming = flying.autopilot.arming

@@ -38,6 +38,16 @@ def test_log_disarmed_logs_from_boot_on(tmp_path: Path) -> None:
     assert "ArduPilot Ready" in [m.Message for m in log["MSG"]]
 
 
+def test_log_disarmed_that_is_set_later_logs_from_there_on(tmp_path: Path) -> None:
+    run = Run(tmp_path, "rover")
+    run.simulation.advance(3.0)
+    run.set("LOG_DISARMED", 1.0)
+    run.simulation.advance(2.0)
+    run.simulation.close()
+    stamps = [m.TimeUS for found in read_log(run.path).values() for m in found if hasattr(m, "TimeUS")]
+    assert min(stamps) >= 3_000_000 and max(stamps) > 4_900_000
+
+
 def test_log_disarmed_3_keeps_flights_alone(tmp_path: Path) -> None:
     run = Run(tmp_path, LOG_DISARMED=3.0)
     run.simulation.advance(1.0)
@@ -67,6 +77,20 @@ def test_logging_pauses_after_disarming_and_goes_on_in_the_same_file(tmp_path: P
     assert 14.0 < max(gaps) < 17.0
     assert [m.ArmState for m in log["ARM"]] == [1, 0, 1]
     assert list(tmp_path.iterdir()) == [run.path]
+
+
+@pytest.mark.parametrize("disarmed", [0.0, 1.0])
+@pytest.mark.parametrize("pause", [1.0, 30.0])
+def test_a_disarming_can_end_the_log(tmp_path: Path, pause: float, disarmed: float) -> None:
+    run = Run(tmp_path, "rover", LOG_FILE_DSRMROT=1.0, LOG_DISARMED=disarmed)
+    for _ in range(2):
+        run.arm()
+        run.client.command(400, 0)
+        run.simulation.advance(pause)
+    run.simulation.close()
+    logs = [read_log(path) for path in sorted(tmp_path.iterdir(), key=lambda path: len(path.name))]
+    assert [[m.ArmState for m in log["ARM"]] for log in logs] == [[1, 0], [1, 0]]
+    assert all(len(log["PARM"]) > 1000 for log in logs)
 
 
 @pytest.mark.parametrize("kind", ["copter", "rover"])

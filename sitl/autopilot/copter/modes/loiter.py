@@ -36,6 +36,8 @@ LOITER = 5
 _CDEG = math.pi / 18000.0
 _LEAN_SHARE = 2.0 / 3.0
 """LOIT_ANG_MAX 0: so much of the lean limit is the pilot's."""
+COORDINATED_TURN = 1
+"""LOIT_OPTIONS"""
 _SPEED_MIN = 0.2  # [m/s]
 _RESTS = 0.5
 """Least acceleration asked for by sticks [m/s^2] that takes the vehicle away from a landing target."""
@@ -120,6 +122,14 @@ def predict_accel(loiter: LoiterState, lean: attitude.Lean, yaw: float, p: Attit
 
 
 @law
+def turn_with_heading(loiter: LoiterState, vel: Vec2, turn_rate: float) -> None:
+    """The velocity [m/s] turns as fast as the heading's target [rad/s] (LOIT_OPTIONS, coordinated turn)."""
+    across = Vec2(-vel.y, vel.x) * turn_rate
+    loiter.acc += across
+    loiter.predicted_acc += across
+
+
+@law
 def advance_path(loiter: LoiterState, path: Motion2, limits: Limits, braking: bool) -> Motion2:
     """The desired motion (NE) one tick later, with drag, and with the brake when the sticks are centred."""
     vel = path.vel + loiter.predicted_acc * DT
@@ -173,6 +183,9 @@ def run(v: Vehicle) -> None:
     lean_max = angle_max(p)
     lean = pilot.lean_angles(modes.pilot, lean_max, min(math.radians(p.ANGLE_MAX * 0.01), lean_max))
     predict_accel(loiter, lean, est.yaw, p.ATC)
+    if int(p.LOIT.OPTIONS) & COORDINATED_TURN:
+        vel = position.desired_motion_ne(control.pos_ne).vel
+        turn_with_heading(loiter, vel, control.attitude.target_rate.z)
     climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
     doing = alt_hold.decide(ap.arming, modes.takeoff, control.motors, climb)
     if doing == alt_hold.STOPPED or doing == alt_hold.LANDED_IDLE:

@@ -41,6 +41,8 @@ LANDING = 5
 _CLIMB_MIN = 0.3
 """Home is approached at least this high [m]."""
 _SLOPE_MIN = 0.5
+_NO_PILOT_YAW = 4
+"""RTL_OPTIONS"""
 
 
 @law
@@ -131,10 +133,19 @@ def return_height(height: float, least: float, distance: float, p: Rtl) -> float
 
 
 @law
+def heeds_yaw_stick(state: int, p: Parameters) -> bool:
+    """Whether the yaw stick turns the vehicle: RTL_OPTIONS can forbid it until it lands, or is moved by sticks."""
+    if int(p.RTL.OPTIONS) & _NO_PILOT_YAW == 0:
+        return True
+    return state == LANDING or (state == FINAL_DESCENT and p.LAND.REPOSITION != 0.0)
+
+
+@law
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    auto_yaw.follow_pilot(ap.modes, ap.control.attitude, ap.estimate)
+    if heeds_yaw_stick(ap.modes.rtl.state, ap.params):
+        auto_yaw.follow_pilot(ap.modes, ap.control.attitude, ap.estimate)
     if not run_end(v):
         run_way(ap.modes, ap.events, v.time_us, ap.control, ap.estimate, ap.params)
 

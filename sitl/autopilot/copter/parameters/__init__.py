@@ -88,7 +88,13 @@ class Parameters(shared.Parameters):
     EK3: Ekf3
     FENCE: Fence
     FHLD: FlowHold
-    FLIGHT_OPTIONS: float = param(0, *BITS32, "", "Bits: 1 does not look for a loss of thrust", INT32)
+    FLIGHT_OPTIONS: float = param(
+        0,
+        *BITS32,
+        "",
+        "Bits: 1 does not look for a loss of thrust, 2 for yaw imbalance, 4 opens the gripper when thrust is lost",
+        INT32,
+    )
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
     FOLL: Follow

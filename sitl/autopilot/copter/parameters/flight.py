@@ -74,6 +74,7 @@ class Loiter(ParameterGroup):
     BRK_ACCEL: float = param(250.0, 25.0, 2500.0, "cm/s/s", "Greatest deceleration with sticks centred")
     BRK_JERK: float = param(500.0, 50.0, 10000.0, "cm/s/s/s", "Jerk of the braking")
     BRK_DELAY: float = param(1.0, 0.0, 10.0, "s", "From centring the sticks to braking")
+    OPTIONS: float = param(1, 0, 1, "", "Bit 0: the velocity turns with the heading (coordinated turn)", INT8)
 
 
 class Pilot(ParameterGroup):
@@ -128,6 +129,7 @@ class Rtl(ParameterGroup):
     SPEED: float = param(0, 0, 2000, "cm/s", "Speed of the way home; 0 as WPNAV_SPEED", INT16)
     LOIT_TIME: float = param(5000, 0, 60000, "ms", "Wait over home", INT32)
     ALT_TYPE: float = param(0, 0, 1, "", "Height of the way home: 0 above home, 1 above the ground", INT8)
+    OPTIONS: float = param(0, *BITS32, "", "4: the yaw stick does nothing on the way home", INT32)
 
 
 class SmartRtl(system.SmartRtl):

@@ -88,6 +88,7 @@ class Parameters(shared.Parameters):
     RALLY: Rally = group(LIMIT_KM=0.5)
     RC: Records[RcChannel] = numbered(RcChannel, RC_INPUTS, DZ=(30, 0, 30, 30) + 12 * (0,))
     RC_OVERRIDE_TIME: float
+    RC_FS_TIMEOUT: float = param(1.0, 0.1, 10.0, "s", "Silence of the receiver that counts as lost")
     RCMAP: RcMap
     RTL_SPEED: float = param(0.0, 0.0, 100.0, "m/s", "Speed of the way home; 0: WP_SPEED")
     SCHED_LOOP_RATE: float = param(50, 50, 50, "Hz", "Rate of the main loop; this firmware runs at 50 Hz only", INT16)

@@ -34,7 +34,7 @@ JAM_CHANGES = 0.3
 JAM_PLACE, JAM_SPEED = 500.0, 150.0
 """Standard deviations of each axis [m, m/s]."""
 JAM_SATELLITES, LEAST_SATELLITES = 17, 4
-JAM_DOP = 30000.0
+JAM_DOP = 60000.0
 """Greatest dilution * 100."""
 
 

@@ -195,6 +195,17 @@ def test_a_take_off_ends_at_full_throttle_or_with_acceleration(throttle: float, 
     assert takeoff.has_thrust(throttle, accel_d, 2.5, 0.8) == lifts
 
 
+def test_loiter_turns_its_velocity_with_the_heading() -> None:
+    state = LoiterState()
+    vel = Vec2(3.0, 4.0)
+    for _ in range(400):
+        state.acc = state.predicted_acc = Vec2(0.0, 0.0)
+        loiter.turn_with_heading(state, vel, math.radians(90.0))
+        assert state.acc == state.predicted_acc
+        vel += state.predicted_acc * 0.0025
+    assert (vel.x, vel.y) == pytest.approx((-4.0, 3.0), abs=0.05)
+
+
 def test_loiter_brakes_some_time_after_the_sticks_are_centred() -> None:
     state = LoiterState()
     state.acc = Vec2(0.0, 1.0)

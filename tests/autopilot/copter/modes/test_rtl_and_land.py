@@ -44,6 +44,22 @@ def test_height_of_the_way_home(height, distance, wanted, climb, slope, result):
     assert rtl.return_height(height, 0.0, distance, way_home(wanted, climb, slope)) == pytest.approx(result)
 
 
+@pytest.mark.parametrize(
+    ("options", "reposition", "state", "heeds"),
+    (
+        (0, 1, rtl.RETURN, True),
+        (4, 1, rtl.RETURN, False),
+        (4, 1, rtl.FINAL_DESCENT, True),
+        (4, 0, rtl.FINAL_DESCENT, False),
+        (4, 0, rtl.LANDING, True),
+    ),
+)
+def test_the_yaw_stick_may_be_forbidden_on_the_way_home(flying, options, reposition, state, heeds):
+    p = flying.autopilot.params
+    p.RTL.OPTIONS, p.LAND.REPOSITION = options, reposition
+    assert rtl.heeds_yaw_stick(state, p) == heeds
+
+
 @given(st.floats(-100, 1000), st.floats(0, 1e4), st.floats(0.3, 3000), st.floats(0, 30), st.floats(0, 10))
 def test_the_way_home_is_never_below_the_vehicle(height, distance, wanted, climb, slope):
     assert rtl.return_height(height, 0.0, distance, way_home(wanted, climb, slope)) >= height

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Knobs of the transmitter (TUNE, TUNE2)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from sitl.autopilot.copter.parameters import TABLE
+from sitl.bridge.services.tuning import TUNED
+from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
+
+KNOB = {"RC6_OPTION": 219.0, "RC6_MIN": 1100.0, "RC6_MAX": 1300.0, "TUNE_MIN": 100.0, "TUNE_MAX": 500.0}
+
+
+def bench(**params: float) -> Bench:
+    vehicle = FakeVehicle()
+    vehicle.parameters.update(params)
+    vehicle.v.autopilot.rc.receiver_ok = True
+    return Bench(vehicle)
+
+
+def turn(b: Bench, channel: int, pulse: int) -> None:
+    b.vehicle.v.autopilot.rc.channels[channel - 1] = pulse
+    b.run(0.4)
+
+
+def calls(b: Bench, name: str) -> list[tuple[Any, ...]]:
+    return [call[1:] for call in b.autopilot.calls if call[0] == name]
+
+
+@pytest.mark.parametrize(("pulse", "turned", "value"), ((1100, 0, 100), (1200, 0, 300), (1900, 0, 500), (1100, 1, 500)))
+def test_a_knob_sets_a_parameter_between_its_ends(pulse: int, turned: int, value: float) -> None:
+    b = bench(**KNOB, TUNE=60.0, RC6_REVERSED=float(turned))
+    turn(b, 6, pulse)
+    assert b.vehicle.parameters["LOIT_SPEED"] == value
+    assert calls(b, "parameter_changed") == [("LOIT_SPEED",)]
+
+
+def test_two_knobs_do_not_mind_each_other() -> None:
+    b = bench(**KNOB, TUNE=60.0, RC7_OPTION=220.0, TUNE2=4.0, TUNE2_MIN=0.1, TUNE2_MAX=0.3)
+    turn(b, 6, 1300)
+    turn(b, 7, int(b.vehicle.parameters["RC7_MIN"]))
+    values = b.vehicle.parameters
+    assert [values["LOIT_SPEED"], *(values[name] for name in TUNED[4])] == pytest.approx([500.0, 0.1, 0.1])
+
+
+def test_legs_get_another_speed_once_and_the_parameter_stays() -> None:
+    b = bench(**KNOB, TUNE=10.0)
+    before = b.vehicle.parameters["WPNAV_SPEED"]
+    turn(b, 6, 1200)
+    b.run(1.0)
+    assert calls(b, "change_speed") == [(0, 3.0)] and b.vehicle.parameters["WPNAV_SPEED"] == before
+
+
+@pytest.mark.parametrize("params", ({"TUNE": 0.0}, {"TUNE_MAX": 100.0}, {"RC6_OPTION": 0.0}))
+def test_a_knob_that_is_for_nothing(params: dict[str, float]) -> None:
+    b = bench(**{**KNOB, "TUNE": 60.0, **params})
+    turn(b, 6, 1300)
+    assert b.vehicle.parameters["LOIT_SPEED"] == 1250.0
+
+
+def test_without_a_receiver_nothing_is_tuned() -> None:
+    b = bench(**KNOB, TUNE=60.0)
+    b.vehicle.v.autopilot.rc.receiver_ok = False
+    turn(b, 6, 1300)
+    assert b.vehicle.parameters["LOIT_SPEED"] == 1250.0
+
+
+def test_a_knob_that_is_fitted_in_flight_and_a_rover_that_has_none() -> None:
+    b = bench(**{**KNOB, "RC6_OPTION": 0.0}, TUNE=60.0)
+    b.vehicle.parameters["RC6_OPTION"] = 219.0
+    b.bridge.parameter_changed("RC6_OPTION")
+    turn(b, 6, 1300)
+    assert b.vehicle.parameters["LOIT_SPEED"] == 500.0
+    Bench(FakeRover()).run(1.0)
+
+
+def test_what_knobs_tune_is_there() -> None:
+    assert all(TABLE[name].has_effect for names in TUNED.values() for name in names)
