@@ -22,3 +22,7 @@ TABLES = (
 @pytest.mark.parametrize("table", TABLES)
 def test_it_is_as_kept(table: str, vehicle: str) -> None:
     assert compare_kept(table, vehicle) == []
+
+
+def test_a_speed_of_legs_acts_on_the_way_home_as_soon_as_it_is_set() -> None:
+    assert compare_kept("in-flight", "copter", "WPNAV_SPEED in RTL") == []

@@ -44,6 +44,8 @@ LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SP
 _BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
 SPEED_MODES = (auto.AUTO, GUIDED, GUIDED_NOGPS, RTL_MODE, SMART_RTL)
 """In which DO_CHANGE_SPEED is taken."""
+LEG_MODES = (auto.AUTO, RTL_MODE, SMART_RTL, zigzag.ZIGZAG)
+"""In which a speed of legs acts as soon as it is set."""
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 _INSTEAD = {failsafe.DO_RTL: "Trying RTL Mode", failsafe.DO_LAND: "Using Land Mode"}
@@ -215,16 +217,18 @@ class CopterAutopilot(BaseAutopilot):
         return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def parameter_changed(self, name: str) -> None:
-        """A frame that is set while disarmed holds at once; speeds of legs that are set while AUTO flies one hold from
-        there on, whatever the mission said before."""
+        """A frame that is set while disarmed holds at once; speeds of legs that are set while a leg is flown hold from
+        there on, whatever the mission said before. On the way home RTL_SPEED comes before WPNAV_SPEED."""
         if name.startswith(FRAME_PARAMETERS) and not self.armed():
             is_frame = name.startswith(FRAME_PARAMETERS[0])  # an output that loses its function does not get it back
             frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params, is_frame)
             self._check_frame()
         super().parameter_changed(name)
-        nav = self._v.autopilot.modes.nav
-        field = LEG_SPEEDS.get(name)
-        if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:
+        nav, mode, field = self._v.autopilot.modes.nav, self.mode(), LEG_SPEEDS.get(name)
+        if field is None or mode not in LEG_MODES:
+            return
+        goes_home = mode == RTL_MODE or (mode == auto.AUTO and nav.command_kind == RTL)
+        if not (goes_home and name == "WPNAV_SPEED" and self._v.autopilot.params.RTL.SPEED > 0.0):
             setattr(nav, field, 0.0)
             PLANNER.change_speed(self._v.autopilot)
 
