@@ -81,7 +81,7 @@ def test_commands_of_clients_are_told_with_their_results(driven: Run, log: dict[
 
 def test_it_tells_where_the_vehicle_went(driven: Run, log: dict[str, list[Any]]) -> None:
     """Estimate, truth and GPS agree; the vehicle is 5 m north at the end."""
-    assert log["SIM2"][-1].PN == pytest.approx(5.0, abs=0.6)
+    assert pytest.approx(5.0, abs=0.6) == log["SIM2"][-1].PN
     end, truth, fix = log["POS"][-1], log["SIM"][-1], log["GPS"][-1]
     assert pytest.approx(5.0, abs=0.6) == log["PSCN"][-1].PN
     metres = 1.0 / 8.983e-6
