@@ -34,6 +34,7 @@ from ...autopilot.mission import returning
 from ...autopilot.mission.notes import ParametersFound, Text
 from ...autopilot.navigation.state import RTL
 from ...autopilot.terrain.state import TEXTS as TERRAIN_TEXTS
+from ...core.elementary import cos, sin
 from ...core.scalars import constrain
 from ...core.vectors import Vec3
 from ..autopilot_api import LONGEST_US, Note, Vector
@@ -231,6 +232,13 @@ class CopterAutopilot(BaseAutopilot):
         if not (goes_home and name == "WPNAV_SPEED" and self._v.autopilot.params.RTL.SPEED > 0.0):
             setattr(nav, field, 0.0)
             PLANNER.change_speed(self._v.autopilot)
+
+    def yaw_rate_target(self) -> float:
+        if self._v.autopilot.arming.landed:
+            return 0.0
+        attitude = self._v.autopilot.control.attitude
+        rate, target = attitude.target_rate, attitude.target_euler
+        return (sin(target.roll) * rate.y + cos(target.roll) * rate.z) / max(cos(target.pitch), 1e-3)
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
         """Turn to ``angle`` [rad] at ``rate`` [rad/s]; ``direction`` 1 clockwise, -1 the other way, 0 the shorter."""
