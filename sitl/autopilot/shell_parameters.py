@@ -15,7 +15,7 @@ LOG_ROTATES = "LOG_FILE_DSRMROT"
 
 MEANINGS = {
     MAV_OPTIONS: "Bits: 1 the vehicle hears its ground stations (MAV_GCS_SYSID), itself and radios only",
-    GCS_SYSID_HI: "With MAV_OPTIONS 1: systems from MAV_GCS_SYSID to this one are ground stations, too",
+    GCS_SYSID_HI: "Systems from MAV_GCS_SYSID to this one are ground stations: their sticks and heartbeats count",
     NEED_LOCATION: "1: no arming without a position, whatever the mode",
     "ARMING_MIS_ITEMS": "Bits of commands that the mission must have: 1 LAND, 4 DO_LAND_START, 8 TAKEOFF, 64 RTL",
     "ARMING_MAGTHRESH": "Greatest difference of the first compass from the earth's field, for arming [mGauss]; 0: any",

@@ -186,6 +186,10 @@ class BaseAutopilot:
     def set_roi(self, place: Vector | None) -> None:
         """Keep the nose on a point, NED [m], or (None) no longer: not in vehicles that steer with it."""
 
+    def yaw_rate_target(self) -> float:
+        """Rate of yaw that attitude control wants, for gimbals [rad/s]; 0 on the ground, and of vehicles without it."""
+        return 0.0
+
     def change_reposition_speed(self, speed: float) -> bool:
         """DO_REPOSITION's speed [m/s]: means nothing to most."""
         return True

@@ -160,11 +160,6 @@ class Bridge:
         """Our system id (MAV_SYSID)."""
         return min(max(int(self._system()), 1), 255)
 
-    @property
-    def ground_station(self) -> int:
-        """System id of the pilot's ground station (MAV_GCS_SYSID)."""
-        return int(self.parameter("MAV_GCS_SYSID") or 0)
-
     def refresh_identity(self) -> None:
         """Take over a changed MAV_SYSID."""
         for channel in self.channels:

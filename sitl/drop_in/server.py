@@ -7,6 +7,7 @@ import os
 import signal
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from .. import vehicles
 from ..autopilot.params import files
@@ -166,6 +167,9 @@ class Session:
 
     def reached(self, seq: int) -> None:
         """Progress is for clients."""
+
+    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+        """Commands are for the vehicle."""
 
     def parameter_set(self, name: str) -> None:
         """Keep what a client has set; what a fault sets would outlive it."""

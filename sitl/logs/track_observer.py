@@ -157,6 +157,9 @@ class TrackObserver:
         """The vehicle told its clients something."""
         self._texts.append((self._vehicle.time_us * 1e-6, severity, text))
 
+    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+        """Not part of a track."""
+
     def parameter_set(self, name: str) -> None:
         """Not part of a track."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -195,6 +195,9 @@ class LiveSource(AutopilotSource):
 
     def reached(self, seq: int) -> None:
         """A mission's item is reached: frames show it."""
+
+    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+        """Frames show what comes of it."""
 
     def parameter_set(self, name: str) -> None:
         """A parameter was set: whoever wants to see it asks for it."""

@@ -10,9 +10,11 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.notes import ItemReached
+from sitl.bridge.copter.autopilot import CopterAutopilot
 from sitl.bridge.services.statustext import EventService
 from sitl.core.algebra import quat_about_down
 from sitl.core.vectors import Vec3
+from sitl.simulation import Simulation
 from tests.bridge.fakes import Bench
 
 
@@ -46,6 +48,16 @@ def test_a_rover_never_takes_off(rover_bench: Bench) -> None:
     rover_bench.vehicle.v.autopilot.arming.landed = False
     (m,) = asked(rover_bench, 264, 0.0, "FLIGHT_INFORMATION")
     assert m.takeoff_time_utc == 0
+
+
+def test_a_gimbal_learns_how_fast_the_copter_wants_to_turn() -> None:
+    simulation = Simulation("erle_copter", estimator="truth")
+    autopilot = CopterAutopilot(simulation)
+    simulation.v.autopilot.control.attitude.target_euler = (0.4, 0.0, 0.0)
+    simulation.v.autopilot.control.attitude.target_rate = Vec3(0.1, 0.2, 0.3)
+    assert autopilot.yaw_rate_target() == 0.0  # on the ground
+    simulation.v.autopilot.arming.landed = False
+    assert autopilot.yaw_rate_target() == pytest.approx(0.2 * math.sin(0.4) + 0.3 * math.cos(0.4))
 
 
 def test_what_a_gimbal_needs(bench: Bench) -> None:

@@ -65,3 +65,33 @@ def test_it_ends_and_comes_back_with_a_snapshot(bench: Bench) -> None:
     bench.vehicle.parameters["MAV_OPTIONS"] = 0.0
     bench.bridge.restore(open_to_all)
     assert answers(bench, client) == HEARD
+
+
+def stations(bench: Bench, first: int, last: int) -> None:
+    for name, value in (("MAV_GCS_SYSID", first), ("MAV_GCS_SYSID_HI", last)):
+        assert bench.bridge.get(ParameterService).set(name, float(value)) is None
+
+
+@pytest.mark.parametrize(("system", "counts"), ((199, False), (200, True), (204, True), (210, True), (211, False)))
+def test_sticks_and_heartbeats_of_all_ground_stations_count(bench: Bench, system: int, counts: bool) -> None:
+    client, v = bench.connect(system=system), bench.vehicle.v
+    stations(bench, 200, 210)
+    bench.run(1.0)
+    for message in (
+        mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3),
+        mavlink.MAVLink_rc_channels_override_message(1, 1, 1600, *(7 * [0])),
+        mavlink.MAVLink_manual_control_message(1, 500, 0, 0, 0, 0),
+    ):
+        v.autopilot.modes.failsafe.gcs_us = 0
+        client.send(message)
+        bench.bridge.receive()
+        assert (v.autopilot.modes.failsafe.gcs_us > 0) == counts
+    assert (v.autopilot.rc.override[0] > 0) == counts
+
+
+def test_a_last_ground_station_below_the_first_is_none(bench: Bench) -> None:
+    stations(bench, 200, 100)
+    bench.run(1.0)
+    bench.connect(system=150).send(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
+    bench.bridge.receive()
+    assert bench.vehicle.v.autopilot.modes.failsafe.gcs_us == 0

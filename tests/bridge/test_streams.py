@@ -153,6 +153,21 @@ def test_a_rate_parameter_holds_for_every_client(bench: Bench) -> None:
     assert len(late.receive("ATTITUDE")) == 10
 
 
+def test_the_rates_that_the_first_client_asked_for_are_in_its_parameters(bench: Bench) -> None:
+    """Those of others are not; and nobody begins with what another has asked for."""
+    bench.ask(request_stream(10, 5))
+    assert bench.vehicle.parameters["MAV1_EXTRA1"] == 5.0
+    assert bench.vehicle.parameters["MAV1_EXTRA2"] == 0.0
+    late = bench.connect()
+    late.send(request_stream(11, 2))
+    bench.run(2.0)
+    assert not late.receive("ATTITUDE")
+    assert bench.vehicle.parameters["MAV1_EXTRA2"] == 0.0
+    bench.ask(request_stream(0, 3))
+    bench.ask(request_stream(10, 9, 0))
+    assert [bench.vehicle.parameters[f"MAV1_{name}"] for name in ("EXTRA1", "EXTRA2", "RAW_SENS")] == [0.0, 3.0, 3.0]
+
+
 def test_request_message_before_a_position_is_known(bench: Bench) -> None:
     ask = mavlink.MAVLink_command_long_message(1, 1, REQUEST, 0, 242, 0, 0, 0, 0, 0, 0)
     assert [m.get_type() for m in bench.ask(ask)] == ["COMMAND_ACK"]

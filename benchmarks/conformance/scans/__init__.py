@@ -13,7 +13,7 @@ from typing import Any
 
 from .program import Programs
 
-TABLES = ("acks", "items", "missions", "arming", "in-flight", "fields", "logs")
+TABLES = ("acks", "items", "missions", "arming", "in-flight", "fields", "logs", "readers")
 Scan = Callable[[Programs], Mapping[str, Any]]
 
 

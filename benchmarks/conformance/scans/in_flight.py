@@ -55,6 +55,11 @@ def lean(program: Program) -> float:
     return max(abs(program.attitude.roll), abs(program.attitude.pitch))
 
 
+def height(program: Program) -> float:
+    """Above home [m]."""
+    return program.altitude
+
+
 def turn_rate(program: Program) -> float:
     """[deg/s], over a second."""
     before = program.heading
@@ -97,6 +102,24 @@ def holds(**sticks: int) -> Order:
     return order
 
 
+def homeward(program: Program, number: int) -> None:
+    """A way home: home is moved far away, and the mode is entered once more."""
+    if number == 0:
+        mode = program.mode
+        lat, lon = program.location_of(FAR, 0.0)
+        program.send(
+            "COMMAND_INT", command=179, frame=0, x=lat, y=lon, z=program.home()[2], target_system=1, target_component=1
+        )
+        program.delay(1.0)
+        program.set_mode("LOITER")
+        program.set_mode(mode)
+
+
+def turns(program: Program, number: int) -> None:
+    """CONDITION_YAW: nearly a full turn."""
+    program.command("CONDITION_YAW", 358.0, 0.0, 1.0, 1.0)
+
+
 def nothing(program: Program, number: int) -> None:
     """The mode itself is the order."""
 
@@ -118,6 +141,12 @@ COPTER = {
     "ALT_HOLD roll": Manoeuvre("ALT_HOLD", holds(roll=2000), lean, settle_s=2.0),
     "CIRCLE": Manoeuvre("CIRCLE", nothing, turn_rate, settle_s=10.0),
     "LAND": Manoeuvre("LAND", nothing, climb, height_m=9.0, settle_s=3.0),
+    "LAND from above": Manoeuvre("LAND", nothing, climb, height_m=80.0, settle_s=5.0),
+    "RTL": Manoeuvre("RTL", homeward, speed, settle_s=LEG_S),
+    "RTL height": Manoeuvre("RTL", homeward, height, settle_s=LEG_S),
+    "CIRCLE speed": Manoeuvre("CIRCLE", nothing, speed, settle_s=12.0),
+    "GUIDED yaw": Manoeuvre("GUIDED", turns, turn_rate, settle_s=1.5),
+    "ACRO yaw": Manoeuvre("ACRO", holds(yaw=2000), turn_rate, height_m=80.0, settle_s=2.0),
 }
 ROVER = {
     "GUIDED": Manoeuvre("GUIDED", goes(FAR, 0.0), speed, settle_s=LEG_S, between="HOLD"),
@@ -126,7 +155,10 @@ ROVER = {
     "ACRO throttle": Manoeuvre("ACRO", holds(throttle=1700), speed, between="HOLD"),
     "ACRO roll": Manoeuvre("ACRO", holds(throttle=1600, steering=2000), turn_rate, between="HOLD"),
     "STEERING throttle": Manoeuvre("STEERING", holds(throttle=1700), speed, between="HOLD"),
+    "STEERING roll": Manoeuvre("STEERING", holds(throttle=1700, steering=2000), turn_rate, between="HOLD"),
     "CIRCLE": Manoeuvre("CIRCLE", nothing, speed, between="HOLD", settle_s=12.0),
+    "CIRCLE turn": Manoeuvre("CIRCLE", nothing, turn_rate, between="HOLD", settle_s=12.0),
+    "RTL": Manoeuvre("RTL", homeward, speed, settle_s=LEG_S, between="HOLD"),
 }
 CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
     "copter": (
@@ -137,6 +169,11 @@ CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
         ("PILOT_SPEED_UP", "LOITER throttle", 250, 100), ("PILOT_SPEED_UP", "ALT_HOLD throttle", 250, 100),
         ("PILOT_SPEED_DN", "ALT_HOLD throttle down", 150, 60), ("PILOT_Y_RATE", "ALT_HOLD yaw", 60, 20),
         ("ANGLE_MAX", "ALT_HOLD roll", 3000, 1000), ("CIRCLE_RATE", "CIRCLE", 20, 8), ("LAND_SPEED", "LAND", 50, 100),
+        ("LAND_SPEED_HIGH", "LAND from above", 100, 50), ("WPNAV_SPEED_DN", "LAND from above", 150, 60),
+        ("LAND_ALT_LOW", "LAND from above", 1000, 9000),
+        ("RTL_SPEED", "RTL", 1000, 400), ("WPNAV_SPEED", "RTL", 1000, 400), ("RTL_ALT", "RTL height", 4000, 6000),
+        ("CIRCLE_RADIUS", "CIRCLE speed", 1000, 500), ("ATC_SLEW_YAW", "GUIDED yaw", 6000, 2000),
+        ("ANGLE_MAX", "LOITER pitch", 3000, 1000), ("ACRO_Y_RATE", "ACRO yaw", 80, 30),
     ),
     "rover": (
         ("WP_SPEED", "GUIDED", 5, 2), ("WP_SPEED", "AUTO", 5, 2), ("WP_SPEED", "CIRCLE", 2, 1),
@@ -144,6 +181,8 @@ CASES: dict[str, tuple[tuple[str, str, float, float], ...]] = {
         ("CRUISE_SPEED", "STEERING throttle", 5, 2), ("CRUISE_THROTTLE", "ACRO throttle", 30, 60),
         ("MOT_THR_MAX", "MANUAL throttle", 100, 30), ("ACRO_TURN_RATE", "ACRO roll", 60, 20),
         ("ATC_STR_RAT_MAX", "ACRO roll", 60, 20), ("SPEED_MAX", "ACRO throttle", 0, 2),
+        ("RTL_SPEED", "RTL", 5, 2), ("WP_SPEED", "RTL", 5, 2), ("TURN_RADIUS", "STEERING roll", 1, 10),
+        ("ATC_TURN_MAX_G", "STEERING roll", 0.6, 0.1), ("CIRC_RADIUS", "CIRCLE turn", 20, 10),
     ),
 }  # fmt: skip
 """Parameter, manoeuvre, old and new value."""

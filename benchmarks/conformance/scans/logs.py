@@ -36,8 +36,10 @@ TOLERANCES = {
 PLACES = ("D", "U")
 """Units of latitude and longitude."""
 TIMES = re.compile(r"TimeUS|.*\.(SMS|GMS|S|LastMeasMS|GWk|Spd|GCrs)")
-CHANGES = re.compile(r"(PID.|RATE|PSC.|THR|STER|NTUN|VIBE|XKF[1235])\..*|ATT\.Des.*|IMU\.T")
-"""Numbers of which the noise of a flight at rest is all that there is."""
+CHANGES = re.compile(
+    r"(PID.|RATE|PSC.|THR|STER|NTUN|VIBE|XKF[1235])\..*|(ATT|ANG)\.Des.*|IMU\.T|SIM2\.(V.|ASpdU|UFC)|PM\.(NLon|MaxT|R)"
+)
+"""Numbers of which the noise of a flight at rest, or of the machine, is all that there is."""
 SECONDS = 10.0
 
 
@@ -46,19 +48,8 @@ def scan(programs: Programs) -> dict[str, Any]:
     regular = {m.name for m in logs_of(programs.kind).messages(EVERY_BIT, 0, True)}
     rows: dict[str, Any] = {}
     with TemporaryDirectory(prefix="logs-") as folder:
-        with programs.started({"FS_OPTIONS": 0.0, "FS_GCS_ENABLE": 0.0}, folder=Path(folder)) as program:
-            program.be_flying()
-            program.goto(20.0, 10.0, **({"altitude": HEIGHT_M} if program.of == "copter" else {}))
-            program.delay(10.0)
-            begin = program.now
-            program.delay(SECONDS)
-            end = program.now
-            program.set_mode("LAND" if program.of == "copter" else "HOLD")
-            if program.of == "rover":
-                program.disarm()
-            program.passes(lambda: not program.armed, 60.0)
-            program.delay(3.0)
-        rows |= _of_flight(_last(folder), regular, begin, end)
+        begin, end = flown(programs, Path(folder))
+        rows |= _of_flight(last(folder), regular, begin, end)
     with TemporaryDirectory(prefix="logs-") as folder:
         with programs.started(folder=Path(folder)) as program:
             program.be_ready()
@@ -66,11 +57,29 @@ def scan(programs: Programs) -> dict[str, Any]:
             program.delay(2.0)
             program.send_command("COMPONENT_ARM_DISARM", 1)
             program.delay(20.0)
-        rows["refused"] = _of_refusal(_last(folder))
+        rows["refused"] = _of_refusal(last(folder))
     return {name: value for name, value in rows.items() if fnmatchcase(name, programs.rows)}
 
 
-def _last(folder: str) -> Path | None:
+def flown(programs: Programs, folder: Path) -> tuple[float, float]:
+    """A short flight in GUIDED; when it began and ceased to rest [s since boot]. Its log is in ``folder``."""
+    with programs.started({"FS_OPTIONS": 0.0, "FS_GCS_ENABLE": 0.0}, folder=folder) as program:
+        program.be_flying()
+        program.goto(20.0, 10.0, **({"altitude": HEIGHT_M} if program.of == "copter" else {}))
+        program.delay(10.0)
+        begin = program.now
+        program.delay(SECONDS)
+        end = program.now
+        program.set_mode("LAND" if program.of == "copter" else "HOLD")
+        if program.of == "rover":
+            program.disarm()
+        program.passes(lambda: not program.armed, 60.0)
+        program.delay(3.0)
+    return begin, end
+
+
+def last(folder: str) -> Path | None:
+    """The last log below a folder; None: there is none."""
     return max((Path(folder) / "logs").glob("*.BIN"), default=None)
 
 

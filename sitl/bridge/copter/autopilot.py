@@ -35,6 +35,7 @@ from ...autopilot.mission import returning
 from ...autopilot.mission.notes import ParametersFound, Switched, Text
 from ...autopilot.navigation.state import RTL
 from ...autopilot.terrain.state import TEXTS as TERRAIN_TEXTS
+from ...core.elementary import cos, sin
 from ...core.scalars import constrain
 from ...core.vectors import Vec3
 from ..autopilot_api import LONGEST_US, Note, Vector
@@ -49,6 +50,8 @@ OPENS_GRIPPER = 4
 """FLIGHT_OPTIONS: at a loss of thrust."""
 FIRST = ("Motors: ", "Interlock/E-Stop Conflict", "Motor Interlock Enabled")
 """Failed checks that are told alone: the others are not made then."""
+LEG_MODES = (auto.AUTO, RTL_MODE, SMART_RTL, zigzag.ZIGZAG)
+"""In which a speed of legs acts as soon as it is set."""
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
 _SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
 _INSTEAD = {failsafe.DO_RTL: "Trying RTL Mode", failsafe.DO_LAND: "Using Land Mode"}
@@ -226,18 +229,27 @@ class CopterAutopilot(BaseAutopilot):
         return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def parameter_changed(self, name: str) -> None:
-        """A frame that is set while disarmed holds at once; speeds of legs that are set while AUTO flies one hold from
-        there on, whatever the mission said before."""
+        """A frame that is set while disarmed holds at once; speeds of legs that are set while a leg is flown hold from
+        there on, whatever the mission said before. On the way home RTL_SPEED comes before WPNAV_SPEED."""
         if name.startswith(FRAME_PARAMETERS) and not self.armed():
             is_frame = name.startswith(FRAME_PARAMETERS[0])  # an output that loses its function does not get it back
             frames.load_frame(self._v.autopilot.control.motors, self._v.autopilot.params, is_frame)
             self._check_frame()
         super().parameter_changed(name)
-        nav = self._v.autopilot.modes.nav
-        field = LEG_SPEEDS.get(name)
-        if field is not None and self.mode() == auto.AUTO and nav.command_kind != RTL:
+        nav, mode, field = self._v.autopilot.modes.nav, self.mode(), LEG_SPEEDS.get(name)
+        if field is None or mode not in LEG_MODES:
+            return
+        goes_home = mode == RTL_MODE or (mode == auto.AUTO and nav.command_kind == RTL)
+        if not (goes_home and name == "WPNAV_SPEED" and self._v.autopilot.params.RTL.SPEED > 0.0):
             setattr(nav, field, 0.0)
             PLANNER.change_speed(self._v.autopilot)
+
+    def yaw_rate_target(self) -> float:
+        if self._v.autopilot.arming.landed:
+            return 0.0
+        attitude = self._v.autopilot.control.attitude
+        rate, target = attitude.target_rate, attitude.target_euler
+        return (sin(target.roll) * rate.y + cos(target.roll) * rate.z) / max(cos(target.pitch), 1e-3)
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
         """Turn to ``angle`` [rad] at ``rate`` [rad/s]; ``direction`` 1 clockwise, -1 the other way, 0 the shorter."""

@@ -20,7 +20,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..links.link import Peer
 from . import command_table
-from .command import Command, Entry, from_int, from_long
+from .command import GLOBAL_RELATIVE_ALT, Command, Entry, from_int, from_long
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Handler, Sender, Service
 
 if TYPE_CHECKING:
@@ -44,9 +44,9 @@ class CommandService(Service):
     def _long(self, channel: Channel, fields: Any, sender: Sender) -> None:
         entry = self._table.get(fields.command)
         if entry is None or entry.int_only:
-            self._ack(channel, fields.command, UNSUPPORTED, sender)
+            self._answer(channel, fields, entry, UNSUPPORTED, sender)
             return
-        self._run(channel, entry, from_long(fields, entry), fields.command, sender)
+        self._run(channel, entry, from_long(fields, entry), fields, sender)
 
     def _int(self, channel: Channel, fields: Any, sender: Sender) -> None:
         grants = self.bridge.grants
@@ -54,14 +54,20 @@ class CommandService(Service):
             return
         entry = self._table.get(fields.command)
         if entry is None:
-            self._ack(channel, fields.command, UNSUPPORTED, sender)
+            self._answer(channel, fields, entry, UNSUPPORTED, sender)
             return
-        self._run(channel, entry, from_int(fields, entry), fields.command, sender)
+        self._run(channel, entry, from_int(fields, entry), fields, sender)
 
-    def _run(self, channel: Channel, entry: Entry, command: Command | None, number: int, sender: Sender) -> None:
+    def _run(self, channel: Channel, entry: Entry, command: Command | None, fields: Any, sender: Sender) -> None:
         result = DENIED if command is None else entry.run(self.bridge, channel, command._replace(sender=sender))
-        self._ack(channel, number, result, sender)
+        self._answer(channel, fields, entry, result, sender)
         self.bridge.send_asked()
+
+    def _answer(self, channel: Channel, fields: Any, entry: Entry | None, result: int, sender: Sender) -> None:
+        self._ack(channel, fields.command, result, sender)
+        frame, is_place = (GLOBAL_RELATIVE_ALT, False) if entry is None else (entry.long_frame, entry.place)
+        for listener in self.bridge.listeners:
+            listener.commanded(fields, frame, is_place, sender, result)
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
         as_command = Command(DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)

@@ -63,7 +63,8 @@ class FlightStateService(Service):
         )
 
     def for_gimbal(self) -> bytes:
-        """AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: attitude, velocity [m/s], yaw rate [rad/s], status of the estimate."""
+        """AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: attitude, velocity [m/s], yaw rate wanted and estimated [rad/s], status of the
+        estimate."""
         estimate = self.bridge.vehicle.v.autopilot.estimate
         q, velocity = estimate.q, estimate.vel
         return message("AUTOPILOT_STATE_FOR_GIMBAL_DEVICE").payload(
@@ -73,6 +74,7 @@ class FlightStateService(Service):
             vx=velocity.x,
             vy=velocity.y,
             vz=velocity.z,
+            feed_forward_angular_velocity_z=self.bridge.autopilot.yaw_rate_target(),
             estimator_status=int(estimate.status_flags) & 0xFFFF,
             angular_velocity_z=rotate(q, estimate.rates).z,
         )

@@ -12,6 +12,7 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import MessageType, message
+from .senders import SenderService
 from .service import Handler, Sender, Service
 
 
@@ -44,7 +45,7 @@ class HeartbeatService(Service):
     def _heartbeat(self, channel: Channel, message: Any, sender: Sender) -> None:
         if sender[0] == self.bridge.system:
             self._channels |= {channel.number}
-        if sender[0] == self.bridge.ground_station:
+        if self.bridge.get(SenderService).is_ground_station(sender[0]):
             self.bridge.vehicle.v.autopilot.modes.failsafe.gcs_us = self.bridge.now_us
 
 

@@ -60,7 +60,7 @@ class Service:
 
 
 class Listener(Protocol):
-    """Hears of texts, parameters and progress when they happen; it changes nothing."""
+    """Hears of texts, parameters, commands and progress when they happen; it changes nothing."""
 
     def said(self, severity: int, text: str) -> None:
         """A text goes out to all clients, with its MAV_SEVERITY."""
@@ -72,6 +72,17 @@ class Listener(Protocol):
 
     def reached(self, seq: int) -> None:
         """A mission item was reached (MISSION_ITEM_REACHED)."""
+        ...
+
+    def commanded(self, fields: Any, frame: int, is_place: bool, sender: Sender, result: int) -> None:
+        """A COMMAND_LONG or COMMAND_INT was answered.
+
+        Args:
+            fields: of the message.
+            frame, is_place: of a COMMAND_LONG: the MAV_FRAME that it is taken in, whether p5 and p6 are degrees.
+            sender: its system and component.
+            result: MAV_RESULT.
+        """
         ...
 
 

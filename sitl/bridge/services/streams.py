@@ -48,6 +48,8 @@ def send_modes(channel: Channel, modes: Sequence[Mode[Any]], index: int) -> bool
 
 
 ALL_STREAMS = 0
+MOST_HZ = 400
+"""Greatest rate that a parameter tells."""
 RATE_PREFIX = "MAV1_"
 HEARTBEAT_US = 1_000_000
 TIMESYNC_US = 10_000_000
@@ -66,6 +68,8 @@ class StreamService(Service):
         self._group_of = {message(n).id: group for group, (_, names) in self._groups.items() for n in names}
         self._asked: Mapping[tuple[int, int], int] = {}
         """Rates [Hz] of groups by (number of the channel, group); replaced, never changed."""
+        self._first_rates: dict[int, int] = {}
+        self._look()
 
     def handlers(self) -> dict[str, Handler]:
         return {"REQUEST_DATA_STREAM": self._request_data_stream}
@@ -75,8 +79,7 @@ class StreamService(Service):
             return
         self._set(channel, HEARTBEAT, HEARTBEAT_US)
         self._set(channel, TIMESYNC, TIMESYNC_US)
-        for group in self._groups:
-            rate = self._rate_parameter(group)
+        for group, rate in self._first_rates.items():
             if rate:
                 self.set_group(channel, group, rate)
 
@@ -84,21 +87,26 @@ class StreamService(Service):
         self._asked = {key: rate for key, rate in self._asked.items() if key[0] != channel.number}
 
     def snapshot(self) -> Any:
-        return tuple(self._asked.items())
+        return tuple(self._asked.items()), tuple(self._first_rates.items())
 
     def restore(self, state: Any) -> None:
-        self._asked = dict(state)
+        self._asked, self._first_rates = map(dict, state)
 
     def parameter_changed(self, name: str) -> None:
         """A MAV1_ rate parameter was set: it holds for every channel from now on."""
         for group, (ending, _) in self._groups.items():
             if name == RATE_PREFIX + ending:
+                self._first_rates = {**self._first_rates, group: self._rate_parameter(group)}
                 for channel in self.bridge.channels:
-                    self.set_group(channel, group, self._rate_parameter(group))
+                    self.set_group(channel, group, self._first_rates[group])
 
     def _rate_parameter(self, group: int) -> int:
         rate = self.bridge.parameter(RATE_PREFIX + self._groups[group][0])
         return int(rate) if rate is not None and rate > 0 else 0
+
+    def _look(self) -> None:
+        """Rates that channels begin with: what the parameters say before clients ask."""
+        self._first_rates = {group: self._rate_parameter(group) for group in self._groups}
 
     def set_group(self, channel: Channel, group: int, rate_hz: int) -> None:
         """Send a group's messages at ``rate_hz`` (0: stop), whatever was asked for them singly before."""
@@ -137,6 +145,14 @@ class StreamService(Service):
         for group in wanted:
             if group in self._groups:
                 self.set_group(channel, group, rate)
+                if channel is self.bridge.channels[0]:
+                    self._keep_rate(group, rate)
+
+    def _keep_rate(self, group: int, rate_hz: int) -> None:
+        """The first channel's rates are what its parameters say; other channels do not begin with them."""
+        name, values = RATE_PREFIX + self._groups[group][0], self.bridge.vehicle.parameters
+        if name in values.table:
+            values[name] = float(min(rate_hz, MOST_HZ))
 
     # ------------------------------------------------------------------ commands
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from . import bits, derived
+from . import bits, board, derived
 from .derived import DEG
 from .formats import Field, Message, Source
 
@@ -94,6 +94,7 @@ EVENT_MESSAGES = (
     Message("MODE", (Field("Mode", "M"), Field("ModeNum", "B"), Field("Rsn", "B"))),
     Message("ARM", tuple(Field(*x) for x in (("ArmState", "B"), ("ArmChecks", "I"), ("Forced", "B"), ("Method", "B")))),
     Message("EV", (Field("Id", "B"),)),
+    board.COMMANDS,
     Message("ERR", (Field("Subsys", "B"), Field("ECode", "B"))),
     Message(
         "SIDD",
@@ -547,3 +548,16 @@ TRUTH = Message(
     _ATTITUDE,
 )
 """SIM: true position and attitude of the simulated vehicle."""
+TRUE_MOTION = Message(
+    "SIM2",
+    (
+        *(Field(f"P{axis}", "d", "?", "?", f"{_BODY}pos[{k}]") for k, axis in enumerate("NED")),
+        *(Field(f"V{axis}", "f", "?", "?", f"{_BODY}vel[{k}]") for k, axis in enumerate("NED")),
+        Field("As", "f", "?", "?"),
+        Field("ASpdU", "f", "?", "?"),
+        Field("UFC", "I", "?", "?"),
+    ),
+    bits.IMU_RATE,
+    _ATTITUDE,
+)
+"""SIM2: its true position from the start [m] and velocity [m/s]."""

@@ -11,7 +11,7 @@ import numpy as np
 from ...autopilot.copter.modes.autotune import AUTOTUNE
 from .. import plot
 from ..kind import KindLogs
-from . import autotune, bits, common, derived, system_id
+from . import autotune, bits, board, common, derived, escs, surface, system_id
 from .derived import DEG
 from .formats import Field, Message
 from .samples import Array
@@ -20,6 +20,7 @@ A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C = "autopilot.control."
 _MOTORS, _ATTITUDE, _NE, _D = C + "motors.", C + "attitude.", C + "pos_ne.", C + "pos_d."
 _TARGET = _ATTITUDE + "target_q"
+_LOOP_HZ = 400
 _SHAPED_TICKS = 8
 """Number of ticks without a run after which a position controller counts as inactive."""
 
@@ -36,6 +37,20 @@ def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
                 Field("DesYaw", "f", "h", "0", derived.wrapped(derived.euler(_TARGET, 2))),
                 Field("Yaw", "f", "h", "0", derived.wrapped(derived.euler(E + "q", 2))),
                 Field("AEKF", "B", source=3),
+            ),
+            rate,
+            bit,
+        ),
+        Message(
+            "ANG",
+            (
+                Field("DesRoll", "f", "d", "0", derived.euler(_TARGET, 0), DEG),
+                Field("Roll", "f", "d", "0", derived.euler(E + "q", 0), DEG),
+                Field("DesPitch", "f", "d", "0", derived.euler(_TARGET, 1), DEG),
+                Field("Pitch", "f", "d", "0", derived.euler(E + "q", 1), DEG),
+                Field("DesYaw", "f", "h", "0", derived.wrapped(derived.euler(_TARGET, 2))),
+                Field("Yaw", "f", "h", "0", derived.wrapped(derived.euler(E + "q", 2))),
+                Field("Dt", "f", "s", "0", 1.0 / _LOOP_HZ),
             ),
             rate,
             bit,
@@ -201,7 +216,12 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         TERRAIN,
         *common.FILTER,
         common.AHR2,
-        *((common.TRUTH,) if simulated else ()),
+        board.loop(_LOOP_HZ, boot_unix_us),
+        board.more_pulses_in(bits.COPTER_RC_IN),
+        board.more_pulses_out(bits.COPTER_RC_OUT),
+        *escs.MESSAGES,
+        surface.MESSAGE,
+        *((common.TRUTH, common.TRUE_MOTION) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
 

@@ -16,7 +16,7 @@ from ...autopilot.mission.mission import Mission
 from ...autopilot.modes import shown
 from ...autopilot.params.table import Values
 from ..kind import logs_of
-from . import bits, formats, places
+from . import bits, board, formats, places
 from .common import EVENT_MESSAGES
 from .events import EDGES, HEALTH, HOME, ORIGIN, RESOLVED, SILENCE_US, UNHEALTHY, EventEncoder
 from .plan import Plan
@@ -121,6 +121,10 @@ class LogEncoder:
     def text(self, time_us: int, text: str) -> None:
         """Add a status text (MSG); time since boot [us]."""
         self.note(time_us, self.events.text, text)
+
+    def command(self, time_us: int, numbers: tuple[Any, ...]) -> None:
+        """Add a client's command (MAVC), see ``board.command``; time since boot [us]."""
+        self.note(time_us, partial(self.events.pack, board.COMMANDS.name), *numbers)
 
     def read_events(self) -> None:
         """Add the events that the autopilot emitted since the last call."""

@@ -9,6 +9,7 @@ LOG_FILE_DSRMROT so does the arming after a disarming.
 from __future__ import annotations
 
 import contextlib
+from collections import deque
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
@@ -17,6 +18,7 @@ from ...autopilot.events import ARMING_REFUSED, EVENT_RING
 from ...autopilot.shell_parameters import rotates_logs
 from ...vehicle.sampler import LONGEST_US, NEVER, next_row_us
 from ..tlog import LogError
+from . import board
 from .encoder import LogEncoder, Vehicle
 from .samples import place
 
@@ -24,6 +26,8 @@ PERSIST_US = 15_000_000
 """Time after disarming, or a refused arming, during which logging continues [us]."""
 POLL_US = LONGEST_US
 """Period at which a logger that is not logging checks whether it should [us]."""
+_COMMANDS = 32
+"""Commands that are kept for a log that begins with one of them."""
 _ALWAYS, _KEEP_FLIGHTS = (1, 2, 3), 3
 _COUNT, _ARMED, _ARMED_US = "autopilot.events.count", "autopilot.arming.armed", "autopilot.arming.armed_us"
 
@@ -101,6 +105,7 @@ class DataFlash:
         self._disarmed_us = self._refused_us = -PERSIST_US
         self._since_us = self._read = 0
         self._texts: list[tuple[int, str]] = []
+        self._commands: deque[tuple[int, tuple[Any, ...]]] = deque(maxlen=_COMMANDS)
         self._count = 0
         self._settings()
         self._find_due()
@@ -264,10 +269,11 @@ class DataFlash:
         self._paused = False
         self._encoder.skip_events_before(since)
         self._count = -1
-        for time_us, text in self._texts:
+        for time_us, said in sorted([*self._commands, *self._texts], key=lambda each: each[0]):
             if time_us >= since:
-                self._encoder.text(time_us, text)
+                self._encoder.text(time_us, said) if isinstance(said, str) else self._encoder.command(time_us, said)
         self._texts.clear()
+        self._commands.clear()
 
     def _new_file(self, unix_us: int) -> LogFile:
         while True:
@@ -314,6 +320,16 @@ class DataFlash:
 
     def reached(self, seq: int) -> None:
         """A mission item was reached: not logged, CMD and the status text say it."""
+
+    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+        """Log a command that was answered."""
+        self._follow_reboot()
+        numbers = board.command(fields, frame, is_place, sender, result)
+        if self._encoder is None or self._paused:
+            self._commands.append((self._now_us, numbers))
+            return
+        self._catch_up()
+        self._encoder.command(self._now_us, numbers)
 
     def _catch_up(self) -> None:
         """Log the events of the autopilot before the texts about them."""

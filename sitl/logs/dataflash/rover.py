@@ -18,7 +18,7 @@ from ...autopilot.rover.modes.smart_rtl import SMART_RTL
 from ...autopilot.rover.modes.table import AUTONOMOUS
 from .. import plot
 from ..kind import KindLogs
-from . import bits, common, derived
+from . import bits, board, common, derived
 from .derived import DEG
 from .formats import Field, Message
 from .samples import Array
@@ -200,7 +200,10 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         common.LANDING_TARGET,
         *common.FILTER,
         common.AHR2,
-        *((common.TRUTH,) if simulated else ()),
+        board.loop(50, boot_unix_us),
+        board.more_pulses_in(bits.ROVER_RC),
+        board.more_pulses_out(bits.ROVER_RC),
+        *((common.TRUTH, common.TRUE_MOTION) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)
 

@@ -72,8 +72,16 @@ def test_arming_is_told(log: dict[str, list[Any]]) -> None:
     assert any("rmed" in m.Message or "Arming" in m.Message for m in log["MSG"])
 
 
+def test_commands_of_clients_are_told_with_their_results(driven: Run, log: dict[str, list[Any]]) -> None:
+    """Also the one that the log begins with."""
+    commands = [(m.Cmd, m.Res, m.WL, m.TS, m.SS) for m in log["MAVC"]]
+    sent = [176, 400, 22] if driven.kind == "copter" else [176, 400]
+    assert commands == [(number, 0, 1, 1, driven.client.system) for number in sent]
+
+
 def test_it_tells_where_the_vehicle_went(driven: Run, log: dict[str, list[Any]]) -> None:
     """Estimate, truth and GPS agree; the vehicle is 5 m north at the end."""
+    assert pytest.approx(5.0, abs=0.6) == log["SIM2"][-1].PN
     end, truth, fix = log["POS"][-1], log["SIM"][-1], log["GPS"][-1]
     assert pytest.approx(5.0, abs=0.6) == log["PSCN"][-1].PN
     metres = 1.0 / 8.983e-6
