@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..bridge.hil.protocol import BASE_PORT
+from ..core.constants import TICK_HZ
 from ..errors import OptionError
 from ..physics.native.power_on import Home
 from ..vehicles import Airframe, CopterAirframe
@@ -62,6 +63,7 @@ def parameters(airframe: Airframe) -> dict[str, float]:
     ):
         if name in own:
             values[theirs] = float(own[name])
+    values["IMU_INTEG_RATE"] = TICK_HZ  # its estimator then runs at each tick, which lockstep waits for
     return values | {"NAV_DLL_ACT": 0, "NAV_RCL_ACT": 0, "COM_RC_IN_MODE": 4}  # no ground station, no sticks
 
 
