@@ -67,6 +67,11 @@ def parameters(airframe: Airframe) -> dict[str, float]:
     return values | {"NAV_DLL_ACT": 0, "NAV_RCL_ACT": 0, "COM_RC_IN_MODE": 4}  # no ground station, no sticks
 
 
+def _worded(value: float) -> str:
+    """For its ``param set``, which reads a whole number up to the first character that is no digit."""
+    return str(int(value)) if value == int(value) else f"{value:.9g}"
+
+
 def programs_port(instance: int) -> int:
     """UDP port that an instance sends to for programs."""
     return PROGRAMS_PORT + min(instance, INSTANCES - 1)
@@ -120,7 +125,7 @@ def start(
         "PX4_HOME_LAT": f"{home[0]:.9g}",
         "PX4_HOME_LON": f"{home[1]:.9g}",
         "PX4_HOME_ALT": f"{home[2]:.9g}",
-        **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in values.items()},
+        **{f"PX4_PARAM_{name}": _worded(value) for name, value in values.items()},
     }
     command = [str(program), "-i", str(instance), "-d", str(program.parent.parent / "etc")]
     return AutopilotProcess(command, {}, environment, folder)
