@@ -40,7 +40,7 @@ class HilHost:
         """Number of autopilots that have connected."""
         self.before_boot_us = 0
         self._wall, self._connection, self._received = clock, None, b""
-        self._due = float("-inf")
+        self._due, self._is_due = float("-inf"), False
         self.attach(plant)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -77,10 +77,17 @@ class HilHost:
         if self._connection is None:
             self._accept()
             return False
-        if self.end.freewheels:
-            wait = min(max(self._due - self._wall(), 0.0), WAIT_S)
-            if not select.select([self._connection], [], [], wait)[0]:
-                return self._wall() >= self._due
+        end, early = self.end, self._due - self._wall()
+        longest = end.wait_s
+        if end.freewheels:
+            longest = max(early, 0.0)
+        elif end.is_starting and early > 0.0:  # it answers, but its time must not outrun the wall clock yet
+            time.sleep(min(early, WAIT_S))
+            if early > WAIT_S:
+                return False
+        if longest is not None and not select.select([self._connection], [], [], min(longest, WAIT_S))[0]:
+            self._is_due = longest <= WAIT_S
+            return self._is_due
         try:
             self._received = self._connection.recv(_READ)
         except TimeoutError:
@@ -103,17 +110,20 @@ class HilHost:
         self.boots += 1
 
     def step(self, until_us: int | None = None) -> None:
-        """Process the answer and step; while the autopilot boots, step without an answer."""
+        """Process the answer and step; or step without one, where that is due."""
         if self._connection is None:
             return
         data, self._received = self._received, b""
+        is_due, self._is_due = self._is_due, False
+        before = self.end.ticks
         if data:
             out = self.end.feed(data)
-        elif self.end.freewheels:
+        elif is_due:
             out = self.end.go_on()
-            self._due = max(self._due + 1e-6 * TICK_US, self._wall())
         else:
             return
+        if self.end.ticks != before and self.end.is_starting:
+            self._due = max(self._due + 1e-6 * TICK_US, self._wall())
         if out:
             try:
                 self._connection.sendall(out)

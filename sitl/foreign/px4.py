@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..bridge.hil.protocol import BASE_PORT
+from ..core.constants import TICK_HZ
 from ..errors import OptionError
 from ..physics.native.power_on import Home
 from ..vehicles import Airframe, CopterAirframe
@@ -62,7 +63,13 @@ def parameters(airframe: Airframe) -> dict[str, float]:
     ):
         if name in own:
             values[theirs] = float(own[name])
+    values["IMU_INTEG_RATE"] = TICK_HZ  # its estimator then runs at each tick, which lockstep waits for
     return values | {"NAV_DLL_ACT": 0, "NAV_RCL_ACT": 0, "COM_RC_IN_MODE": 4}  # no ground station, no sticks
+
+
+def _worded(value: float) -> str:
+    """For its ``param set``, which reads a whole number up to the first character that is no digit."""
+    return str(int(value)) if value == int(value) else f"{value:.9g}"
 
 
 def programs_port(instance: int) -> int:
@@ -118,7 +125,7 @@ def start(
         "PX4_HOME_LAT": f"{home[0]:.9g}",
         "PX4_HOME_LON": f"{home[1]:.9g}",
         "PX4_HOME_ALT": f"{home[2]:.9g}",
-        **{f"PX4_PARAM_{name}": f"{value:g}" for name, value in values.items()},
+        **{f"PX4_PARAM_{name}": _worded(value) for name, value in values.items()},
     }
     command = [str(program), "-i", str(instance), "-d", str(program.parent.parent / "etc")]
     return AutopilotProcess(command, {}, environment, folder)

@@ -219,7 +219,8 @@ class Px4Session:
                 raise
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
-        process, end, pacing, due_us = self.process, self.server.end, Pacing(self._speedup), 0
+        process, end, due_us = self.process, self.server.end, 0
+        pacing, starting = Pacing(self._speedup), Pacing(min(self._speedup or 1.0, 1.0))
         looked_us = end.time_us
 
         def goes_on() -> bool:
@@ -230,7 +231,7 @@ class Px4Session:
             if end.time_us >= due_us:  # PX4 goes as fast as its physics: this is what holds it
                 passed_us, looked_us = end.time_us - looked_us, end.time_us
                 due_us = end.time_us + pacing.slice_us
-                wait = pacing.wait_s(passed_us)
+                wait = (starting if end.is_starting else pacing).wait_s(passed_us)
                 if wait > 0.0:
                     time.sleep(wait)
             return running()

@@ -163,6 +163,11 @@ class PhysicsServer:
         exchanges = 0
         try:
             while running():
+                wait_s = end.wait_s
+                if wait_s is not None and not select.select([connection], [], [], wait_s)[0]:
+                    send(end.go_on())
+                    self._tell()
+                    continue
                 try:
                     data = receive(READ_BYTES)
                 except TimeoutError:

@@ -2,10 +2,12 @@
 """Stands in for PX4's simulator program: its command line, its handshake, its ways on both links; a small controller
 on the truth inside.
 
-As the real one: connects to the simulator and tries until it is there; says HEARTBEAT and asks for the truth, then
-nothing until it has booted; its clock is HIL_SENSOR's from the first one on; zeros while disarmed, else parts of each
-motor's range; MAVLink by UDP to 14540 + N first; OFFBOARD only while set-points come; hears commands only while its
-time passes.
+As the real one (release/1.18 of August 2026): connects to the simulator and tries until it is there; says HEARTBEAT
+and asks for the truth, then nothing until it has booted; its clock is HIL_SENSOR's from the first one on; zeros while
+disarmed, else parts of each motor's range; MAVLink by UDP to 14540 + N first; OFFBOARD only while set-points come;
+hears commands only while its time passes. With IMU_INTEG_RATE below the rate of samples its estimator runs at each
+n-th one, and the answers to the others wait for it. MAVLink begins some wall time after it answers (START_S).
+LOCAL_POSITION_NED comes at once, with a heading without declination, until ESTIMATOR_STATUS says that it is valid.
 """
 
 from __future__ import annotations
@@ -23,6 +25,9 @@ from sitl.core.algebra import euler_of
 from sitl.core.vectors import Quat
 
 BOOT_TICKS, POSITION_TICKS = 400, 4000
+START_S = 1.0
+DECLINATION = 0.23
+UNTRUE, VALID = 1 | 4, 1 | 2 | 4 | 8 | 16 | 32
 OFFBOARD, FRESH_US = 6, 500_000
 MASS, GRAVITY, THRUST, TURN = 1.14, 9.80665, 8.54858e-6, (0.035, 0.046, 0.098)
 TOP_SPEED = 838.0
@@ -61,11 +66,15 @@ class Px4:
         self.client = ("127.0.0.1", 14540 + instance)
         self.link = Wire(lambda frame: self.socket.sendto(frame, self.client), 1 + instance)
         self.now, self.ticks, self.armed, self.mode = 0, 0, False, 4
+        self.every = max(round(400 / given["IMU_INTEG_RATE"]), 1)
+        self.answered = None
         self.began = None
         self.truth, self.origin = None, None
         self.target, self.target_us = (0.0,) * 4, -FRESH_US
         self.place = None
-        self.intervals = {"LOCAL_POSITION_NED": 50_000, "ATTITUDE": 50_000, "HEARTBEAT": 1_000_000}
+        self.intervals = {
+            "LOCAL_POSITION_NED": 50_000, "ATTITUDE": 50_000, "ESTIMATOR_STATUS": 2_000_000, "HEARTBEAT": 1_000_000,
+        }  # fmt: skip
         self.due = dict.fromkeys(self.intervals, 0)
 
     def run(self) -> None:
@@ -78,9 +87,11 @@ class Px4:
                     self.truth = frame.kind.decode(frame.payload)
                 elif frame.kind.name == "HIL_SENSOR":
                     self.sense(frame.kind.decode(frame.payload))
-                    self.hear(commands)
-                    self.tell()
-                    if self.ticks > BOOT_TICKS:
+                    if self.answered is not None and time.monotonic() > self.answered + START_S:
+                        self.hear(commands)
+                        self.tell()
+                    if self.ticks > BOOT_TICKS and self.ticks % self.every == 0:
+                        self.answered = self.answered or time.monotonic()
                         self.answer()
 
     def sense(self, sensor) -> None:
@@ -110,12 +121,17 @@ class Px4:
         if name == "HEARTBEAT":
             mode = 1 | 128 * self.armed
             self.link.say(name, autopilot=12, type=2, base_mode=mode, custom_mode=self.mode << 16)
-        elif self.origin is not None and name == "LOCAL_POSITION_NED":
+        elif name == "ESTIMATOR_STATUS":
+            self.link.say(name, time_usec=self.now, flags=UNTRUE if self.origin is None else VALID)
+        elif self.origin is None and name == "LOCAL_POSITION_NED":
+            self.link.say(name, time_boot_ms=ms)
+        elif name == "LOCAL_POSITION_NED":
             x, y, z = self.position()
             vx, vy, vz = (0.01 * v for v in (self.truth.vx, self.truth.vy, self.truth.vz))
             self.link.say(name, time_boot_ms=ms, x=x, y=y, z=z, vx=vx, vy=vy, vz=vz)
         elif self.truth is not None and name == "ATTITUDE":
             roll, pitch, yaw = euler_of(Quat(*self.truth.attitude_quaternion))
+            yaw -= DECLINATION if self.origin is None else 0.0
             self.link.say(name, time_boot_ms=ms, roll=roll, pitch=pitch, yaw=yaw, yawspeed=self.gyro[2])
         elif self.origin is not None and name == "GPS_GLOBAL_ORIGIN":
             self.link.say(name, latitude=self.origin[0], longitude=self.origin[1], altitude=self.origin[2])
@@ -137,7 +153,7 @@ class Px4:
                     self.target = (fields.vx, fields.vy, fields.vz, fields.yaw_rate)
 
     def command(self, fields) -> int:
-        names = {message(name).id: name for name in ("LOCAL_POSITION_NED", "ATTITUDE", "GPS_GLOBAL_ORIGIN")}
+        names = {message(name).id: name for name in (*self.intervals, "GPS_GLOBAL_ORIGIN")}
         if fields.command in (511, 512) and int(fields.param1) in names:
             if fields.command == 512:
                 self.report(names[int(fields.param1)])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import socket
 import subprocess
 from pathlib import Path
@@ -75,6 +76,19 @@ def test_a_copter_of_another_maker_flies_the_office(program, request):
     assert np.hypot(*(robot.pose[0, :2] - before[:2])) > 0.2
     assert np.allclose(np.diff(times)[1:], np.diff(times)[1], atol=1e-6)
     env.close()
+
+
+@pytest.mark.slow
+def test_an_episode_with_px4_begins_where_ours_does(px4):
+    """Its estimator tells a position, and a heading without declination, before it holds them for valid."""
+    firsts = []
+    for extra in ({}, {"autopilot": f"px4:{px4}"}):
+        env = gym.make(COPTER, setpoint="velocity", **extra)
+        env.reset(seed=1)
+        firsts.append(env.unwrapped.robot.pose[0].copy())
+        env.close()
+    assert np.allclose(firsts[0][:3], firsts[1][:3], atol=1.0)
+    assert abs(math.remainder(firsts[0][3] - firsts[1][3], 2.0 * math.pi)) < 0.1
 
 
 @pytest.mark.slow

@@ -203,6 +203,16 @@ def test_px4_is_run(px4, tmp_path):
 
 
 @pytest.mark.slow
+def test_a_px4_whose_estimator_skips_ticks_does_not_stop_time(px4, tmp_path):
+    (tmp_path / "slow.params").write_text("IMU_INTEG_RATE 200\n")
+    words = ("--speedup", "max", "--duration", "3", "--instance", "8", "--params", tmp_path / "slow.params")
+    with command("run", "copter", "--autopilot", f"px4:{px4}", *words, cwd=tmp_path) as process:
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    assert err.count("has not answered the tick") == 1
+
+
+@pytest.mark.slow
 def test_the_physics_command_listens_for_json(tmp_path):
     with command("physics", "copter", "--listen", "json:0", cwd=tmp_path) as process:
         where = line_with(process.stdout, "JSON on udp").rpartition(" ")[2]

@@ -99,6 +99,15 @@ def actuators_writer(fleet: np.ndarray[Any, Any], index: int) -> Callable[[Contr
 
 LATE = 400
 """After so many late answers the clock must be another one than we think."""
+LONGEST_WAIT_S, SHORTEST_WAIT_S = 0.2, 0.005
+"""Wall time that a tick waits for its answer. It begins with the first, and each tick without an answer halves it: who
+has been silent without a reason is not waited for in vain 400 times a second."""
+TRUSTED = 400
+"""After so many answers in a row it is doubled again."""
+SILENT = 200
+"""Ticks in a row without an answer; after that time stands: the autopilot is stopped, or gone."""
+START_US = 4_000_000
+"""Simulated time since the first answer in which an autopilot starts its modules, in wall time [us]."""
 
 
 class ForeignClock:
@@ -107,31 +116,63 @@ class ForeignClock:
     What PX4 answers first may be a tick of some time ago, with others under way. Were each late answer a step, that
     many ticks would stay under way for good and its controls would always be so old: a step is only asked for once the
     present tick is answered. Until then time has to go on by itself.
+
+    And PX4 may wait, too, for a tick that it has not got: its controls come when all that it calls lockstep components
+    have run, and with IMU_INTEG_RATE below 400 its estimator does not run at each tick. So no tick waits for ever.
     """
 
     def __init__(self) -> None:
         self._first_us = self._answered_us = -1
         self._late = 0
         self._is_in_step, self._is_lockstep = False, True
+        self._lag_us = self._in_step_us = 0
+        self._answers = self._in_vain = 0
+        self.wait_s = LONGEST_WAIT_S
+        """Wall time that the present tick waits for an answer."""
+        self.unanswered = 0
+        """Ticks so far for which no answer came in time."""
 
     @property
     def holds(self) -> bool:
         """Whether time waits for its controls."""
         return self._is_in_step and self._is_lockstep
 
+    @property
+    def is_silent(self) -> bool:
+        """Whether so many ticks in a row have had no answer that time has to stand."""
+        return self._in_vain >= SILENT
+
+    def is_starting(self, now_us: int) -> bool:
+        """Whether its modules may still be starting at this time [us]."""
+        return not self._is_in_step or now_us - self._in_step_us < START_US
+
     def sent(self, now_us: int) -> None:
         """It got the tick of this time [us]."""
         if self._first_us < 0:
             self._first_us = now_us
 
+    def gave_up(self) -> None:
+        """The present tick has waited in vain."""
+        self.unanswered += 1
+        self._in_vain += 1
+        self._answers = 0
+        self.wait_s = max(0.5 * self.wait_s, SHORTEST_WAIT_S)
+
     def asks_for_step(self, given: Controls, now_us: int) -> bool:
         """Whether controls that come at this time [us] are the answer to the present tick, for the first time."""
         self._is_lockstep = given.is_lockstep
+        self._in_vain = 0
         is_new, self._answered_us = given.time_us > self._answered_us, max(given.time_us, self._answered_us)
+        late_us = now_us - self._first_us - given.time_us
         if not self._is_in_step:
-            late_us = now_us - self._first_us - given.time_us
             if late_us > 0 and late_us % TICK_US == 0 and self._late < LATE:
                 self._late += 1
                 return False
-            self._is_in_step = True
-        return is_new and given.is_lockstep
+            self._is_in_step, self._lag_us, self._in_step_us = True, late_us, now_us
+        late_us -= self._lag_us
+        if not (is_new and given.is_lockstep) or (late_us > 0 and late_us % TICK_US == 0):
+            return False
+        self._answers += 1
+        if self._answers % TRUSTED == 0:
+            self.wait_s = min(2.0 * self.wait_s, LONGEST_WAIT_S)
+        return True

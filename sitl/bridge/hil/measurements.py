@@ -18,6 +18,8 @@ from .ranging import RangeWriter, ScanWriter
 
 GPS_KIND = message("HIL_GPS")
 S = "sensors.gps_"
+_POSITION = 2
+"""Least GPS_FIX_TYPE with a position."""
 _MOST_FIX = 8
 """Greatest GPS_FIX_TYPE."""
 
@@ -31,12 +33,17 @@ class GpsWriter:
     def __init__(self, reader: RecordReader) -> None:
         names = ("count", "time_us", "fix", "lat", "lon", "alt", "eph", "epv", "vel", "satellites")
         self._read = reader.fields(*(S + name for name in names))
+        self._had_fix = False
+        self.is_quiet = False
+        """Whether nothing is said before there is a position: PX4 takes the one that comes without a fix for true, and
+        when it jumps to the first fix its checks of drift hold it on the ground for half a minute."""
 
     def payloads(self) -> list[bytes]:
         """The last fix; nothing before the first."""
         count, t, fix, lat, lon, alt, eph, epv, vn, ve, vd, satellites = self._read()
-        if count == 0:
+        if count == 0 or (self.is_quiet and fix < _POSITION and not self._had_fix):
             return []
+        self._had_fix = self._had_fix or fix >= _POSITION
         course = uint16(atan2(ve, vn) * DEG * 100.0 % 36000.0)
         speeds = uint16(hypot(vn, ve)), int16(vn), int16(ve), int16(vd), course
         return [GPS_KIND.pack(t, lat, lon, alt, uint16(eph), uint16(epv), *speeds, fix & 0xFF, satellites & 0xFF, 0, 0)]
@@ -112,8 +119,9 @@ class Measurements:
         reader = RecordReader(fleet, index)
         self.sender = sender or Sender(*PHYSICS)
         self._imu = sensor.SensorWriter(reader)
+        self._gps = GpsWriter(reader)
         sources: list[Source] = [
-            _Plain(GPS_KIND, GpsWriter(reader)),
+            _Plain(GPS_KIND, self._gps),
             _Plain(sensor.BATTERY_KIND, sensor.BatteryWriter(reader)),
             _Plain(sensor.WHEELS_KIND, sensor.WheelWriter(reader)),
             ScanWriter(v),
@@ -129,6 +137,15 @@ class Measurements:
             self._slots.append((slice(at, at + len(source.marks)), source))
             at += len(source.marks)
         self._seen: tuple[Any, ...] = ()
+
+    @property
+    def is_foreign(self) -> bool:
+        """Whether they are for an autopilot that is not ours."""
+        return self._gps.is_quiet
+
+    @is_foreign.setter
+    def is_foreign(self, value: bool) -> None:
+        self._gps.is_quiet = value
 
     def everything(self) -> bytes:
         """All that is known now, as new: for an autopilot that has just come."""

@@ -106,12 +106,35 @@ class PhysicsEnd:
         """Whether physics has to go on by itself at the pace of the wall clock."""
         return self._is_foreign and not self._clock.holds
 
+    @property
+    def wait_s(self) -> float | None:
+        """Wall time that the present tick waits for an answer [s]; None: until it comes."""
+        return self._clock.wait_s if self._is_foreign and self._clock.holds and not self._clock.is_silent else None
+
+    @property
+    def is_starting(self) -> bool:
+        """Whether an autopilot that is not ours may still be starting: in wall time, which simulated time must not
+        outrun."""
+        return self._is_foreign and self._clock.is_starting(self._now)
+
+    @property
+    def unanswered(self) -> int:
+        """Ticks that an autopilot which is not ours has not answered in time."""
+        return self._clock.unanswered
+
     def move_sticks(self, pulses: Sequence[int]) -> None:
         """A frame of a receiver on this side, up to twelve channels [us], for the next tick."""
         self._sticks = tuple(pulses)
 
     def go_on(self) -> bytes:
         """One tick without an answer."""
+        if not self.freewheels:
+            if not self._clock.unanswered:
+                self.notes.append(
+                    f"the autopilot has not answered the tick at {1e-6 * self._now:.4f} s in "
+                    f"{1e3 * self._clock.wait_s:.0f} ms: time goes on without it, and this is not said again"
+                )
+            self._clock.gave_up()
         return self._step()
 
     def feed(self, data: bytes) -> bytes:
@@ -144,7 +167,7 @@ class PhysicsEnd:
 
     def _meet(self, heartbeat: Any) -> bytes:
         """Who is there?"""
-        self._is_foreign = heartbeat.autopilot != ARDUPILOTMEGA
+        self._is_foreign = self.measurements.is_foreign = heartbeat.autopilot != ARDUPILOTMEGA
         self._is_stranger = not self._is_foreign and bool(self._type) and heartbeat.type != self._type
         if not self._is_stranger:
             return b""

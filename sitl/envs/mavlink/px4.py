@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from sitl.bridge.services.setpoints import (
@@ -21,7 +20,7 @@ from sitl.errors import NotReadyError
 
 from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, check_reports, set_intervals, until
 from .setpoints import LOCAL, Encode, Message, position
-from .telemetry import StepTelemetry
+from .telemetry import ESTIMATOR, StepTelemetry
 
 OFFBOARD = 6
 """Main mode of PX4's, in param2 of DO_SET_MODE with MAV_MODE_FLAG_CUSTOM_MODE_ENABLED in param1."""
@@ -31,6 +30,9 @@ _TENTH = 100_000
 _BEFORE = 10
 """Set-points that come before the mode is asked for."""
 _READY_S, _CLIMB_S = 90, 30
+_VALID = 1 | 2 | 4 | 16 | 32
+"""ESTIMATOR_STATUS_FLAGS: attitude, velocity, position on the earth, height. Before, PX4 tells a position, too, and a
+heading that knows no declination, or none at all."""
 
 
 def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
@@ -63,7 +65,10 @@ def prepare(link: Connection, take_off: float) -> None:
     """
     inbox = link.inbox
     set_intervals(link, INTERVAL_US)
-    until(link, lambda: not math.isnan(inbox.position[1]), _TENTH, "has no position", _READY_S)
+    link.command("SET_MESSAGE_INTERVAL", ESTIMATOR.id, INTERVAL_US)
+    until(link, lambda: inbox.estimator & _VALID == _VALID, _TENTH, "does not hold its position for valid", _READY_S)
+    before = inbox.time_ms
+    until(link, lambda: inbox.time_ms > before, _TENTH, "sends no LOCAL_POSITION_NED and ATTITUDE", _READY_S)
     north, east, down = inbox.position[1:4]
     heading = inbox.attitude[3]
 

@@ -21,7 +21,7 @@ from .reports import LANDED, ON_GROUND, REPORTED, LandedState, note_report
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
 ORIGIN, GLOBAL = message("GPS_GLOBAL_ORIGIN"), message("GLOBAL_POSITION_INT")
-LANDED_STATE = LandedState.kind
+LANDED_STATE, ESTIMATOR = LandedState.kind, message("ESTIMATOR_STATUS")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
@@ -67,6 +67,8 @@ class StepTelemetry(Inbox):
         self.mode, self.armed = -1, False
         self.origin: tuple[int, int, int] | None = None
         """Latitude, longitude [degE7], altitude [mm] of local positions."""
+        self.estimator = 0
+        """ESTIMATOR_STATUS_FLAGS: what the vehicle's filter holds for valid, where that was asked for."""
         self.height = math.nan
         """Above home [m]."""
         self.scans_by_mavlink = True
@@ -146,6 +148,8 @@ class StepTelemetry(Inbox):
             self._sectors(fields)
         elif kind is GLOBAL:
             self.height = 0.001 * fields.relative_alt
+        elif kind is ESTIMATOR:
+            self.estimator = fields.flags
         elif kind is LANDED_STATE:
             note_report(self.reports, kind, payload)
         elif kind is ORIGIN:
@@ -156,7 +160,7 @@ class StepTelemetry(Inbox):
     def forget(self) -> None:
         """The vehicle boots: what it said before does not count any more."""
         self.position = (0, math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
-        self.origin, self.armed, self._scan_us = None, False, -1
+        self.origin, self.armed, self._scan_us, self.estimator = None, False, -1, 0
         self._fresh.clear()
         self.acks.clear()
         self.last_texts.clear()

@@ -14,7 +14,7 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor, truth
 from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
-from sitl.bridge.hil.controls import LATE
+from sitl.bridge.hil.controls import LATE, LONGEST_WAIT_S, SHORTEST_WAIT_S, SILENT, START_US, TRUSTED
 from sitl.bridge.hil.protocol import Sender
 from sitl.core.records import first_difference
 from tests.bridge.hil.hil_bench import Bench
@@ -215,6 +215,76 @@ def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
         bench.say("HIL_ACTUATOR_CONTROLS", time_usec=2500 * answers, controls=[0.4], flags=1)
         answers += 1
     assert answers == LATE + 1
+
+
+def booted_px4() -> Bench:
+    """It has answered its first tick."""
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    assert bench.there.wait_s is None and bench.there.is_starting
+    bench.there.go_on()
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=0, controls=[0.4], flags=1)
+    return bench
+
+
+def test_a_tick_that_px4_does_not_answer_is_followed_by_the_next_one() -> None:
+    bench = booted_px4()
+    assert bench.there.wait_s == LONGEST_WAIT_S
+    bench.there.go_on()
+    assert (bench.there.unanswered, bench.there.wait_s) == (1, 0.5 * LONGEST_WAIT_S)
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=2500, controls=[0.5], flags=1) == b""  # of the one before
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5000, controls=[0.6], flags=1)
+    bench.there.go_on()
+    assert bench.there.unanswered == 2
+    assert [text for text in bench.there.notes if "has not answered" in text] == [
+        "the autopilot has not answered the tick at 0.0050 s in 200 ms: time goes on without it, and this is not said again"
+    ]
+    assert bench.physics.log[1:] == [round(0.838 * part, 6) for part in (0.4, 0.4, 0.6, 0.6)]
+
+
+def test_px4_that_answers_every_second_tick_is_not_waited_for_long_and_trusted_again_later() -> None:
+    bench = booted_px4()
+    for k in range(20):
+        bench.there.go_on()
+        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5000 + 5000 * k, controls=[0.4], flags=1)
+    assert bench.there.wait_s == SHORTEST_WAIT_S
+    now = bench.there.time_us - 2500
+    for k in range(10 * TRUSTED):
+        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=now + 2500 * k, controls=[0.4], flags=1)
+    assert bench.there.wait_s == LONGEST_WAIT_S
+
+
+def test_time_stands_when_px4_stays_silent_and_goes_on_when_it_answers() -> None:
+    bench = booted_px4()
+    for _ in range(SILENT):
+        assert bench.there.wait_s is not None
+        bench.there.go_on()
+    assert bench.there.wait_s is None and not bench.there.freewheels
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
+    assert bench.there.wait_s == SHORTEST_WAIT_S
+
+
+def test_px4_is_starting_for_some_seconds_after_its_first_answer() -> None:
+    bench = booted_px4()
+    while bench.there.time_us < START_US:
+        assert bench.there.is_starting
+        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
+    bench.there.go_on()
+    bench.there.go_on()
+    assert not bench.there.is_starting
+
+
+def test_px4_gets_no_position_before_there_is_one_and_then_hears_that_it_is_lost() -> None:
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    s = bench.physics.v.sensors
+    seen = []
+    for fix in (1, 1, 3, 1):
+        s.gps_count, s.gps_fix = s.gps_count + 1, fix
+        seen.append("HIL_GPS" in names(bench.there.go_on()))
+    assert seen == [False, False, True, True]
 
 
 def test_an_autopilot_without_lockstep_never_stops_time() -> None:
