@@ -269,7 +269,8 @@ class DataFlash:
         self._paused = False
         self._encoder.skip_events_before(since)
         self._count = -1
-        for time_us, said in sorted([*self._commands, *self._texts], key=lambda each: each[0]):
+        kept: list[tuple[int, str | tuple[Any, ...]]] = [*self._commands, *self._texts]
+        for time_us, said in sorted(kept, key=lambda each: each[0]):
             if time_us >= since:
                 self._encoder.text(time_us, said) if isinstance(said, str) else self._encoder.command(time_us, said)
         self._texts.clear()
@@ -323,7 +324,7 @@ class DataFlash:
 
     def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
         """Log a command that was answered."""
-        self._follow_reboot()
+        self._follow()
         numbers = board.command(fields, frame, is_place, sender, result)
         if self._encoder is None or self._paused:
             self._commands.append((self._now_us, numbers))

@@ -30,7 +30,11 @@ def slower_on_the_way(f: Flyer) -> None:
             t = f.fly(5.0)
             f.note(f"80 m, {name}: speed 5 s after {speed:g} m/s was asked", "m/s", float(t.speed[-1]))
             f.note(f"80 m, {name}: fastest after {speed:g} m/s was asked", "m/s", float(t.speed.max()))
-        t = f.fly(60.0, lambda north=north: abs(f.position.north - north) < 1.0)
+
+        def is_there(goal: float = north) -> bool:
+            return abs(f.position.north - goal) < 1.0
+
+        t = f.fly(60.0, is_there)
         f.note(f"80 m, {name}: within 1 m", "s", float(t.t[-1]))
         f.delay(6.0)
 

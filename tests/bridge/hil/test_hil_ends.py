@@ -238,7 +238,8 @@ def test_a_tick_that_px4_does_not_answer_is_followed_by_the_next_one() -> None:
     bench.there.go_on()
     assert bench.there.unanswered == 2
     assert [text for text in bench.there.notes if "has not answered" in text] == [
-        "the autopilot has not answered the tick at 0.0050 s in 200 ms: time goes on without it, and this is not said again"
+        "the autopilot has not answered the tick at 0.0050 s in 200 ms: time goes on without it, and this is not said "
+        "again"
     ]
     assert bench.physics.log[1:] == [round(0.838 * part, 6) for part in (0.4, 0.4, 0.6, 0.6)]
 
