@@ -38,7 +38,15 @@ WHY = """
 - *3 m/s east: 95 %* and the first moments of turn rates: both curves are almost flat there, and commands reach
   ArduPilot about 10 ms late.
 - *Copter, GUIDED velocities against a fence*: ArduPilot stops 1.3 m within FENCE_MARGIN with any AVOID_BEHAVE; ours
-  stops at the margin, as both do in LOITER.
+  stops at the margin, as both do in LOITER. ArduPilot's avoidance changes the stored set-point itself, until the next
+  one arrives.
+- *GPS lost*: the flights agree. 15 s after the loss, when aiding stops, ArduPilot no longer sends
+  LOCAL_POSITION_NED; ours sends its estimate on.
+- *STABILIZE and ACRO, climb and speed after 6 s*: the learnt hover throttle (MOT_THST_HOVER) differs by 0.002, which
+  is 0.05 m/s.
+- *ACRO, back and forth*: ArduPilot's flights vary as much, because the sticks arrive up to 20 ms late.
+- *Splines, after a pause*: both stop at once. Ours goes on 2.4 s earlier, because its ramp ends at full speed, where
+  ArduPilot's comes near to it ever more slowly.
 """
 HEADING = "## Manoeuvres"
 
