@@ -30,7 +30,7 @@ from ..vehicle.kinds import KINDS
 from . import serial_ports
 from .command_line import HELP, SERIAL_PORTS, CommandLine, parse
 from .statistics import Statistics
-from .sticks import StickPort
+from .sticks import AT_REST, LEAST_THROTTLE, StickPort
 from .storage import Storage
 
 PROGRAMS = {"arducopter": "copter", "ardurover": "rover"}
@@ -152,7 +152,8 @@ class Session:
                 self._say(f"MAVLink on SERIAL{number}: {link.name}")
                 if serial_ports.waits(line.devices[number]) and self._awaited is None:
                     self._awaited = link
-        sticks = StickPort(self.simulation.v, line.address, line.sticks_port)
+        throttle = LEAST_THROTTLE if self.simulation.kind.flies else AT_REST[2]
+        sticks = StickPort(self.simulation.v, line.address, line.sticks_port, throttle)
         bridge.add_link(sticks)
         self._say(f"sticks on {sticks.name}")
 

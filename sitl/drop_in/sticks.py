@@ -16,6 +16,10 @@ from ..bridge.links.link import Link, LinkAddressError, Peer, Selector
 from ..core.border import RC_INPUTS
 
 FEWEST = 8
+AT_REST = (1500, 1500, 1500, 1500, 1800, 1000, 1000, 1800)
+"""Pulses of the channels, from 1, that no frame has had so far, as in ArduPilot's simulator [us]."""
+LEAST_THROTTLE = 1000
+"""Of the third in its copters."""
 FOR_EVER_US = 1 << 62
 
 
@@ -25,14 +29,16 @@ class StickPort(Link):
     Args:
         v: the vehicle's record.
         host, port: where it listens.
+        throttle: pulse of the third channel until a frame has one [us].
 
     Raises:
         LinkAddressError: the port is taken or not allowed.
     """
 
-    def __init__(self, v: Any, host: str, port: int) -> None:
+    def __init__(self, v: Any, host: str, port: int, throttle: int = AT_REST[2]) -> None:
         super().__init__(f"udpin:{host}:{port}")
         self._v = v
+        self._at_rest = (*AT_REST[:2], throttle, *AT_REST[3:])
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         self._selector: Selector | None = None
@@ -65,6 +71,8 @@ class StickPort(Link):
         for k, pulse in enumerate(struct.unpack_from(f"<{count}H", frame)):
             if pulse:
                 sensors.rc_channels[k] = pulse
+            elif k < len(self._at_rest) and sensors.rc_channels[k] == 0:
+                sensors.rc_channels[k] = self._at_rest[k]
         sensors.rc_count += 1
         sensors.rc_time_us = FOR_EVER_US
 

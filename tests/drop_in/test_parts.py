@@ -50,6 +50,16 @@ def test_sixteen_sticks_reach_the_radio_and_stay(simulation: Simulation) -> None
     port.close()
 
 
+def test_channels_that_were_never_sent_are_at_rest(simulation: Simulation) -> None:
+    port = StickPort(simulation.v, "127.0.0.1", 0, 1000)
+    port.hear(struct.pack("<16H", *(0,) * 7, 1165, *(0,) * 8))
+    simulation.advance(1.0)
+    rc = simulation.v.autopilot.rc
+    assert rc.receiver_ok
+    assert [int(pulse) for pulse in rc.channels[:10]] == [1500, 1500, 1000, 1500, 1800, 1000, 1000, 1165, 0, 0]
+    port.close()
+
+
 def test_a_failing_transmitter_is_lost_although_sticks_come(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0)
     port.hear(struct.pack("<16H", *(1500,) * 16))
