@@ -94,7 +94,10 @@ def add_noise(ekf: Ekf, params: Ekf3, elapsed: float) -> None:
 
 @law
 def loosen(ekf: Ekf) -> None:
-    """Let yaw, and the gyro's bias about it, be less tied to velocity and position."""
+    """Let yaw, and the gyro's bias about it, be less tied to velocity and position.
+
+    Not while biases of the magnetometer are learnt: through these, yaw would stay tied.
+    """
     P = ekf.P
     for j in range(VEL, BG):
         for k in (THETA + 2, BG + 2):
@@ -127,13 +130,13 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
         align_in_flight(ekf, estimate, residual, params)
         return True
     add_noise(ekf, params, min(1e-6 * (ekf.now_us - ekf.mag_fused_us), LONGEST))
-    loosen(ekf)
     sigma = params.YAW_M_NSE
     if learns:
         expected = ekf.earth_field
         set_row(ekf)
         sigma = params.MAG_M_NSE / math.sqrt(expected.x * expected.x + expected.y * expected.y)
     else:
+        loosen(ekf)
         clear_row(ekf)
         ekf.h[THETA + 2] = 1.0
     innovation = innovate(ekf, residual, sigma * sigma)

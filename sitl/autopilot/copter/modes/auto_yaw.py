@@ -13,7 +13,7 @@ from ....core.algebra import cross2, dot2, horizontal
 from ....core.elementary import atan2
 from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI, constrain, wrap_pi
-from ....core.vectors import Vec2, Vec3
+from ....core.vectors import Vec3
 from ...state import Estimate
 from ..control import attitude
 from ..control.attitude import Heading
@@ -154,19 +154,24 @@ def advance_turn(yaw: AutoYaw, dt: float) -> None:
 
 
 @law
-def look_along(yaw: AutoYaw, vel: Vec2, acc: Vec2, speed_max: float) -> float:
-    """Point the nose along the path of a motion (NE, [m/s], [m/s^2]), unless that is slow; its turn rate [rad/s]."""
+def look_along(yaw: AutoYaw, path: PositionState, target: AttitudeState) -> float:
+    """Point the nose along the path of the position controller's motion; its turn rate [rad/s].
+
+    Slower than 5 % of its greatest speed, keep the heading that the attitude controller's ``target`` has come to.
+    """
+    vel, acc = path.vel_desired, path.accel_desired
     speed2 = dot2(vel, vel)
-    speed_min = 0.05 * speed_max
+    speed_min = 0.05 * path.speed_max
     if speed2 > speed_min * speed_min and speed2 > 1e-6:
         yaw.yaw = atan2(vel.y, vel.x)
         return cross2(vel, acc) / speed2
+    yaw.yaw = target.target_euler.yaw
     return 0.0
 
 
 @law
-def advance(yaw: AutoYaw, path: PositionState, est: Estimate, dt: float) -> Heading:
-    """Move the heading on by ``dt`` [s]; ``path``: that of the position controller."""
+def advance(yaw: AutoYaw, path: PositionState, target: AttitudeState, est: Estimate, dt: float) -> Heading:
+    """Move the heading on by ``dt`` [s]; ``path``, ``target``: those of the position and attitude controllers."""
     if yaw.mode == FIXED:
         advance_turn(yaw, dt)
         return Heading(yaw.yaw, 0.0, True)
@@ -181,7 +186,7 @@ def advance(yaw: AutoYaw, path: PositionState, est: Estimate, dt: float) -> Head
             yaw.look_ahead = atan2(vel.y, vel.x)
         return Heading(yaw.look_ahead, 0.0, True)
     if yaw.mode == LOOK_AT_NEXT_WP:
-        rate = look_along(yaw, path.vel_desired, path.accel_desired, path.speed_max)
+        rate = look_along(yaw, path, target)
         return Heading(yaw.yaw, rate, True)
     if yaw.mode == ANGLE_RATE:
         yaw.yaw = wrap_pi(yaw.yaw + yaw.rate * dt)
@@ -205,7 +210,7 @@ def follow_pilot(modes: Modes, target: AttitudeState, est: Estimate) -> None:
 @inlined
 def point(yaw: AutoYaw, thrust: Vec3, control: Control, est: Estimate, p: Parameters) -> None:
     """Send the thrust direction (NED) with this mode's heading to the attitude controller."""
-    heading = advance(yaw, control.pos_ne, est, DT)
+    heading = advance(yaw, control.pos_ne, control.attitude, est, DT)
     if heading.absolute:
         attitude.input_thrust_vector_heading(control, est, p, thrust, heading)
     else:

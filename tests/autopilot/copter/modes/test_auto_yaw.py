@@ -27,7 +27,7 @@ def turned(v, start, seconds=20.0):
     ap = v.autopilot
     total, before, done = 0.0, start, 0.0
     for k in range(round(seconds / 0.0025)):
-        now, _rate, _ = auto_yaw.advance(ap.modes.auto_yaw, ap.control.pos_ne, ap.estimate, 0.0025)
+        now, _rate, _ = auto_yaw.advance(ap.modes.auto_yaw, ap.control.pos_ne, ap.control.attitude, ap.estimate, 0.0025)
         step = wrap_pi(now - before)
         total, before = total + step, now
         if abs(step) > 1e-9:
@@ -105,9 +105,9 @@ def test_default_is_a_parameter(behaviour, rtl, mode):
     assert yaw.mode == mode
 
 
-def heading(yaw: AutoYaw, path: PositionState, estimate: Estimate) -> float:
+def heading(yaw: AutoYaw, path: PositionState, estimate: Estimate, target: AttitudeState | None = None) -> float:
     """Where the nose points after a tick."""
-    return auto_yaw.advance(yaw, path, estimate, 0.0025).angle
+    return auto_yaw.advance(yaw, path, target or AttitudeState(), estimate, 0.0025).angle
 
 
 def test_nose_follows_the_desired_velocity_but_not_a_slow_one():
@@ -118,7 +118,10 @@ def test_nose_follows_the_desired_velocity_but_not_a_slow_one():
     path.vel_desired = Vec2(0.0, 3.0)
     assert heading(yaw, path, estimate) == pytest.approx(math.pi / 2)
     path.vel_desired = Vec2(0.0, 0.0)
-    assert heading(yaw, path, estimate) == pytest.approx(math.pi / 2)
+    target = AttitudeState()
+    target.target_euler = (0.0, 0.0, 0.7)  # on the way to it
+    assert heading(yaw, path, estimate, target) == pytest.approx(0.7)
+    assert heading(yaw, path, estimate, target) == pytest.approx(0.7)
 
 
 def test_roi_is_looked_at_from_anywhere(flying):
@@ -135,7 +138,7 @@ def test_the_pilot_may_turn_and_the_heading_stays_where_he_left_it():
     modes, target, estimate = Modes(), AttitudeState(), Estimate()
     modes.pilot.yaw_rate = 0.5
     auto_yaw.follow_pilot(modes, target, estimate)
-    assert auto_yaw.advance(modes.auto_yaw, PositionState(), estimate, 0.0025) == (0.0, 0.5, False)
+    assert auto_yaw.advance(modes.auto_yaw, PositionState(), target, estimate, 0.0025) == (0.0, 0.5, False)
     modes.pilot.yaw_rate = 0.0
     auto_yaw.follow_pilot(modes, target, estimate)
     assert modes.auto_yaw.mode == auto_yaw.HOLD
