@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A plain MAVSDK 4.x script: arm, take off to 10 m, fly a 30 m square as a mission, return, land, disarm.
 
-Nothing here knows of the simulator: it is what one would run against a real ArduPilot vehicle.
+Nothing here knows of the simulator: it is what one would run against a real vehicle with ArduPilot or PX4.
 
     python examples/mavsdk_mission.py [CONNECTION_URL]        (default udpin://0.0.0.0:14540)
 """
@@ -11,7 +11,7 @@ import sys
 import time
 
 try:
-    from mavsdk import ComponentType, Configuration, Mavsdk, log_subscribe
+    from mavsdk import Autopilot, ComponentType, Configuration, Mavsdk, log_subscribe
     from mavsdk.plugins.action import Action
     from mavsdk.plugins.mission_raw import MissionItem, MissionRaw
     from mavsdk.plugins.telemetry import Telemetry
@@ -39,13 +39,15 @@ def item(seq: int, command: int, lat_deg: float = 0.0, lon_deg: float = 0.0, alt
     )
 
 
-def square(lat_deg: float, lon_deg: float) -> list[MissionItem]:
-    """Item 0 is home (ArduPilot fills it in), then take-off, the four corners and the return."""
+def square(lat_deg: float, lon_deg: float, is_ardupilot: bool) -> list[MissionItem]:
+    """Take-off, the four corners and the return; before them ArduPilot has home as item 0, which it fills in."""
     north = SIDE_M / 111319.5
     east = north / math.cos(math.radians(lat_deg))
     corners = [(north, 0.0), (north, east), (0.0, east), (0.0, 0.0)]
-    items = [item(0, WAYPOINT, lat_deg, lon_deg), item(1, TAKEOFF, alt_m=ALTITUDE_M)]
-    items += [item(seq, WAYPOINT, lat_deg + n, lon_deg + e, ALTITUDE_M) for seq, (n, e) in enumerate(corners, start=2)]
+    items = [item(0, WAYPOINT, lat_deg, lon_deg)] if is_ardupilot else []
+    items.append(item(len(items), TAKEOFF, lat_deg, lon_deg, ALTITUDE_M))
+    for north_deg, east_deg in corners:
+        items.append(item(len(items), WAYPOINT, lat_deg + north_deg, lon_deg + east_deg, ALTITUDE_M))
     return [*items, item(len(items), RETURN_TO_LAUNCH)]
 
 
@@ -79,7 +81,8 @@ def main() -> None:
     wait_for("position estimate", lambda: telemetry.health().is_global_position_ok, 120.0)
     wait_for("home", lambda: telemetry.health().is_home_position_ok, 60.0)
     here = telemetry.position()
-    mission.upload_mission(square(here.latitude_deg, here.longitude_deg))
+    is_ardupilot = system.autopilot_type() == Autopilot.ARDUPILOT
+    mission.upload_mission(square(here.latitude_deg, here.longitude_deg, is_ardupilot))
     wait_for("ready to arm", lambda: telemetry.health().is_armable, 60.0)
 
     action.arm()
