@@ -190,7 +190,8 @@ def plan_slower(length: float, limits: Limits, start: State, rise: Sequence[Phas
     Raises:
         LegError: it takes too many segments.
     """
-    top, phases = start.after_all(rise).v, []
+    phases: list[Phase] = []
+    top = start.after_all(rise).v
     for phase in rise:
         steady = phase.jerk == 0.0 and phase.snap == 0.0
         acceleration = start.after_all(phases).a

@@ -69,7 +69,7 @@ def jerk_limits(params: Parameters) -> tuple[float, float]:
 
 def rest_of_rise(leg: Leg) -> list[Phase]:
     """What is left of a leg's speeding up; empty once that is over, and where it goes over into slowing down."""
-    phases = []
+    phases: list[Phase] = []
     for k in range(leg.segments - 1):
         if leg.t[k + 1] <= leg.elapsed:
             continue
