@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""On-board logs of the same flight as four readers give them: numbers at rest in GUIDED, and units where there are some.
+"""On-board logs of the same flight as four readers give them: numbers at rest in GUIDED, and units if it has some.
 
 A row is "READER MESSAGE.FIELD" or "READER unit MESSAGE.FIELD". Only readers that are installed have rows:
 ``pip install pymavlog ardupilot-log-reader mavpose`` ("pymavlog" wants numpy 1).

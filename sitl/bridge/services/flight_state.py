@@ -63,8 +63,7 @@ class FlightStateService(Service):
         )
 
     def for_gimbal(self) -> bytes:
-        """AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: attitude, velocity [m/s], yaw rate wanted and estimated [rad/s], status of the
-        estimate."""
+        """AUTOPILOT_STATE_FOR_GIMBAL_DEVICE: attitude, velocity [m/s], yaw rates [rad/s]: wanted, estimated; status."""
         estimate = self.bridge.vehicle.v.autopilot.estimate
         q, velocity = estimate.q, estimate.vel
         return message("AUTOPILOT_STATE_FOR_GIMBAL_DEVICE").payload(

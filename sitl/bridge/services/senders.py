@@ -22,8 +22,8 @@ _NAMES = (MAV_OPTIONS, "MAV_GCS_SYSID", GCS_SYSID_HI, "MAV_SYSID")
 
 
 class SenderService(Service):
-    """Knows the ground stations, and takes frames of others than them, the vehicle itself and radios out of what comes in,
-    without a word, while MAV_OPTIONS says so."""
+    """Knows the ground stations, and takes frames of others than them, the vehicle itself and radios out of what comes
+    in, without a word, while MAV_OPTIONS says so."""
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
