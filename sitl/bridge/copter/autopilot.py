@@ -238,7 +238,7 @@ class CopterAutopilot(BaseAutopilot):
             return 0.0
         attitude = self._v.autopilot.control.attitude
         rate, target = attitude.target_rate, attitude.target_euler
-        return (sin(target.roll) * rate.y + cos(target.roll) * rate.z) / max(cos(target.pitch), 1e-3)
+        return float(sin(target.roll) * rate.y + cos(target.roll) * rate.z) / max(cos(target.pitch), 1e-3)
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
         """Turn to ``angle`` [rad] at ``rate`` [rad/s]; ``direction`` 1 clockwise, -1 the other way, 0 the shorter."""
