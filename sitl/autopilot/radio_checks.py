@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from ..core.border import RC_INPUTS
 from ..core.kernels import law
 from . import radio
 from .params.parameters import Parameters
@@ -29,6 +28,8 @@ STICK_NAMES = {ROLL: "Roll", PITCH: "Pitch", THROTTLE: "Throttle", YAW: "Yaw"}
 WORD = 65536.0
 HIGHEST_MIN, LOWEST_MAX = 1300.0, 1700.0
 """Calibrated sticks reach these pulses at least [us]."""
+RECEIVED = 8
+"""Channels of the receiver; ArduPilot does not check others."""
 
 
 @law
@@ -53,7 +54,7 @@ def calibration_texts(values: Values, params: Parameters, sticks: Mapping[int, s
             yield f"{name} radio min too high"
         if values[f"RC{channel}_MAX"] < LOWEST_MAX:
             yield f"{name} radio max too low"
-    for number in range(1, RC_INPUTS + 1):
+    for number in range(1, RECEIVED + 1):
         rest = values[f"RC{number}_TRIM"] % WORD  # ArduPilot reads it without its sign
         if values[f"RC{number}_MIN"] > rest:
             yield f"RC{number}_MIN is greater than RC{number}_TRIM"

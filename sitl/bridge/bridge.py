@@ -617,6 +617,7 @@ class Bridge:
         new.get(SigningService).follow(self._signing)
         new.get(FaultService).follow(self.get(FaultService))
         new.get(TerrainService).follow(self.get(TerrainService))
+        new.get(StreamService).follow(self.get(StreamService))
         new.board.take_over(self.board)
         new.taps, new.client_taps = new.board.taps, new.board.client_taps
         new.listeners, new.logs = self.listeners, self.logs

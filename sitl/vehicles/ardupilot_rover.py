@@ -68,6 +68,9 @@ AIRFRAME = RoverAirframe(
         "SERVO3_MAX": 2000,
         "BATT_MONITOR": 4,  # voltage and current
         "BATT_CAPACITY": 3300,  # [mAh]
+        "BATT_LOW_VOLT": 0.0,  # no such failsafe
+        "WP_PIVOT_ANGLE": 0,  # it steers by its front wheels
+        "AHRS_OPTIONS": 3,
         "GPS1_DELAY_MS": 100,  # as gps_delay
     },
 )

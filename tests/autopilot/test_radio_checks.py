@@ -74,7 +74,7 @@ def test_yaw_may_be_off_when_it_is_the_arming_stick() -> None:
         ({"RC3_MIN": 1301.0}, ["Throttle radio min too high"]),
         ({"RC4_MIN": 1450.0}, ["Yaw radio min too high"]),
         ({"RC6_MAX": 1400.0}, ["RC6_MAX is less than RC6_TRIM"]),
-        ({"RC16_MIN": 1600.0}, ["RC16_MIN is greater than RC16_TRIM"]),
+        ({"RC8_MIN": 1600.0, "RC9_MIN": 1600.0}, ["RC8_MIN is greater than RC8_TRIM"]),  # the receiver has no ninth
         (
             {"RC1_MIN": 1400.0, "RC2_MIN": 1400.0, "RC1_MAX": 1450.0, "RC7_MIN": 1600.0},
             [

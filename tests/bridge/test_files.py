@@ -87,7 +87,7 @@ def test_folders_are_listed(bench: Bench) -> None:
     system = listed(bench, b"@SYS")
     names = "threads tasks dma memory uarts timers can_log can0_stats can1_stats"
     assert [entry.split("\t")[0] for entry in system[:9]] == [f"F{name}.txt" for name in names.split()]
-    assert system[9:] == ["Fcrash_dump.bin\t100000", "Fstorage.bin\t100000"] and system[1] == "Ftasks.txt\t8"
+    assert system[9:] == ["Fcrash_dump.bin\t100000", "Fstorage.bin\t16384"] and system[1] == "Ftasks.txt\t8"
     assert listed(bench, b"/@SYS/") == system
     assert [refusal(bench, path) for path in (b"nothing", b"@MISSION", b"logs", b"")] == [NOT_FOUND] * 3 + [
         INVALID_SIZE

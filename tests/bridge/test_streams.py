@@ -168,6 +168,13 @@ def test_the_rates_that_the_first_client_asked_for_are_in_its_parameters(bench: 
     assert [bench.vehicle.parameters[f"MAV1_{name}"] for name in ("EXTRA1", "EXTRA2", "RAW_SENS")] == [0.0, 3.0, 3.0]
 
 
+def test_a_reboot_forgets_rates_that_were_asked_for_and_keeps_those_that_were_set(bench: Bench) -> None:
+    bench.ask(mavlink.MAVLink_param_set_message(1, 1, b"MAV1_EXTRA2", 2.0, 4))
+    bench.ask(request_stream(0, 5))
+    bench.bridge.successor()
+    assert [bench.vehicle.parameters[f"MAV1_{name}"] for name in ("EXTRA1", "EXTRA2")] == [0.0, 2.0]
+
+
 def test_request_message_before_a_position_is_known(bench: Bench) -> None:
     ask = mavlink.MAVLink_command_long_message(1, 1, REQUEST, 0, 242, 0, 0, 0, 0, 0, 0)
     assert [m.get_type() for m in bench.ask(ask)] == ["COMMAND_ACK"]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.bridge.copter import targets as copter_targets
 from sitl.bridge.copter import telemetry as copter
 from sitl.bridge.dialect import message
 from sitl.bridge.profile import load
@@ -26,7 +27,7 @@ from sitl.bridge.wire.choose import message_of
 from sitl.bridge.wire.port import Port
 from sitl.core.geodesy import METRES_PER_DEGE7, longitude_scale
 from sitl.core.kernels import law
-from sitl.core.vectors import Vec3
+from sitl.core.vectors import Vec2, Vec3
 from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
 from sitl.vehicle.record import Vehicle
@@ -245,3 +246,23 @@ def test_a_firmwares_own_laws_come_before_shared_ones() -> None:
 def test_what_builds_no_message_is_refused() -> None:
     with pytest.raises(TypeError, match="no Message"):
         register_message(carried)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("mode", "velocity", "expected"),
+    (
+        (3, (2.0, 0.0), 4.0),  # AUTO, northwards: what is east of the track counts
+        (3, (0.0, 2.0), 3.0),
+        (3, (0.0, 0.0), 5.0),  # at rest: the distance
+        (5, (2.0, 0.0), 4.0),
+        (2, (2.0, 0.0), 0.0),  # ALT_HOLD has no track
+    ),
+)
+def test_distance_beside_the_track_of_a_copter(
+    v: Copter, mode: int, velocity: tuple[float, float], expected: float
+) -> None:
+    v.autopilot.modes.number = mode
+    path = v.autopilot.control.pos_ne
+    path.pos_desired, path.vel_desired = Vec2(13.0, 24.0), Vec2(*velocity)
+    v.autopilot.estimate.pos = Vec3(10.0, 20.0, -5.0)
+    assert says(copter_targets.nav_controller_output, v).xtrack_error == pytest.approx(expected)

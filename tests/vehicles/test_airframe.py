@@ -180,3 +180,9 @@ def test_an_airframe_has_a_kind():
 def test_a_rover_does_not_fit_a_copters_record():
     with pytest.raises(TypeError, match="cannot become one of"):
         vehicles.apply(vehicles.load("erle_rover"), Copter())
+
+
+def test_the_rover_of_ardupilots_simulator_has_its_parameters() -> None:
+    """As ArduRover 4.7 lists them."""
+    parameters = vehicles.load("ardupilot_rover").parameters
+    assert [parameters[name] for name in ("BATT_LOW_VOLT", "WP_PIVOT_ANGLE", "AHRS_OPTIONS")] == [0.0, 0.0, 3.0]

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+from ...autopilot.copter.control.state import PositionState
 from ...autopilot.copter.modes.auto import AUTO, is_guided
 from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.loiter import LOITER
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
+from ...autopilot.copter.modes.zigzag import ZIGZAG
 from ...autopilot.copter.navigation.waypoint import from_origin
+from ...core.algebra import norm2
 from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.kernels import law
 from ...core.records import Floats
+from ...core.vectors import Vec2, Vec3
 from ...vehicle.copter import Copter
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
 from ..wire.message import Message
@@ -21,18 +26,30 @@ class NavControllerOutput(Message, name="NAV_CONTROLLER_OUTPUT"):
     nav_roll: float
     nav_pitch: float
     alt_error: float
+    xtrack_error: float
     nav_bearing: int
     target_bearing: int
     wp_dist: int
 
 
 _FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
+_FOLLOW_A_TRACK = (*_FLY_TO_A_PLACE, LOITER, ZIGZAG)
+
+
+@law
+def beside_track(c: PositionState, pos: Vec3) -> float:
+    """Distance beside the track [m]: across the velocity wanted, or to the place where there is none."""
+    error, along = c.pos_desired - Vec2(pos.x, pos.y), c.vel_desired
+    speed = norm2(along)
+    if speed == 0.0:
+        return norm2(error)
+    return abs(error.x * along.y - error.y * along.x) / speed
 
 
 @law
 def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
-    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target, altitude error [m], as
-    ArduCopter 4.7 has it: negative below the target."""
+    """NAV_CONTROLLER_OUTPUT: lean targets, bearings [deg], distance to the target and beside the track [m],
+    altitude error [m], as ArduCopter 4.7 has it: negative below the target."""
     modes, control, pos = v.autopilot.modes, v.autopilot.control, v.autopilot.estimate.pos
     euler = control.attitude.target_euler
     if is_guided(modes):
@@ -44,6 +61,8 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     if modes.number in _FLY_TO_A_PLACE:
         m.target_bearing = int16(atan2(to.y - pos.y, to.x - pos.x) * DEG)
         m.wp_dist = uint16(hypot(to.x - pos.x, to.y - pos.y))
+    if modes.number in _FOLLOW_A_TRACK:
+        m.xtrack_error = beside_track(control.pos_ne, pos)
     m.nav_roll = euler.roll * DEG
     m.nav_pitch = euler.pitch * DEG
     m.nav_bearing = int16(euler.yaw * DEG)

@@ -83,7 +83,7 @@ def read(bridge: Bridge, clients: ClientFiles, path: str, queries: list[str]) ->
 
 def listing(bridge: Bridge, clients: ClientFiles, path: str) -> list[str] | None:
     """Entries of a folder, as FTP tells them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
-    sizes = {f"@SYS/{name}": UNKNOWN_SIZE for name in SYSTEM}
+    sizes = {f"@SYS/{name}": UNKNOWN_SIZE for name in SYSTEM} | {"@SYS/storage.bin": STORAGE_SIZE}
     sizes |= {name: len(file()) for name, file in _system(bridge).items()}
     sizes |= {name: entry.size for name, entry in _logs(bridge).items()}
     folder = path.strip("/")
@@ -120,9 +120,12 @@ SYSTEM = (
     "threads.txt", "tasks.txt", "dma.txt", "memory.txt", "uarts.txt", "timers.txt", "can_log.txt", "can0_stats.txt",
     "can1_stats.txt", "crash_dump.bin", "storage.bin",
 )  # fmt: skip
-"""What ArduPilot lists in @SYS; those of the board and its memory cannot be read there, either."""
+"""What ArduPilot lists in @SYS. It cannot read those of the board and its memory either, but storage.bin, which has
+parameters under numbers of its own tables."""
 UNKNOWN_SIZE = 100_000
 """As ArduPilot lists a file whose size is known only when it is read."""
+STORAGE_SIZE = 16384
+"""Of ArduPilot's storage."""
 
 
 def _system(bridge: Bridge) -> Mapping[str, Reader]:

@@ -104,6 +104,12 @@ class StreamService(Service):
         rate = self.bridge.parameter(RATE_PREFIX + self._groups[group][0])
         return int(rate) if rate is not None and rate > 0 else 0
 
+    def follow(self, other: StreamService) -> None:
+        """After a reboot: what a stream's request has set is forgotten, as it was not saved."""
+        for group, rate in other._first_rates.items():
+            self._keep_rate(group, rate)
+        self._look()
+
     def _look(self) -> None:
         """Rates that channels begin with: what the parameters say before clients ask."""
         self._first_rates = {group: self._rate_parameter(group) for group in self._groups}

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 from collections import deque
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
@@ -269,10 +270,11 @@ class DataFlash:
         self._paused = False
         self._encoder.skip_events_before(since)
         self._count = -1
-        kept: list[tuple[int, str | tuple[Any, ...]]] = [*self._commands, *self._texts]
-        for time_us, said in sorted(kept, key=lambda each: each[0]):
+        waiting = [(time_us, partial(self._encoder.command, time_us, numbers)) for time_us, numbers in self._commands]
+        waiting += [(time_us, partial(self._encoder.text, time_us, text)) for time_us, text in self._texts]
+        for time_us, write in sorted(waiting, key=lambda each: each[0]):
             if time_us >= since:
-                self._encoder.text(time_us, said) if isinstance(said, str) else self._encoder.command(time_us, said)
+                write()
         self._texts.clear()
         self._commands.clear()
 
