@@ -22,14 +22,14 @@ ALTITUDE_M = 10.0
 SIDE_M = 30.0
 
 WAYPOINT, RETURN_TO_LAUNCH, TAKEOFF = 16, 20, 22
-GLOBAL_RELATIVE_ALT = 3
+MISSION, GLOBAL_RELATIVE_ALT = 2, 3
 
 
 def item(seq: int, command: int, lat_deg: float = 0.0, lon_deg: float = 0.0, alt_m: float = 0.0) -> MissionItem:
-    """One mission item, altitude above home."""
+    """One mission item, altitude above home; one without a place has the frame MISSION."""
     return MissionItem(
         seq=seq,
-        frame=GLOBAL_RELATIVE_ALT,
+        frame=MISSION if command == RETURN_TO_LAUNCH else GLOBAL_RELATIVE_ALT,
         command=command,
         current=1 if seq == 0 else 0,
         autocontinue=1,
