@@ -40,13 +40,13 @@ def beat(d: Driver) -> None:
 @ALL
 @pytest.mark.parametrize("mode", [MANUAL, GUIDED])
 def test_transmitter_lost(core: Core, frame: str, mode: int) -> None:
-    """The receiver is silent: centred sticks after half a second, HOLD after FS_TIMEOUT (1.5 s) more."""
+    """The receiver is silent: centred sticks after RC_FS_TIMEOUT (1 s), HOLD after FS_TIMEOUT (1.5 s) more."""
     d = Driver(core, frame).armed_in(mode)
     d.fly(1.0)
     d.set_parameter("SIM_RC_FAIL", 1)
     start = d.now
     assert d.fly(5.0, lambda: d.mode == HOLD)
-    assert d.now - start == pytest.approx(2.0, abs=0.15)
+    assert d.now - start == pytest.approx(2.5, abs=0.15)
     assert d.said("Radio Failsafe") and not d.said("Radio Failsafe Cleared")
     d.set_parameter("SIM_RC_FAIL", 0)
     d.fly(1.0)

@@ -266,7 +266,7 @@ def test_wind_from_below(fly: Fly) -> None:
     """5 m/s, 30 degrees upwards: ArduPilot hovers with 33 % throttle in place of 36 %."""
     copter = fly()
     before = copter.message("VFR_HUD").throttle
-    for name, value in {"SIM_WIND_DIR_Z": 30, "SIM_WIND_SPD": 5}.items():
+    for name, value in {"SIM_WIND_T": 1, "SIM_WIND_DIR_Z": 30, "SIM_WIND_SPD": 5}.items():
         copter.fail(name, amount=value)
     copter.delay(25)
     assert copter.message("VFR_HUD").throttle - before == pytest.approx(-3, abs=1)

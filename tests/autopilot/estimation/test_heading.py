@@ -17,8 +17,8 @@ from tests.flights.aviator import Aviator
 from tests.pilots.witness import Witness
 
 KEPT = json.loads(Path(__file__).with_name("heading.json").read_text(encoding="utf-8"))
-CLOSE = 0.5
-"""Ours may be so far from the kept error [deg]."""
+CLOSE, AFTER_JUMP = 0.5, 0.8
+"""Ours may be so far from the kept error [deg]; a copter in the air unlearns it more slowly."""
 STEEP = 1.0
 """While the error changes by 5 degrees a second: 0.2 s."""
 AHEAD = 0xDC7
@@ -36,7 +36,7 @@ def start(kind: str, core: Core, **params: float) -> Witness:
     return Driver(load_core(KINDS["rover"]), "ardupilot_rover", **params)
 
 
-def check(p: Witness, rows: list[list[float]], drive: bool = False) -> None:
+def check(p: Witness, rows: list[list[float]], close: float = CLOSE, drive: bool = False) -> None:
     """Compare the errors at their times."""
     ours = []
     for time, _ in rows:
@@ -46,7 +46,7 @@ def check(p: Witness, rows: list[list[float]], drive: bool = False) -> None:
             p.fly(min(time - p.now, 0.2 if drive else 60.0))
         ours.append(error(p))
     for (time, kept), value in zip(rows, ours, strict=True):
-        assert value == pytest.approx(kept, abs=STEEP if 10.0 < time < 13.0 else CLOSE), f"after {time} s"
+        assert value == pytest.approx(kept, abs=STEEP if 10.0 < time < 13.0 else close), f"after {time} s"
 
 
 @pytest.mark.parametrize("kind", ["copter", "rover"])
@@ -64,7 +64,7 @@ def test_so_it_goes_on_in_motion(core: Core, kind: str) -> None:
     p.arm()
     if kind == "copter":
         assert p.ask(22, 0, 0, 0, 0, 0, 0, 10.0) == 0
-    check(p, KEPT[kind]["moving"], drive=kind == "rover")
+    check(p, KEPT[kind]["moving"], AFTER_JUMP if kind == "copter" else CLOSE, drive=kind == "rover")
     assert p.ap.estimate.reset_yaw_count == jumps + (1 if kind == "copter" else 0)
     assert p.said("in-flight yaw alignment") == (kind == "copter")
 

@@ -37,6 +37,7 @@ def read(b: Any, *names: str) -> np.ndarray:
 def anyhow(b: Any, seed: int) -> None:
     """Some motion, some wind, steady rotors of different speeds."""
     rng, p = np.random.default_rng(seed), b.p
+    p.airframe.gyroscopic = 1  # JSBSim knows no bodies without
     is_flow = p.airframe.thrust_model == THRUST_MOMENTUM
     p.wind.steady = p.wind.vel = rng.normal(size=3) * 4.0
     p.rotors.command[:4] = rng.uniform(0.1, 0.9, 4)

@@ -171,8 +171,8 @@ def test_without_errors_a_sensor_shows_the_truth():
     rng = Rng()
     seed(rng, 1)  # of zeros only it would give zeros for ever
     one, none, truth = Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.0), Vec3(1.0, -2.0, 3.0)
-    assert imu.measure(truth, one, none, 0.0, rng) == truth
-    assert imu.measure(truth, 2.0 * one, one, 0.0, rng) == 2.0 * truth + one
+    assert imu.measure(truth, one, none, none) == truth
+    assert imu.measure(truth, 2.0 * one, one, none) == 2.0 * truth + one
     body = Body()
     body.pos, body.vel = truth, 2.0 * truth
     assert gps.measure(GpsReceiver(), body, Sensors(), Derived(), rng) == (truth, 2.0 * truth)
