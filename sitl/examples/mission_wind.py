@@ -31,7 +31,7 @@ def main() -> None:
     file = load(path)
     figure, (ways, leans) = plt.subplots(1, 2, figsize=(8, 4), width_ratios=(1, 2), layout="constrained")
     for wind in WINDS_M_S:
-        params = {"SIM_WIND_SPD": wind, "SIM_WIND_DIR": FROM_DEG, "SIM_WIND_TURB": 0.2 * wind}
+        params = {"SIM_WIND_SPD": wind, "SIM_WIND_DIR": FROM_DEG, "SIM_WIND_TURB": 0.2 * wind, "SIM_WIND_T": 1}
         pilot = Client(Simulation("ardupilot_quad", home=(*file.home, 0.0), seed=1, params=params))
         pilot.wait_ready()
         pilot.upload(file.mission)

@@ -109,7 +109,7 @@ class Session:
         param.set_param_float(name, value)
         check("float", param.get_param_float(name) == value)
         refused("float as whole number", param.get_param_int, name, result="WRONG_TYPE")
-        refused("unknown parameter", param.get_param_float, unknown, result="TIMEOUT")
+        refused("unknown parameter", param.get_param_float, unknown, result="DOES_NOT_EXIST")
         every = param.get_all_params()
         check("all parameters", len(every.int_params) > 50 and len(every.float_params) > floats)
 
