@@ -30,12 +30,16 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*clock cannot be held")
 
 @pytest.fixture(autouse=True)
 def signals(monkeypatch):
-    """Tests that run in the background have inherited that SIGINT is passed over."""
+    """As at the start of a process. Tests that run in the background have inherited that SIGINT is passed over."""
     for vehicles in list(ENDINGS._owed):  # of an earlier test that failed
         vehicles.close()
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    before = {signal.SIGINT: signal.signal(signal.SIGINT, signal.default_int_handler)}
+    for name in set(ENDED_BY) - {"SIGINT"}:  # a command in an earlier test may have left its handler
+        number = getattr(signal, name)
+        before[number] = signal.signal(number, signal.SIG_DFL)
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, handler in before.items():
+        signal.signal(number, handler)
     assert not ENDINGS._owed and not ENDINGS._installed
 
 
