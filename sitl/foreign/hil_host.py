@@ -20,9 +20,8 @@ _READ = 1 << 16
 
 
 class HilHost:
-    """Serves one plant at a TCP port. PX4 cannot boot while time stands still, so until it has booted physics
-    advances with
-    the wall clock.
+    """Serves one plant at a TCP port. PX4 cannot boot while time stands still: until it has booted, physics goes
+    on with the wall clock.
 
     Args:
         plant: at power-on.

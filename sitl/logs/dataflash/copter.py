@@ -25,17 +25,23 @@ _SHAPED_TICKS = 8
 """Number of ticks without a run after which a position controller counts as inactive."""
 
 
+_ANGLES = (
+    Field("DesRoll", "f", "d", "0", derived.euler(_TARGET, 0), DEG),
+    Field("Roll", "f", "d", "0", derived.euler(E + "q", 0), DEG),
+    Field("DesPitch", "f", "d", "0", derived.euler(_TARGET, 1), DEG),
+    Field("Pitch", "f", "d", "0", derived.euler(E + "q", 1), DEG),
+    Field("DesYaw", "f", "h", "0", derived.wrapped(derived.euler(_TARGET, 2))),
+    Field("Yaw", "f", "h", "0", derived.wrapped(derived.euler(E + "q", 2))),
+)
+"""Wanted and estimated."""
+
+
 def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
     return (
         Message(
             "ATT",
             (
-                Field("DesRoll", "f", "d", "0", derived.euler(_TARGET, 0), DEG),
-                Field("Roll", "f", "d", "0", derived.euler(E + "q", 0), DEG),
-                Field("DesPitch", "f", "d", "0", derived.euler(_TARGET, 1), DEG),
-                Field("Pitch", "f", "d", "0", derived.euler(E + "q", 1), DEG),
-                Field("DesYaw", "f", "h", "0", derived.wrapped(derived.euler(_TARGET, 2))),
-                Field("Yaw", "f", "h", "0", derived.wrapped(derived.euler(E + "q", 2))),
+                *_ANGLES,
                 Field("AEKF", "B", source=3),
             ),
             rate,
@@ -44,12 +50,7 @@ def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
         Message(
             "ANG",
             (
-                Field("DesRoll", "f", "d", "0", derived.euler(_TARGET, 0), DEG),
-                Field("Roll", "f", "d", "0", derived.euler(E + "q", 0), DEG),
-                Field("DesPitch", "f", "d", "0", derived.euler(_TARGET, 1), DEG),
-                Field("Pitch", "f", "d", "0", derived.euler(E + "q", 1), DEG),
-                Field("DesYaw", "f", "h", "0", derived.wrapped(derived.euler(_TARGET, 2))),
-                Field("Yaw", "f", "h", "0", derived.wrapped(derived.euler(E + "q", 2))),
+                *_ANGLES,
                 Field("Dt", "f", "s", "0", 1.0 / _LOOP_HZ),
             ),
             rate,

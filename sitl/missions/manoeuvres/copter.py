@@ -392,11 +392,7 @@ def mission(f: Flyer) -> None:
         f.item("NAV_WAYPOINT", 0.0, 0.0, 15.0),
         f.item("NAV_LAND"),
     ]
-    f.transfer(items)
-    f.arm()
-    f.delay(1.0)
-    f.change_mode("AUTO")
-    f.send_command("MISSION_START")
+    f.begin_mission(items)
     start = f.now
     t = f.fly(200.0, lambda: not f.armed)
     reached = arrivals(f, start, (3,))

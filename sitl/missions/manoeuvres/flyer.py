@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -74,6 +74,14 @@ class Flyer(Client):
         self.delay(2.0)
         self.command("NAV_TAKEOFF", altitude=altitude)
         self.delay(6.0 + altitude)
+
+    def begin_mission(self, items: Sequence[Any]) -> None:
+        """Upload it, arm and start it in AUTO."""
+        self.transfer(items)
+        self.arm()
+        self.delay(1.0)
+        self.change_mode("AUTO")
+        self.send_command("MISSION_START")
 
     def change_mode(self, mode: str) -> None:
         """Ask for a mode without waiting."""

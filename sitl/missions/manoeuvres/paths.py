@@ -47,11 +47,7 @@ def slower_in_auto(f: Flyer) -> None:
         f.item("NAV_TAKEOFF", altitude=10.0),
         f.item("NAV_WAYPOINT", 80.0, 0.0, 10.0, param1=1.0),
     ]
-    f.transfer(items)
-    f.arm()
-    f.delay(1.0)
-    f.change_mode("AUTO")
-    f.send_command("MISSION_START")
+    f.begin_mission(items)
     f.fly(60.0, lambda: 1 in f.reached)
     begun = f.now
     f.delay(2.5)
@@ -97,11 +93,7 @@ def splines(f: Flyer) -> None:
         f.item("NAV_WAYPOINT", 0.0, 50.0, 15.0),
         f.item("NAV_WAYPOINT", 0.0, 0.0, 15.0),
     ]
-    f.transfer(items)
-    f.arm()
-    f.delay(1.0)
-    f.change_mode("AUTO")
-    f.send_command("MISSION_START")
+    f.begin_mission(items)
     start = f.now
     first = f.fly(60.0, lambda: 2 in f.reached)
     begun = f.now
@@ -136,11 +128,7 @@ def paused(f: Flyer) -> None:
         f.item("NAV_WAYPOINT", 60.0, 0.0, 20.0),
         f.item("NAV_WAYPOINT", 60.0, 60.0, 10.0, param1=1.0),
     ]
-    f.transfer(items)
-    f.arm()
-    f.delay(1.0)
-    f.change_mode("AUTO")
-    f.send_command("MISSION_START")
+    f.begin_mission(items)
     f.fly(60.0, lambda: 1 in f.reached)
     f.delay(2.0)
     for name in ("speeding up", "on the way"):
