@@ -57,6 +57,10 @@ class Progress:
         if kind == "failed":
             self._say(f"{_title(job)} failed: {value}")
             return
+        if kind == "anew":
+            self._steps.pop(job, None)
+            self._say(f"{_title(job)} begins anew: {value}")
+            return
         done = self._steps[job] = self._steps.get(job, 0) + value
         now = time.monotonic()
         if now - self._said.get(job, self._began) > EVERY_S:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.agents import baselines, learnt, rollout
+from sitl.agents.errors import ResumeError
 from sitl.agents.evaluate import Played
 from sitl.agents.policies import RANDOM, Named
 from sitl.agents.runs.config import RunConfig, versions
@@ -120,7 +122,8 @@ def _shipped(job: Job) -> bool:
 
 
 def train(job: Job, send_progress: SendProgress, stopped: Stopped) -> Record | None:
-    """Train, from where an earlier call was stopped; None when this one was, too."""
+    """Train, from where an earlier call was stopped, or anew where that was in a version with another state; None when
+    this one was stopped, too."""
     entry, seed = job.entry, job.seed or 0
     run = RunFolder.ensure(job.runs / f"{job.name}-{seed}-{job.key}", entry.training(seed))
     before, began = _spent(run), time.process_time()
@@ -128,7 +131,12 @@ def train(job: Job, send_progress: SendProgress, stopped: Stopped) -> Record | N
     def report(rows: Any) -> None:
         send_progress(("steps", sum(row.steps for row in rows)))
 
-    done = train_one(run.path, report, stopped)
+    try:
+        done = train_one(run.path, report, stopped)
+    except ResumeError as error:  # results are by recipe and environment; where a version began does not matter to them
+        send_progress(("anew", str(error)))
+        shutil.rmtree(run.path)
+        return train(job, send_progress, stopped)
     write_json(run.path / SPENT, before + time.process_time() - began)
     if not done:
         return None

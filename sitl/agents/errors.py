@@ -12,6 +12,10 @@ class AgentError(OptionError):
     """A setting of an agent, a run folder or a model that cannot be used; the message says what can."""
 
 
+class ResumeError(AgentError):
+    """A training that was stopped, and that cannot be gone on with here: it is of other settings or another version."""
+
+
 def check_names(given: Iterable[str], known: Sequence[str], what: str = "{!r}") -> None:
     """Check that every name is one of those known; ``what``: words for a name, with {!r} in its place.
 

@@ -16,7 +16,7 @@ from benchmarks.baselines.conditions import MAIN, NOMINAL, ROBUST, Condition
 from benchmarks.baselines.records import Records, ResultError, line
 from benchmarks.baselines.work import Job
 from sitl.agents import baselines, recipes
-from sitl.agents.errors import AgentError
+from sitl.agents.errors import AgentError, ResumeError
 from sitl.agents.runs.backends import Workers
 from sitl.agents.runs.files import make_folder, write_bytes
 
@@ -114,6 +114,29 @@ def test_what_was_cut_off_goes_on(few, trained, tmp_path):
         found.records.add(one)
     assert [one["kind"] for one in sent] == ["training"]
     assert ran(made(tmp_path))[0] and trained == [(NAME, 0)]
+
+
+def test_a_run_that_cannot_be_gone_on_with_begins_anew(few, tmp_path, monkeypatch):
+    """Another version's: its vehicles had another state."""
+    pytest.importorskip("stable_baselines3")
+    job = replace(dict(made(tmp_path, checked=False).stages())["training, seed 0"][0], whats=())
+    folders, sent = [], []
+
+    def train_one(path, report, stopped):
+        folders.append(sorted(file.name for file in path.iterdir()))
+        if len(folders) == 1:
+            (path / "model.zip").touch()
+            raise ResumeError("model.zip is of another version")
+        return True
+
+    monkeypatch.setattr(work, "train_one", train_one)
+    monkeypatch.setattr(work.learnt, "save", lambda run, path: path.touch())
+    assert work.do(job, sent.append, lambda: False)
+    assert folders == [["config.json"]] * 2
+    assert sent[0] == ("anew", "model.zip is of another version") and sent[1]["kind"] == "training"
+    said = []
+    running.Progress(made(tmp_path, checked=False), 1.0, 1, said.append).take(job, sent[0])
+    assert said == [f"{NAME}, seed 0 begins anew: model.zip is of another version"]
 
 
 def test_a_policy_that_is_not_at_hand_is_trained_again(few, trained, tmp_path):

@@ -13,7 +13,7 @@ from sitl.agents import algorithms, environments
 from sitl.agents.deep import checkpoint, training
 from sitl.agents.deep.checks import BEST, JITTER, SEED, Checks
 from sitl.agents.deep.settings import settings_of
-from sitl.agents.errors import AgentError
+from sitl.agents.errors import AgentError, ResumeError
 from sitl.agents.evaluate import evaluate, evaluate_run, moved_starts
 from sitl.agents.runs.folder import RunFolder
 from sitl.agents.runs.plan import EvaluationPlan
@@ -119,7 +119,7 @@ def test_a_log_that_knows_more_than_the_model_is_cut_and_a_model_of_others_refus
     )
     other = new(tmp_path / "other", env_options={"observation": "digits"})
     (other.path / checkpoint.MODEL).write_bytes((run.path / checkpoint.MODEL).read_bytes())
-    with pytest.raises(AgentError, match="cannot be gone on with"):
+    with pytest.raises(ResumeError, match="cannot be gone on with"):
         train(other)
     with pytest.raises(AgentError, match="features"):
         training.policy(run).check(environments.make(other.config).observation_space, None)

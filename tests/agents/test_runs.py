@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from sitl.agents import environments
-from sitl.agents.errors import AgentError
+from sitl.agents.errors import AgentError, ResumeError
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs import local
 from sitl.agents.runs.episodes import Episode, EpisodeLog
@@ -225,5 +225,5 @@ def test_models_of_other_environments_are_refused(tmp_path):
     with pytest.raises(AgentError, match="digits"):
         train(cliff)
     np.savez(cliff.path / training.MODEL, keys=1)
-    with pytest.raises(AgentError, match="cannot be gone on with"):
+    with pytest.raises(ResumeError, match="cannot be gone on with"):
         train(cliff)

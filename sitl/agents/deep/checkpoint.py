@@ -20,7 +20,7 @@ import numpy as np
 from sitl.core import array_files, documents
 from sitl.core.array_files import MIB, each_array, read_npz, unpack
 
-from ..errors import AgentError
+from ..errors import AgentError, ResumeError
 from ..runs.files import write_bytes
 from . import models, plain
 from .library import torch
@@ -112,7 +112,8 @@ def resume(path: Path, model: Any, robots: Any) -> None:
         robots: that it was made with.
 
     Raises:
-        AgentError: it is no such file, or of another environment or other settings.
+        AgentError: there is no such file.
+        ResumeError: it is of another environment, other settings, or a version with another state of vehicles.
     """
     try:
         with _opened(path) as archive:
@@ -127,7 +128,9 @@ def resume(path: Path, model: Any, robots: Any) -> None:
                 _remember(model.replay_buffer, archive)
         _recall_generators(model, state["random"])
     except (*_BROKEN, AttributeError) as error:
-        raise AgentError(f"{path} cannot be gone on with: {error}") from None
+        raise ResumeError(
+            f"{path} cannot be gone on with, it is of another environment, other settings or another version: {error}"
+        ) from None
 
 
 def load(path: Path, algorithm: str) -> tuple[Any, Spaces]:

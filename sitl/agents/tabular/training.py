@@ -20,7 +20,7 @@ import gymnasium as gym
 import numpy as np
 
 from .. import environments
-from ..errors import AgentError
+from ..errors import AgentError, ResumeError
 from ..evaluate import moved_starts
 from ..policies import OneEach
 from ..runs.config import EPISODES, RunConfig
@@ -223,11 +223,11 @@ def _resume(folder: RunFolder, learner: Learner) -> tuple[int, int]:
     arrays = read_arrays(path)
     done = [arrays.get(name, np.zeros(0)) for name in ("episodes", "steps")]
     if any(number.shape != () or number.dtype.kind != "i" or number < 0 for number in done):
-        raise AgentError(f"{path} is a table without a run's state: it cannot be gone on with")
+        raise ResumeError(f"{path} is a table without a run's state: it cannot be gone on with")
     try:
         learner.restore(arrays)
     except AgentError as error:
-        raise AgentError(f"{path} cannot be gone on with: {error}") from None
+        raise ResumeError(f"{path} cannot be gone on with: {error}") from None
     episodes, steps = (int(number) for number in done)
     folder.episodes.keep(episodes)
     return episodes, steps
