@@ -12,11 +12,10 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/demo.stamp
 	$(BIN)/sitl demo copter
 
-# The core is compiled first, on all processors: test processes would wait for each other's parts of it.
+# The core is compiled first, on all processors: test processes would wait for each other's parts of it. Slow tests come last (tests/conftest.py).
 test: $(VENV)/dev.stamp
 	$(BIN)/sitl cache build
-	$(BIN)/python -m pytest -n 2 -m "not slow"
-	$(BIN)/python -m pytest -n 2 -m slow
+	$(BIN)/python -m pytest -n 2
 
 lint: $(VENV)/dev.stamp
 	$(BIN)/ruff check .
