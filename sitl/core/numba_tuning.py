@@ -2,15 +2,15 @@
 """Makes Numba compile a unit without work that is thrown away; what the unit does is the same, to the last bit.
 
 Numba is built for functions that Python calls one by one: of every law that a unit contains it makes machine code and
-wrappers for Python and for C, and it names types by printing them, which for a record of records costs more than
-compiling. Of a unit only the entry is ever called. What is switched off here reaches into Numba's internals, so each
-step is guarded by what it needs: with a Numba that looks different inside, compilation is slower and nothing else
-changes.
+wrappers for Python and for C. Of a unit only the entry is ever called. What is switched off here reaches into Numba's
+internals, so a patch is made only in a Numba of the versions that were tried (``is_tried``) that has every name which
+the patch uses; else compilation is slower, and nothing else changes.
 """
 
 from __future__ import annotations
 
 import contextlib
+import importlib
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -33,33 +33,70 @@ def law_options(inline: bool = False) -> dict[str, Any]:
     return {**COMMON, **_NO_WRAPPERS, "forceinline": inline}
 
 
+OLDEST, NEXT = (0, 60), (0, 69)
+"""Versions of Numba from the first on, before the second, are tried; pyproject.toml has the same."""
+NAMES = {
+    "quick": (
+        "numba.core.codegen:CPUCodeLibrary._finalize_final_module",
+        "numba.core.codegen:CPUCodeLibrary._finalize_dynamic_globals",
+        "numba.core.codegen:CodeLibrary._finalized",
+        "numba.core.codegen:CodeLibrary.name",
+        "numba.core.cpu:CPUContext.get_executable",
+    ),
+    "trust_laws": (
+        "numba.core.callconv:RETCODE_OK",
+        "numba.core.callconv:CPUCallConv.call_function",
+        "numba.core.callconv:CPUCallConv._get_excinfo_argument",
+        "numba.core.callconv:BaseCallConv._get_arg_packer",
+        "numba.core.callconv:CPUCallConv._get_return_status",
+        "numba.core.base:BaseContext.get_returned_value",
+        "numba.core.datamodel:ArgPacker.as_arguments",
+        "numba.core.types:Optional",
+        "numba.core.types:none",
+        "llvmlite.ir:IRBuilder.goto_entry_block",
+        "llvmlite.ir:IRBuilder.alloca",
+        "llvmlite.ir:IRBuilder.load",
+        "llvmlite.ir:IRBuilder.call",
+        "llvmlite.ir:IRBuilder.function",
+    ),
+}
+"""Patch -> every name of Numba and llvmlite that it replaces or uses, as module:name, where it is defined."""
+
+
+def is_tried(version: str) -> bool:
+    """Whether the patches were tried with this version of Numba."""
+    parts = version.split(".")
+    return (
+        len(parts) > 1 and all(part.isdigit() for part in parts[:2]) and OLDEST <= (int(parts[0]), int(parts[1])) < NEXT
+    )
+
+
+def fits(patch: str) -> bool:
+    """Whether the Numba at hand was tried and has all that a patch (``NAMES``) uses."""
+    import numba
+
+    if not is_tried(numba.__version__):
+        return False
+    try:
+        for name in NAMES[patch]:
+            module, _, path = name.partition(":")
+            found: Any = importlib.import_module(module)
+            for part in path.split("."):
+                found = vars(found)[part]
+    except (ImportError, KeyError):
+        return False
+    return True
+
+
 @contextlib.contextmanager
 def quick(entry: str) -> Iterator[None]:
     """While it lasts, only code of libraries whose name contains ``entry`` becomes machine code."""
-    undo: list[Callable[[], None]] = []
+    restore = _skip_inner_machine_code(entry) if fits("quick") else None
     try:
-        for patch in (_remember_record_names, _skip_inner_machine_code):
-            with contextlib.suppress(ImportError, AttributeError):
-                undo.append(patch(entry))
         yield
     finally:
-        for restore in undo:
+        if restore is not None:
             restore()
-
-
-def _remember_record_names(_: str) -> Callable[[], None]:
-    from numba.core.types.npytypes import Record
-
-    original = Record.__repr__
-
-    def remembered(self: Any) -> str:
-        known = self.__dict__.get("_sitl_repr")
-        if known is None:
-            known = self.__dict__["_sitl_repr"] = original(self)
-        return str(known)
-
-    Record.__repr__ = remembered  # type: ignore[method-assign]
-    return lambda: setattr(Record, "__repr__", original)
 
 
 def _skip_inner_machine_code(entry: str) -> Callable[[], None]:
@@ -97,9 +134,7 @@ def trust_laws() -> Iterator[None]:
 
     Laws raise nothing, and in the core this was a fiftieth of all instructions.
     """
-    restore: Callable[[], None] | None = None
-    with contextlib.suppress(ImportError, AttributeError):
-        restore = _compile_unchecked_calls()
+    restore = _compile_unchecked_calls() if fits("trust_laws") else None
     try:
         yield
     finally:
