@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from . import entries
-from .conditions import ARDUPILOT, MAIN, NOMINAL, ROBUST, WORLDS, named, of_group, program_of
-from .entries import MANY_WORLDS, Entry
+from .conditions import ARDUPILOT, MAIN, NOMINAL, ROBUST, named, of_group, program_of
+from .entries import Entry
 from .records import Record, Records
 from .references import References
 from .shipped import kept
@@ -143,9 +143,7 @@ def _main(entry: Entry) -> tuple[str, ...]:
 
 
 def _elsewhere(entry: Entry) -> tuple[str, ...]:
-    robust = () if entry.name.endswith(MANY_WORLDS) else of_group(ROBUST, entry.plain)
-    worlds = () if entry.name.endswith(entries.ROBUST) else of_group(WORLDS, entry.plain)
-    return (*robust, *worlds)
+    return of_group(ROBUST, entry.plain)
 
 
 def _all(entry: Entry) -> tuple[str, ...]:

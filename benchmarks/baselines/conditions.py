@@ -18,9 +18,9 @@ from sitl.envs.options import COMMON
 from sitl.envs.presets import PRESETS
 from sitl.envs.robots.vehicles import AutopilotOptions
 
-MAIN, ROBUST, WORLDS, REAL = "main", "robustness", "worlds", "autopilot"
+MAIN, ROBUST, REAL = "main", "robustness", "autopilot"
 """Groups: each is a table."""
-NOMINAL, ESTIMATE, ARDUPILOT = "nominal", "estimate", "ardupilot"
+NOMINAL, ESTIMATE, UNSEEN, ARDUPILOT = "nominal", "estimate", "worlds-unseen", "ardupilot"
 EPISODES, ROBUST_EPISODES, WORLD_EPISODES, REAL_EPISODES = 200, 50, 100, 10
 SEED = 1000
 """Of the episodes: episode k is the one that ``sitl rollout --seed 1000`` plays as number k."""
@@ -46,7 +46,7 @@ class Condition:
     kinds: tuple[str, ...] = KINDS
     """Kinds of vehicle that have it."""
     seeds: tuple[int, int] | None = None
-    """First and last seed of the worlds, in place of the one that the id has."""
+    """First and last seed of the worlds, in place of those that the id has."""
 
     def fits(self, name: str) -> bool:
         """Whether a baseline (without variant) is evaluated under it: the vehicle has it, the environment knows its
@@ -104,14 +104,13 @@ def worlds_of(preset: str, first: int, last: int) -> str:
 CONDITIONS: dict[str, Condition] = {
     NOMINAL: Condition("as trained", MAIN, EPISODES),
     ESTIMATE: Condition("judged by the estimate", MAIN, EPISODES, {"judge": "estimate"}),
+    UNSEEN: Condition("worlds that no policy has seen", MAIN, WORLD_EPISODES, seeds=(1001, 1100)),
     **{f"latency-{seconds}": Condition(f"latency {seconds} s", options={"latency": seconds})
        for seconds in (0.1, 0.2, 0.3, 0.4)},
     **{f"wind-{speed}": Condition(f"wind {speed} m/s", draw={"wind_speed": (float(speed), float(speed)), **WIND},
                                   kinds=("copter",)) for speed in (4, 8, 12)},
     "mass-80": Condition("mass -20 %", scale={"mass": 0.8}),
     "mass-120": Condition("mass +20 %", scale={"mass": 1.2}),
-    "worlds-trained": Condition("worlds 1 .. 100", WORLDS, WORLD_EPISODES, seeds=(1, 100)),
-    "worlds-unseen": Condition("unseen worlds", WORLDS, WORLD_EPISODES, seeds=(1001, 1100)),
     "motor-80": Condition("a motor at 80 %", options={"faults": {"motor:2=0.8": 0.0}}, kinds=("copter",)),
     **{f"sensors-{sensors}": Condition(title, options={"sensors": sensors}) for sensors, title in SENSORS.items()},
     "boots-1": Condition("one boot", options={"boots": 1}),

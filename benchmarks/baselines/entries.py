@@ -15,10 +15,8 @@ from sitl.envs.ids import TASKS
 from .conditions import SEED, named
 from .records import digest
 
-ROBUST, MANY_WORLDS = "-robust", "-worlds"
-VARIANTS = (ROBUST, MANY_WORLDS)
-"""End the names of recipes that train in randomised conditions, or in many worlds; results of the plain one stand
-beside theirs."""
+ROBUST = "-robust"
+"""Ends the names of recipes that train in randomised conditions; results of the plain one stand beside theirs."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ class Entry:
         return self.recipe.config(seed, env=self.env, steps=self.steps)
 
     def playing(self) -> RunConfig:
-        """The run whose environment it is evaluated in: the plain recipe's."""
+        """The run whose environment it is evaluated in: the plain recipe's, as that checks it."""
         return _playing(self.plain)
 
     def training_key(self, seed: int, env_digest: str) -> str:
@@ -68,18 +66,19 @@ class Entry:
 @cache
 def _playing(plain: str) -> RunConfig:
     recipe, env = baselines.recipe_of(plain)
-    return RunConfig(env, recipe.algorithm, dict(recipe.options), steps=1, max_steps=recipe.max_steps)
+    options = {**recipe.options, **recipe.evaluation.options}
+    return RunConfig(env, recipe.algorithm, options, steps=1, max_steps=recipe.max_steps)
 
 
 def names() -> tuple[str, ...]:
     """All baselines: one for each id of a task, then the variants."""
     plain = [preset + form for preset in TASKS for form in ("", baselines.DISCRETE)]
-    return (*sorted(plain), *(name for name in recipes.names() if name.endswith(VARIANTS)))
+    return (*sorted(plain), *(name for name in recipes.names() if name.endswith(ROBUST)))
 
 
 def plain_of(name: str) -> str:
     """The baseline that a name is a variant of; else the name itself."""
-    return next((name.removesuffix(end) for end in VARIANTS if name.endswith(end)), name)
+    return name.removesuffix(ROBUST)
 
 
 @cache

@@ -16,7 +16,7 @@ from sitl.agents.runs.files import write_bytes
 
 from . import defaults, shipped, work
 from .campaign import Campaign
-from .conditions import ARDUPILOT, CONDITIONS, ESTIMATE, NOMINAL, ROBUST, SEED, WORLDS, named
+from .conditions import ARDUPILOT, CONDITIONS, ESTIMATE, KINDS, NOMINAL, ROBUST, SEED, UNSEEN, named
 from .entries import Entry
 from .records import Record
 from .work import figures
@@ -83,11 +83,12 @@ def results(found: Campaign) -> str:
         crashes = 100 * float(interquartile_mean(np.array([figures(one, "crashed").mean() for one in records])))
         rows.append(
             (link(entry), entry.recipe.algorithm.upper(), len(records), percent(records),
-             percent(of_seeds(found, entry, ESTIMATE)), f"{crashes:.1f}", returns(records),
+             percent(of_seeds(found, entry, ESTIMATE)), percent(of_seeds(found, entry, UNSEEN)),
+             f"{crashes:.1f}", returns(records),
              "{} ± {}".format(*shipped.mean(drawn["reward"])) if drawn else "", f"{steps:,.0f}", f"{took:.0f} s")
         )  # fmt: skip
-    heads = ("policy", "algorithm", "trainings", "success [%]", "by the estimate [%]", "crashes [%]", "return",
-             "random policy", "training steps", "training time")  # fmt: skip
+    heads = ("policy", "algorithm", "trainings", "success [%]", "by the estimate [%]", "in unseen worlds [%]",
+             "crashes [%]", "return", "random policy", "training steps", "training time")  # fmt: skip
     return table(heads, rows, 2)
 
 
@@ -111,10 +112,9 @@ def suites(found: Campaign) -> str:
     return table(("tasks with", "tasks", "trainings of each", "success [%], interquartile mean"), rows)
 
 
-def elsewhere(found: Campaign, group: str, kind: str) -> str:
-    """Baselines of a kind of vehicle under the conditions of a group; variants below their plain ones."""
-    whats = [NOMINAL, *(key for key, one in CONDITIONS.items() if one.group == group and kind in one.kinds)]
-    whats += [ARDUPILOT] if group == ROBUST else []
+def elsewhere(found: Campaign, kind: str) -> str:
+    """Baselines of a kind of vehicle in other conditions; variants below their plain ones."""
+    whats = [NOMINAL, *(key for key, one in CONDITIONS.items() if one.group == ROBUST and kind in one.kinds), ARDUPILOT]
     rows: list[tuple[str, ...]] = []
     for entry in sorted(found.chosen, key=lambda one: (one.plain, one.is_variant)):
         cells = [of_seeds(found, entry, what) for what in whats]
@@ -141,11 +141,7 @@ def tables(found: Campaign) -> dict[str, str]:
     return {
         "results": results(found),
         "suites": suites(found),
-        **{
-            f"{group} {kind}": elsewhere(found, group, kind)
-            for group in (ROBUST, WORLDS)
-            for kind in ("copter", "rover")
-        },
+        **{f"{ROBUST} {kind}": elsewhere(found, kind) for kind in KINDS},
         "defaults": table(("id", "PPO", "SAC, or DQN of discrete actions"), defaults.table_rows(found), 3),
         "older": older(),
     }
