@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from ..bridge.dialect import message
 from ..errors import OptionError, did_you_mean
+from . import px4
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .companion import Companion
 from .connection import Connection, InProcess, connect
@@ -47,6 +48,8 @@ LIMIT_S = 15.0
 """A piece of something that was missing comes within."""
 TEXTS_SHOWN = 8
 """As many status texts stand in an error."""
+_OURS, _PX4S = "EKF_STATUS_REPORT", "ESTIMATOR_STATUS"
+"""Which of its estimates are good, by ArduPilot and by PX4."""
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
 Repeated = tuple[str, dict[str, Any]]
 """A message that is sent again and again: its name, its fields."""
@@ -203,7 +206,7 @@ class Session:
     def describe(self) -> str:
         """Where it is and what it does, in a line."""
         t = self.telemetry
-        item = f", item {t.item}" if self.mode == "AUTO" else ""
+        item = f", item {t.item}" if self.mode in ("AUTO", px4.MISSION) else ""
         state = f"{self.mode or 'no mode yet'}, {'armed' if self.armed else 'disarmed'}"
         return f"{state}{item}, {self.position}, {t.groundspeed:.1f} m/s, heading {self.heading:.0f}"
 
@@ -248,7 +251,10 @@ class Session:
         if name == "COMMAND_ACK" and fields.command == _SET_INTERVAL:
             self._unanswered = max(self._unanswered - 1, 0)
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
-            self.telemetry.mode_names = mode_names(fields.type)
+            self.telemetry.mode_names = px4.MODE_NAMES if self.telemetry.is_px4 else mode_names(fields.type)
+            if self.telemetry.is_px4 and self._rates.pop(_OURS, None) is not None:
+                self._rates[_PX4S] = RATES_HZ[_OURS]
+                self.set_rate(_PX4S, RATES_HZ[_OURS])
         self._awaited.discard(name)
         for companion in self.companions:
             companion.take(name, fields)

@@ -10,6 +10,8 @@ ROMFS/px4fmu_common/init.d-posix.
 from __future__ import annotations
 
 import contextlib
+import os
+import re
 import socket
 from collections.abc import Mapping
 from pathlib import Path
@@ -24,6 +26,8 @@ from .process import HOST, AutopilotProcess
 MODEL = "none_iris"
 PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550
 """UDP: where it sends to programs, from where, and where to ground stations; the first two are + N."""
+LINKS_FILE = "px4-rc.mavlink"
+"""What its start script runs to begin with MAVLink: the first of this name in PATH."""
 INSTANCES = 10
 """Number of instances: from 10 on all send to port 14549, where programs cannot distinguish them."""
 
@@ -72,6 +76,13 @@ def _worded(value: float) -> str:
     return str(int(value)) if value == int(value) else f"{value:.9g}"
 
 
+def unknown_names(process: AutopilotProcess, given: Mapping[str, float]) -> list[str]:
+    """Those of the parameters that a user gave it that it does not have, by its output: it has set all of them before
+    its MAVLink begins. Its start script sets some that a program may not have, too; those do not count."""
+    said = set(re.findall(r"Parameter (\w+) not found", process.output()))
+    return [name for name in given if name in said]
+
+
 def programs_port(instance: int) -> int:
     """UDP port that an instance sends to for programs."""
     return PROGRAMS_PORT + min(instance, INSTANCES - 1)
@@ -106,6 +117,7 @@ def start(
     speedup: float = 1.0,
     params: Mapping[str, float] | None = None,
     folder: Path | None = None,
+    link: tuple[int, int] | None = None,
 ) -> AutopilotProcess:
     """Start it.
 
@@ -117,6 +129,7 @@ def start(
         speedup: times the wall clock, by which it lengthens its time-outs.
         params: under PX4's names, over those of ``parameters``.
         folder: see ``AutopilotProcess``.
+        link: UDP ports of its only MAVLink: its own, and the one that it speaks to; None: those of its instance.
     """
     values = {**parameters(airframe), **(params or {})}
     environment = {
@@ -127,5 +140,9 @@ def start(
         "PX4_HOME_ALT": f"{home[2]:.9g}",
         **{f"PX4_PARAM_{name}": _worded(value) for name, value in values.items()},
     }
+    files = {}
+    if link is not None:
+        files[LINKS_FILE] = f"mavlink start -x -u {link[0]} -r 4000000 -f -m onboard -o {link[1]}\n"
+        environment["PATH"] = os.pathsep.join(("{folder}", os.environ.get("PATH", os.defpath)))
     command = [str(program), "-i", str(instance), "-d", str(program.parent.parent / "etc")]
-    return AutopilotProcess(command, {}, environment, folder)
+    return AutopilotProcess(command, files, environment, folder)

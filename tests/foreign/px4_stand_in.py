@@ -4,7 +4,7 @@ on the truth inside.
 
 As the real one (release/1.18 of August 2026): connects to the simulator and tries until it is there; says HEARTBEAT
 and asks for the truth, then nothing until it has booted; its clock is HIL_SENSOR's from the first one on; zeros while
-disarmed, else parts of each motor's range; MAVLink by UDP to 14540 + N first; OFFBOARD only while set-points come;
+disarmed, else parts of each motor's range; MAVLink by UDP to 14540 + N first, or as a file in PATH says; OFFBOARD only while set-points come;
 hears commands only while its time passes. With IMU_INTEG_RATE below the rate of samples its estimator runs at each
 n-th one, and the answers to the others wait for it. MAVLink begins some wall time after it answers (START_S).
 LOCAL_POSITION_NED comes at once, with a heading without declination, until ESTIMATOR_STATUS says that it is valid.
@@ -61,9 +61,10 @@ class Px4:
         self.simulator = connect(4560 + instance)
         self.hil = Wire(self.simulator.sendall, 1 + instance)
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.bind(("127.0.0.1", 14580 + instance))
+        own, theirs = links() or (14580 + instance, 14540 + instance)
+        self.socket.bind(("127.0.0.1", own))
         self.socket.setblocking(False)
-        self.client = ("127.0.0.1", 14540 + instance)
+        self.client = ("127.0.0.1", theirs)
         self.link = Wire(lambda frame: self.socket.sendto(frame, self.client), 1 + instance)
         self.now, self.ticks, self.armed, self.mode = 0, 0, False, 4
         self.every = max(round(400 / given["IMU_INTEG_RATE"]), 1)
@@ -202,6 +203,16 @@ class Px4:
             force = 0.25 * thrust - y / lever * mx + x / lever * my + mz / (4.0 * km)
             controls[k] = math.sqrt(max(force, 0.1) / THRUST) / TOP_SPEED
         return controls
+
+
+def links() -> tuple[int, int] | None:
+    """UDP ports of its MAVLink, its own and the other one, by the first file of this name in PATH."""
+    for folder in os.environ["PATH"].split(os.pathsep):
+        file = Path(folder) / "px4-rc.mavlink"
+        if file.is_file():
+            words = file.read_text().split()
+            return int(words[words.index("-u") + 1]), int(words[words.index("-o") + 1])
+    return None
 
 
 def connect(port: int) -> socket.socket:

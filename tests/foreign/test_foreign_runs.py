@@ -129,7 +129,7 @@ def test_a_program_that_is_killed_ends_its_slices(held):
 def test_a_program_that_asks_for_nothing_any_more_ends_its_slices(held, monkeypatch):
     held.serve_slices(AsFastAsItGoes(), until_us=1_000_000)
     held.process._signal(signal.SIGSTOP)
-    monkeypatch.setattr("sitl.foreign.session.LOST_S", 0.5)
+    monkeypatch.setattr("sitl.foreign.slices.LOST_S", 0.5)
     monkeypatch.setattr("sitl.plants.physics_server.PATIENCE_S", 0.2)
     with pytest.raises(LinkLostError, match=r"has not asked its physics in 0.5 s; it said: .*Ready"):
         held.serve_slices(AsFastAsItGoes())
@@ -198,7 +198,8 @@ def test_px4_is_run(px4, tmp_path):
     with command("run", "copter", "--autopilot", f"px4:{px4}", *words, cwd=tmp_path) as process:
         out, err = process.communicate(timeout=60)
     assert process.returncode == 0, err
-    assert "udp 127.0.0.1:14547" in out
+    assert "udpout:127.0.0.1:14547" in out and "tcp:127.0.0.1:5830" in out
+    assert list((tmp_path / "logs").glob("px4-*.tlog"))
     assert "every tick waits for the autopilot" in err
 
 
