@@ -70,7 +70,10 @@ def read_controls(payload: bytes) -> Controls:
 
 
 def rotor_range(airframe: Any) -> tuple[float, float]:
-    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; (0, 1) without rotors."""
+    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; of a rover those of no and
+    of full throttle and steering."""
+    if hasattr(airframe, "control_full"):
+        return 0.0, float(airframe.control_full)
     if not hasattr(airframe, "control_max"):
         return 0.0, 1.0
     return float(airframe.control_min), float(airframe.control_max)
