@@ -181,7 +181,7 @@ def test_controls(outputs: list[float], armed: bool) -> None:
 
 @pytest.mark.parametrize(
     ("frame", "lowest", "highest"),
-    [("ardupilot_quad", 0.15, 0.95), ("erle_copter", 0.0, 0.838), ("erle_rover", 0.0, 1.0)],
+    [("ardupilot_quad", 0.15, 0.95), ("erle_copter", 0.0, 0.838), ("erle_rover", 0.0, 0.8)],
 )
 def test_parts_of_the_rotors_range(frame: str, lowest: float, highest: float) -> None:
     airframe = load(frame)
