@@ -123,7 +123,8 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
             f"--link-...: not with {choice.kind}, which has its own links; only those of our autopilot can have faults"
         )
     if getattr(options, "fail", ()):
-        raise OptionError(f"--fail: not with {choice.kind}, which has its own SIM_ parameters; set those")
+        own = "set SIM_ parameters, by --params or MAVLink" if choice.kind == PX4 else "set its own SIM_ parameters"
+        raise OptionError(f"--fail: not with {choice.kind}; {own}")
     if options.estimator != "ekf":
         raise OptionError(f"--estimator {options.estimator}: not with {choice.kind}, which has its own estimators")
     if options.physics not in BACKENDS:

@@ -259,6 +259,7 @@ class Controls(Waits):
         })  # fmt: skip
         if self.telemetry.is_px4 and self.mode != px4.OFFBOARD:
             self.delay(OFFBOARD_S)  # it has to get some before it may be in that mode
+            self._repeat(_VELOCITY)
             self._ask_mode(self._mode_number(px4.OFFBOARD), f"mode {px4.OFFBOARD}")
             self.wait_mode(px4.OFFBOARD)
 

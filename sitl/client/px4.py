@@ -31,6 +31,8 @@ READY, MISSION, OFFBOARD = "LOITER", "MISSION", "OFFBOARD"
 """Modes: in which it arms and goes where it is sent; of missions; of velocities that are sent."""
 MISSION_ENDS = (MISSION, READY, "RTL", "LAND")
 """Modes in which a mission that was flown ends: an item that returns or lands changes the mode."""
+REPEAT_US = 200_000
+"""Between two set-points: it leaves OFFBOARD when they come less than twice a second."""
 _INT_32 = 6
 _FRAME_MISSION = 2
 _PLACED = (NAV_TAKEOFF, NAV_LAND, NAV_WAYPOINT)

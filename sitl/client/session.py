@@ -92,7 +92,7 @@ class Session:
         self.connection = vehicle if isinstance(vehicle, Connection) else InProcess(vehicle)
         self.name = name
         self.telemetry = Telemetry()
-        self._rates = RATES_HZ if rates is None else dict(rates)
+        self._rates = dict(RATES_HZ if rates is None else rates)
         self._asked_us, self._unanswered, self._awaited = 0, 0, set[str]()
         self._repeated: dict[str, Repeated] = {}
         self.companions: list[Companion] = []
@@ -229,7 +229,8 @@ class Session:
         for name, due in self._next_us.items():
             if now >= due:
                 self._repeat(name)
-                self._next_us[name] = now + (HEARTBEAT_US if name == _HEARTBEAT else REPEAT_US)
+                between = px4.REPEAT_US if self.telemetry.is_px4 else REPEAT_US
+                self._next_us[name] = now + (HEARTBEAT_US if name == _HEARTBEAT else between)
         for companion in self.companions:
             companion.step(now)
         until = now // STEP_US * STEP_US + STEP_US

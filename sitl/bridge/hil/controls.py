@@ -70,8 +70,8 @@ def read_controls(payload: bytes) -> Controls:
 
 
 def rotor_range(airframe: Any) -> tuple[float, float]:
-    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; of a rover those of no and
-    of full throttle and steering."""
+    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; of a rover those of no
+    and of full throttle and steering."""
     if hasattr(airframe, "control_full"):
         return 0.0, float(airframe.control_full)
     if not hasattr(airframe, "control_max"):
@@ -111,6 +111,9 @@ ALIKE = 4
 """After so many answers with as many ticks between them those ticks are not waited for."""
 SILENT = 200
 """Ticks in a row without an answer; after that time stands: the autopilot is stopped, or gone."""
+SILENT_ARMED = 16
+"""The same in flight. A PX4 that was stopped loses the samples that it gets at once when it goes on, and what it knows
+of its velocity with them: 9.8 m/s for a second of them. Its slowest loops run at every eighth tick."""
 START_US = 4_000_000
 """Simulated time since the first answer in which an autopilot starts its modules, in wall time [us]."""
 
@@ -157,7 +160,7 @@ class ForeignClock:
     @property
     def is_silent(self) -> bool:
         """Whether so many ticks in a row have had no answer that time has to stand."""
-        return self._in_vain >= SILENT
+        return self._in_vain >= (SILENT_ARMED if self._is_armed else SILENT)
 
     def is_starting(self, now_us: int) -> bool:
         """Whether its modules may still be starting at this time [us]."""

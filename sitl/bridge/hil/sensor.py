@@ -32,7 +32,7 @@ COUNTS = 56
 _SENSOR_LIMITS = (*(5e3,) * 3, *(500.0,) * 3, *(100.0,) * 3, 2e3, 2e3, 1e5, 300.0)
 """Sizes beyond which a sensor's value is absurd [m/s^2, rad/s, gauss, hPa, hPa, m, degC]."""
 _DITHER_MAG, _DITHER_BARO = 1e-5, 1e-3
-"""What every second sample shows more [gauss], [hPa]: less than a ten-thousandth of the field of the earth, a centimetre."""
+"""What every second sample shows more [gauss], [hPa]: little of the earth's field, a centimetre."""
 
 Values = tuple[Any, ...]
 """Fields in wire order."""

@@ -19,6 +19,7 @@ from sitl.bridge.hil.controls import (
     LONGEST_WAIT_S,
     SHORTEST_WAIT_S,
     SILENT,
+    SILENT_ARMED,
     START_US,
     TRUSTED,
     Controls,
@@ -296,6 +297,17 @@ def test_a_disarmed_rover_that_answers_no_more_goes_by_the_wall_clock(mode: int)
         assert clock.holds
         clock.gave_up()
     assert clock.is_silent and clock.holds == (mode != 1)
+
+
+@pytest.mark.parametrize(("mode", "most"), [(1, SILENT), (129, SILENT_ARMED)])
+def test_time_stands_earlier_in_flight(mode: int, most: int) -> None:
+    clock = ForeignClock()
+    clock.sent(0)
+    assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, mode), 0)
+    for _ in range(most):
+        assert not clock.is_silent
+        clock.gave_up()
+    assert clock.is_silent
 
 
 def test_px4_is_starting_for_some_seconds_after_its_first_answer() -> None:
