@@ -61,6 +61,8 @@ class ArduPilotSession(SlicedSession):
         OptionError: no port, or a program that cannot be started.
     """
 
+    host: JsonHost
+
     def __init__(
         self,
         choice: Choice,

@@ -36,7 +36,7 @@ def test_whole_numbers_travel_as_their_bytes(value):
 
 @pytest.mark.parametrize("value", [0.5, float(1 << 31)])
 def test_a_whole_number_is_needed_where_there_is_one(value):
-    with pytest.raises(OptionError, match="NAV_RCL_ACT = .*; PX4 has a whole number there"):
+    with pytest.raises(OptionError, match=r"NAV_RCL_ACT = .*; PX4 has a whole number there"):
         px4.encoded("NAV_RCL_ACT", value, 6)
 
 
