@@ -72,8 +72,6 @@ class Telemetry:
 
     mode_names: Mapping[int, str] = field(default_factory=dict)
     """Of this vehicle, by their numbers."""
-    autopilot: int = -1
-    """MAV_AUTOPILOT of HEARTBEAT; -1 before the first."""
     mode_number: int = -1
     """custom_mode of HEARTBEAT; -1 before the first."""
     armed: bool = False
@@ -106,8 +104,6 @@ class Telemetry:
     """Mission items that were under way while it was armed."""
     parameters: dict[str, float] = field(default_factory=dict)
     """Values by name, as they were sent last."""
-    parameter_types: dict[str, int] = field(default_factory=dict)
-    """MAV_PARAM_TYPE by name, as they were sent last."""
     texts: list[Text] = field(default_factory=list)
     reached: list[tuple[float, int]] = field(default_factory=list)
     """(time [s], mission item)"""
@@ -123,6 +119,10 @@ class Telemetry:
     """Time at which it said so last [s]."""
     untold: tuple[int, ...] = ()
     """The last items that were under way, and were not yet said to be reached."""
+    autopilot: int = -1
+    """MAV_AUTOPILOT of HEARTBEAT; -1 before the first."""
+    parameter_types: dict[str, int] = field(default_factory=dict)
+    """MAV_PARAM_TYPE by name, as they were sent last."""
 
     def copy(self) -> Telemetry:
         """As it is now."""

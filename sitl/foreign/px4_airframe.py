@@ -13,6 +13,7 @@ import math
 from typing import NamedTuple
 
 from ..core.constants import GRAVITY, TICK_HZ
+from ..core.sums import products
 from ..vehicles import CopterAirframe
 from ..vehicles.figures.copter import THRUST_MOMENTUM
 
@@ -45,14 +46,16 @@ def thrust(airframe: CopterAirframe) -> Thrust:
     value = airframe.value
     weight = float(value("mass")) * GRAVITY / len(airframe.rotors)
     if int(value("thrust_model")) == THRUST_MOMENTUM:
-        most = 0.5 * AIR_DENSITY * float(value("outflow_area")) * float(value("outflow_speed_max")) ** 2
+        speed = float(value("outflow_speed_max"))
+        most = 0.5 * AIR_DENSITY * float(value("outflow_area")) * speed * speed
         hover, curve = weight / most, float(value("thrust_expo"))
         linear = 1.0 - curve
         command = (math.sqrt(linear * linear + 4.0 * curve * hover) - linear) / (2.0 * curve) if curve else hover
         # Its yaw torque goes with thrust times command: this is how it changes with thrust.
         arm = float(value("yaw_lever")) * (command + hover / (linear + 2.0 * curve * command))
         return Thrust(most, hover, curve, arm, 0.0)
-    most = float(value("thrust_coefficient")) * float(value("speed_max")) ** 2
+    speed = float(value("speed_max"))
+    most = float(value("thrust_coefficient")) * speed * speed
     lag = 0.5 * (float(value("time_constant_up")) + float(value("time_constant_down")))
     return Thrust(most, weight / most, 1.0, float(value("moment_coefficient")), lag)
 
@@ -61,8 +64,8 @@ def accelerations(airframe: CopterAirframe, rotor: Thrust) -> tuple[float, float
     """Angular acceleration of a whole command in roll, pitch and yaw [rad/s^2]."""
 
     def scale(levers: list[float]) -> float:
-        used = sum(abs(lever) > _NEAR_ZERO for lever in levers)
-        return math.sqrt(2.0 / (used * sum(lever * lever for lever in levers))) if used else 0.0
+        used = len([lever for lever in levers if abs(lever) > _NEAR_ZERO])
+        return math.sqrt(2.0 / (used * float(products(levers, levers)))) if used else 0.0
 
     xs, ys = [r.x for r in airframe.rotors], [r.y for r in airframe.rotors]
     both = max(scale(xs), scale(ys)) or 1.0

@@ -8,7 +8,7 @@ disarmed, else parts of each motor's range; MAVLink by UDP to 14540 + N first, o
 while set-points come; hears commands only while its time passes; modes, whole numbers, missions without home (answered
 by a MISSION_ACK with an extension field that this dialect does not know), take-off above mean sea level.
 Parameters that it does not have are named in its output. With IMU_INTEG_RATE below the rate of samples its estimator
-runs at each n-th one, and the answers to the others wait for it. MAVLink begins some wall time after it answers (START_S).
+runs at each n-th one, and the answers to the others wait for it. MAVLink begins some wall time after it answers.
 LOCAL_POSITION_NED comes at once, with a heading without declination, until ESTIMATOR_STATUS says that it is valid.
 """
 
