@@ -61,10 +61,11 @@ _read_v1 = struct.Struct("<BBBBB").unpack_from
 class Splitter:
     """Cuts frames out of a stream of bytes, whatever the stream contains.
 
-    A header that cannot be right (unknown message, payload longer than the message, unknown incompatibility
-    flag) or a wrong checksum costs one byte: the search goes on right behind its start mark, so a good frame
-    that follows, or that stands inside what looked like a frame, is found. Signed frames are accepted and
-    their signature is not checked.
+    A header that cannot be right (unknown message, payload of version 1 longer than the message, unknown
+    incompatibility flag) or a wrong checksum costs one byte: the search goes on right behind its start mark, so a good
+    frame that follows, or that stands inside what looked like a frame, is found. A longer payload of version 2 has
+    extension fields that are newer than this dialect; they are left out. Signed frames are accepted and their
+    signature is not checked.
     """
 
     def __init__(self) -> None:
@@ -98,7 +99,7 @@ class Splitter:
                 at = self._next_mark(buffer, at + 1)
                 continue
             kind = find_message(number)
-            if kind is None or size > kind.size or flags & ~SIGNED:
+            if kind is None or (version == 1 and size > kind.size) or flags & ~SIGNED:
                 at += 1
                 continue
             stop = start + size
@@ -109,7 +110,8 @@ class Splitter:
                 self.bad_checksums += 1
                 at += 1
                 continue
-            frames.append((kind, buffer[start:stop], sequence, system, component, version, buffer[at:after]))
+            payload = buffer[start : start + min(size, kind.size)]
+            frames.append((kind, payload, sequence, system, component, version, buffer[at:after]))
             at = after
         self._rest = buffer[at:]
         return frames

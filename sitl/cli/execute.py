@@ -15,8 +15,8 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 
-from ..foreign.choice import ARDUPILOT, Choice, choose
-from ..foreign.session import ArduPilotSession
+from ..foreign.choice import Choice, choose
+from ..foreign.slices import SlicedSession
 from ..run import runner
 from ..run.pacing import Pacing, parse_speedup, whole_ticks
 from ..run.swarm import SwarmPacing, serve_swarm
@@ -102,10 +102,10 @@ def _execute_swarm(options: argparse.Namespace, command: list[str]) -> int:
 def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[str]) -> int:
     """``execute`` with the program of another autopilot."""
     foreign.check(options, choice)
-    if choice.kind != ARDUPILOT or choice.program is None:
-        raise OptionError(f"sitl exec: {choice.name} cannot run in simulated time; use ardupilot:PROGRAM")
+    if choice.program is None:
+        raise OptionError(f"sitl exec: {choice.name} cannot run in simulated time; use {choice.kind}:PROGRAM")
     with foreign.opened(options, choice, None, is_relayed_by_slice=True) as flown:
-        assert isinstance(flown.session, ArduPilotSession)
+        assert isinstance(flown.session, SlicedSession)
         command = [word.replace("{tcp}", str(flown.tcp_port)) for word in command]
         with shown(flown.plant, options, then=flown.status.refresh) as on_slice:
             return run_script(flown.session, command, options.speedup, options.duration, on_slice)
@@ -119,7 +119,7 @@ class ScriptPace:
         self._pacer = pacer
         self.slice_us = pacer.slice_us
 
-    def after_slice(self, simulation: Simulation | Swarm | ArduPilotSession) -> None:
+    def after_slice(self, simulation: Simulation | Swarm | SlicedSession) -> None:
         """Advance the script's clock."""
         self._pacer.pace(simulation.time_us)
 
@@ -135,7 +135,7 @@ def can_warp() -> str:
 
 
 def run_script(
-    vehicle: Simulation | Swarm | ArduPilotSession,
+    vehicle: Simulation | Swarm | SlicedSession,
     command: list[str],
     speedup: str,
     duration_s: float | None = None,
@@ -154,7 +154,7 @@ def run_script(
     factor = parse_speedup(speedup)
     until = vehicle.time_us + int(duration_s * 1e6) if duration_s else None
     reason = can_warp()
-    if reason and (factor != 1.0 or isinstance(vehicle, ArduPilotSession)):
+    if reason and (factor != 1.0 or isinstance(vehicle, SlicedSession)):
         raise CannotBuild(reason)
     with contextlib.ExitStack() as stack:
         stack.enter_context(terminable())

@@ -18,8 +18,10 @@ from ..bridge.bridge import EPOCH_US
 from ..bridge.links import Link, TcpServerLink, open_link
 from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
-from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, Choice
-from ..foreign.session import ArduPilotSession, Px4Session, Session
+from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, PX4, Choice
+from ..foreign.px4 import STATIONS_PORT, programs_port
+from ..foreign.px4_session import Px4Session
+from ..foreign.session import ArduPilotSession, Session
 from ..logs.tlog import TlogWriter
 from ..physics.engines import BACKENDS
 from ..plants.local import LocalPlant, stand_alone
@@ -72,8 +74,8 @@ def opened(
         links: list[Link] = []
         log: TlogWriter | None = None
         messages: deque[str] = deque()
-        if choice.program is not None and choice.kind == ARDUPILOT:  # PX4 speaks UDP itself
-            links = open_links(options)
+        if choice.program is not None:
+            links = open_links(options, choice)
             for link in links:
                 unless_opened.callback(link.close)
             folder = open_folder(options.log_dir)
@@ -121,7 +123,8 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
             f"--link-...: not with {choice.kind}, which has its own links; only those of our autopilot can have faults"
         )
     if getattr(options, "fail", ()):
-        raise OptionError(f"--fail: not with {choice.kind}, which has its own SIM_ parameters; set those")
+        own = "set SIM_ parameters, by --params or MAVLink" if choice.kind == PX4 else "set its own SIM_ parameters"
+        raise OptionError(f"--fail: not with {choice.kind}; {own}")
     if options.estimator != "ekf":
         raise OptionError(f"--estimator {options.estimator}: not with {choice.kind}, which has its own estimators")
     if options.physics not in BACKENDS:
@@ -140,10 +143,14 @@ def build_plant(options: argparse.Namespace, choice: Choice) -> LocalPlant:
         return stand_alone(scenario, progress=progress)
 
 
-def open_links(options: argparse.Namespace) -> list[Link]:
-    """Open the links on which clients reach the autopilot, as for our own."""
+def open_links(options: argparse.Namespace, choice: Choice) -> list[Link]:
+    """Open the links on which clients reach the autopilot, as for our own; PX4's clients expect it at other UDP ports
+    from the second instance on."""
     step = 10 * options.instance
-    outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS] if options.out is None else options.out
+    numbers = [p + step for p in runner.OUTPUT_PORTS]
+    if choice.kind == PX4:
+        numbers = [STATIONS_PORT, programs_port(options.instance)]
+    outputs = [f"udp:{runner.HOST}:{p}" for p in numbers] if options.out is None else options.out
     links: list[Link] = [open_link(text) for text in outputs if text != "none"]
     ports = options.tcp or [runner.BASE_TCP_PORT + step]  # the autopilot's own program has the others
     links += [runner.tcp_server(port) for port in ports]
@@ -173,8 +180,8 @@ def build_session(
             params=files.load_all(options.params), folder=options.autopilot_dir, say=say, tap=tap,
             is_relayed_by_slice=is_relayed_by_slice,
         )  # fmt: skip
-    theirs = {name: x for name, x in files.load_all(options.params).items() if not name.startswith("SIM_")}
+    theirs = choice.for_autopilot(files.load_all(options.params))
     return Px4Session(
-        choice, plant, instance=options.instance, speedup=speedup, params=theirs,
-        folder=options.autopilot_dir, say=say,
+        choice, plant, links, instance=options.instance, speedup=speedup, params=theirs,
+        folder=options.autopilot_dir, say=say, tap=tap, is_relayed_by_slice=is_relayed_by_slice,
     )  # fmt: skip

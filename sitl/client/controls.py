@@ -19,6 +19,7 @@ from ..bridge.services.setpoints import (
 )
 from ..core.geodesy import add_offset, offset_ne
 from ..errors import OptionError
+from . import px4
 from .errors import UnknownNameError
 from .parameters import Parameters
 from .waits import AT_REST, SURE_S, Waits
@@ -29,8 +30,12 @@ CUSTOM_MODE_ENABLED = 1
 """MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
 FORCED = 21196
 """Second parameter of arming: without checks."""
-RELATIVE_INT = 6
-"""MAV_FRAME_GLOBAL_RELATIVE_ALT_INT"""
+GLOBAL_INT, RELATIVE_INT, BODY_NED = 5, 6, 8
+"""MAV_FRAME_GLOBAL_INT, MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, MAV_FRAME_BODY_NED"""
+_REPOSITION, _CHANGE_MODE = 192, 1.0
+"""MAV_CMD_DO_REPOSITION, MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
+OFFBOARD_S = 1.0
+"""So long PX4 gets set-points before it is asked into OFFBOARD."""
 POSITION_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
 VELOCITY_ONLY = POSITION_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
 CHANNELS = range(1, 19)
@@ -73,8 +78,12 @@ class Controls(Waits):
         """Choose a mode ("GUIDED"), and wait until it is on; ``timeout`` in simulated seconds, as everywhere here."""
         number = self._mode_number(name)
         self._stop_sending(_VELOCITY)
-        self.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, number, subject=f"mode {name}")
+        self._ask_mode(number, f"mode {name}")
         self.wait_mode(name, timeout)
+
+    def _ask_mode(self, number: int, subject: str) -> None:
+        numbers = px4.mode_parameters(number) if self.telemetry.is_px4 else (number,)
+        self.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, *numbers, subject=subject)
 
     def arm(self, force: bool = False) -> None:
         """Arm; ``force``: without its checks."""
@@ -93,9 +102,10 @@ class Controls(Waits):
         self.delay(1.0)
 
     def guided_and_armed(self) -> None:
-        """In GUIDED, and armed: what is not so yet is asked for."""
-        if self.mode != "GUIDED":
-            self.set_mode("GUIDED")
+        """In GUIDED (PX4: LOITER), and armed: what is not so yet is asked for."""
+        guided = px4.READY if self.telemetry.is_px4 else "GUIDED"
+        if self.mode != guided:
+            self.set_mode(guided)
         if not self.armed:
             self.arm()
 
@@ -105,7 +115,12 @@ class Controls(Waits):
         """GUIDED, arm if need be, climb to an altitude above home [m], and wait until it is there."""
         check_finite(altitude=altitude)
         self.guided_and_armed()
-        self.command("NAV_TAKEOFF", altitude=altitude, subject="the take-off")
+        if self.telemetry.is_px4:  # above mean sea level, where it stands
+            here, high = math.nan, self.home()[2] + altitude
+            there = {"yaw": here, "latitude": here, "longitude": here, "altitude": high}
+            self.command("NAV_TAKEOFF", **there, subject="the take-off")
+        else:
+            self.command("NAV_TAKEOFF", altitude=altitude, subject="the take-off")
         low, high = altitude - max(0.5, 0.05 * altitude), altitude + 2.0
         self._wait_range("an altitude", "m", lambda t: t.altitude, low, high, timeout, 0.0, self._disarmed())
 
@@ -145,10 +160,20 @@ class Controls(Waits):
         return self.telemetry.home
 
     def set_position(self, north: float, east: float, altitude: float | None = None, yaw: float | None = None) -> None:
-        """In GUIDED: go to a place from home [m], at an altitude above home (None: its present one) and a yaw [deg]."""
+        """In GUIDED: go to a place from home [m], at an altitude above home (None: its present one) and a yaw [deg].
+
+        PX4 goes into LOITER with it.
+        """
         check_finite(north=north, east=east, altitude=altitude, yaw=yaw)
         self._stop_sending(_VELOCITY)
         lat, lon = self.location_of(north, east)
+        if self.telemetry.is_px4:
+            height = self.telemetry.altitude if altitude is None else altitude
+            self.send(
+                "COMMAND_INT", frame=GLOBAL_INT, command=_REPOSITION, x=lat, y=lon, z=self.home()[2] + height,
+                param1=-1.0, param2=_CHANGE_MODE, param4=math.nan if yaw is None else math.radians(yaw),
+            )  # fmt: skip
+            return
         self.send(
             "SET_POSITION_TARGET_GLOBAL_INT",
             coordinate_frame=RELATIVE_INT,
@@ -217,7 +242,7 @@ class Controls(Waits):
         yaw_rate: float | None = None,
         body: bool = False,
     ) -> None:
-        """In GUIDED: a velocity [m/s], sent twice a second until another order is given.
+        """In GUIDED: a velocity [m/s], sent twice a second until another order is given; PX4 goes into OFFBOARD.
 
         Args:
             north, east, down: with ``body``: forward, right, down.
@@ -227,10 +252,16 @@ class Controls(Waits):
         mask = VELOCITY_ONLY
         mask &= ~(YAW_IGNORED if yaw is not None else 0) & ~(YAW_RATE_IGNORED if yaw_rate is not None else 0)
         self._keep_sending(_VELOCITY, "SET_POSITION_TARGET_LOCAL_NED", {
-            "coordinate_frame": BODY_OFFSET_NED if body else LOCAL_NED, "type_mask": mask,
+            "coordinate_frame": (BODY_NED if self.telemetry.is_px4 else BODY_OFFSET_NED) if body else LOCAL_NED,
+            "type_mask": mask,
             "vx": north, "vy": east, "vz": down,
             "yaw": math.radians(yaw or 0.0), "yaw_rate": math.radians(yaw_rate or 0.0),
         })  # fmt: skip
+        if self.telemetry.is_px4 and self.mode != px4.OFFBOARD:
+            self.delay(OFFBOARD_S)  # it has to get some before it may be in that mode
+            self._repeat(_VELOCITY)
+            self._ask_mode(self._mode_number(px4.OFFBOARD), f"mode {px4.OFFBOARD}")
+            self.wait_mode(px4.OFFBOARD)
 
     def set_speed(self, metres_per_second: float) -> None:
         """Along the ground [m/s], in AUTO and GUIDED (DO_CHANGE_SPEED)."""
@@ -242,7 +273,12 @@ class Controls(Waits):
         """Hold sticks: pulses [us] by channel, or ``roll=``, ``pitch=``, ``throttle=``, ``yaw=``, ``steering=``.
 
         They stay until they are set again or ``release_rc``.
+
+        Raises:
+            OptionError: the vehicle is a PX4, which is flown without sticks here.
         """
+        if self.telemetry.is_px4:
+            raise OptionError("sticks: a PX4 is started without them here (COM_RC_IN_MODE 4); send velocities instead")
         pulses = self._pulses()
         for name, pulse in sticks.items():
             if name not in STICKS:

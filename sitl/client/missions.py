@@ -9,6 +9,7 @@ from typing import Any
 
 from ..autopilot.mission.item import RELATIVE, MissionItem, home_item
 from ..autopilot.mission.mission import RESULT_NAMES, Mission
+from . import px4
 from .commands import arguments, command_number, entry_name
 from .controls import Controls
 from .errors import MissionRefusedError, WaitTimeoutError
@@ -118,10 +119,16 @@ class Missions(Controls):
         self.collect("MISSION_COUNT", lambda: None if not counts else [], ask_count, take_count, what)
         self.collect("MISSION_ITEM_INT", lambda: [k for k in range(counts[0]) if k not in found], ask, take, what)
         self.send("MISSION_ACK")
-        return tuple(found[k] for k in range(counts[0]))
+        items = tuple(found[k] for k in range(counts[0]))
+        return (home_item(*self.home()), *items) if items and self.telemetry.is_px4 else items
 
     def start_mission(self) -> None:
         """Arm if need be, AUTO, and begin with its first item."""
+        if self.telemetry.is_px4:  # which begins when it is armed, and without a mission is not armed in this mode
+            self.set_mode(px4.MISSION)
+            if not self.armed:
+                self.arm()
+            return
         if not self.armed:
             self.set_mode("GUIDED")
             self.arm()
@@ -135,6 +142,8 @@ class Missions(Controls):
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
+        if kind == MISSION and self.telemetry.is_px4:
+            items = px4.mission(items)
         begin = progress = self.now
         self._upload, self._list, self._last_item, self._result = items, kind, -1, None
         self.send("MISSION_COUNT", count=len(items), mission_type=kind)

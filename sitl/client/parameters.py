@@ -12,6 +12,7 @@ from typing import Any
 
 from ..autopilot.params.table import Values
 from ..errors import OptionError
+from . import px4
 from .errors import ClientError, ParameterRefusedError, UnknownNameError, WaitTimeoutError
 from .session import ANSWER_S, REPEAT_US, Session
 
@@ -64,8 +65,14 @@ class Parameters(Mapping[str, float]):
         self.check(name)
         _check_number(name, value)
         what = f"{name} to be set to {value:g}"
+        session, sent, kind = self._session, value, REAL_32
+        if session.telemetry.is_px4:  # it takes a value in the parameter's own type only
+            if name not in session.telemetry.parameter_types:
+                self._exchange(name, f"the type of {name}", "PARAM_REQUEST_READ", param_index=-1)
+            kind = session.telemetry.parameter_types[name]
+            sent = px4.encoded(name, value, kind)
         for _ in range(2):  # the first answer may be to what was asked before, come late
-            kept = self._exchange(name, what, "PARAM_SET", param_value=value, param_type=REAL_32)
+            kept = self._exchange(name, what, "PARAM_SET", param_value=sent, param_type=kind)
             is_taken: Callable[[], bool] = lambda: math.isclose(  # noqa: E731
                 self._session.telemetry.parameters[name], value, rel_tol=1e-6, abs_tol=1e-9
             )
@@ -160,7 +167,8 @@ class Parameters(Mapping[str, float]):
                 found[m.param_index] = m
 
         session.collect("PARAM_VALUE", missing, ask, take, "all parameters", LIST_S)
-        return {v.param_id.decode("ascii", "replace"): float(v.param_value) for _, v in sorted(found.items())}
+        value: Callable[[Any], float] = px4.value_of if session.telemetry.is_px4 else lambda v: float(v.param_value)
+        return {v.param_id.decode("ascii", "replace"): value(v) for _, v in sorted(found.items())}
 
     def check(self, name: str) -> None:
         """Raise UnknownNameError when the vehicle, in this process, has no such parameter."""

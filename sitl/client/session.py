@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from ..bridge.dialect import message
 from ..errors import OptionError, did_you_mean
+from . import px4
 from .commands import arguments, command_name, command_number, constant, entry_name
 from .companion import Companion
 from .connection import Connection, InProcess, connect
@@ -47,6 +48,8 @@ LIMIT_S = 15.0
 """A piece of something that was missing comes within."""
 TEXTS_SHOWN = 8
 """As many status texts stand in an error."""
+_OURS, _PX4S = "EKF_STATUS_REPORT", "ESTIMATOR_STATUS"
+"""Which of its estimates are good, by ArduPilot and by PX4."""
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
 Repeated = tuple[str, dict[str, Any]]
 """A message that is sent again and again: its name, its fields."""
@@ -89,7 +92,7 @@ class Session:
         self.connection = vehicle if isinstance(vehicle, Connection) else InProcess(vehicle)
         self.name = name
         self.telemetry = Telemetry()
-        self._rates = RATES_HZ if rates is None else dict(rates)
+        self._rates = dict(RATES_HZ if rates is None else rates)
         self._asked_us, self._unanswered, self._awaited = 0, 0, set[str]()
         self._repeated: dict[str, Repeated] = {}
         self.companions: list[Companion] = []
@@ -203,7 +206,7 @@ class Session:
     def describe(self) -> str:
         """Where it is and what it does, in a line."""
         t = self.telemetry
-        item = f", item {t.item}" if self.mode == "AUTO" else ""
+        item = f", item {t.item}" if self.mode in ("AUTO", px4.MISSION) else ""
         state = f"{self.mode or 'no mode yet'}, {'armed' if self.armed else 'disarmed'}"
         return f"{state}{item}, {self.position}, {t.groundspeed:.1f} m/s, heading {self.heading:.0f}"
 
@@ -226,7 +229,8 @@ class Session:
         for name, due in self._next_us.items():
             if now >= due:
                 self._repeat(name)
-                self._next_us[name] = now + (HEARTBEAT_US if name == _HEARTBEAT else REPEAT_US)
+                between = px4.REPEAT_US if self.telemetry.is_px4 else REPEAT_US
+                self._next_us[name] = now + (HEARTBEAT_US if name == _HEARTBEAT else between)
         for companion in self.companions:
             companion.step(now)
         until = now // STEP_US * STEP_US + STEP_US
@@ -248,7 +252,10 @@ class Session:
         if name == "COMMAND_ACK" and fields.command == _SET_INTERVAL:
             self._unanswered = max(self._unanswered - 1, 0)
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
-            self.telemetry.mode_names = mode_names(fields.type)
+            self.telemetry.mode_names = px4.MODE_NAMES if self.telemetry.is_px4 else mode_names(fields.type)
+            if self.telemetry.is_px4 and self._rates.pop(_OURS, None) is not None:
+                self._rates[_PX4S] = RATES_HZ[_OURS]
+                self.set_rate(_PX4S, RATES_HZ[_OURS])
         self._awaited.discard(name)
         for companion in self.companions:
             companion.take(name, fields)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from ..core.geodesy import offset_ne
+from . import px4
 
 ARMED = 0x80
 """HEARTBEAT.base_mode: MAV_MODE_FLAG_SAFETY_ARMED."""
@@ -118,14 +119,28 @@ class Telemetry:
     """Time at which it said so last [s]."""
     untold: tuple[int, ...] = ()
     """The last items that were under way, and were not yet said to be reached."""
+    autopilot: int = -1
+    """MAV_AUTOPILOT of HEARTBEAT; -1 before the first."""
+    parameter_types: dict[str, int] = field(default_factory=dict)
+    """MAV_PARAM_TYPE by name, as they were sent last."""
 
     def copy(self) -> Telemetry:
         """As it is now."""
         return replace(
             self,
-            parameters=dict(self.parameters), texts=list(self.texts), reached=list(self.reached),
-            items=list(self.items), pieces=dict(self.pieces),
+            parameters=dict(self.parameters), parameter_types=dict(self.parameter_types), texts=list(self.texts),
+            reached=list(self.reached), items=list(self.items), pieces=dict(self.pieces),
         )  # fmt: skip
+
+    @property
+    def is_px4(self) -> bool:
+        """Whether the autopilot is PX4, which does some things otherwise (``px4``)."""
+        return self.autopilot == px4.AUTOPILOT
+
+    @property
+    def before_first(self) -> int:
+        """Number of items that the vehicle does not count: home, which only ArduPilot has as item 0."""
+        return int(self.is_px4)
 
     @property
     def mode(self) -> str:
@@ -170,6 +185,7 @@ class Telemetry:
             self.attitude = Attitude(m.roll, m.pitch, m.yaw)
         elif name == "HEARTBEAT":
             self.mode_number, self.armed, self.heartbeat_at = int(m.custom_mode), bool(m.base_mode & ARMED), time
+            self.autopilot = int(m.autopilot)
             if self.armed:
                 self.disarmed_since = math.nan
             elif math.isnan(self.disarmed_since):
@@ -177,19 +193,26 @@ class Telemetry:
         elif name == "STATUSTEXT":
             self._text(time, m)
         elif name == "MISSION_ITEM_REACHED":
-            self._reached(time, int(m.seq))
+            seq = int(m.seq) + self.before_first
+            if not (self.is_px4 and self.reached and self.reached[-1][1] == seq):  # which says it again and again
+                self._reached(time, seq)
         elif name == "MISSION_CURRENT":
-            if m.seq != self.item:
-                self.untold = (*self.untold[-1:], int(m.seq))
-            self.item = int(m.seq)
+            item = int(m.seq) + self.before_first
+            if item != self.item:
+                self.untold = (*self.untold[-1:], item)
+            self.item = item
             if m.mission_state:  # else it is an autopilot that does not tell
                 self.last_item, self.mission_at = 0 if m.mission_state == NO_MISSION else int(m.total), time
             if self.armed and self.item not in self.items[-1:]:
                 self.items.append(self.item)
         elif name == "PARAM_VALUE":
-            self.parameters[m.param_id.decode("ascii", "replace")] = float(m.param_value)
+            name = m.param_id.decode("ascii", "replace")
+            self.parameter_types[name] = int(m.param_type)
+            self.parameters[name] = px4.value_of(m) if self.is_px4 else float(m.param_value)
         elif name == "EKF_STATUS_REPORT":
             self.has_position = m.flags & READY_BITS == READY_BITS
+        elif name == "ESTIMATOR_STATUS" and self.is_px4:
+            self.has_position = m.flags & px4.VALID == px4.VALID
         elif name == "SYS_STATUS":
             self.checked = bool(m.onboard_control_sensors_health & PREARM_BIT)
             self.voltage, self.remaining = m.voltage_battery * 1e-3, float(m.battery_remaining)

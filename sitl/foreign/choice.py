@@ -14,6 +14,7 @@ from ..autopilot.params.files import FileValues
 from ..core.code_in_files import REACHED
 from ..errors import OptionError
 from ..vehicle.kinds import KINDS
+from ..vehicle.sim_parameters import PREFIX
 
 NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
 FOREIGN = (ARDUPILOT, PX4)
@@ -41,11 +42,19 @@ class Choice:
         """Name for messages."""
         return f"{self.kind}:{self.program or self.connection}"
 
+    def for_autopilot(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Those that the autopilot itself gets: an ArduPilot has a SIM_WIND_ of its own, a PX4 nothing like ours."""
+        ours = self.for_physics(values) if self.kind == PX4 else {}
+        return {name: value for name, value in values.items() if name not in ours}
+
     def for_physics(self, values: Mapping[str, float]) -> dict[str, float]:
         """Those of the parameters that act on our physics. An ArduPilot has sensors, a battery and failing outputs of
-        its own, so only the wind does; a PX4 has no SIM_ parameters like ours."""
-        prefix = WIND if self.kind == ARDUPILOT else "SIM_"
+        its own, so only the wind does. A PX4's sensors are ours; it has SIM_ parameters, too, with other names."""
+        prefix = WIND if self.kind == ARDUPILOT else PREFIX
         found = {name: value for name, value in values.items() if name.startswith(prefix)}
+        if self.kind == PX4:
+            tables = [kind.firmware.table for kind in KINDS.values()]
+            found = {name: value for name, value in found.items() if any(name in table for table in tables)}
         return FileValues(found) if isinstance(values, FileValues) else found
 
 

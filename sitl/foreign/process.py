@@ -32,7 +32,7 @@ class AutopilotProcess:
     Args:
         command: program and arguments; "{folder}" in an argument becomes the folder.
         files: files to write into the folder first: name -> text.
-        environment: environment variables added to ours.
+        environment: environment variables added to ours; "{folder}" in a value becomes the folder.
         folder: working folder; None: a temporary one that is deleted at the end.
         grace_s: wall time that it has to end when it is asked to [s]; 0: it is killed at once.
 
@@ -53,12 +53,13 @@ class AutopilotProcess:
         self.folder = Path(tempfile.mkdtemp(prefix="gym-sitl-")) if folder is None else folder.resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.command = [word.replace("{folder}", str(self.folder)) for word in command]
+        added = {name: value.replace("{folder}", str(self.folder)) for name, value in environment.items()}
         for name, text in files.items():
             (self.folder / name).write_text(text)
         try:
             with (self.folder / OUTPUT).open("wb") as output:
                 self._process = subprocess.Popen(
-                    self.command, cwd=self.folder, env={**os.environ, **environment}, stdin=subprocess.DEVNULL,
+                    self.command, cwd=self.folder, env={**os.environ, **added}, stdin=subprocess.DEVNULL,
                     stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
                 )  # fmt: skip
         except OSError as error:
@@ -98,12 +99,16 @@ class AutopilotProcess:
             how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
             raise AutopilotEndedError(f"autopilot {self.command[0]} {how}; it said: {self.last_output()}")
 
+    def output(self) -> str:
+        """All that it has said."""
+        try:
+            return (self.folder / OUTPUT).read_text(errors="replace")
+        except OSError:
+            return ""
+
     def last_output(self) -> str:
         """The last lines of its output."""
-        try:
-            lines = (self.folder / OUTPUT).read_text(errors="replace").split("\n")
-        except OSError:
-            return "nothing"
+        lines = self.output().split("\n")
         return " / ".join([line.strip() for line in lines if line.strip()][-_LAST_LINES:]) or "nothing"
 
     def stop(self) -> None:
@@ -181,3 +186,10 @@ def free_tcp_run(length: int) -> int:
                 continue
             return first
     raise OptionError(f"there are no {length} free TCP ports in a row on this machine")
+
+
+def free_udp_port() -> int:
+    """A UDP port of this machine that nobody has."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind((HOST, 0))
+        return int(probe.getsockname()[1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How PX4's simulator program is started for a copter of ours, over the HIL link.
+"""How PX4's simulator program is started for a vehicle of ours, over the HIL link.
 
 ``px4 -i N -d ETC`` connects to the simulator on TCP port 4560 + N of this machine and speaks MAVLink from UDP port
 14580 + N to 14540 + N (for programs) and to 14550 (for ground stations). PX4_SIM_MODEL none_iris is an airframe that
@@ -10,66 +10,53 @@ ROMFS/px4fmu_common/init.d-posix.
 from __future__ import annotations
 
 import contextlib
+import os
+import re
 import socket
 from collections.abc import Mapping
 from pathlib import Path
 
 from ..bridge.hil.protocol import BASE_PORT
-from ..core.constants import TICK_HZ
 from ..errors import OptionError
 from ..physics.native.power_on import Home
-from ..vehicles import Airframe, CopterAirframe
+from ..vehicles import Airframe, CopterAirframe, RoverAirframe
+from . import px4_airframe, px4_rover
 from .process import HOST, AutopilotProcess
 
-MODEL = "none_iris"
+COPTER_MODEL = "none_iris"
+SIMULATOR = "mavlink"
+"""PX4_SIMULATOR: none of those that its start script knows, so that it waits for one on its HIL port."""
 PROGRAMS_PORT, OWN_PORT, STATIONS_PORT = 14540, 14580, 14550
 """UDP: where it sends to programs, from where, and where to ground stations; the first two are + N."""
+LINKS_FILE = "px4-rc.mavlink"
+"""What its start script runs to begin with MAVLink: the first of this name in PATH."""
 INSTANCES = 10
 """Number of instances: from 10 on all send to port 14549, where programs cannot distinguish them."""
 
 
-def parameters(airframe: Airframe) -> dict[str, float]:
-    """Parameters with which PX4 flies this airframe.
-
-    Where the rotors are and which way they turn (CA_ROTORn), the thrust curve, the hover throttle, and rate loops from
-    ArduPilot's, whose gains have the same meaning but not the same mixer: a beginning. What pulse is full thrust PX4
-    need not know: over the HIL link it says parts of each motor's range (``bridge.hil.physics_end``).
+def model_of(airframe: Airframe) -> tuple[str, dict[str, float]]:
+    """PX4_SIM_MODEL, and parameters with which PX4 flies or drives this airframe.
 
     Raises:
-        OptionError: the airframe is no copter.
+        OptionError: it is neither a copter nor a rover.
     """
-    if not isinstance(airframe, CopterAirframe):
-        raise OptionError(f"airframe {airframe.name} is a {airframe.kind}: px4 flies copters here")
-    values: dict[str, float] = {"CA_AIRFRAME": 0, "CA_ROTOR_COUNT": len(airframe.rotors)}
-    moment = float(airframe.value("moment_coefficient")) or 0.05
-    for k, rotor in enumerate(airframe.rotors):
-        values |= {
-            f"CA_ROTOR{k}_PX": rotor.x,
-            f"CA_ROTOR{k}_PY": rotor.y,
-            f"CA_ROTOR{k}_KM": moment * rotor.direction,
-            f"PWM_MAIN_FUNC{k + 1}": 101 + k,
-        }
-    own = airframe.parameters
-    for name, theirs in (
-        ("MOT_THST_EXPO", "THR_MDL_FAC"),
-        ("MOT_THST_HOVER", "MPC_THR_HOVER"),
-        ("ATC_RAT_RLL_P", "MC_ROLLRATE_P"),
-        ("ATC_RAT_RLL_I", "MC_ROLLRATE_I"),
-        ("ATC_RAT_RLL_D", "MC_ROLLRATE_D"),
-        ("ATC_RAT_PIT_P", "MC_PITCHRATE_P"),
-        ("ATC_RAT_PIT_I", "MC_PITCHRATE_I"),
-        ("ATC_RAT_PIT_D", "MC_PITCHRATE_D"),
-        ("BATT_CAPACITY", "BAT1_CAPACITY"),
-    ):
-        if name in own:
-            values[theirs] = float(own[name])
-    values["IMU_INTEG_RATE"] = TICK_HZ  # its estimator then runs at each tick, which lockstep waits for
-    return values | {"NAV_DLL_ACT": 0, "NAV_RCL_ACT": 0, "COM_RC_IN_MODE": 4}  # no ground station, no sticks
+    if isinstance(airframe, CopterAirframe):
+        return COPTER_MODEL, px4_airframe.parameters(airframe)
+    if isinstance(airframe, RoverAirframe):
+        return px4_rover.model(airframe), px4_rover.parameters(airframe)
+    raise OptionError(f"airframe {airframe.name} is a {airframe.kind}: px4 flies copters and drives rovers here")
 
 
 def _worded(value: float) -> str:
     """For its ``param set``, which reads a whole number up to the first character that is no digit."""
     return str(int(value)) if value == int(value) else f"{value:.9g}"
+
+
+def unknown_names(process: AutopilotProcess, given: Mapping[str, float]) -> list[str]:
+    """Those of the parameters that a user gave it that it does not have, by its output: it has set all of them before
+    its MAVLink begins. Its start script sets some that a program may not have, too; those do not count."""
+    said = set(re.findall(r"Parameter (\w+) not found", process.output()))
+    return [name for name in given if name in said]
 
 
 def programs_port(instance: int) -> int:
@@ -106,26 +93,34 @@ def start(
     speedup: float = 1.0,
     params: Mapping[str, float] | None = None,
     folder: Path | None = None,
+    link: tuple[int, int] | None = None,
 ) -> AutopilotProcess:
     """Start it.
 
     Args:
         program: ``build/px4_sitl_default/bin/px4``, whose start-up files are in ``build/px4_sitl_default/etc``.
-        airframe: a copter.
+        airframe: a copter or a rover.
         home: where it stands.
         instance: number that gives its ports, and its MAV_SYS_ID less one.
         speedup: times the wall clock, by which it lengthens its time-outs.
         params: under PX4's names, over those of ``parameters``.
         folder: see ``AutopilotProcess``.
+        link: UDP ports of its only MAVLink: its own, and the one that it speaks to; None: those of its instance.
     """
-    values = {**parameters(airframe), **(params or {})}
+    model, own = model_of(airframe)
+    values = {**own, **(params or {})}
     environment = {
-        "PX4_SIM_MODEL": MODEL,
+        "PX4_SIM_MODEL": model,
+        "PX4_SIMULATOR": SIMULATOR,
         "PX4_SIM_SPEED_FACTOR": f"{speedup:g}",
         "PX4_HOME_LAT": f"{home[0]:.9g}",
         "PX4_HOME_LON": f"{home[1]:.9g}",
         "PX4_HOME_ALT": f"{home[2]:.9g}",
         **{f"PX4_PARAM_{name}": _worded(value) for name, value in values.items()},
     }
+    files = {}
+    if link is not None:
+        files[LINKS_FILE] = f"mavlink start -x -u {link[0]} -r 4000000 -f -m onboard -o {link[1]}\n"
+        environment["PATH"] = os.pathsep.join(("{folder}", os.environ.get("PATH", os.defpath)))
     command = [str(program), "-i", str(instance), "-d", str(program.parent.parent / "etc")]
-    return AutopilotProcess(command, {}, environment, folder)
+    return AutopilotProcess(command, files, environment, folder)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Carries MAVLink between an autopilot's TCP port and the links that ``sitl run`` has: UDP, TCP, a log.
+"""Carries MAVLink between an autopilot and the links that ``sitl run`` has: UDP, TCP, a log.
 
 ArduPilot boots when the first client connects, and stands still when that client does not read: the relay connects at
-once, always reads (in a thread of its own), and connects again after a reboot.
+once, always reads (in a thread of its own), and connects again after a reboot. PX4 speaks UDP (``UdpRelay``).
 """
 
 from __future__ import annotations
@@ -16,12 +16,15 @@ from collections.abc import Callable, Sequence
 
 from ..bridge.links.link import Link, Peer
 from ..bridge.links.tcp import refuse_echo
-from .process import Cutter
+from ..bridge.links.udp import DATAGRAM_BYTES
+from .process import HOST, Cutter
 
 _WAIT_S = 0.1
 _RETRY_S = 0.2
 _READ = 1 << 16
 _UNSENT = 1 << 20
+_BUFFER = 1 << 21
+_READS_AT_ONCE = 256
 
 
 class Relay:
@@ -31,6 +34,7 @@ class Relay:
         address: host and port of the autopilot's MAVLink.
         links: to clients; closed with the relay.
         tap: gets every frame, of both sides, in the relay's thread.
+        answer: gets every frame of a client; b"": it goes to the autopilot; else this is the answer to it.
     """
 
     def __init__(
@@ -38,8 +42,9 @@ class Relay:
         address: tuple[str, int],
         links: Sequence[Link],
         tap: Callable[[bytes], None] = lambda frame: None,
+        answer: Callable[[bytes], bytes] = lambda frame: b"",
     ) -> None:
-        self._address, self._links, self._tap = address, list(links), tap
+        self._address, self._links, self._tap, self._answer = address, list(links), tap, answer
         self._peers: list[Peer] = []
         self._selector = selectors.DefaultSelector()
         self._autopilot: socket.socket | None = None
@@ -112,8 +117,12 @@ class Relay:
         if not data:
             self._drop()
             return
-        for frame in self._cutter.feed(data):
-            self.frames += 1
+        self.frames += self._to_clients(data)
+
+    def _to_clients(self, data: bytes) -> int:
+        """The frames that are whole; how many they are."""
+        frames = self._cutter.feed(data)
+        for frame in frames:
             self._tap(frame)
             for peer in self._peers:
                 if not peer.closed and not peer.congested:
@@ -121,12 +130,16 @@ class Relay:
         for peer in self._peers:
             if not peer.closed:
                 peer.flush()
+        return len(frames)
 
     def _to_autopilot(self, data: bytes) -> None:
         for frame in Cutter().feed(data):
             self._tap(frame)
-        if self._autopilot is not None and len(self._unsent) < _UNSENT:
-            self._unsent += data
+            answer = self._answer(frame)
+            if answer:
+                self._to_clients(answer)
+            elif self._autopilot is not None and len(self._unsent) < _UNSENT:
+                self._unsent += frame
 
     def _push(self) -> None:
         while self._unsent and self._autopilot is not None:
@@ -153,3 +166,49 @@ class Relay:
         for link in self._links:
             link.close()
         self._selector.close()
+
+
+class UdpRelay(Relay):
+    """The same for an autopilot that speaks UDP: it is given our port (``own_port``), and hears at its own.
+
+    Args:
+        port: at which the autopilot hears, on this machine.
+        links, tap, answer: as of ``Relay``.
+    """
+
+    def __init__(
+        self,
+        port: int,
+        links: Sequence[Link],
+        tap: Callable[[bytes], None] = lambda frame: None,
+        answer: Callable[[bytes], bytes] = lambda frame: b"",
+    ) -> None:
+        super().__init__((HOST, port), links, tap, answer)
+        self._datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._datagrams.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
+        self._datagrams.bind((HOST, 0))
+        self._datagrams.setblocking(False)
+        self._autopilot = self._datagrams
+        self._selector.register(self._datagrams, selectors.EVENT_READ, self._from_autopilot)
+
+    @property
+    def own_port(self) -> int:
+        """At which the autopilot finds us."""
+        return int(self._datagrams.getsockname()[1])
+
+    def _from_autopilot(self) -> None:
+        for _ in range(_READS_AT_ONCE):
+            try:
+                data, address = self._datagrams.recvfrom(_READ)
+            except BlockingIOError:
+                return
+            except OSError:
+                continue  # what was sent before it listened was refused
+            if address == self._address:
+                self.frames += self._to_clients(data)
+
+    def _push(self) -> None:
+        while self._unsent:
+            with contextlib.suppress(OSError):  # it does not listen yet, or no more
+                self._datagrams.sendto(self._unsent[:DATAGRAM_BYTES], self._address)
+            del self._unsent[:DATAGRAM_BYTES]

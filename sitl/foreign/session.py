@@ -4,31 +4,24 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
 from ..autopilot.params.files import text_of
-from ..bridge.hil.protocol import BASE_PORT
 from ..bridge.links.link import Link
-from ..errors import LinkLostError
 from ..plants.json_link import PORT
 from ..plants.local import LocalPlant
-from ..plants.physics_server import WAIT_S, PhysicsServer, Silence
-from ..run.pacing import Pacing
-from ..run.runner import Pace
-from . import ardupilot, px4
+from . import ardupilot
 from .choice import Choice
 from .json_host import JsonHost
 from .process import HOST, AutopilotProcess, free_tcp_run
 from .relay import Relay
+from .slices import SlicedSession
 from .wind import Wind
 
 Say = Callable[[str], None]
 Tap = Callable[[bytes], None]
-LOST_S = 30.0
-"""Wall time after which an autopilot that asks for nothing is lost to a script that waits for it [s]."""
 
 
 class Session(Protocol):
@@ -49,7 +42,7 @@ class Session(Protocol):
         """End the program, close links and physics."""
 
 
-class ArduPilotSession:
+class ArduPilotSession(SlicedSession):
     """ArduPilot on a plant.
 
     Args:
@@ -68,6 +61,8 @@ class ArduPilotSession:
         OptionError: no port, or a program that cannot be started.
     """
 
+    host: JsonHost
+
     def __init__(
         self,
         choice: Choice,
@@ -82,7 +77,7 @@ class ArduPilotSession:
         tap: Tap = lambda frame: None,
         is_relayed_by_slice: bool = False,
     ) -> None:
-        self.plant, self._say, self._name, self._wind = plant, say, choice.name, Wind(plant)
+        self.plant, self.say, self.name, self._wind = plant, say, choice.name, Wind(plant)
         self.process: AutopilotProcess | None = None
         self.relay: Relay | None = None
 
@@ -115,58 +110,13 @@ class ArduPilotSession:
         def goes_on() -> bool:
             if process is not None:
                 process.check()
-            self._wind.blow()
+            self.act()
             return running()
 
         self.host.serve(goes_on, on_turn)
 
-    @property
-    def time_us(self) -> int:
-        """Simulated time since the start; reboots do not set it back [us]."""
-        return self.host.before_boot_us + self.host.time_us
-
-    def serve_slices(
-        self,
-        pace: Pace[ArduPilotSession],
-        *,
-        until_us: int | None = None,
-        running: Callable[[], bool] = lambda: True,
-        on_slice: Callable[[], None] = lambda: None,
-    ) -> None:
-        """As ``sitl.run.runner.serve``. Clients and autopilot hear each other between two slices, when the autopilot
-        has done all that it does until then.
-
-        Raises:
-            AutopilotEndedError: the program has ended.
-            LinkLostError: it has asked for no step in LOST_S.
-        """
-        host, relay, process = self.host, self.relay, self.process
-        assert relay is not None and process is not None
-        silence = Silence(self._say, lambda: f"{self.time_us * 1e-6:.4f} s")
-        while running() and (until_us is None or self.time_us < until_us):
-            goal = self.time_us + pace.slice_us
-            goal = goal if until_us is None else min(goal, until_us)
-            while running():
-                if not host.listen():
-                    process.check()
-                    relay.turn(0.0)
-                    silence.goes_on()
-                    if silence.waits * WAIT_S > LOST_S:
-                        last = process.last_output()
-                        raise LinkLostError(
-                            f"autopilot {self._name} has not asked its physics in {LOST_S:g} s; it said: {last}"
-                        )
-                    on_slice()
-                    continue
-                if silence.waits:
-                    silence.is_over()
-                if self.time_us >= goal:
-                    break
-                host.step(goal - host.before_boot_us)
-            relay.turn(0.0)
-            self._wind.blow()
-            on_slice()
-            pace.after_slice(self)
+    def act(self) -> None:
+        self._wind.blow()
 
     def close(self) -> None:
         if self.process is not None:
@@ -174,72 +124,4 @@ class ArduPilotSession:
         if self.relay is not None:
             self.relay.close()
         self.host.close()
-        self.plant.close()
-
-
-class Px4Session:
-    """PX4 on a plant. Its clients reach it at its own UDP ports (``clients``).
-
-    Args:
-        choice, plant, instance, folder, say: see ``ArduPilotSession``.
-        speedup: times the wall clock; None: as fast as it goes.
-        params: under PX4's names.
-
-    Raises:
-        OptionError, LinkAddressError: no copter, no port, or a program that cannot be started.
-    """
-
-    def __init__(
-        self,
-        choice: Choice,
-        plant: LocalPlant,
-        *,
-        instance: int = 0,
-        speedup: float | None = 1.0,
-        params: Mapping[str, float] | None = None,
-        folder: Path | None = None,
-        say: Say = lambda text: None,
-    ) -> None:
-        self.plant, self._speedup = plant, speedup
-        self.process: AutopilotProcess | None = None
-        self.clients = (
-            f"udp {HOST}:{px4.programs_port(instance)}, for ground stations {HOST}:{px4.STATIONS_PORT}"
-            if choice.program is not None
-            else choice.connection
-        )
-        self.server = PhysicsServer(plant, HOST, BASE_PORT + instance, say)
-        if choice.program is not None:
-            try:
-                self.process = px4.start(
-                    choice.program, plant.vehicle.airframe, plant.home, instance, speedup=speedup or 1.0, params=params,
-                    folder=folder,
-                )  # fmt: skip
-            except BaseException:
-                self.server.close()
-                raise
-
-    def serve(self, running: Callable[[], bool], on_turn: Callable[[], None]) -> None:
-        process, end, due_us = self.process, self.server.end, 0
-        pacing, starting = Pacing(self._speedup), Pacing(min(self._speedup or 1.0, 1.0))
-        looked_us = end.time_us
-
-        def goes_on() -> bool:
-            nonlocal due_us, looked_us
-            if process is not None:
-                process.check()
-            on_turn()
-            if end.time_us >= due_us:  # PX4 goes as fast as its physics: this is what holds it
-                passed_us, looked_us = end.time_us - looked_us, end.time_us
-                due_us = end.time_us + pacing.slice_us
-                wait = (starting if end.is_starting else pacing).wait_s(passed_us)
-                if wait > 0.0:
-                    time.sleep(wait)
-            return running()
-
-        self.server.serve(goes_on)
-
-    def close(self) -> None:
-        if self.process is not None:
-            self.process.stop()
-        self.server.close()
         self.plant.close()

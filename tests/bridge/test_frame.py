@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.dialect import KNOWN_IDS, UnknownMessageError, message, message_by_id
+from sitl.bridge.dialect import KNOWN_IDS, UnknownMessageError, crc_mcrf4xx, message, message_by_id
 from sitl.bridge.frame import Splitter, encode_v1, encode_v2
 
 BASE_SIZES = {
@@ -144,3 +144,14 @@ def test_messages_newer_than_the_dialect_match_their_definition() -> None:
         "AVAILABLE_MODES", 17, 4, 8, 3
     )  # fmt: skip
     assert found.mode_name == "BRAKE" and kind.base_size == kind.size
+
+
+def test_extension_fields_that_are_newer_than_this_dialect_are_left_out():
+    kind = message("MISSION_ACK")
+    payload = kind.payload(target_system=255, target_component=190, type=1, mission_type=2)
+    longer = payload + b"abcd"  # the id of the mission, as PX4 1.18 sends it
+    body = bytes((len(longer), 0, 0, 7, 1, 1)) + kind.wire_id + longer
+    raw = b"\xfd" + body + crc_mcrf4xx(body + kind.crc_extra, 0xFFFF).to_bytes(2, "little")
+    (frame,) = Splitter().feed(b"noise" + raw)
+    assert frame.payload == payload and frame.raw == raw
+    assert Splitter().feed(raw[:-1] + b"?") == []

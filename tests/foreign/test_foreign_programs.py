@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import socket
@@ -14,7 +15,7 @@ import pytest
 
 from sitl import vehicles
 from sitl.errors import OptionError
-from sitl.foreign import ardupilot, px4
+from sitl.foreign import ardupilot, px4, px4_airframe
 from sitl.foreign.choice import Choice, choose
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 
@@ -39,15 +40,43 @@ def test_ardupilots_parameters_are_the_airframes():
 
 
 def test_px4s_parameters_are_the_airframes():
-    values = px4.parameters(vehicles.load("erle_copter"))
+    model, values = px4.model_of(vehicles.load("erle_copter"))
     assert values["CA_ROTOR_COUNT"] == 4
     for k, (x, y, turn) in enumerate([(1, 1, 1), (-1, -1, 1), (1, -1, -1), (-1, 1, -1)]):
         assert values[f"CA_ROTOR{k}_PX"] == x * 0.141 and values[f"CA_ROTOR{k}_PY"] == y * 0.141
         assert values[f"CA_ROTOR{k}_KM"] == turn * 0.016
         assert values[f"PWM_MAIN_FUNC{k + 1}"] == 101 + k
-    assert values["MPC_THR_HOVER"] == 0.45 and values["THR_MDL_FAC"] == 0.7
-    with pytest.raises(OptionError, match="rover"):
-        px4.parameters(vehicles.load("erle_rover"))
+    assert model == "none_iris" and values["MPC_THR_HOVER"] == pytest.approx(1.14 * 9.80665 / 24.013, rel=1e-3)
+    assert values["THR_MDL_FAC"] == 1.0  # over the range of its speed thrust goes with the square
+
+
+@pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad", "ardupilot_hexa", "ardupilot_octa_quad"])
+def test_px4s_gains_cross_over_where_they_shall(frame):
+    """A command of 1 in roll, as PX4's allocator gives it to the rotors, turns the airframe by its crossover / P."""
+    airframe = vehicles.load(frame)
+    values, rotor = px4_airframe.parameters(airframe), px4_airframe.thrust(airframe)
+    ys = [hub.y for hub in airframe.rotors]
+    used = sum(abs(y) > 1e-3 for y in ys)
+    mix = [y / math.sqrt(sum(y * y for y in ys)) * math.sqrt(used / 2) for y in ys]
+    assert math.sqrt(sum(m * m for m in mix) / used) == pytest.approx(math.sqrt(0.5))
+    torque = sum(rotor.most * m * y for m, y in zip(mix, ys))
+    acceleration = torque / airframe.value("inertia")[0]
+    assert values["MC_ROLLRATE_P"] * acceleration == pytest.approx(px4_airframe.RATE_CROSSOVER)
+    yaw = len(ys) * rotor.most * values["CA_ROTOR0_KM"] * airframe.rotors[0].direction / airframe.value("inertia")[2]
+    assert values["MC_YAWRATE_P"] * yaw == pytest.approx(px4_airframe.YAW_CROSSOVER)
+
+
+def test_px4s_rovers_have_the_steering_of_the_airframe():
+    model, car = px4.model_of(vehicles.load("erle_rover"))
+    assert model == "gz_rover_ackermann" and car["RA_WHEEL_BASE"] == 1.95222 and car["RA_MAX_STR_ANG"] == 0.7727
+    assert (car["PWM_MAIN_FUNC1"], car["PWM_MAIN_FUNC3"], car["CA_R_REV"]) == (201, 101, 1)
+    assert car["RO_SPEED_LIM"] == 1.2 and car["NAV_ACC_RAD"] == 2.0
+    model, tracks = px4.model_of(vehicles.load("skid_rover"))
+    assert model == "gz_rover_differential" and tracks["RD_WHEEL_TRACK"] == pytest.approx(0.376 * 1.5)
+    assert (tracks["PWM_MAIN_FUNC1"], tracks["PWM_MAIN_FUNC3"]) == (102, 101)  # left, right
+    circle = px4.model_of(vehicles.load("ardupilot_rover"))[1]
+    radius = circle["RA_WHEEL_BASE"] / math.tan(circle["RA_MAX_STR_ANG"])
+    assert radius == pytest.approx(0.5 * vehicles.load("ardupilot_rover").value("turning_diameter"))
 
 
 def test_free_ports_are_a_run():

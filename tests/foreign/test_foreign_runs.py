@@ -15,6 +15,7 @@ from sitl.bridge.dialect import message
 from sitl.errors import LinkLostError, OptionError
 from sitl.foreign.choice import choose
 from sitl.foreign.process import AutopilotEndedError
+from sitl.foreign.px4_session import Px4Session
 from sitl.foreign.session import ArduPilotSession
 from sitl.logs.tlog import read_tlog
 from sitl.missions import compare
@@ -129,7 +130,7 @@ def test_a_program_that_is_killed_ends_its_slices(held):
 def test_a_program_that_asks_for_nothing_any_more_ends_its_slices(held, monkeypatch):
     held.serve_slices(AsFastAsItGoes(), until_us=1_000_000)
     held.process._signal(signal.SIGSTOP)
-    monkeypatch.setattr("sitl.foreign.session.LOST_S", 0.5)
+    monkeypatch.setattr("sitl.foreign.slices.LOST_S", 0.5)
     monkeypatch.setattr("sitl.plants.physics_server.PATIENCE_S", 0.2)
     with pytest.raises(LinkLostError, match=r"has not asked its physics in 0.5 s; it said: .*Ready"):
         held.serve_slices(AsFastAsItGoes())
@@ -198,8 +199,51 @@ def test_px4_is_run(px4, tmp_path):
     with command("run", "copter", "--autopilot", f"px4:{px4}", *words, cwd=tmp_path) as process:
         out, err = process.communicate(timeout=60)
     assert process.returncode == 0, err
-    assert "udp 127.0.0.1:14547" in out
+    assert "udpout:127.0.0.1:14547" in out and "tcp:127.0.0.1:5830" in out
+    assert list((tmp_path / "logs").glob("px4-*.tlog"))
     assert "every tick waits for the autopilot" in err
+
+
+@pytest.mark.slow
+def test_a_script_is_run_on_the_clock_of_px4_and_a_parameter_that_it_has_not_is_named(px4, tmp_path):
+    script, params = tmp_path / "script.py", tmp_path / "my.params"
+    script.write_text(SCRIPT)
+    params.write_text("MC_ROLRATE_P 0.2\nMPC_XY_CRUISE 3\nSIM_WIND_SPD 2\nSIM_BAT_DRAIN 60\n")
+    words = ("--speedup", "20", "--out", "none", "--tcp", "0", "--instance", "6", "--params", params)
+    run = ("--autopilot", f"px4:{px4}", *words, "--log-dir", tmp_path / "logs", "--", sys.executable, script, "{tcp}")
+    with command("exec", "--vehicle", "copter", *run, cwd=tmp_path) as process:
+        out, err = process.communicate(timeout=200)
+    assert process.returncode == 3, err
+    *slept, since, passed = map(float, line_with(iter(out.split("\n")), "slept").split()[1:])
+    assert 1.0 <= min(slept) < 1.1, slept
+    assert passed == pytest.approx(since, rel=0.2)
+    assert err.count("has no parameter") == 1 and "has no parameter MC_ROLRATE_P; it is left out" in err
+
+
+@pytest.fixture
+def held_px4(px4, copter_plant, tmp_path):
+    """A session in slices."""
+    choice, said = choose(f"px4:{px4}", "copter"), []
+    session = Px4Session(choice, copter_plant, instance=5, is_relayed_by_slice=True, say=said.append)
+    session.said = said
+    yield session
+    session.close()
+
+
+@pytest.mark.slow
+def test_a_px4_that_is_killed_or_silent_ends_its_slices(held_px4, monkeypatch):
+    held_px4.serve_slices(AsFastAsItGoes(), until_us=2_000_000)
+    held_px4.process._signal(signal.SIGSTOP)
+    monkeypatch.setattr("sitl.foreign.slices.LOST_S", 0.5)
+    monkeypatch.setattr("sitl.plants.physics_server.PATIENCE_S", 0.2)
+    with pytest.raises(LinkLostError, match=r"px4:.* has not asked its physics in 0.5 s; it said: "):
+        held_px4.serve_slices(AsFastAsItGoes())
+    assert any(text.startswith("the autopilot is silent: time stands at ") for text in held_px4.said)
+    held_px4.process._signal(signal.SIGCONT)
+    held_px4.serve_slices(AsFastAsItGoes(), until_us=held_px4.time_us + 500_000)  # it goes on
+    held_px4.process._signal(signal.SIGKILL)
+    with pytest.raises(AutopilotEndedError, match="ended by signal 9"):
+        held_px4.serve_slices(AsFastAsItGoes())
 
 
 @pytest.mark.slow

@@ -45,4 +45,8 @@ def test_nothing_else_acts(copter_plant):
 def test_parameters_that_an_autopilot_is_given_act_once():
     values = {"SIM_WIND_SPD": 5.0, "SIM_ENGINE_FAIL": 1.0, "SIM_GPS1_ENABLE": 0.0, "WP_SPD": 3.0}
     assert Choice("ardupilot", Path("arducopter")).for_physics(values) == {"SIM_WIND_SPD": 5.0}
-    assert Choice("px4", Path("px4")).for_physics(values) == {k: v for k, v in values.items() if k.startswith("SIM_")}
+    values["SIM_BAT_DRAIN"] = 60.0  # of PX4's own
+    ours = {"SIM_WIND_SPD": 5.0, "SIM_ENGINE_FAIL": 1.0, "SIM_GPS1_ENABLE": 0.0}
+    assert Choice("px4", Path("px4")).for_physics(values) == ours
+    assert Choice("px4", Path("px4")).for_autopilot(values) == {"WP_SPD": 3.0, "SIM_BAT_DRAIN": 60.0}
+    assert Choice("ardupilot", Path("arducopter")).for_autopilot(values) == values

@@ -11,7 +11,7 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v1, encode_v2
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.foreign.process import Cutter
-from sitl.foreign.relay import Relay
+from sitl.foreign.relay import Relay, UdpRelay
 
 HEARTBEAT = message("HEARTBEAT")
 
@@ -83,3 +83,25 @@ def test_the_relay_finds_an_autopilot_that_boots_again():
     connection.close()
     relay.close()
     autopilot.server.close()
+
+
+def test_datagrams_pass_both_ways_and_what_is_answered_does_not_reach_the_autopilot():
+    autopilot, link, seen = socket.socket(socket.AF_INET, socket.SOCK_DGRAM), InProcessLink(), []
+    autopilot.bind(("127.0.0.1", 0))
+    autopilot.settimeout(5.0)
+    answers = {frame(3): frame(4)}
+    relay = UdpRelay(autopilot.getsockname()[1], [link], seen.append, lambda asked: answers.get(asked, b""))
+    autopilot.sendto(frame(1) + frame(2), ("127.0.0.1", relay.own_port))
+    relay.turn(1.0)
+    assert link.receive() == frame(1) + frame(2) and relay.frames == 2
+    link.send(frame(3) + frame(5))
+    relay.turn(0.0)
+    assert autopilot.recv(1000) == frame(5) and link.receive() == frame(4)
+    assert seen == [frame(1), frame(2), frame(3), frame(4), frame(5)]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+        stranger.sendto(frame(6), ("127.0.0.1", relay.own_port))
+        relay.turn(0.2)
+    assert link.receive() == b""
+    autopilot.close()
+    relay.turn(0.0)
+    relay.close()

@@ -70,7 +70,10 @@ def read_controls(payload: bytes) -> Controls:
 
 
 def rotor_range(airframe: Any) -> tuple[float, float]:
-    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; (0, 1) without rotors."""
+    """Actuator controls, 0 .. 1, at which the rotors of this airframe stand and turn fastest; of a rover those of no
+    and of full throttle and steering."""
+    if hasattr(airframe, "control_full"):
+        return 0.0, float(airframe.control_full)
     if not hasattr(airframe, "control_max"):
         return 0.0, 1.0
     return float(airframe.control_min), float(airframe.control_max)
@@ -104,8 +107,13 @@ LONGEST_WAIT_S, SHORTEST_WAIT_S = 0.2, 0.005
 has been silent without a reason is not waited for in vain 400 times a second."""
 TRUSTED = 400
 """After so many answers in a row it is doubled again."""
+ALIKE = 4
+"""After so many answers with as many ticks between them those ticks are not waited for."""
 SILENT = 200
 """Ticks in a row without an answer; after that time stands: the autopilot is stopped, or gone."""
+SILENT_ARMED = 16
+"""The same in flight. A PX4 that was stopped loses the samples that it gets at once when it goes on, and what it knows
+of its velocity with them: 9.8 m/s for a second of them. Its slowest loops run at every eighth tick."""
 START_US = 4_000_000
 """Simulated time since the first answer in which an autopilot starts its modules, in wall time [us]."""
 
@@ -119,28 +127,40 @@ class ForeignClock:
 
     And PX4 may wait, too, for a tick that it has not got: its controls come when all that it calls lockstep components
     have run, and with IMU_INTEG_RATE below 400 its estimator does not run at each tick. So no tick waits for ever.
+    A rover's loop runs at 100 Hz, so that every fourth tick is answered, and none while it is disarmed: the ticks
+    between are not waited for, and a disarmed rover's time goes by the wall clock.
+
+    Args:
+        rests: whether a disarmed one does not answer.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, rests: bool = False) -> None:
+        self._rests, self._is_armed = rests, True
+        self._since = self._period = self._alike = 0
         self._first_us = self._answered_us = -1
         self._late = 0
         self._is_in_step, self._is_lockstep = False, True
         self._lag_us = self._in_step_us = 0
         self._answers = self._in_vain = 0
-        self.wait_s = LONGEST_WAIT_S
-        """Wall time that the present tick waits for an answer."""
+        self._longest_s = LONGEST_WAIT_S
         self.unanswered = 0
         """Ticks so far for which no answer came in time."""
 
     @property
     def holds(self) -> bool:
         """Whether time waits for its controls."""
-        return self._is_in_step and self._is_lockstep
+        return self._is_in_step and self._is_lockstep and not (self._rests and self.is_silent and not self._is_armed)
+
+    @property
+    def wait_s(self) -> float:
+        """Wall time that the present tick waits for an answer [s]; none between two that are answered always."""
+        is_between = self._alike >= ALIKE and (self._since + 1) % self._period != 0
+        return 0.0 if is_between else self._longest_s
 
     @property
     def is_silent(self) -> bool:
         """Whether so many ticks in a row have had no answer that time has to stand."""
-        return self._in_vain >= SILENT
+        return self._in_vain >= (SILENT_ARMED if self._is_armed else SILENT)
 
     def is_starting(self, now_us: int) -> bool:
         """Whether its modules may still be starting at this time [us]."""
@@ -153,14 +173,17 @@ class ForeignClock:
 
     def gave_up(self) -> None:
         """The present tick has waited in vain."""
+        waited = self.wait_s > 0.0
         self.unanswered += 1
         self._in_vain += 1
-        self._answers = 0
-        self.wait_s = max(0.5 * self.wait_s, SHORTEST_WAIT_S)
+        self._since += 1
+        if waited:
+            self._answers = 0
+            self._longest_s = max(0.5 * self._longest_s, SHORTEST_WAIT_S)
 
     def asks_for_step(self, given: Controls, now_us: int) -> bool:
         """Whether controls that come at this time [us] are the answer to the present tick, for the first time."""
-        self._is_lockstep = given.is_lockstep
+        self._is_lockstep, self._is_armed = given.is_lockstep, given.is_armed
         self._in_vain = 0
         is_new, self._answered_us = given.time_us > self._answered_us, max(given.time_us, self._answered_us)
         late_us = now_us - self._first_us - given.time_us
@@ -171,8 +194,12 @@ class ForeignClock:
             self._is_in_step, self._lag_us, self._in_step_us = True, late_us, now_us
         late_us -= self._lag_us
         if not (is_new and given.is_lockstep) or (late_us > 0 and late_us % TICK_US == 0):
+            self._alike = 0
             return False
+        period, self._since = self._since + 1, 0
+        self._alike = self._alike + 1 if period == self._period else 0
+        self._period = period
         self._answers += 1
         if self._answers % TRUSTED == 0:
-            self.wait_s = min(2.0 * self.wait_s, LONGEST_WAIT_S)
+            self._longest_s = min(2.0 * self._longest_s, LONGEST_WAIT_S)
         return True

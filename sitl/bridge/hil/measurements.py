@@ -145,7 +145,7 @@ class Measurements:
 
     @is_foreign.setter
     def is_foreign(self, value: bool) -> None:
-        self._gps.is_quiet = value
+        self._gps.is_quiet = self._imu.is_dithered = value
 
     def everything(self) -> bytes:
         """All that is known now, as new: for an autopilot that has just come."""

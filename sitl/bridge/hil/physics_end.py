@@ -93,7 +93,7 @@ class PhysicsEnd:
         """Another autopilot, or the same one again, is connected: nothing is known of it."""
         self._splitter = Splitter()
         self._is_foreign = self._is_stranger = self._complained = False
-        self._clock = ForeignClock()
+        self._clock = ForeignClock(hasattr(self._v.physics.airframe, "control_full"))
         self._truth_every_us, self._truth_due_us = 0, 0
 
     @property

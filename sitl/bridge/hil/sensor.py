@@ -31,6 +31,8 @@ COUNTS = 56
 """Of the samples of magnetometer and barometer: bytes behind ``sensors.time_us``."""
 _SENSOR_LIMITS = (*(5e3,) * 3, *(500.0,) * 3, *(100.0,) * 3, 2e3, 2e3, 1e5, 300.0)
 """Sizes beyond which a sensor's value is absurd [m/s^2, rad/s, gauss, hPa, hPa, m, degC]."""
+_DITHER_MAG, _DITHER_BARO = 1e-5, 1e-3
+"""What every second sample shows more [gauss], [hPa]: little of the earth's field, a centimetre."""
 
 Values = tuple[Any, ...]
 """Fields in wire order."""
@@ -49,11 +51,16 @@ class SensorWriter:
         self._read = reader.fields(*(SENSOR_S + name for name in names))
         self._mag = self._baro = 0
         self._altitude = 0.0
+        self.is_dithered = False
+        """PX4 holds a sensor that shows the same 100 times for failed: one without noise then changes by a little."""
 
     def payload(self, is_all: bool = False) -> bytes:
         """The samples of this tick; ``is_all``: all count as new."""
         t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, temperature, mag, baro = self._read()
         updated = IMU_UPDATED
+        if self.is_dithered:
+            mx += _DITHER_MAG * (mag & 1)
+            pressure += _DITHER_BARO * (baro & 1)
         if mag != self._mag or is_all:
             self._mag = mag
             updated |= MAG_UPDATED

@@ -25,6 +25,7 @@ from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
 from sitl.foreign.one_core import OneCore
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
+from sitl.foreign.sim_parameters import SimParameterPort
 from sitl.plants.json_link import PORT
 from sitl.plants.local import LocalPlant
 from sitl.plants.physics_server import SimulatedPlant
@@ -115,6 +116,7 @@ class Foreign(Connection):
         self._one_core = OneCore(None if process is None else process.pid)
         self.patience, self._connection = patience, connection
         self._use(plant)
+        self._port = SimParameterPort(plant) if isinstance(host, HilHost) else None
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
         self.stream: ByteStream | None = None
@@ -153,7 +155,8 @@ class Foreign(Connection):
         until = time.monotonic() + (self.patience if self.process is None else max(self.patience, _START_S))
         while True:
             try:
-                self.stream = open_stream(self._connection)
+                stream = open_stream(self._connection)
+                self.stream = stream if self._port is None else self._port.over(stream)
             except LinkLostError:
                 self._check()
                 if time.monotonic() >= until:
@@ -227,6 +230,8 @@ class Foreign(Connection):
         host, goal, boots = self.host, self.host.time_us + us, self.host.boots
         if self.stream is not None:
             self.stream.flush()
+        if self._port is not None:
+            self._port.act()
         turns = 0
         with self._one_core:
             while host.time_us < goal and host.boots == boots:
@@ -348,6 +353,7 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
         if choice.kind == PX4:
             if choice.program is None:
                 raise OptionError(f"autopilot {choice.name}: a PX4 that runs already cannot be reset; name its program")
+            params = choice.for_autopilot(params)
             process = px4.start(choice.program, airframe, plant.home, instance, params=params)
         elif choice.program is not None:
             process = ardupilot.start(
@@ -355,4 +361,8 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
                 overrides=text_of(params),
             )  # fmt: skip
         undo.pop_all()
-    return Foreign(host, plant, where, process, inbox, patience)
+    made = Foreign(host, plant, where, process, inbox, patience)
+    if choice.kind == PX4 and process is not None and (unknown := px4.unknown_names(process, params)):
+        made.close()
+        raise OptionError(f"params: autopilot {choice.name} has no {', '.join(unknown)}")
+    return made

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
-from sitl.client import Client, ClientError
+from sitl.client import Client, ClientError, px4
 from sitl.errors import OptionError
 
 from .. import library
@@ -68,6 +68,7 @@ class MissionFlier(Client):
             self.disarm()
             return
         self.wait_disarmed(timeout)
-        if self.mode != "AUTO" or last not in (*self.reached, *self.telemetry.items):
+        ends = px4.MISSION_ENDS if self.telemetry.is_px4 else ("AUTO",)
+        if self.mode not in ends or last not in (*self.reached, *self.telemetry.items):
             name = mission.items[last].name
             self.raise_error(ClientError("the mission", f"was not flown to its end, item {last} {name}"))

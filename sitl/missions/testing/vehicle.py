@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager
 from typing import Any
 
 from sitl.client import Position as Place
-from sitl.client import Text
+from sitl.client import Text, px4
 from sitl.client.controls import check_finite
 
 from .faulty import Faulty
@@ -122,5 +122,5 @@ class Rover(Vehicle):
 
     def stop(self, timeout: float = 30.0) -> None:
         """HOLD, and wait until it stands, at most ``timeout`` [simulated s]."""
-        self.set_mode("HOLD")
+        self.set_mode(px4.READY if self.telemetry.is_px4 else "HOLD")
         self.wait_groundspeed(0.0, 0.1, timeout, 1.0)

@@ -14,7 +14,17 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor, truth
 from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
-from sitl.bridge.hil.controls import LATE, LONGEST_WAIT_S, SHORTEST_WAIT_S, SILENT, START_US, TRUSTED
+from sitl.bridge.hil.controls import (
+    LATE,
+    LONGEST_WAIT_S,
+    SHORTEST_WAIT_S,
+    SILENT,
+    SILENT_ARMED,
+    START_US,
+    TRUSTED,
+    Controls,
+    ForeignClock,
+)
 from sitl.bridge.hil.protocol import Sender
 from sitl.core.records import first_difference
 from tests.bridge.hil.hil_bench import Bench
@@ -244,12 +254,14 @@ def test_a_tick_that_px4_does_not_answer_is_followed_by_the_next_one() -> None:
     assert bench.physics.log[1:] == [round(0.838 * part, 6) for part in (0.4, 0.4, 0.6, 0.6)]
 
 
-def test_px4_that_answers_every_second_tick_is_not_waited_for_long_and_trusted_again_later() -> None:
+def test_px4_that_answers_every_second_tick_is_waited_for_at_those_and_trusted_again_later() -> None:
     bench = booted_px4()
     for k in range(20):
         bench.there.go_on()
         assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5000 + 5000 * k, controls=[0.4], flags=1)
-    assert bench.there.wait_s == SHORTEST_WAIT_S
+    assert bench.there.wait_s == 0.0
+    bench.there.go_on()
+    assert SHORTEST_WAIT_S <= bench.there.wait_s < LONGEST_WAIT_S
     now = bench.there.time_us - 2500
     for k in range(10 * TRUSTED):
         assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=now + 2500 * k, controls=[0.4], flags=1)
@@ -264,6 +276,38 @@ def test_time_stands_when_px4_stays_silent_and_goes_on_when_it_answers() -> None
     assert bench.there.wait_s is None and not bench.there.freewheels
     assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
     assert bench.there.wait_s == SHORTEST_WAIT_S
+
+
+def test_px4_without_a_rhythm_is_not_waited_for_long() -> None:
+    bench = booted_px4()
+    for k in range(40):
+        for _ in range(k % 3 + 1):
+            bench.there.go_on()
+        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
+        assert bench.there.wait_s > 0.0
+    assert bench.there.wait_s == SHORTEST_WAIT_S
+
+
+@pytest.mark.parametrize("mode", [1, 129])
+def test_a_disarmed_rover_that_answers_no_more_goes_by_the_wall_clock(mode: int) -> None:
+    clock = ForeignClock(rests=True)
+    clock.sent(0)
+    assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, mode), 0)
+    for _ in range(SILENT):
+        assert clock.holds
+        clock.gave_up()
+    assert clock.is_silent and clock.holds == (mode != 1)
+
+
+@pytest.mark.parametrize(("mode", "most"), [(1, SILENT), (129, SILENT_ARMED)])
+def test_time_stands_earlier_in_flight(mode: int, most: int) -> None:
+    clock = ForeignClock()
+    clock.sent(0)
+    assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, mode), 0)
+    for _ in range(most):
+        assert not clock.is_silent
+        clock.gave_up()
+    assert clock.is_silent
 
 
 def test_px4_is_starting_for_some_seconds_after_its_first_answer() -> None:
