@@ -16,7 +16,7 @@ from sitl.agents.runs.files import write_bytes
 
 from . import defaults, shipped, work
 from .campaign import Campaign
-from .conditions import ARDUPILOT, CONDITIONS, ESTIMATE, NOMINAL, ROBUST, SEED, WORLDS, named
+from .conditions import AUTOPILOTS, CONDITIONS, ESTIMATE, NOMINAL, ROBUST, SEED, WORLDS, named
 from .entries import Entry
 from .records import Record
 from .work import figures
@@ -114,7 +114,7 @@ def suites(found: Campaign) -> str:
 def elsewhere(found: Campaign, group: str, kind: str) -> str:
     """Baselines of a kind of vehicle under the conditions of a group; variants below their plain ones."""
     whats = [NOMINAL, *(key for key, one in CONDITIONS.items() if one.group == group and kind in one.kinds)]
-    whats += [ARDUPILOT] if group == ROBUST else []
+    whats += [*AUTOPILOTS] if group == ROBUST else []
     rows: list[tuple[str, ...]] = []
     for entry in sorted(found.chosen, key=lambda one: (one.plain, one.is_variant)):
         cells = [of_seeds(found, entry, what) for what in whats]

@@ -14,13 +14,16 @@ from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
-from sitl.vehicles import Airframe, AirframeError
+from sitl.scenario import Scenario
+from sitl.vehicles import AirframeError
+from sitl.worlds import World
 
 from ..mavlink.foreign import Foreign, launch
 from ..mavlink.preparation import BY_FORCE, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
+from .wind import wind_and_own
 
 _LOG = "LOG_BACKEND_TYPE"
 
@@ -55,32 +58,41 @@ class ForeignVehicles(Vehicles):
         return f"autopilot {self._choice.name}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        figures, airframe = self.changed[index], self.setup.airframe
+        wind, own = wind_and_own(self.changed[index].items())
         before, self.links[index] = self.links[index], None
-        link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
+        start = (*pose[:3], math.degrees(pose[3]))
+        airframe = self.setup.airframe
+        scenario = replace(
+            self.setup.scenario, frame=airframe.changed(**own) if own else airframe, world=self.worlds[index],
+            seed=seed, start=start,
+        )  # fmt: skip
+        link = self._booted(before, scenario, wind)
         self.links[index] = link
         return self.begun(index, self.prepare(link, pose))
 
-    def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:
+    def enter(self, index: int, world: World) -> None:
+        """See ``Vehicles``: each episode has physics of its own."""
+        self.worlds[index] = world
+
+    def _booted(self, before: Connection | None, scenario: Scenario, wind: Mapping[str, float]) -> Foreign:
         """Boot a foreign autopilot on physics at power-on.
 
         Args:
             before: connection of the last episode; it is closed, or reused when we did not start the program.
-            airframe: airframe with the figures of this episode.
-            pose: start pose x, y, z [m], yaw [rad].
-            seed: seed of the physics' noise.
+            scenario: of this episode, but for its parameters.
+            wind: parameters of this episode's wind, over those of the options. An ArduPilot has them, too, because
+                what it tells of them acts on the physics.
         """
         choice, options = self._choice, self.options
         rebooted = before if isinstance(before, Foreign) and choice.program is None else None
         if before is not None and rebooted is None:
             before.close()
         try:
-            start = (*pose[:3], math.degrees(pose[3]))
             params = files.given(options.params)
-            scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
-            plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
+            plant = stand_alone(replace(scenario, params={**choice.for_physics(params), **wind}))
             if rebooted is None:
-                found = launch(choice, plant, unlogged(choice, params), self.setup.inbox(), options.patience)
+                own = {**params, **wind} if choice.kind == ARDUPILOT else params
+                found = launch(choice, plant, unlogged(choice, own), self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

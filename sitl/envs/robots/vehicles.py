@@ -30,6 +30,7 @@ from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
 from .truth import true_reports, true_states
+from .wind import FIGURES
 
 INPROCESS = "inprocess"
 _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
@@ -193,7 +194,7 @@ class Vehicles(ABC):
     @property
     def extra_figures(self) -> Mapping[str, Figure]:
         """Figures besides the airframe's that can be changed."""
-        return {}
+        return FIGURES if self.simulates and self.setup.kind.feels_wind else {}
 
     def enter(self, index: int, world: World) -> None:
         """One vehicle's next episode is in this world.
