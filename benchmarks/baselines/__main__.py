@@ -84,7 +84,8 @@ def _main(options: argparse.Namespace) -> int:
     if options.plan:
         _plan(found, options.jobs)
         return 0
-    require()
+    if not options.only_autopilots:
+        require()
     do = defaults.run if options.defaults else run
     done = do(found, Workers(options.jobs), time.time() + 60.0 * options.budget, _say)
     if options.steps is None and options.ship:

@@ -18,6 +18,7 @@ from sitl.scenario import Scenario
 from sitl.vehicles import AirframeError
 from sitl.worlds import World
 
+from ..mavlink import px4
 from ..mavlink.foreign import Foreign, launch
 from ..mavlink.preparation import BY_FORCE, refusal
 from ..options import EnvOptionError
@@ -28,10 +29,11 @@ from .wind import wind_and_own
 _LOG = "LOG_BACKEND_TYPE"
 
 
-def unlogged(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
-    """Parameters of an autopilot, with its on-board log off unless they say something of it: nobody would read the
-    logs of episodes, whose folders are deleted, and to write them takes an ArduPilot a part of its time."""
-    return {_LOG: 0.0, **params} if choice.kind == ARDUPILOT else dict(params)
+def of_episodes(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
+    """Parameters of an autopilot in episodes, unless they say something else themselves: an ArduPilot keeps no log,
+    because nobody would read it (its folder is deleted) and to write it takes a part of its time; a PX4 takes sticks
+    from MAVLink."""
+    return {**({_LOG: 0.0} if choice.kind == ARDUPILOT else px4.PARAMETERS), **params}
 
 
 class ForeignVehicles(Vehicles):
@@ -92,7 +94,7 @@ class ForeignVehicles(Vehicles):
             plant = stand_alone(replace(scenario, params={**choice.for_physics(params), **wind}))
             if rebooted is None:
                 own = {**params, **wind} if choice.kind == ARDUPILOT else params
-                found = launch(choice, plant, unlogged(choice, own), self.setup.inbox(), options.patience)
+                found = launch(choice, plant, of_episodes(choice, own), self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

@@ -39,7 +39,6 @@ MAX_STATES = 2048
 takes about 30 ms."""
 
 
-
 def check_parameters(simulation: Simulation) -> None:
     """Warn of parameters of an environment that have no effect."""
     told = isinstance(simulation.scenario.params, FileValues)
