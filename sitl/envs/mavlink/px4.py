@@ -19,13 +19,26 @@ from sitl.client.endpoint import ACCEPTED
 from sitl.core.elementary import cos, sin
 from sitl.errors import NotReadyError
 
-from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, check_reports, set_intervals, until
+from .preparation import (
+    INTERVAL_US,
+    ORIGIN,
+    check_reports,
+    last_texts,
+    mode_parameters,
+    not_ready,
+    set_intervals,
+    set_mode,
+    until,
+)
 from .setpoints import LOCAL, RATES_ONLY, TARGET, TURN_AND_LEAN, Encode, Message, leaning, position
 from .telemetry import ESTIMATOR, StepTelemetry
 
-ALTCTL, POSCTL, OFFBOARD = 2, 3, 6
-"""Main modes of PX4's, in param2 of DO_SET_MODE with MAV_MODE_FLAG_CUSTOM_MODE_ENABLED in param1. The first two are
+ALTCTL, POSCTL, OFFBOARD = 2 << 16, 3 << 16, 6 << 16
+"""Modes of PX4's, as HEARTBEAT tells them: a main mode in the third byte, one below it in the fourth. The first two are
 flown by sticks, which lean it: one holds its height, the other its place, too."""
+HOLD = 4 << 16 | 3 << 24
+MODES = {"HOLD": HOLD, "RTL": 4 << 16 | 5 << 24, "LAND": 4 << 16 | 6 << 24, "ALTCTL": ALTCTL, "POSCTL": POSCTL}
+"""Modes that may take over from OFFBOARD."""
 REPEAT_US = 200_000
 """Set-points and sticks are sent again after so long: without new ones PX4 leaves the mode after COM_OF_LOSS_T, 1 s, or
 COM_RC_LOSS_T, 0.5 s, of its own time [us]."""
@@ -161,6 +174,64 @@ COPTER: dict[str, Encode] = {
 """Kind of set-point -> its message. An attitude with a climb rate is none of PX4's."""
 
 
+def send_place(link: Connection, north: float, east: float, down: float, heading: float) -> None:
+    """Send a position set-point in the vehicle's local frame [m], [rad]."""
+    place = {"x": north, "y": east, "z": down, "yaw": heading}
+    link.endpoint.send_payload(
+        LOCAL,
+        LOCAL.payload(
+            target_system=link.inbox.system, target_component=1, coordinate_frame=LOCAL_NED,
+            type_mask=_PLACE_AND_YAW, **place,
+        ),
+    )  # fmt: skip
+
+
+def join(link: Connection, seconds: float) -> None:
+    """Wait until somebody has brought the vehicle into the air, armed, in Hold, almost at rest; then take it over into
+    OFFBOARD, where it stays on the spot. One that is in OFFBOARD already is ours.
+
+    Raises:
+        NotReadyError: it is not there in time, or refuses; the message says what is missing.
+    """
+    inbox = link.inbox
+    set_intervals(link, INTERVAL_US)
+    link.command("REQUEST_MESSAGE", ORIGIN.id)
+
+    def missing() -> str:
+        if inbox.mode not in (HOLD, OFFBOARD):
+            return f"it is in mode {mode_parameters(max(inbox.mode, 0))[1:]}, not in Hold (4, 3) or OFFBOARD (6, 0)"
+        return not_ready(link, flies=True)
+
+    spot: tuple[float, ...] = ()
+
+    def stay() -> None:
+        """What OFFBOARD needs before it is asked for, and all the time."""
+        nonlocal spot
+        spot = spot or (*inbox.position[1:4], inbox.attitude[3])
+        send_place(link, *spot)
+
+    for _ in range(max(round(seconds * 1e6 / _TENTH), 1)):
+        if inbox.mode == OFFBOARD:
+            stay()
+        link.pause(_TENTH)
+        if not missing():
+            break
+    else:
+        raise NotReadyError(f"{link.name}: no episode can begin within {seconds:g} s: {missing()}; {last_texts(link)}")
+    for _ in range(_BEFORE):
+        stay()
+        link.pause(_TENTH)
+    if inbox.mode != OFFBOARD:
+        set_mode(link, OFFBOARD)
+    for _ in range(_BEFORE):
+        stay()
+        link.pause(_TENTH)
+        if inbox.mode == OFFBOARD:
+            check_reports(link)
+            return
+    raise NotReadyError(f"{link.name}: the vehicle accepts OFFBOARD and is not in it; {last_texts(link)}")
+
+
 def prepare(link: Connection, take_off: float) -> None:
     """From power-on until it hovers in OFFBOARD.
 
@@ -182,22 +253,14 @@ def prepare(link: Connection, take_off: float) -> None:
 
     def hold() -> None:
         """A place above where it stands."""
-        place = {"x": north, "y": east, "z": down - take_off, "yaw": heading}
-        target = LOCAL.payload(
-            target_system=inbox.system,
-            target_component=1,
-            coordinate_frame=LOCAL_NED,
-            type_mask=_PLACE_AND_YAW,
-            **place,
-        )
-        link.endpoint.send_payload(LOCAL, target)
+        send_place(link, north, east, down - take_off, heading)
 
     for _ in range(_BEFORE):
         hold()
         link.run(_TENTH)
 
     def offboard() -> bool:
-        return link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, OFFBOARD) == ACCEPTED
+        return link.command("DO_SET_MODE", *mode_parameters(OFFBOARD)) == ACCEPTED
 
     def arms() -> bool:
         return offboard() and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED

@@ -22,7 +22,7 @@ from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
 from sitl.core.elementary import cos, sin
 from sitl.errors import LinkLostError
-from sitl.foreign.choice import PX4, Choice, choose
+from sitl.foreign.choice import FOREIGN, PX4, Choice, choose
 from sitl.move import Move
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
@@ -112,13 +112,14 @@ class AutopilotRobot:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
         if kind.takes_off and not 0.5 <= chosen.take_off <= 100.0:
             raise EnvOptionError(f"take_off = {chosen.take_off}; it must be 0.5 .. 100 m")
+        runs = chosen.connection != INPROCESS and chosen.autopilot in FOREIGN
         try:
-            choice = choose(chosen.autopilot, airframe.kind, chosen.autopilot_path)
+            choice = None if runs else choose(chosen.autopilot, airframe.kind, chosen.autopilot_path)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
-        if choice is not None and choice.kind == PX4:
+        if (chosen.autopilot if choice is None else choice.kind) == PX4:
             if kind.with_px4 is None:
-                raise EnvOptionError(f"autopilot {choice.name} flies no {airframe.kind} here; {self.name} is one")
+                raise EnvOptionError(f"autopilot {chosen.autopilot} flies no {airframe.kind} here; {self.name} is one")
             self.kind = kind = kind.with_px4
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)

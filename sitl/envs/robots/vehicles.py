@@ -77,7 +77,8 @@ class AutopilotOptions:
             ``sitl.simulation.Simulation``).
         autopilot: "native", or a foreign autopilot on our physics, by its program or the address of its MAVLink:
             "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started or rebooted for
-            each episode, and has no snapshots.
+            each episode, and has no snapshots. With ``connection``: what runs there, "ardupilot" (as "native") or
+            "px4".
         autopilot_path: path of the program, when ``autopilot`` does not give it.
         reset: what ``reset()`` does to a vehicle that runs elsewhere: "reboot": it is disarmed by force and rebooted,
             if it proves to be a simulator; "force": the same, whatever it is; "none": ``reset()`` waits until it is
