@@ -28,7 +28,7 @@ BOOT_TICKS, POSITION_TICKS = 400, 4000
 START_S = 1.0
 DECLINATION = 0.23
 UNTRUE, VALID = 1 | 4, 1 | 2 | 4 | 8 | 16 | 32
-OFFBOARD, FRESH_US = 6, 500_000
+OFFBOARD, FRESH_US, LOSS_US = 6, 500_000, 1_000_000
 MASS, GRAVITY, THRUST, TURN = 1.14, 9.80665, 8.54858e-6, (0.035, 0.046, 0.098)
 TOP_SPEED = 838.0
 METRES = 1e-7 * math.radians(1.0) * 6378100.0
@@ -100,6 +100,8 @@ class Px4:
         now = sensor.time_usec - self.began
         assert now > self.now or self.ticks == 0, "time goes forward"
         self.now, self.ticks, self.gyro = now, self.ticks + 1, (sensor.xgyro, sensor.ygyro, sensor.zgyro)
+        if self.mode == OFFBOARD and now - self.target_us > LOSS_US:
+            self.mode = 4  # COM_OF_LOSS_T
         if self.origin is None and self.ticks > POSITION_TICKS:
             self.origin = (self.truth.lat, self.truth.lon, self.truth.alt)
 

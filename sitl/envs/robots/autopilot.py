@@ -119,7 +119,10 @@ class AutopilotRobot:
             raise EnvOptionError(str(error)) from None
         if (chosen.autopilot if choice is None else choice.kind) == PX4:
             if kind.with_px4 is None:
-                raise EnvOptionError(f"autopilot {chosen.autopilot} flies no {airframe.kind} here; {self.name} is one")
+                raise EnvOptionError(
+                    f"autopilot {chosen.autopilot} flies no {airframe.kind} here, and {self.name} is one: leave it "
+                    "out, or take an ArduPilot"
+                )
             self.kind = kind = kind.with_px4
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)

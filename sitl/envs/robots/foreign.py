@@ -27,6 +27,8 @@ from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
 from .wind import wind_and_own
 
 _LOG = "LOG_BACKEND_TYPE"
+_NOT_ITS_OWN = ("mocap", "uwb")
+"""Sensor sets that an ArduPilot's own receiver is nothing like."""
 
 
 def of_episodes(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
@@ -49,6 +51,11 @@ class ForeignVehicles(Vehicles):
         options = setup.options
         if options.connection != INPROCESS:
             raise EnvOptionError(f"{self.where}: it needs no connection besides")
+        if choice.kind == ARDUPILOT and options.sensors in _NOT_ITS_OWN:
+            raise EnvOptionError(
+                f"sensors {options.sensors!r}: {self.where} simulates its receiver itself, without the errors of this "
+                "one; leave sensors out, or set its own SIM_GPS1_ parameters by params"
+            )
         if options.gcs is not None:
             raise EnvOptionError(f"{self.where}: gcs is for our own autopilot in process")
         if choice.program is None and (setup.count > 1 or options.params):
