@@ -8,6 +8,7 @@ import warnings
 from pathlib import Path
 
 import gymnasium as gym
+
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, ids
 
