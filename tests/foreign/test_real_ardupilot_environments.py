@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Environments of all sorts on a real ArduPilot: SITL_ARDUPILOT names the folder of ``arducopter`` and ``ardurover``."""
+"""Environments on a real ArduPilot: SITL_ARDUPILOT names the folder of ``arducopter`` and ``ardurover``."""
 
 from __future__ import annotations
 

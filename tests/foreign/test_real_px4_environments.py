@@ -66,9 +66,15 @@ def test_it_hovers_at_a_position(flown):
 
 @pytest.mark.parametrize("step_time", [0.1, 3.0])
 def test_a_velocity_is_flown_whatever_the_length_of_a_step(flown, step_time):
-    (_, end), mode = flown("velocity", step_time, ((1.0, 0.0, 0.0, 0.2), round(3.0 / step_time)))
+    (_, end, turning), mode = flown(
+        "velocity",
+        step_time,
+        ((1.0, 0.0, 0.0, 0.0), round(3.0 / step_time)),
+        ((0.0, 0.0, 0.0, 0.4), 15 if step_time < 1.0 else 1),
+    )
     assert mode == OFFBOARD
-    assert end[FORWARD : TURN + 1] == pytest.approx([1.0, 0.0, 0.0, 0.2], abs=0.15)
+    assert end[FORWARD : TURN + 1] == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=0.2)
+    assert turning[TURN] == pytest.approx(0.4, abs=0.15)
 
 
 def test_an_acceleration_is_flown(flown):
