@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
+from benchmarks.deployment import abroad, run
+from sitl.agents import baselines, learnt
 from tests.foreign import test_real_ardupilot
 
 pytestmark = test_real_ardupilot.pytestmark
@@ -38,6 +42,16 @@ def test_ids_with_wind_many_worlds_and_goals_are_flown(name):
     assert len(worlds) == (2 if "Forest" in name or "Parking" in name else 1)
     assert len(winds) == (2 if "Hover" in name else 0)
     env.close()
+
+
+def test_a_policy_takes_it_over_and_hands_it_over_to_be_landed():
+    kind, program = "copter", test_real_ardupilot.program("copter").partition(":")[2]
+    with run(kind, 2.0, Path(program)) as (pilot, connection):
+        flown = abroad(learnt.load(baselines.find("copter-waypoint")), pilot, connection, 2, 3.0)
+        assert len(flown.episodes) == 2 and all(one.solved for one in flown.episodes)
+        assert flown.deeds[-1].what == "handed over" and pilot.mode == "BRAKE"
+        pilot.land()
+        assert not pilot.armed
 
 
 def test_two_drive_side_by_side():
