@@ -168,7 +168,7 @@ class SocketVehicles(Vehicles):
         return self.begun(0, origin)
 
     def _check_autopilot(self, link: Connection) -> None:
-        """Refuse a PX4 where an ArduPilot is expected, and the other way round, before it is told anything."""
+        """Refuse a PX4 where an ArduPilot is expected, and the other way round, before it is told to do anything."""
         if link.inbox.is_px4 == self._is_px4:
             return
         self.close()
