@@ -20,6 +20,7 @@ from sitl.errors import SitlError
 
 from . import defaults, entries, page
 from .campaign import Campaign, campaign
+from .conditions import ARDUPILOT, PX4, Program
 from .records import FOLDER
 from .running import duration, run
 
@@ -44,6 +45,9 @@ def parser() -> argparse.ArgumentParser:
     )
     add("--ardupilot", type=Path, action="append", default=[], metavar="PROGRAM",
         help="a real arducopter or ardurover, to evaluate with; can be given twice")  # fmt: skip
+    add("--px4", type=Path, metavar="PROGRAM", help="a real px4, to evaluate policies of copters with")
+    add("--only-autopilots", action="store_true",
+        help="evaluate trained policies with the programs of --ardupilot and --px4, and do nothing else")  # fmt: skip
     add("--defaults", action="store_true", help="instead: curves of PPO, SAC and DQN with default settings")
     add("--ship", action="store_true", help="make the median training of each the policy that the package contains")
     add("--prune", action="store_true", help="delete results that are out of date")
@@ -66,9 +70,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _main(options: argparse.Namespace) -> int:
     names = entries.names()
     check_names(options.names, names, "baseline {!r}")
-    programs = tuple(path.resolve() for path in options.ardupilot)
+    programs = [Program(ARDUPILOT, path.resolve()) for path in options.ardupilot]
+    programs += [Program(PX4, options.px4.resolve())] if options.px4 else []
     chosen = options.names or names
-    found = campaign(chosen, options.results, options.runs, options.seeds, programs, options.steps)
+    found = campaign(
+        chosen, options.results, options.runs, options.seeds, tuple(programs), options.steps, options.only_autopilots
+    )
     _say(f"playing {len(chosen)} environments, to see whether they have changed")
     for name in found.references.check({entry.plain: entry.playing() for entry in found.chosen}):
         _say(f"{name}: its environment has changed; earlier results are out of date")
@@ -77,13 +84,14 @@ def _main(options: argparse.Namespace) -> int:
     if options.plan:
         _plan(found, options.jobs)
         return 0
-    require()
+    if not options.only_autopilots:
+        require()
     do = defaults.run if options.defaults else run
     done = do(found, Workers(options.jobs), time.time() + 60.0 * options.budget, _say)
     if options.steps is None and options.ship:
         page.ship(found, _say)
     if options.steps is None and options.results == FOLDER:  # the page shows all baselines, whichever were chosen
-        page.write(campaign(names, FOLDER, options.runs, max(options.seeds, SEEDS), (), None))
+        page.write(campaign(names, FOLDER, options.runs, max(options.seeds, SEEDS)))
     _say("all is done" if done else "not all is done; the same command goes on")
     return 0
 

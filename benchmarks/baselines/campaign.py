@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from . import entries
-from .conditions import ARDUPILOT, MAIN, NOMINAL, ROBUST, named, of_group, program_of
+from .conditions import AUTOPILOTS, MAIN, NOMINAL, ROBUST, Program, named, of_group, program_of
 from .entries import Entry
 from .records import Record, Records
 from .references import References
@@ -32,6 +32,7 @@ class Campaign:
         runs: folder of runs and policies.
         seeds: number of trainings of each.
         programs: of other autopilots.
+        only_programs: fly trained policies with these programs, and do nothing else.
     """
 
     chosen: Sequence[Entry]
@@ -39,7 +40,8 @@ class Campaign:
     references: References
     runs: Path
     seeds: int = 5
-    programs: tuple[Path, ...] = ()
+    programs: tuple[Program, ...] = ()
+    only_programs: bool = False
 
     # ------------------------------------------------------------------ results
 
@@ -61,13 +63,17 @@ class Campaign:
             for seed in range(self.seeds):
                 yield entry.training_key(seed, self.references.digest(entry.plain))
             for number in ("random", *range(self.seeds)):
-                for what in (*of_group(MAIN, entry.plain), *_elsewhere(entry), ARDUPILOT):
+                for what in (*of_group(MAIN, entry.plain), *_elsewhere(entry), *AUTOPILOTS):
                     yield entry.playing_key(number, what, self.references.digest(entry.plain))
 
     # ------------------------------------------------------------------ work
 
     def stages(self) -> list[tuple[str, list[Job]]]:
         """What is missing: title of a stage -> its jobs, the shortest first."""
+        real = ("other autopilots, seed 0", self._jobs(self.chosen, 0, self._real))
+        if self.only_programs:
+            there = [job for job in real[1] if not job.train and job.policy.exists()]
+            return [(real[0], there)] if there else []
         plain = [entry for entry in self.chosen if not entry.is_variant]
         variants = [entry for entry in self.chosen if entry.is_variant]
         found = [
@@ -75,7 +81,7 @@ class Campaign:
             ("training, seed 0", self._jobs(plain, 0, _main)),
             ("robustness, seed 0", self._jobs(plain, 0, _elsewhere)),
             ("variants, seed 0", self._jobs(variants, 0, _all)),
-            ("another autopilot, seed 0", self._jobs(self.chosen, 0, self._real)),
+            real,
         ]
         later = range(1, self.seeds)
         found += [(f"training, seed {seed}", self._jobs(plain, seed, _main)) for seed in later]
@@ -84,7 +90,7 @@ class Campaign:
         return [(title, jobs) for title, jobs in found if jobs]
 
     def _real(self, entry: Entry) -> tuple[str, ...]:
-        return (ARDUPILOT,) if program_of(entry.name, self.programs) else ()
+        return tuple(what for what in AUTOPILOTS if program_of(entry.name, what, self.programs))
 
     def _jobs(self, some: Sequence[Entry], seed: int | None, wanted: Callable[[Entry], tuple[str, ...]]) -> list[Job]:
         jobs = []
@@ -115,7 +121,7 @@ class Campaign:
             return self._training_s(entry)
         before = [one["took_s"] / len(one["reached"]) for one in self.records.all()
                   if one["name"] == entry.name and one.get("what") == what and "reached" in one]  # fmt: skip
-        usual = REAL_S if what == ARDUPILOT else EPISODE_S
+        usual = REAL_S if what in AUTOPILOTS else EPISODE_S
         return float(before[-1] if before else usual) * named(what).episodes
 
     def _training_s(self, entry: Entry) -> float:
@@ -151,8 +157,14 @@ def _all(entry: Entry) -> tuple[str, ...]:
 
 
 def campaign(
-    names: Sequence[str], folder: Path, runs: Path, seeds: int, programs: tuple[Path, ...], steps: int | None
+    names: Sequence[str],
+    folder: Path,
+    runs: Path,
+    seeds: int,
+    programs: tuple[Program, ...] = (),
+    steps: int | None = None,
+    only_programs: bool = False,
 ) -> Campaign:
     """Of baselines by their names."""
     chosen = [entries.load(name, steps) for name in names]
-    return Campaign(chosen, Records(folder), References(folder), runs, seeds, programs)
+    return Campaign(chosen, Records(folder), References(folder), runs, seeds, programs, only_programs)

@@ -17,10 +17,13 @@ from sitl.envs import ids
 from sitl.envs.options import COMMON
 from sitl.envs.presets import PRESETS
 from sitl.envs.robots.vehicles import AutopilotOptions
+from sitl.foreign.choice import ARDUPILOT, PX4
 
 MAIN, ROBUST, REAL = "main", "robustness", "autopilot"
 """Groups: each is a table."""
-NOMINAL, ESTIMATE, UNSEEN, ARDUPILOT = "nominal", "estimate", "worlds-unseen", "ardupilot"
+NOMINAL, ESTIMATE, UNSEEN = "nominal", "estimate", "worlds-unseen"
+AUTOPILOTS = {ARDUPILOT: "ArduPilot", PX4: "PX4"}
+"""Conditions of another autopilot, a real program on our physics -> title in a table."""
 EPISODES, ROBUST_EPISODES, WORLD_EPISODES, REAL_EPISODES = 200, 50, 100, 10
 SEED = 1000
 """Of the episodes: episode k is the one that ``sitl rollout --seed 1000`` plays as number k."""
@@ -120,13 +123,33 @@ CONDITIONS: dict[str, Condition] = {
 
 def named(name: str) -> Condition:
     """A condition, or that of a program of another autopilot."""
-    return CONDITIONS[name] if name != ARDUPILOT else Condition("ArduPilot", REAL, REAL_EPISODES)
+    if name in AUTOPILOTS:
+        return Condition(AUTOPILOTS[name], REAL, REAL_EPISODES, {"autopilot": name})
+    return CONDITIONS[name]
 
 
-def program_of(name: str, programs: tuple[Path, ...]) -> Path | None:
-    """The one of some programs that flies a baseline: "arducopter" those of copters."""
-    kind = name.partition("-")[0]
-    return next((path for path in programs if kind in path.name), None)
+@dataclass(frozen=True)
+class Program:
+    """A program of another autopilot."""
+
+    autopilot: str
+    """One of ``AUTOPILOTS``."""
+    path: Path
+
+    def flies(self, name: str) -> bool:
+        """Whether it flies a baseline: "arducopter" those of copters, a PX4 those of copters, too."""
+        kind = name.partition("-")[0]
+        return kind in self.path.name if self.autopilot == ARDUPILOT else kind == "copter"
+
+    @property
+    def option(self) -> str:
+        """It as an environment's option ``autopilot``."""
+        return f"{self.autopilot}:{self.path}"
+
+
+def program_of(name: str, what: str, programs: tuple[Program, ...]) -> Program | None:
+    """The one of some programs that flies a baseline under a condition of ``AUTOPILOTS``."""
+    return next((one for one in programs if one.autopilot == what and one.flies(name)), None)
 
 
 def of_group(group: str, name: str) -> tuple[str, ...]:

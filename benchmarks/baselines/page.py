@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,12 @@ from sitl.agents.runs.files import write_bytes
 
 from . import defaults, shipped, work
 from .campaign import Campaign
-from .conditions import ARDUPILOT, CONDITIONS, ESTIMATE, KINDS, NOMINAL, ROBUST, SEED, UNSEEN, named
+from .conditions import AUTOPILOTS, CONDITIONS, ESTIMATE, KINDS, NOMINAL, ROBUST, SEED, UNSEEN, named
 from .entries import Entry
 from .records import Record
 from .work import figures
 
-PAGE = shipped.DOCS / "baselines.md"
+PAGE, REAL_PAGE = shipped.DOCS / "baselines.md", shipped.DOCS / "mental-rehearsal.md"
 NONE = "*No results yet.*"
 
 
@@ -114,7 +115,8 @@ def suites(found: Campaign) -> str:
 
 def elsewhere(found: Campaign, kind: str) -> str:
     """Baselines of a kind of vehicle in other conditions; variants below their plain ones."""
-    whats = [NOMINAL, *(key for key, one in CONDITIONS.items() if one.group == ROBUST and kind in one.kinds), ARDUPILOT]
+    conditions = (key for key, one in CONDITIONS.items() if one.group == ROBUST and kind in one.kinds)
+    whats = [NOMINAL, *conditions, *AUTOPILOTS]
     rows: list[tuple[str, ...]] = []
     for entry in sorted(found.chosen, key=lambda one: (one.plain, one.is_variant)):
         cells = [of_seeds(found, entry, what) for what in whats]
@@ -124,6 +126,31 @@ def elsewhere(found: Campaign, kind: str) -> str:
     heads = ("policy", "trainings", *(named(what).title for what in whats))
     shown = [0, 1, *used]
     return table([heads[k] for k in shown], [[cells[k] for k in shown] for cells in rows])
+
+
+def autopilots(found: Campaign) -> str:
+    """Policies on the programs of other autopilots, beside the same episodes on ours."""
+    rows = []
+    for entry in found.chosen:
+        ours = found.episodes(entry, 0, NOMINAL)
+        real = [found.episodes(entry, 0, what) for what in AUTOPILOTS]
+        if entry.is_variant or ours is None or not any(real):
+            continue
+        count = max(len(one["reached"]) for one in real if one)
+        same = {**ours, "reached": ours["reached"][:count], "crashed": ours["crashed"][:count]}
+        cells = (_counted(one) for one in (same, *real))
+        rows.append((f"`{entry.name}`", percent([ours]), *cells))
+    heads = ("policy", f"ours, {named(NOMINAL).episodes} episodes [%]", "ours, the same episodes")
+    return table((*heads, *(named(what).title for what in AUTOPILOTS)), rows)
+
+
+def _counted(record: Record | None) -> str:
+    """Successes, and crashes where there are any."""
+    if record is None:
+        return ""
+    crashes = record["crashed"].count("1")
+    crashed = f", {crashes} crashed" if crashes else ""
+    return f"{record['reached'].count('1')} of {len(record['reached'])}{crashed}"
 
 
 def older() -> str:
@@ -137,7 +164,7 @@ def older() -> str:
 
 
 def tables(found: Campaign) -> dict[str, str]:
-    """Mark on the page -> what stands there."""
+    """Mark on the page of baselines -> what stands there."""
     return {
         "results": results(found),
         "suites": suites(found),
@@ -148,12 +175,18 @@ def tables(found: Campaign) -> dict[str, str]:
 
 
 def write(found: Campaign) -> None:
-    """Put all tables on the page."""
-    text = PAGE.read_text(encoding="utf-8")
-    for what, made in tables(found).items():
+    """Put all tables on their pages."""
+    fill(PAGE, tables(found))
+    fill(REAL_PAGE, {"autopilots": autopilots(found)})
+
+
+def fill(page: Path, made_of: Mapping[str, str]) -> None:
+    """Put tables between their marks on a page."""
+    text = page.read_text(encoding="utf-8")
+    for what, made in made_of.items():
         between = re.compile(rf"(<!-- {re.escape(what)} -->\n).*?(<!-- /{re.escape(what)} -->)", re.DOTALL)
         text = between.sub(lambda at, made=made: f"{at[1]}\n{made}\n\n{at[2]}", text)  # type: ignore[misc]
-    write_bytes(PAGE, text.encode())
+    write_bytes(page, text.encode())
 
 
 def ship(found: Campaign, say: Callable[[str], None]) -> None:

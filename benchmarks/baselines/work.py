@@ -26,7 +26,7 @@ from sitl.agents.runs.training import train_one
 from sitl.errors import SitlError
 
 from . import entries, shipped
-from .conditions import ARDUPILOT, NOMINAL, SEED, named, program_of
+from .conditions import AUTOPILOTS, NOMINAL, SEED, Program, named, program_of
 from .records import Record
 
 SPENT = "spent.json"
@@ -49,7 +49,7 @@ class Job:
     """Folder of runs and of trained policies."""
     until: float = float("inf")
     """Wall time at which it stops, to be gone on with later [s, as ``time.time``]."""
-    programs: tuple[Path, ...] = ()
+    programs: tuple[Program, ...] = ()
     """Other autopilots."""
     steps: int | None = None
     """Of a training, in place of the recipe's."""
@@ -172,11 +172,11 @@ def evaluate(job: Job, policy: Named, what: str) -> Record:
     config, count = condition.config(entry.playing()), condition.episodes
     robots = rollout.ROBOTS
     clock, more = time.process_time, {}
-    if what == ARDUPILOT:
-        program = program_of(job.name, job.programs)
+    if what in AUTOPILOTS:
+        program = program_of(job.name, what, job.programs)
         assert program is not None
-        config, robots = config.with_(env_options={**config.env_options, "autopilot": f"ardupilot:{program}"}), 1
-        clock, more = time.monotonic, {"program": sha256(program)}  # it works in a process of its own
+        config, robots = config.with_(env_options={**config.env_options, "autopilot": program.option}), 1
+        clock, more = time.monotonic, {"program": sha256(program.path)}  # it works in a process of its own
     began = clock()
     played = play(config, policy, count, robots)
     rewards = [round(one.reward, 2) for one in played]

@@ -179,7 +179,7 @@ _OTHERS = ("connection", "robot", "frame")
 """Options with which a vehicle has receivers of its own."""
 
 
-_ONE_WORLD = ("connection", "autopilot", "gcs")
+_ONE_WORLD = ("connection", "gcs")
 """Options with which a vehicle stays in one world."""
 
 

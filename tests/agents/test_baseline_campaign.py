@@ -308,6 +308,43 @@ def test_shipping_takes_the_medians_file_and_figures(few, tmp_path, monkeypatch)
     assert work._shipped(job) and path.read_bytes() == b"p"  # it is not trained again
 
 
+def test_programs_fly_what_is_trained_and_nothing_else_is_done(few, trained, tmp_path):
+    programs = (
+        conditions.Program("ardupilot", tmp_path / "arducopter"),
+        conditions.Program("ardupilot", tmp_path / "ardurover"),
+        conditions.Program("px4", tmp_path / "px4"),
+    )
+    names = ["rover-waypoint", "copter-hover", "copter-waypoint"]
+
+    def found():
+        return campaigns.campaign(names, tmp_path / "results", tmp_path / "runs", 1, programs, None, True)
+
+    assert found().stages() == []  # nothing is trained
+    for name in names[:2]:
+        entry = entries.load(name)
+        job = Job(name, 0, (), False, "", tmp_path / "runs")
+        Records(tmp_path / "results").add(work.train(job, print, bool))
+        Records(tmp_path / "results").add(played(entry, 0, NOMINAL, "1111", job))
+    [(title, jobs)] = found().stages()
+    assert title == "other autopilots, seed 0"
+    assert {job.name: job.whats for job in jobs} == {
+        "rover-waypoint": ("ardupilot",),
+        "copter-hover": ("ardupilot", "px4"),
+    }
+    assert conditions.program_of("copter-hover", "px4", programs).option == f"px4:{tmp_path / 'px4'}"
+    for what, bits in (("ardupilot", "111"), ("px4", "110")):
+        Records(tmp_path / "results").add(played(entries.load("copter-hover"), 0, what, bits, jobs[1]))
+    assert [job.name for job in dict(found().stages())[title]] == ["rover-waypoint"]
+    assert "| `copter-hover` | 100.0 (51 .. 100) | 3 of 3 | 3 of 3 | 2 of 3, 1 crashed |" in page.autopilots(found())
+
+
+def played(entry, seed, what, bits, job):
+    return {
+        "kind": "episodes", "name": entry.name, "seed": seed, "what": what, "key": entry.playing_key(seed, what, ""),
+        "policy": work.sha256(job.policy), "reached": bits, "crashed": bits.translate({48: 49, 49: 48}), "took_s": 1.0,
+    }  # fmt: skip
+
+
 def test_tables_say_on_how_many_trainings_they_rest(few, tmp_path):
     found = made(tmp_path, seeds=5, checked=False)
     fill(found, ["1110"])

@@ -19,6 +19,7 @@ from sitl.agents.deep import policy_file
 from sitl.agents.deploy import Deployed, deploy, options_of
 from sitl.agents.errors import AgentError
 from sitl.autopilot.copter.modes.guided import GUIDED
+from sitl.client.proof import REQUEST_MESSAGE
 from sitl.envs.robots import at_connection
 from sitl.errors import NotReadyError, OptionError
 from tests.agents.test_policy_files import made
@@ -268,6 +269,19 @@ def test_a_policy_that_names_a_connection_is_flown_there_only_when_the_user_says
         words = ["deploy", str(flown), "--connection", url, "--guard", "late=60"]
         monkeypatch.setenv("SITL_ALLOW_CODE", "")
         assert cli.main(words) == 0 and mode(simulation) == BRAKE
+
+
+def test_another_autopilot_than_the_one_that_was_named_is_only_asked_who_it_is(flown):
+    policy = learnt.load(flown)
+    options = {"autopilot": "px4"}
+    with RealVehicle(hovering()) as vehicle:
+        url = f"udpout:127.0.0.1:{vehicle.port}"
+        with pytest.raises(OptionError, match=r"the vehicle is no PX4: .*--autopilot ardupilot"):
+            deploy(policy, url, options=options, wait=2.0)
+    told = {name for name, _ in vehicle.received}
+    assert told <= {"COMMAND_LONG", "PARAM_REQUEST_READ"} and not vehicle.commands() - {REQUEST_MESSAGE}
+    with pytest.raises(OptionError, match="a PX4 at a connection is not rebooted"):
+        deploy(policy, "udpout:127.0.0.1:1", reset="reboot", options=options)
 
 
 def test_what_cannot_be_is_refused_before_the_vehicle_hears_anything(flown):

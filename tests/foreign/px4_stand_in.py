@@ -32,7 +32,7 @@ BOOT_TICKS, POSITION_TICKS = 400, 4000
 START_S = 1.0
 DECLINATION = 0.23
 UNTRUE, VALID = 1 | 4, 1 | 2 | 4 | 8 | 16 | 32
-OFFBOARD, FRESH_US = 6 << 16, 500_000
+OFFBOARD, FRESH_US, LOSS_US = 6 << 16, 500_000, 1_000_000
 PREARM = 0x10000000
 KNOWN = (
     *("CA_", "MC_ROLL", "MC_PITCH", "MC_YAW", "MPC_", "PWM_MAIN_", "THR_MDL_FAC", "BAT1_", "NAV_", "COM_", "IMU_"),
@@ -124,6 +124,8 @@ class Px4:
         now = sensor.time_usec - self.began
         assert now > self.now or self.ticks == 0, "time goes forward"
         self.now, self.ticks, self.gyro = now, self.ticks + 1, (sensor.xgyro, sensor.ygyro, sensor.zgyro)
+        if self.mode == OFFBOARD and now - self.target_us > LOSS_US:
+            self.mode = LOITER  # COM_OF_LOSS_T
         if self.origin is None and self.ticks > POSITION_TICKS:
             self.origin = (self.truth.lat, self.truth.lon, self.truth.alt)
 

@@ -19,9 +19,10 @@ from sitl.client.endpoint import Endpoint
 from sitl.envs import EnvOptionError, NotReadyError
 from sitl.envs.mavlink.foreign import physics_port
 from sitl.envs.mavlink.preparation import set_intervals
+from sitl.envs.mavlink.px4 import OFFBOARD
 from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.autopilot import AutopilotRobot
-from sitl.envs.robots.foreign import unlogged
+from sitl.envs.robots.foreign import of_episodes
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import Choice
 
@@ -125,9 +126,55 @@ def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, 
 
 def test_an_ardupilot_keeps_no_log_in_episodes_unless_it_is_told_to():
     ours, theirs = Choice("ardupilot", Path("arducopter")), Choice("px4", Path("px4"))
-    assert unlogged(ours, {"WPNAV_SPEED": 300.0}) == {"LOG_BACKEND_TYPE": 0.0, "WPNAV_SPEED": 300.0}
-    assert unlogged(ours, {"LOG_BACKEND_TYPE": 1.0}) == {"LOG_BACKEND_TYPE": 1.0}
-    assert unlogged(theirs, {"MC_ROLL_P": 6.0}) == {"MC_ROLL_P": 6.0}
+    assert of_episodes(ours, {"WPNAV_SPEED": 300.0}) == {"LOG_BACKEND_TYPE": 0.0, "WPNAV_SPEED": 300.0}
+    assert of_episodes(ours, {"LOG_BACKEND_TYPE": 1.0}) == {"LOG_BACKEND_TYPE": 1.0}
+    sticks = {"COM_RC_IN_MODE": 1.0, "COM_RCL_EXCEPT": 4.0}
+    assert of_episodes(theirs, {"MC_ROLL_P": 6.0}) == {**sticks, "MC_ROLL_P": 6.0}
+
+
+FORWARD = {"forward": (0.3, 0.0, 0.0, 0.0)}
+
+
+class Launched(Exception):
+    """In place of a program."""
+
+
+@pytest.mark.parametrize("kind", ["ardupilot", "px4"])
+def test_wind_mass_and_world_of_an_episode_are_those_of_the_physics(kind, monkeypatch):
+    found = {}
+
+    def start(choice, plant, params, inbox, patience):
+        found.update(plant=plant, params=params)
+        plant.close()
+        raise Launched
+
+    monkeypatch.setattr("sitl.envs.robots.foreign.launch", start)
+    drawn = {"wind_speed": (4.0, 4.0), "wind_direction": (90.0, 90.0), "mass": (1.3, 1.3)}
+    env = gym.make("sitl/CopterForest-v1", autopilot=f"{kind}:/bin/true", randomise=drawn, world="forest:seed=7..9")
+    names = set()
+    for seed in range(6):
+        with pytest.raises(Launched):
+            env.reset(seed=seed)
+        plant = found["plant"]
+        wind = plant.vehicle.v.physics.wind
+        assert (wind.speed, wind.direction, plant.vehicle.airframe.value("mass")) == (4.0, 90.0, 1.3)
+        names.add(plant.world.name)
+        told = {name: value for name, value in found["params"].items() if name.startswith("SIM_WIND")}
+        assert told == ({"SIM_WIND_SPD": 4.0, "SIM_WIND_DIR": 90.0} if kind == "ardupilot" else {})
+    assert len(names) > 1
+    env.close()
+
+
+@pytest.mark.slow
+def test_a_long_step_does_not_lose_px4s_mode(px4):
+    env = gym.make(COPTER, autopilot=f"px4:{px4}", setpoint="velocity", action=FORWARD, step_time=3.0)
+    env.reset(seed=1)
+    robot = env.unwrapped.robot
+    before = robot.true_state()[0].copy()
+    env.step(0)
+    assert robot.link(0).inbox.mode == OFFBOARD
+    assert math.dist(before[:2], robot.true_state()[0][:2]) == pytest.approx(0.9, abs=0.3)
+    env.close()
 
 
 class Refusing(Connection):
@@ -182,8 +229,11 @@ def test_the_port_of_the_physics_follows_the_instance(connection, port):
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "connection": "tcp:127.0.0.1:5760"}, "no connection"),
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "gcs": "udp:127.0.0.1:14550"}, "gcs"),
         ({"autopilot": "px4:udp:127.0.0.1:14540"}, "flies no rover here"),
+        ({"autopilot": "px4", "connection": "tcp:127.0.0.1:5760"}, "flies no rover here"),
+        ({"autopilot": "px4", "connection": "tcp:127.0.0.1:5760", "frame": "erle_copter"}, "is not rebooted"),
+        ({"autopilot": "ardupilot:/bin/true", "sensors": "uwb"}, "receiver"),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(options, why):
     with pytest.raises(EnvOptionError, match=why):
-        AutopilotRobot(frame="erle_rover", **options)
+        AutopilotRobot(**{"frame": "erle_rover", **options})

@@ -7,6 +7,7 @@ import argparse
 from dataclasses import fields
 
 from sitl.envs.mavlink.guard import NOT_HANDED_OVER, Guard
+from sitl.foreign.choice import ARDUPILOT, FOREIGN
 
 from .. import baselines, learnt
 from ..deploy import REPLACED, Deployed, deploy, options_of
@@ -32,6 +33,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--connection", required=True, metavar="URL",
         help="address of the vehicle: udp:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD",
+    )  # fmt: skip
+    parser.add_argument(
+        "--autopilot", choices=FOREIGN, default=ARDUPILOT,
+        help="autopilot of the vehicle (default ardupilot, as of gym-sitl itself). A PX4 is taken over in Hold, into "
+        "OFFBOARD",
     )  # fmt: skip
     parser.add_argument("--episodes", type=positive, default=1, metavar="N", help="number of episodes (default 1)")
     parser.add_argument(
@@ -67,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
     """Run the command."""
     guard = assignments(options.guard)
     check_names(guard, [field.name for field in fields(Guard)], "guard {!r}")
-    given = assignments(options.option)
+    given = {**assignments(options.option), "autopilot": options.autopilot}
     policy = learnt.load(options.policy, (*REPLACED, *given))
     left_out = options_of(policy, given)[1]
     if left_out:

@@ -18,7 +18,7 @@ from sitl.client.connection import ACCEPTED, Remote
 from sitl.client.endpoint import ACK, ARMED, AUTOPILOT, HEARTBEAT, IN_PROGRESS
 from sitl.client.proof import REQUEST_MESSAGE
 
-from .preparation import CUSTOM_MODE_ENABLED
+from .preparation import mode_parameters
 
 BOUND_S = 10.0
 """Wall time after which a vehicle that has not answered is given up [s]."""
@@ -77,7 +77,9 @@ class HandOver:
             if now - self._began > (REFUSED_S if is_refused else BOUND_S):
                 return
             if self._accepted_s is None or now - self._accepted_s > AGAIN_S:
-                self._send(_SET_MODE, confirmation=min(self.sent, 255), param1=CUSTOM_MODE_ENABLED, param2=self._mode)
+                flag, mode, below = mode_parameters(self._mode)
+                confirmation = min(self.sent, 255)
+                self._send(_SET_MODE, confirmation=confirmation, param1=flag, param2=mode, param3=below)
                 self.sent += 1
             if self._accepted_s is not None:
                 self._send(REQUEST_MESSAGE, param1=HEARTBEAT.id)

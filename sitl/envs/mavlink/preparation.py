@@ -97,14 +97,22 @@ def request_again(link: Connection) -> None:
         link.command("REQUEST_MESSAGE", kind.id)
 
 
+def mode_parameters(number: int) -> tuple[int, int, int]:
+    """Parameters of DO_SET_MODE for a mode, by the ``custom_mode`` of its HEARTBEAT: a number, as ArduPilot has them,
+    or a main mode in the third byte and one below it in the fourth, as PX4 has them."""
+    if number < 1 << 16:
+        return CUSTOM_MODE_ENABLED, number, 0
+    return CUSTOM_MODE_ENABLED, number >> 16 & 0xFF, number >> 24 & 0xFF
+
+
 def set_mode(link: Connection, number: int) -> None:
     """Change the flight mode.
 
     Raises:
         NotReadyError: it refuses.
     """
-    if link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, number) != ACCEPTED:
-        raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {_last_texts(link)}")
+    if link.command("DO_SET_MODE", *mode_parameters(number)) != ACCEPTED:
+        raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {last_texts(link)}")
 
 
 def set_bit(link: Connection, name: str, bit: int, may_change: bool) -> None:
@@ -156,7 +164,7 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     if take_off > 0.0:
         floor = inbox.position[3]  # home is where it is armed, which is not the origin of local positions
         if link.command("NAV_TAKEOFF", altitude=take_off) != ACCEPTED:
-            raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {_last_texts(link)}")
+            raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {last_texts(link)}")
         until(link, lambda: abs(inbox.position[3] - floor + take_off) < 0.1 and abs(inbox.position[6]) < 0.1, _TENTH,
                f"does not climb to {take_off:g} m")  # fmt: skip
     for _ in range(3):  # it may be lost on the way
@@ -199,23 +207,29 @@ def join(link: Connection, guided: int, flies: bool, seconds: float) -> None:
     link.command("REQUEST_MESSAGE", ORIGIN.id)
 
     def missing() -> str:
-        speed = float(lengths(inbox.position[4:7]))
-        if math.isnan(inbox.position[1]) or inbox.origin is None:
-            return "it has no position"
-        if not inbox.armed:
-            return "it is disarmed"
-        if inbox.mode != guided:
+        if inbox.armed and inbox.mode != guided:
             return f"it is in mode {inbox.mode}, not in GUIDED ({guided})"
-        if flies and height_above_home(link) < AIRBORNE:
-            return "it is on the ground"
-        return f"it moves with {speed:.1f} m/s" if speed > AT_REST else ""
+        return not_ready(link, flies)
 
     for _ in range(max(round(seconds / 0.1), 1)):
         link.pause(_TENTH)
         if not missing():
             check_reports(link)
             return
-    raise NotReadyError(f"{link.name}: no episode can begin within {seconds:g} s: {missing()}; {_last_texts(link)}")
+    raise NotReadyError(f"{link.name}: no episode can begin within {seconds:g} s: {missing()}; {last_texts(link)}")
+
+
+def not_ready(link: Connection, flies: bool) -> str:
+    """What a vehicle that somebody else has brought up lacks for an episode, whatever its mode; "": nothing."""
+    inbox = link.inbox
+    speed = float(lengths(inbox.position[4:7]))
+    if math.isnan(inbox.position[1]) or inbox.origin is None:
+        return "it has no position"
+    if not inbox.armed:
+        return "it is disarmed"
+    if flies and height_above_home(link) < AIRBORNE:
+        return "it is on the ground"
+    return f"it moves with {speed:.1f} m/s" if speed > AT_REST else ""
 
 
 AIRBORNE, AT_REST = 0.5, 0.5
@@ -271,10 +285,11 @@ def until(
             return
         between()
         link.pause(every_us)
-    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; {_last_texts(link)}")
+    raise NotReadyError(f"{link.name}: the vehicle {complaint} within {seconds} s; {last_texts(link)}")
 
 
-def _last_texts(link: Connection) -> str:
+def last_texts(link: Connection) -> str:
+    """What the vehicle has said last, for messages."""
     return "it said: " + "; ".join(link.inbox.last_texts[-4:]) if link.inbox.last_texts else "it said nothing"
 
 

@@ -37,6 +37,7 @@ RATES_ONLY = ATTITUDE_IGNORED
 ATTITUDE_ALONE = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | BODY_YAW_RATE_IGNORED
 ATTITUDE_AND_RATES = 0
 """To a copter some rates without the others are a reason to stop."""
+TURN_AND_LEAN = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED
 TURN_AND_SPEED = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | ATTITUDE_IGNORED
 
 Message = tuple[Any, bytes]
@@ -71,10 +72,15 @@ def rover_position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[
     return position(row, inbox, origin, PLACE_ONLY | YAWS_IGNORED)
 
 
+def leaning(roll: float, pitch: float, inbox: StepTelemetry) -> Any:
+    """The attitude with these angles [rad] and the heading that there is, as a quaternion."""
+    return quat_from_euler(Euler(roll, pitch, inbox.attitude[3]))
+
+
 def attitude(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: roll, pitch [rad], turn rate [rad/s], climb -1 .. 1."""
     roll, pitch, turn, climb = row
-    q = quat_from_euler(Euler(roll, pitch, inbox.attitude[3]))
+    q = leaning(roll, pitch, inbox)
     return TARGET, TARGET.payload(
         target_system=inbox.system,
         type_mask=ATTITUDE_AND_RATES,
@@ -96,7 +102,7 @@ def acceleration(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[fl
 def thrust(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """SET_ATTITUDE_TARGET: roll, pitch [rad], turn rate [rad/s], thrust 0 .. 1."""
     roll, pitch, turn, share = row
-    q = quat_from_euler(Euler(roll, pitch, inbox.attitude[3]))
+    q = leaning(roll, pitch, inbox)
     return TARGET, TARGET.payload(
         target_system=inbox.system, type_mask=ATTITUDE_AND_RATES, q=q, body_yaw_rate=-turn, thrust=share
     )

@@ -25,6 +25,8 @@ LANDED_STATE, ESTIMATOR = LandedState.kind, message("ESTIMATOR_STATUS")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
+PX4 = 12
+"""MAV_AUTOPILOT_PX4"""
 HIT = b"SIM Hit obstacle"
 """How the text begins that tells of a touch."""
 _part = struct.Struct("<QH10s").unpack_from
@@ -65,6 +67,7 @@ class StepTelemetry(Inbox):
         self.hits = 0
         """Touches told so far."""
         self.mode, self.armed = -1, False
+        self.is_px4 = False
         self.origin: tuple[int, int, int] | None = None
         """Latitude, longitude [degE7], altitude [mm] of local positions."""
         self.estimator = 0
@@ -144,6 +147,7 @@ class StepTelemetry(Inbox):
         self._note(kind, fields, system)
         if kind is HEARTBEAT:
             self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & ARMED)
+            self.is_px4 = fields.autopilot == PX4
         elif kind is SECTORS:
             self._sectors(fields)
         elif kind is GLOBAL:

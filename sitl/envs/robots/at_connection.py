@@ -18,6 +18,7 @@ from sitl.errors import NotReadyError, OptionError
 from sitl.vehicle.kinds import KINDS
 from sitl.worlds.shapes import from_ned, to_ned
 
+from ..mavlink import px4
 from ..mavlink.endings import ENDINGS
 from ..mavlink.guard import NOT_HANDED_OVER, Guard, Watch, append, guard_of, say
 from ..mavlink.hand_over import HandOver
@@ -68,6 +69,12 @@ class SocketVehicles(Vehicles):
     def __init__(self, setup: VehicleSetup) -> None:
         options = setup.options
         self._connection = options.connection
+        self._is_px4 = setup.kind.guided == px4.OFFBOARD
+        if self._is_px4 and options.reset not in (NONE, RETURN):
+            raise EnvOptionError(
+                f"reset {options.reset!r}: a PX4 at a connection is not rebooted; it is taken over where it flies with "
+                f'reset="{NONE}" or "{RETURN}"'
+            )
         if setup.count > 1 or options.gcs is not None or options.params:
             raise EnvOptionError(
                 f"connection {self._connection!r} leads to one vehicle as it is: no count, gcs or params"
@@ -97,8 +104,12 @@ class SocketVehicles(Vehicles):
         Raises:
             EnvOptionError: the vehicle has none of that name.
         """
-        names = {name: number for number, name in KINDS[setup.airframe.kind].firmware.mode_names.items()}
-        wanted = guard.hand_over or ("BRAKE" if setup.kind.takes_off else "HOLD")
+        if setup.kind.guided == px4.OFFBOARD:
+            names, usual = px4.MODES, "HOLD"
+        else:
+            names = {name: number for number, name in KINDS[setup.airframe.kind].firmware.mode_names.items()}
+            usual = "BRAKE" if setup.kind.takes_off else "HOLD"
+        wanted = guard.hand_over or usual
         if wanted not in names:
             raise unknown("guard: hand_over", wanted, names)
         return names[wanted]
@@ -132,6 +143,7 @@ class SocketVehicles(Vehicles):
                 raise EnvOptionError(str(error)) from None
             link.inbox.scans_used = self.scans_used
             self.links[0] = link
+            self._check_autopilot(link)
         elif self.watch is not None and self.watch.in_charge and link.inbox.mode == self.setup.kind.guided:
             self._stop(link)  # the last set-point would act on, for GUID_TIMEOUT
         if self.options.reset in (NONE, RETURN):
@@ -155,13 +167,26 @@ class SocketVehicles(Vehicles):
             self._sinks_level(link)
         return self.begun(0, origin)
 
+    def _check_autopilot(self, link: Connection) -> None:
+        """Refuse a PX4 where an ArduPilot is expected, and the other way round, before it is told to do anything."""
+        if link.inbox.is_px4 == self._is_px4:
+            return
+        self.close()
+        found, option = ("a PX4", "px4") if link.inbox.is_px4 else ("no PX4", "ardupilot")
+        raise EnvOptionError(
+            f'{self.where}: the vehicle is {found}: autopilot="{option}" (sitl deploy --autopilot {option})'
+        )
+
     def _joined(self, link: Connection, pose: Pose) -> Origin:
         """Take over a vehicle that somebody else has brought up; its place at the first episode is the world's start
         pose. Returns its local origin in the world: north, east, down [m]."""
         kind, inbox, wait = self.setup.kind, link.inbox, self.options.wait
         if self._origin is not None and self.options.reset == RETURN:
             self._go_back(link)
-        join(link, kind.guided, kind.takes_off, wait)
+        if self._is_px4:
+            px4.join(link, wait)
+        else:
+            join(link, kind.guided, kind.takes_off, wait)
         north, east, down = inbox.position[1:4]
         if self._origin is None:
             above = height_above_home(link) if kind.takes_off else 0.0
@@ -213,6 +238,8 @@ class SocketVehicles(Vehicles):
 
     def _sinks_level(self, link: Connection) -> bool:
         """Whether thrust is a climb rate to the vehicle; where it is a thrust, ``sink_level`` would be a fall."""
+        if self._is_px4:
+            return False  # and it lands by asking for speed
         if self._may_sink_level is None:
             name, bit = self.setup.kind.parameters["thrust"]
             self._may_sink_level = not int(link.parameter(name) or 0) & bit
@@ -222,7 +249,7 @@ class SocketVehicles(Vehicles):
         """Whether the vehicle, at this height above the floor [m], is put down from now on instead of flown."""
         link = self.links[0]
         assert link is not None
-        if not self._is_put_down and height < self.lets_down and self._may_sink_level:
+        if not self._is_put_down and height < self.lets_down and (self._may_sink_level or self._is_px4):
             self._is_put_down, self._sank_ms = True, link.inbox.time_ms + _GETS_GOING_MS
             if self.watch is not None:
                 self.watch.note(1e-3 * link.inbox.time_ms, "put down", f"at a height of {height:.2f} m")
@@ -236,7 +263,7 @@ class SocketVehicles(Vehicles):
         inbox = link.inbox
         if inbox.position[6] > _FALLS_SHORT:
             self._sank_ms = max(self._sank_ms, inbox.time_ms)
-        if inbox.time_ms < self._sank_ms + _FALLS_SHORT_MS:
+        if self._is_px4 or inbox.time_ms < self._sank_ms + _FALLS_SHORT_MS:
             self._stop(link, sinking=_SINKING)
         else:
             self.sink_level(link)
@@ -258,14 +285,15 @@ class SocketVehicles(Vehicles):
         inbox = link.inbox
         if not inbox.armed or inbox.mode != self.setup.kind.guided:
             return
-        if self.setup.kind.takes_off and (has_landed(link) or height_above_home(link) < AIRBORNE):
+        if self.setup.kind.takes_off and not self._is_px4 and (has_landed(link) or height_above_home(link) < AIRBORNE):
             self._lift_off(link)
         x, y, z = place = self._first
         mask = PLACE_ONLY | YAWS_IGNORED
-        for _ in range(max(round(self.options.wait), 1)):
+        pauses = _PAUSES if self._is_px4 else 1  # it leaves OFFBOARD without set-points
+        for _ in range(pauses * max(round(self.options.wait), 1)):
             fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
             link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
-            link.pause(1_000_000)
+            link.pause(1_000_000 // pauses)
             away = separation(inbox.position[1:4], place)
             if away < NEAR or not inbox.armed or inbox.mode != self.setup.kind.guided:
                 return
@@ -342,9 +370,12 @@ class SocketVehicles(Vehicles):
         if watch is not None:
             watch.give_up(why)
         if not deed.is_done:
+            stops = "in GUIDED it stops by itself after GUID_TIMEOUT"
+            if self._is_px4:
+                stops = "it leaves OFFBOARD by itself after COM_OF_LOSS_T, for what COM_OBL_RC_ACT says"
             say(
                 f"NOT HANDED OVER: the vehicle at {link.name}: {deed.failure}. Take it over by radio or by a ground "
-                f"station; in GUIDED it stops by itself after GUID_TIMEOUT. It was to be handed over because of: {why}"
+                f"station; {stops}. It was to be handed over because of: {why}"
             )
         if watch is not None:
             now = 1e-3 * link.inbox.time_ms

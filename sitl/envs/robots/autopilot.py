@@ -22,7 +22,7 @@ from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
 from sitl.core.elementary import cos, sin
 from sitl.errors import LinkLostError
-from sitl.foreign.choice import PX4, Choice, choose
+from sitl.foreign.choice import FOREIGN, PX4, Choice, choose
 from sitl.move import Move
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
@@ -41,6 +41,7 @@ from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import GUARDED, Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
 from ..mavlink.reports import LANDED, ON_GROUND, show_report
+from ..mavlink.setpoints import Message
 from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .at_connection import SocketVehicles
 from .boots import check_boots, draw
@@ -111,13 +112,17 @@ class AutopilotRobot:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
         if kind.takes_off and not 0.5 <= chosen.take_off <= 100.0:
             raise EnvOptionError(f"take_off = {chosen.take_off}; it must be 0.5 .. 100 m")
+        runs = chosen.connection != INPROCESS and chosen.autopilot in FOREIGN
         try:
-            choice = choose(chosen.autopilot, airframe.kind, chosen.autopilot_path)
+            choice = None if runs else choose(chosen.autopilot, airframe.kind, chosen.autopilot_path)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
-        if choice is not None and choice.kind == PX4:
+        if (chosen.autopilot if choice is None else choice.kind) == PX4:
             if kind.with_px4 is None:
-                raise EnvOptionError(f"autopilot {choice.name} flies no {airframe.kind} here; {self.name} is one")
+                raise EnvOptionError(
+                    f"autopilot {chosen.autopilot} flies no {airframe.kind} here, and {self.name} is one: leave it "
+                    "out, or take an ArduPilot"
+                )
             self.kind = kind = kind.with_px4
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)
@@ -145,6 +150,8 @@ class AutopilotRobot:
         self.boots = 0 if each_boots else int(chosen.boots)
         """Number of prepared boots of which each episode begins with one; 0: there are none."""
         self._seeds = [0] * count
+        self._sent: list[Message | None] = [None] * count
+        """The last set-point of each episode."""
         self.over = np.zeros(count, np.bool_)
         """Whether an agent is not in charge of its vehicle any more: the episode is truncated."""
         self._commands, self._setpoint = np.zeros((count, 1)), self.setpoints[0]
@@ -221,7 +228,7 @@ class AutopilotRobot:
     def reset(self, index: int, pose: Pose, seed: int) -> None:
         """See ``Robot``."""
         self._unready.add(index)
-        self._seeds[index] = seed
+        self._seeds[index], self._sent[index] = seed, None
         try:
             self._states[index] = self._vehicles.begin(index, pose, seed)
         except LinkLostError:
@@ -330,14 +337,16 @@ class AutopilotRobot:
         if wait_us > 0:
             if not link.is_held:
                 raise EnvOptionError(f"latency: the clock of {self._vehicles.where} cannot be held within a step")
-            link.run(wait_us)
+            self._go_on(index, link, wait_us)
         if wait_us < us:
             if watch is not None:
                 row = watch.limited(setpoint, row, self.pose[index].tolist(), 1e-3 * inbox.time_ms)
-            if not self._puts_down(index, link):
-                kind, payload = self.kind.encode[setpoint.name](row, inbox, now.origin)
-                link.endpoint.send_payload(kind, payload)
-            link.run(us - wait_us)
+            if self._puts_down(index, link):
+                self._sent[index] = None
+            else:
+                self._sent[index] = message = self.kind.encode[setpoint.name](row, inbox, now.origin)
+                link.endpoint.send_payload(*message)
+            self._go_on(index, link, us - wait_us)
         if link.is_exact:
             for _ in range(_TRIES):
                 seen = inbox.scans > scans or not inbox.scans_used
@@ -351,6 +360,15 @@ class AutopilotRobot:
         self._read(index)
         if watch is not None:
             watch.stepped()
+
+    def _go_on(self, index: int, link: Connection, us: int) -> None:
+        """Let time go by within a step; a vehicle that needs its set-point again gets it."""
+        repeat_us, message = self.kind.repeat_us, self._sent[index]
+        while message is not None and 0 < repeat_us < us:
+            link.run(repeat_us)
+            link.endpoint.send_payload(*message)
+            us -= repeat_us
+        link.run(us)
 
     @property
     def watch(self) -> Watch | None:
@@ -381,6 +399,8 @@ class AutopilotRobot:
         if now.setpoint != setpoint:
             if setpoint in self.kind.parameters:
                 set_bit(link, *self.kind.parameters[setpoint], may_change=self._vehicles.simulates)
+            if setpoint in self.kind.before_mode:
+                self.kind.before_mode[setpoint](link)
             set_mode(link, self.kind.modes[setpoint])
         return EpisodeState(None, None, now.origin, now.began_us, setpoint, interval_us)
 

@@ -93,14 +93,22 @@ _ARDUPILOT = RobotKind(
 )
 _PX4 = replace(
     _ARDUPILOT,
-    setpoints=(VELOCITY, POSITION),
+    setpoints=(VELOCITY, RC_OVERRIDE, LOITER_STICKS, POSITION, ACCELERATION, THRUST, RATES),
     parameters={},
     drive=None,
-    modes={"velocity": px4.OFFBOARD, "position": px4.OFFBOARD},
+    modes={
+        "rc": px4.ALTCTL,
+        "loiter": px4.POSCTL,
+        **dict.fromkeys(("velocity", "position", "acceleration", "thrust", "rates"), px4.OFFBOARD),
+    },
     guided=px4.OFFBOARD,
     encode=px4.COPTER,
-    discrete={"velocity": _ARDUPILOT.discrete["velocity"]},
-    continuous={name: _ARDUPILOT.continuous[name] for name in ("velocity", "position")},
+    repeat_us=px4.REPEAT_US,
+    before_mode={
+        "rc": px4.show_sticks,
+        "loiter": px4.show_sticks,
+        **{name: px4.switch(px4.COPTER[name]) for name in ("acceleration", "thrust", "rates")},
+    },
 )
 """A copter that PX4 flies: it has no climb rate in attitude set-points, and takes sticks in modes of its own."""
 

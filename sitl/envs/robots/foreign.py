@@ -14,21 +14,28 @@ from sitl.errors import OptionError
 from sitl.foreign.choice import ARDUPILOT, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
-from sitl.vehicles import Airframe, AirframeError
+from sitl.scenario import Scenario
+from sitl.vehicles import AirframeError
+from sitl.worlds import World
 
+from ..mavlink import px4
 from ..mavlink.foreign import Foreign, launch
 from ..mavlink.preparation import BY_FORCE, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
+from .wind import wind_and_own
 
 _LOG = "LOG_BACKEND_TYPE"
+_NOT_ITS_OWN = ("mocap", "uwb")
+"""Sensor sets that an ArduPilot's own receiver is nothing like."""
 
 
-def unlogged(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
-    """Parameters of an autopilot, with its on-board log off unless they say something of it: nobody would read the
-    logs of episodes, whose folders are deleted, and to write them takes an ArduPilot a part of its time."""
-    return {_LOG: 0.0, **params} if choice.kind == ARDUPILOT else dict(params)
+def of_episodes(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
+    """Parameters of an autopilot in episodes, unless they say something else themselves: an ArduPilot keeps no log,
+    because nobody would read it (its folder is deleted) and to write it takes a part of its time; a PX4 takes sticks
+    from MAVLink."""
+    return {**({_LOG: 0.0} if choice.kind == ARDUPILOT else px4.PARAMETERS), **params}
 
 
 class ForeignVehicles(Vehicles):
@@ -44,6 +51,11 @@ class ForeignVehicles(Vehicles):
         options = setup.options
         if options.connection != INPROCESS:
             raise EnvOptionError(f"{self.where}: it needs no connection besides")
+        if choice.kind == ARDUPILOT and options.sensors in _NOT_ITS_OWN:
+            raise EnvOptionError(
+                f"sensors {options.sensors!r}: {self.where} simulates its receiver itself, without the errors of this "
+                "one; leave sensors out, or set its own SIM_GPS1_ parameters by params"
+            )
         if options.gcs is not None:
             raise EnvOptionError(f"{self.where}: gcs is for our own autopilot in process")
         if choice.program is None and (setup.count > 1 or options.params):
@@ -55,32 +67,41 @@ class ForeignVehicles(Vehicles):
         return f"autopilot {self._choice.name}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        figures, airframe = self.changed[index], self.setup.airframe
+        wind, own = wind_and_own(self.changed[index].items())
         before, self.links[index] = self.links[index], None
-        link = self._booted(before, airframe.changed(**figures) if figures else airframe, pose, seed)
+        start = (*pose[:3], math.degrees(pose[3]))
+        airframe = self.setup.airframe
+        scenario = replace(
+            self.setup.scenario, frame=airframe.changed(**own) if own else airframe, world=self.worlds[index],
+            seed=seed, start=start,
+        )  # fmt: skip
+        link = self._booted(before, scenario, wind)
         self.links[index] = link
         return self.begun(index, self.prepare(link, pose))
 
-    def _booted(self, before: Connection | None, airframe: Airframe, pose: Pose, seed: int) -> Foreign:
+    def enter(self, index: int, world: World) -> None:
+        """See ``Vehicles``: each episode has physics of its own."""
+        self.worlds[index] = world
+
+    def _booted(self, before: Connection | None, scenario: Scenario, wind: Mapping[str, float]) -> Foreign:
         """Boot a foreign autopilot on physics at power-on.
 
         Args:
             before: connection of the last episode; it is closed, or reused when we did not start the program.
-            airframe: airframe with the figures of this episode.
-            pose: start pose x, y, z [m], yaw [rad].
-            seed: seed of the physics' noise.
+            scenario: of this episode, but for its parameters.
+            wind: parameters of this episode's wind, over those of the options. An ArduPilot has them, too, because
+                what it tells of them acts on the physics.
         """
         choice, options = self._choice, self.options
         rebooted = before if isinstance(before, Foreign) and choice.program is None else None
         if before is not None and rebooted is None:
             before.close()
         try:
-            start = (*pose[:3], math.degrees(pose[3]))
             params = files.given(options.params)
-            scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
-            plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
+            plant = stand_alone(replace(scenario, params={**choice.for_physics(params), **wind}))
             if rebooted is None:
-                found = launch(choice, plant, unlogged(choice, params), self.setup.inbox(), options.patience)
+                own = {**params, **wind} if choice.kind == ARDUPILOT else params
+                found = launch(choice, plant, of_episodes(choice, own), self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -22,7 +22,6 @@ from sitl.plants.local import LocalPlant
 from sitl.scenario import Scenario
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
-from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
 from ..mavlink.preparation import INTERVAL_US
@@ -31,18 +30,13 @@ from .boots import SINGLE, booted, draw
 from .moves import BOOT
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
+from .wind import wind_and_own
 
 MAX_ELSEWHERE = 8
 """Vehicles that wait in worlds in which no episode is now."""
 MAX_STATES = 2048
 """Number of start states that are kept, one for each start pose and set of figures: about 40 kB each. Calculating one
 takes about 30 ms."""
-WIND = {
-    "wind_speed": ("SIM_WIND_SPD", Figure("wind_speed", "m/s", "of the steady wind", 0.0, 50.0, 0.0)),
-    "wind_direction": ("SIM_WIND_DIR", Figure("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0)),
-    "wind_turbulence": ("SIM_WIND_TURB", Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0)),
-}
-"""Figure -> parameter of the wind, and the figure's limits. Not every kind of vehicle feels wind."""
 
 
 def check_parameters(simulation: Simulation) -> None:
@@ -74,10 +68,6 @@ class InProcessVehicles(Vehicles):
     def _open(self) -> None:
         """Make the first vehicle: options that cannot be taken are refused here."""
         self._link(0)
-
-    @property
-    def extra_figures(self) -> Mapping[str, Figure]:
-        return {name: figure for name, (_, figure) in WIND.items()} if self.setup.kind.feels_wind else {}
 
     @property
     def where(self) -> str:
@@ -158,8 +148,7 @@ class InProcessVehicles(Vehicles):
         """
         scenario, airframe = booted(self.setup.scenario, self.setup.airframe, boot)
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
-        wind = {WIND[name][0]: value for name, value in figures if name in WIND}
-        own = {name: value for name, value in figures if name not in WIND}
+        wind, own = wind_and_own(figures)
         params = scenario.parameters | wind
         scenario = scenario if world is None else replace(scenario, world=world)
         try:

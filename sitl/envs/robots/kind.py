@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sitl.client.connection import Connection
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
@@ -50,6 +51,10 @@ class RobotKind:
     drive: Callable[[Any, npt.NDArray[np.int64], Floats], None] | None = None
     """Writes the controls of ``actions.MOTORS`` into a fleet's records: ``drive(records, rows, commands)``; None:
     motors cannot be driven directly."""
+    repeat_us: int = 0
+    """Time after which a set-point is sent again within a step; 0: it holds until the next one [us]."""
+    before_mode: Mapping[str, Callable[[Connection], None]] = field(default_factory=dict)
+    """Kind of set-point -> what makes the vehicle ready for its mode."""
     with_px4: RobotKind | None = None
     """The same when PX4 controls it; None: environments do not drive it then."""
 

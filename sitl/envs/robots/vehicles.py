@@ -30,6 +30,7 @@ from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
 from .truth import true_reports, true_states
+from .wind import FIGURES
 
 INPROCESS = "inprocess"
 _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
@@ -76,7 +77,8 @@ class AutopilotOptions:
             ``sitl.simulation.Simulation``).
         autopilot: "native", or a foreign autopilot on our physics, by its program or the address of its MAVLink:
             "ardupilot:PROGRAM", "ardupilot:tcp:HOST:PORT" (``sitl.foreign.choice``). It is started or rebooted for
-            each episode, and has no snapshots.
+            each episode, and has no snapshots. With ``connection``: what runs there, "ardupilot" (as "native") or
+            "px4".
         autopilot_path: path of the program, when ``autopilot`` does not give it.
         reset: what ``reset()`` does to a vehicle that runs elsewhere: "reboot": it is disarmed by force and rebooted,
             if it proves to be a simulator; "force": the same, whatever it is; "none": ``reset()`` waits until it is
@@ -193,7 +195,7 @@ class Vehicles(ABC):
     @property
     def extra_figures(self) -> Mapping[str, Figure]:
         """Figures besides the airframe's that can be changed."""
-        return {}
+        return FIGURES if self.simulates and self.setup.kind.feels_wind else {}
 
     def enter(self, index: int, world: World) -> None:
         """One vehicle's next episode is in this world.

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The wind as figures of a vehicle whose physics is here: they can be changed from episode to episode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sitl.move import WIND
+
+PARAMETERS = {
+    "wind_speed": "SIM_WIND_SPD",
+    "wind_direction": "SIM_WIND_DIR",
+    "wind_turbulence": "SIM_WIND_TURB",
+}
+FIGURES = {figure.name: figure for figure in WIND}
+"""Not every kind of vehicle feels wind."""
+assert FIGURES.keys() == PARAMETERS.keys()
+
+
+def wind_and_own(figures: Iterable[tuple[str, float]]) -> tuple[dict[str, float], dict[str, float]]:
+    """Figures that were changed, apart: the parameters of the wind, and the airframe's own figures."""
+    wind: dict[str, float] = {}
+    own: dict[str, float] = {}
+    for name, value in figures:
+        if name in PARAMETERS:
+            wind[PARAMETERS[name]] = value
+        else:
+            own[name] = value
+    return wind, own
