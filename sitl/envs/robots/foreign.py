@@ -11,7 +11,8 @@ from typing import Any
 from sitl.autopilot.params import files
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
-from sitl.foreign.choice import ARDUPILOT, Choice
+from sitl.foreign.betaflight import configuration
+from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
@@ -76,11 +77,17 @@ class ForeignVehicles(Vehicles):
             before.close()
         try:
             start = (*pose[:3], math.degrees(pose[3]))
-            params = files.given(options.params)
+            params: Mapping[str, float] = {}
+            lines: list[str] = []
+            if choice.kind == BETAFLIGHT:
+                lines, params = configuration.given(options.params)
+            else:
+                params = files.given(options.params)
             scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
             plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
             if rebooted is None:
-                found = launch(choice, plant, unlogged(choice, params), self.setup.inbox(), options.patience)
+                theirs = lines if choice.kind == BETAFLIGHT else unlogged(choice, params)
+                found = launch(choice, plant, theirs, self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from ...autopilot.params.files import Given
 from ...errors import OptionError
 from ...vehicle.sim_parameters import PREFIX
 from ...warp.held_clock import ProgramGone
@@ -68,6 +69,19 @@ def settings(values: Mapping[str, object]) -> list[str]:
     """The lines that set these."""
     return [f"set {name} = {value:g}" if isinstance(value, float) else f"set {name} = {value}"
             for name, value in values.items()]  # fmt: skip
+
+
+def given(params: Given | None) -> tuple[list[str], dict[str, float]]:
+    """The same of what is given in Python: a file, or values by name.
+
+    Raises:
+        OptionError: see ``read``.
+    """
+    if isinstance(params, str | Path):
+        return read([params])
+    values = dict(params or {})
+    acting = {name: float(value) for name, value in values.items() if name.startswith(PREFIX)}
+    return settings({name: value for name, value in values.items() if name not in acting}), acting
 
 
 class CommandLine:
