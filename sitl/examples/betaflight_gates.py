@@ -45,7 +45,9 @@ class Policy:
         wanted[2] = np.clip(1.5 * gate[2], -2.0, 2.0)
         push = np.clip(1.8 * (wanted - velocity), -6.0, 6.0)  # forward, left, up [m/s^2]
         self._hover += 0.0002 * push[2]
-        lean = np.clip(-push[[1, 0]] / GRAVITY, -MOST_LEAN, MOST_LEAN)  # to the left a negative roll, ahead a negative pitch
+        lean = np.clip(
+            -push[[1, 0]] / GRAVITY, -MOST_LEAN, MOST_LEAN
+        )  # to the left a negative roll, ahead a negative pitch
         rates = np.array([*(4.5 * (lean - attitude)), 0.0]) / RATES
         thrust = self._hover * (1.0 + push[2] / GRAVITY) / np.prod(np.cos(attitude))
         return np.clip([*rates, 2.0 * thrust - 1.0], -1.0, 1.0).astype(np.float32)

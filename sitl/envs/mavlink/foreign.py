@@ -344,7 +344,7 @@ def launch(
         undo.callback(plant.close)
         if choice.kind == BETAFLIGHT:
             assert choice.program is not None
-            lines = configuration.settings(params) if isinstance(params, Mapping) else params
+            lines = configuration.given(params)[0] if isinstance(params, Mapping) else params
             pilot = BetaflightHost(plant, starter(choice.program, plant, lines))
             undo.pop_all()
             return Foreign(pilot, plant, choice.name, pilot.program.process, inbox, patience, pilot.face)

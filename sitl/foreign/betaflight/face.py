@@ -6,6 +6,7 @@ It is never forced: it arms when Betaflight does, with the throttle low, and in 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -42,6 +43,11 @@ DEFAULT_US = {
 }  # fmt: skip
 """What is sent before a client asks for something else, and how often [us]."""
 HEARTBEAT = message("HEARTBEAT")
+
+
+def _whole(value: float) -> int:
+    """A parameter that is a whole number; -2, which means nothing, when it is no number."""
+    return int(value) if math.isfinite(value) else -2
 
 
 class Face:
@@ -104,6 +110,7 @@ class Face:
     def hear_status(self, status: Status, now_us: int) -> None:
         """Betaflight has said how it is."""
         self.status = status
+        self.telemetry.may_arm = status.armed or not status.arming
         if status.armed != self._was_armed:
             self._was_armed = status.armed
             if not status.armed and self._pending is None and self.sticks.is_armed:
@@ -155,15 +162,16 @@ class Face:
 
     def _attitude_target(self, m: Any, sender: tuple[int, int]) -> None:
         """Rates of the body and a thrust: in ACRO, whose sticks are rates."""
-        if self.sticks.mode is ACRO and m.type_mask & ATTITUDE_IGNORED:
-            rates = m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate
+        rates = m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate
+        are_numbers = all(map(math.isfinite, (*rates, m.thrust)))
+        if self.sticks.mode is ACRO and m.type_mask & ATTITUDE_IGNORED and are_numbers:
             self.sticks.turn(rates, throttle(m.thrust, self._motors))
 
     def _data_stream(self, m: Any, sender: tuple[int, int]) -> None:
         """All streams at a rate, or none: HEARTBEAT goes on."""
         rate = m.req_message_rate if m.start_stop == 1 else 0
         for name in DEFAULT_US:
-            self._set_interval(message(name).id, SECOND_US // rate if rate > 0 else 0)
+            self._set_interval(message(name).id, max(SECOND_US // rate, SHORTEST_US) if rate > 0 else 0)
 
     def _set_interval(self, number: int, interval_us: int) -> None:
         if interval_us <= 0:
@@ -192,8 +200,8 @@ class Face:
         self._frame(kind, kind.payload(command=command, result=result, target_system=to[0], target_component=to[1]))
 
     def _do_set_mode(self, m: Any) -> int:
-        if int(m.param1) & CUSTOM_MODE_ENABLED:
-            return self._set_mode(int(m.param2))
+        if _whole(m.param1) & CUSTOM_MODE_ENABLED:
+            return self._set_mode(_whole(m.param2))
         self.say(WARNING, "Mode: MAV_MODE_FLAG_CUSTOM_MODE_ENABLED is needed")
         return DENIED
 
@@ -208,17 +216,17 @@ class Face:
         return DENIED
 
     def _message_interval(self, m: Any) -> int:
-        number, interval = int(m.param1), int(m.param2)
-        if number not in self._builders or 0 < interval < SHORTEST_US:
+        number, interval = _whole(m.param1), _whole(m.param2)
+        if number not in self._builders or interval < -1 or 0 < interval < SHORTEST_US:
             return DENIED
         names = {message(name).id: us for name, us in DEFAULT_US.items()}
         self._set_interval(number, names.get(number, 0) if interval == 0 else interval)
         return ACCEPTED
 
     def _request(self, m: Any) -> int:
-        number = int(m.param1)
+        number = _whole(m.param1)
         if number == message("AVAILABLE_MODES").id:
-            return self._send_modes(int(m.param2))
+            return self._send_modes(_whole(m.param2))
         if number not in self._builders:
             return DENIED
         self._send_now(number)
@@ -270,7 +278,7 @@ class Face:
     # ------------------------------------------------------------------ parameters of our physics
 
     def _simulated(self) -> list[str]:
-        return [name for name in self._table if name.startswith(PREFIX)]
+        return [name for name in self._table.names() if name.startswith(PREFIX)]
 
     def _tell(self, name: str, index: int) -> None:
         kind, names = message("PARAM_VALUE"), self._simulated()

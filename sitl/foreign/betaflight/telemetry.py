@@ -18,6 +18,10 @@ ON_GROUND, IN_AIR = 1, 2
 """MAV_LANDED_STATE"""
 _UNKNOWN16, _UNKNOWN8 = 65535, 255
 _CELLS = 10
+_PREARM = 0x10000000
+"""MAV_SYS_STATUS_PREARM_CHECK"""
+_KNOWN = 0x01 | 0x02 | 0x04 | 0x08 | 0x10 | 0x20
+"""Of EKF_STATUS_REPORT: attitude, velocity, place and height are known; this is the true state."""
 
 
 class Telemetry:
@@ -29,7 +33,9 @@ class Telemetry:
     """
 
     def __init__(self, plant: LocalPlant, sticks: Sticks) -> None:
-        self._plant, self._v, self._sticks = plant, plant.vehicle.v, sticks
+        self._v, self._sticks = plant.vehicle.v, sticks
+        self.may_arm = False
+        """Whether Betaflight would arm now."""
         self._full = float(plant.vehicle.airframe.value("battery_capacity"))
         lat, lon, alt = plant.home[:3]
         self._home = round(1e7 * lat), round(1e7 * lon), alt
@@ -49,6 +55,7 @@ class Telemetry:
                 ("RC_CHANNELS", self._channels),
                 ("VFR_HUD", self._hud),
                 ("EXTENDED_SYS_STATE", self._landed),
+                ("EKF_STATUS_REPORT", lambda: message("EKF_STATUS_REPORT").payload(flags=_KNOWN)),
                 ("SYSTEM_TIME", self._time),
                 ("SIMSTATE", self._simstate),
                 ("AUTOPILOT_VERSION", self._version),
@@ -126,6 +133,8 @@ class Telemetry:
     def _status(self) -> bytes:
         sensors, charge = self._v.sensors, float(self._v.physics.battery.charge)
         return message("SYS_STATUS").payload(
+            onboard_control_sensors_present=_PREARM, onboard_control_sensors_enabled=_PREARM,
+            onboard_control_sensors_health=_PREARM if self.may_arm else 0,
             voltage_battery=round(1e3 * float(sensors.battery_voltage)),
             current_battery=round(100.0 * float(sensors.battery_current)), battery_remaining=round(100.0 * charge),
         )  # fmt: skip

@@ -14,6 +14,7 @@ from sitl.errors import OptionError
 from sitl.foreign.betaflight.configuration import CommandLine
 from sitl.foreign.betaflight.program import Program
 from sitl.foreign.betaflight.session import starter
+from sitl.foreign.betaflight.sticks import MODES
 from sitl.foreign.process import AutopilotEndedError, free_tcp_run
 
 ARM, SET_MODE, DENIED = 400, 176, 2
@@ -80,6 +81,28 @@ def test_modes_are_chosen_by_their_numbers_and_others_named(pilot):
     assert copter.texts[-1] == "No mode 9; there are 0 ACRO, 1 ANGLE, 2 HORIZON"
     assert copter.command(512, 435, 0, seconds=0.2) == 0
     assert [mode.mode_name for mode in copter.all("AVAILABLE_MODES")] == [b"ACRO", b"ANGLE", b"HORIZON"]
+
+
+def test_messages_that_make_no_sense_change_nothing(pilot):
+    copter = pilot()
+    copter.go_on(1.0)
+    nan, inf = math.nan, math.inf
+    before = copter.host.face.sticks.pulses()
+    assert copter.command(SET_MODE, nan, inf, seconds=0.1) == DENIED
+    assert copter.command(511, nan, nan, seconds=0.1) == DENIED
+    assert copter.command(511, 30, 1, seconds=0.1) == DENIED
+    assert copter.command(512, inf, seconds=0.1) == DENIED
+    assert copter.command(ARM, nan, seconds=0.1) == 0  # not 1: to be disarmed, as it is
+    copter.host.face.sticks.mode = MODES[0]
+    for value in (nan, inf, -inf):
+        copter.send("SET_ATTITUDE_TARGET", target_system=1, type_mask=128, body_roll_rate=value, thrust=value)
+    copter.send("SET_ATTITUDE_TARGET", target_system=9, type_mask=128, body_roll_rate=1.0, thrust=0.5)
+    copter.send("PARAM_SET", target_system=1, param_id=b"SIM_WIND_SPD", param_value=nan)
+    copter.send("REQUEST_DATA_STREAM", target_system=1, start_stop=1, req_message_rate=65535)
+    copter.host.face.feed(bytes(range(256)))
+    copter.go_on(0.2)
+    assert copter.host.face.sticks.pulses()[:4] == before[:4]
+    assert copter.plant.vehicle.v.physics.wind.speed == 0.0
 
 
 def test_in_acro_it_turns_as_fast_as_it_is_told(pilot):
