@@ -48,6 +48,7 @@ class HeldClock:
 
     def __init__(self, serial_port: int = 0, first_port: tuple[int, int] = (0, 0)) -> None:
         library = lockstep_library()
+        self._patience = 0.0
         self._ours, self._theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.serial, self._their_serial = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
         """What the program's serial port says and hears; it does not block."""
@@ -76,10 +77,14 @@ class HeldClock:
         Raises:
             ProgramGone: there is no program any more.
         """
-        self._ours.settimeout(seconds)
+        if seconds != self._patience:  # the kernel waits: a time-out of Python's would take another call each time
+            self._patience = seconds
+            whole = int(seconds)
+            wait = struct.pack("@ll", whole, int(1e6 * (seconds - whole)))
+            self._ours.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, wait)
         try:
             data = self._ours.recv(_MESSAGE)
-        except TimeoutError:
+        except BlockingIOError:
             return None
         except OSError:
             data = b""

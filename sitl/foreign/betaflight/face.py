@@ -81,7 +81,7 @@ class Face:
             "RC_CHANNELS_OVERRIDE": lambda m, sender: self.sticks.override(m),
             "MANUAL_CONTROL": lambda m, sender: self.sticks.manual(m),
             "SET_ATTITUDE_TARGET": self._attitude_target,
-            "SET_MODE": lambda m, sender: self._set_mode(m.custom_mode),
+            "SET_MODE": self._old_set_mode,
             "REQUEST_DATA_STREAM": self._data_stream,
             "PARAM_REQUEST_READ": self._read_parameter,
             "PARAM_REQUEST_LIST": self._list_parameters,
@@ -214,6 +214,10 @@ class Face:
         known = ", ".join(f"{mode.number} {mode.name}" for mode in MODES)
         self.say(WARNING, f"No mode {number}; there are {known}")
         return DENIED
+
+    def _old_set_mode(self, m: Any, sender: tuple[int, int]) -> None:
+        """SET_MODE, which has no answer."""
+        self._set_mode(m.custom_mode)
 
     def _message_interval(self, m: Any) -> int:
         number, interval = _whole(m.param1), _whole(m.param2)

@@ -55,7 +55,7 @@ class BetaflightHost:
         """The program has just been started."""
         self._answers = msp.Answers()
         self._began_us, self._asked_us = self.time_us, -_POLL_US
-        self._is_granted, self._is_done, self._has_begun = True, False, False
+        self._is_granted, self._is_done, self._has_begun, self._is_asked = True, False, False, False
         self._sent: tuple[int, ...] = ()
 
     def attach(self, plant: LocalPlant) -> None:
@@ -128,7 +128,8 @@ class BetaflightHost:
         self._is_granted = self._is_done = False
         self.plant.tick()
         now_us = self.time_us
-        self._hear(now_us)
+        if self._is_asked:
+            self._hear(now_us)
         self.face.tick(now_us)
 
     def _grant(self) -> None:
@@ -140,7 +141,7 @@ class BetaflightHost:
             datagrams.insert(0, (wire.STICKS, wire.sticks(1e-6 * now_us, pulses)))
             self._sent = pulses
         if now_us - self._asked_us >= _POLL_US:
-            self._asked_us = now_us
+            self._asked_us, self._is_asked = now_us, True
             numbers = (msp.STATUS_EX,) if self.face.sticks.rates is not None else (msp.STATUS_EX, msp.RC_TUNING)
             self.program.say(b"".join(msp.request(number) for number in numbers))
         self._is_granted = True
@@ -162,6 +163,7 @@ class BetaflightHost:
     def _hear(self, now_us: int) -> None:
         for number, payload in self._answers.feed(self.program.hear()):
             if number == msp.STATUS_EX and (status := msp.status(payload)) is not None:
+                self._is_asked = self.face.sticks.rates is None
                 self.face.hear_status(status, now_us)
             elif number == msp.RC_TUNING and (rates := msp.rates(payload)) is not None:
                 self.face.sticks.rates = rates
