@@ -42,7 +42,8 @@ def deflection(rate: float, centre: float, greatest: float, expo: float) -> floa
         return math.copysign(min(wanted / centre, 1.0), rate) if centre > 0.0 else 0.0
     for _ in range(24):  # it rises
         x = 0.5 * (low + high)
-        if x * centre + span * x * (expo * x**5 + (1.0 - expo) * x) < wanted:
+        square = x * x
+        if x * centre + span * x * (expo * square * square * x + (1.0 - expo) * x) < wanted:
             low = x
         else:
             high = x

@@ -12,6 +12,7 @@ from ...core.elementary import hypot
 from ...core.geodesy import add_offset
 from ...physics.native.records import GROUND_AIRBORNE
 from ...plants.local import LocalPlant
+from . import wire
 from .sticks import Sticks
 
 ON_GROUND, IN_AIR = 1, 2
@@ -151,7 +152,8 @@ class Telemetry:
     def _hud(self) -> bytes:
         body = self._v.physics.body
         speed = hypot(float(body.vel[0]), float(body.vel[1]))
-        throttle = round(100.0 * sum(float(x) for x in self._v.actuators.controls[:4]) / 4.0)
+        one, two, three, four = (float(x) for x in self._v.actuators.controls[: wire.MOTORS])
+        throttle = round(25.0 * (one + two + three + four))
         return message("VFR_HUD").payload(
             airspeed=speed, groundspeed=speed, heading=self._heading // 100, throttle=throttle,
             alt=self._home[2] - float(body.pos[2]), climb=-float(body.vel[2]),
