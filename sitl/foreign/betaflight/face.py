@@ -15,10 +15,9 @@ from ...bridge.frame import Splitter, encode_v2
 from ...bridge.services.service import ACCEPTED, DENIED, FAILED, INFO, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
 from ...bridge.services.setpoints import ATTITUDE_IGNORED
 from ...plants.local import LocalPlant
-from ...plants.physics_server import SimulatedPlant
-from ...vehicle.sim_parameters import PREFIX
 from .airframe import throttle
 from .msp import Status
+from .parameters import SimParameters
 from .sticks import ACRO, MODES, Sticks
 from .telemetry import Telemetry
 
@@ -34,8 +33,6 @@ ARM, SET_MODE, INTERVAL, REQUEST = 400, 176, 511, 512
 ARM_US = 500_000
 """Simulated time that Betaflight has to do what the arm switch says [us]."""
 SECOND_US, SHORTEST_US = 1_000_000, 2500
-_REAL_32 = 9
-"""MAV_PARAM_TYPE_REAL32"""
 DEFAULT_US = {
     "ATTITUDE": 100_000, "LOCAL_POSITION_NED": 100_000, "GLOBAL_POSITION_INT": 200_000, "VFR_HUD": 200_000,
     "GPS_RAW_INT": 500_000, "RC_CHANNELS": 500_000, "SERVO_OUTPUT_RAW": 500_000, "SYS_STATUS": SECOND_US,
@@ -64,8 +61,7 @@ class Face:
         """What Betaflight said last."""
         self.send: Callable[[bytes], None] = lambda frame: None
         """Takes each frame for the clients."""
-        self._sim = SimulatedPlant(plant)
-        self._table, self._params = plant.vehicle.kind.firmware.table, plant.vehicle.v.autopilot.params
+        self._parameters = SimParameters(plant, self._frame)
         self._motors = plant.vehicle.v.autopilot.params.MOT
         self._splitter, self._sequence, self._now_us = Splitter(), 0, 0
         self._intervals = {HEARTBEAT.id: SECOND_US} | {message(n).id: us for n, us in DEFAULT_US.items()}
@@ -83,9 +79,9 @@ class Face:
             "SET_ATTITUDE_TARGET": self._attitude_target,
             "SET_MODE": self._old_set_mode,
             "REQUEST_DATA_STREAM": self._data_stream,
-            "PARAM_REQUEST_READ": self._read_parameter,
-            "PARAM_REQUEST_LIST": self._list_parameters,
-            "PARAM_SET": self._set_parameter,
+            "PARAM_REQUEST_READ": lambda m, sender: self._parameters.read(m),
+            "PARAM_REQUEST_LIST": lambda m, sender: self._parameters.list(),
+            "PARAM_SET": lambda m, sender: self._parameters.set(m),
         }
 
     # ------------------------------------------------------------------ time
@@ -278,33 +274,3 @@ class Face:
             self._pending = None
             self.sticks.is_armed = status.armed
             self._refuse(FAILED, status.reasons or "Betaflight does not say why", sender, "Arm" if wanted else "Disarm")
-
-    # ------------------------------------------------------------------ parameters of our physics
-
-    def _simulated(self) -> list[str]:
-        return [name for name in self._table.names() if name.startswith(PREFIX)]
-
-    def _tell(self, name: str, index: int) -> None:
-        kind, names = message("PARAM_VALUE"), self._simulated()
-        payload = kind.payload(
-            param_id=name.encode(), param_value=float(self._params[name]), param_type=_REAL_32,
-            param_count=len(names), param_index=index,
-        )  # fmt: skip
-        self._frame(kind, payload)
-
-    def _read_parameter(self, m: Any, sender: tuple[int, int]) -> None:
-        names = self._simulated()
-        name = m.param_id.decode("ascii", "replace") if m.param_index < 0 else ""
-        if not name and m.param_index < len(names):
-            self._tell(names[m.param_index], m.param_index)
-        elif name in names:
-            self._tell(name, 0xFFFF)
-
-    def _list_parameters(self, m: Any, sender: tuple[int, int]) -> None:
-        for index, name in enumerate(self._simulated()):
-            self._tell(name, index)
-
-    def _set_parameter(self, m: Any, sender: tuple[int, int]) -> None:
-        name = m.param_id.decode("ascii", "replace")
-        if self._sim.set_parameter(name, float(m.param_value)) is not None:
-            self._tell(name, 0xFFFF)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from ...run.runner import Pace
 
 Say = Callable[[str], None]
+_SLICE_US = 20_000
+"""Clients are heard at least so often [us]."""
 LOST_S = 30.0
 """Wall time after which a program that does not answer is lost to a script that waits for it [s]."""
 
@@ -154,6 +156,3 @@ class BetaflightSession:
         self.host.close()
         self._clients.close()
         self.plant.close()
-
-
-_SLICE_US = 20_000
