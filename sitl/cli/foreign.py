@@ -18,7 +18,9 @@ from ..bridge.bridge import EPOCH_US
 from ..bridge.links import Link, TcpServerLink, open_link
 from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
-from ..foreign.choice import ARDUPILOT, FORMS, NATIVE, PX4, Choice
+from ..foreign.betaflight import configuration
+from ..foreign.betaflight.session import BetaflightSession
+from ..foreign.choice import ARDUPILOT, BETAFLIGHT, FORMS, NATIVE, PX4, Choice
 from ..foreign.px4 import STATIONS_PORT, programs_port
 from ..foreign.px4_session import Px4Session
 from ..foreign.session import ArduPilotSession, Session
@@ -88,6 +90,8 @@ def opened(
         print(f"{choice.name} flies {plant.vehicle.airframe.name}; physics: {plant.backend}")
         for link in links:
             print(f"MAVLink on {link.name}")
+        if choice.kind == BETAFLIGHT:
+            print(session.clients)
         print(f"log: {log.path}" if log is not None else f"MAVLink of the autopilot: {session.clients}", flush=True)
         status = PlantStatus(plant, messages, not options.quiet)
         undo.callback(status.close)
@@ -135,10 +139,14 @@ def check(options: argparse.Namespace, choice: Choice) -> None:
 
 def build_plant(options: argparse.Namespace, choice: Choice) -> LocalPlant:
     """Physics and world by the options, and by those of the parameter files that act on them."""
-    values = files.load_all(options.params)
-    for text in files.not_read(values):
-        print(f"sitl: {text}", file=sys.stderr)
-    scenario = scenario_of(options, choice.for_physics(values))
+    if choice.kind == BETAFLIGHT:
+        acting: dict[str, float] = configuration.read(options.params)[1]
+    else:
+        values = files.load_all(options.params)
+        for text in files.not_read(values):
+            print(f"sitl: {text}", file=sys.stderr)
+        acting = choice.for_physics(values)
+    scenario = scenario_of(options, acting)
     with CompileProgress() as progress:
         return stand_alone(scenario, progress=progress)
 
@@ -179,6 +187,11 @@ def build_session(
             choice, plant, links, instance=options.instance, speedup=speedup or FASTEST,
             params=files.load_all(options.params), folder=options.autopilot_dir, say=say, tap=tap,
             is_relayed_by_slice=is_relayed_by_slice,
+        )  # fmt: skip
+    if choice.kind == BETAFLIGHT:
+        return BetaflightSession(
+            choice, plant, links, instance=options.instance, speedup=speedup,
+            lines=configuration.read(options.params)[0], folder=options.autopilot_dir, say=say, tap=tap,
         )  # fmt: skip
     theirs = choice.for_autopilot(files.load_all(options.params))
     return Px4Session(

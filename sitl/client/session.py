@@ -51,6 +51,9 @@ TEXTS_SHOWN = 8
 _OURS, _PX4S = "EKF_STATUS_REPORT", "ESTIMATOR_STATUS"
 """Which of its estimates are good, by ArduPilot and by PX4."""
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
+_REQUEST, _MODES = command_number("REQUEST_MESSAGE"), message("AVAILABLE_MODES")
+GENERIC = 0
+"""MAV_AUTOPILOT of a firmware that MAVLink has no number for, such as Betaflight."""
 Repeated = tuple[str, dict[str, Any]]
 """A message that is sent again and again: its name, its fields."""
 
@@ -252,10 +255,16 @@ class Session:
         if name == "COMMAND_ACK" and fields.command == _SET_INTERVAL:
             self._unanswered = max(self._unanswered - 1, 0)
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
-            self.telemetry.mode_names = px4.MODE_NAMES if self.telemetry.is_px4 else mode_names(fields.type)
+            if fields.autopilot == GENERIC:  # its modes are its own: it is asked for their names
+                self.connection.endpoint.command(_REQUEST, _MODES.id, target=self.connection.system)
+            else:
+                self.telemetry.mode_names = px4.MODE_NAMES if self.telemetry.is_px4 else mode_names(fields.type)
             if self.telemetry.is_px4 and self._rates.pop(_OURS, None) is not None:
                 self._rates[_PX4S] = RATES_HZ[_OURS]
                 self.set_rate(_PX4S, RATES_HZ[_OURS])
+        elif name == _MODES.name and fields.custom_mode not in self.telemetry.mode_names:
+            known = self.telemetry.mode_names
+            self.telemetry.mode_names = {**known, fields.custom_mode: fields.mode_name.decode("ascii", "replace")}
         self._awaited.discard(name)
         for companion in self.companions:
             companion.take(name, fields)

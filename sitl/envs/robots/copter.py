@@ -16,7 +16,7 @@ from sitl.core.constants import TICK_S
 from sitl.physics.native.copter.state import ALL_DRIVEN
 
 from ..actions import ACCELERATION, ATTITUDE, LOITER_STICKS, MOTORS, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
-from ..mavlink import px4, setpoints
+from ..mavlink import betaflight, px4, setpoints
 from .kind import FAR, RobotKind, pulses
 from .robot import Floats
 
@@ -112,4 +112,23 @@ _PX4 = replace(
 )
 """A copter that PX4 flies: it has no climb rate in attitude set-points, and takes sticks in modes of its own."""
 
-ROBOT = replace(_ARDUPILOT, with_px4=_PX4)
+_BETAFLIGHT = replace(
+    _ARDUPILOT,
+    setpoints=(RATES, RC_OVERRIDE),
+    parameters={},
+    drive=None,
+    modes={"rates": betaflight.ACRO, "rc": betaflight.ANGLE},
+    guided=betaflight.ACRO,
+    prepares=betaflight.prepare,
+    encode=betaflight.SETPOINTS,
+    discrete={},
+    continuous={
+        "rates": _ARDUPILOT.continuous["rates"],
+        "rc": ((1300.0, 1300.0, 1000.0, 1300.0), (1700.0, 1700.0, 2000.0, 1700.0), (0, 1, 2, 3)),
+    },
+    agile={"rates": _ARDUPILOT.agile["rates"], "rc": (4 * (1000.0,), 4 * (2000.0,), (0, 1, 2, 3))},
+)
+"""A copter that Betaflight flies: rates in ACRO, sticks in ANGLE, whose throttle is a thrust. Nothing holds its height
+but the agent."""
+
+ROBOT = replace(_ARDUPILOT, with_px4=_PX4, with_betaflight=_BETAFLIGHT)

@@ -11,7 +11,8 @@ from typing import Any
 from sitl.autopilot.params import files
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
-from sitl.foreign.choice import ARDUPILOT, Choice
+from sitl.foreign.betaflight import configuration
+from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
 from sitl.scenario import Scenario
@@ -97,11 +98,17 @@ class ForeignVehicles(Vehicles):
         if before is not None and rebooted is None:
             before.close()
         try:
-            params = files.given(options.params)
+            params: Mapping[str, float] = {}
+            lines: list[str] = []
+            if choice.kind == BETAFLIGHT:
+                lines, params = configuration.given(options.params)
+            else:
+                params = files.given(options.params)
             plant = stand_alone(replace(scenario, params={**choice.for_physics(params), **wind}))
             if rebooted is None:
                 own = {**params, **wind} if choice.kind == ARDUPILOT else params
-                found = launch(choice, plant, of_episodes(choice, own), self.setup.inbox(), options.patience)
+                theirs = lines if choice.kind == BETAFLIGHT else of_episodes(choice, own)
+                found = launch(choice, plant, theirs, self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:

@@ -57,6 +57,10 @@ class RobotKind:
     """Kind of set-point -> what makes the vehicle ready for its mode."""
     with_px4: RobotKind | None = None
     """The same when PX4 controls it; None: environments do not drive it then."""
+    with_betaflight: RobotKind | None = None
+    """The same when Betaflight does."""
+    prepares: Callable[[Connection, float], None] | None = None
+    """Brings a vehicle from power-on to a height [m] in a way of its own; None: as ``guided`` says."""
 
     def are_alike(self, one: str, other: str) -> bool:
         """Whether a vehicle that is ready for one kind of set-point takes the other one, too, as it is."""

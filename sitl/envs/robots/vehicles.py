@@ -321,7 +321,9 @@ class Vehicles(ABC):
         def hold_sticks() -> None:
             link.endpoint.send_payload(*setpoints.override(_AT_REST, inbox, ()))
 
-        if kind.guided == px4.OFFBOARD:
+        if kind.prepares is not None:
+            kind.prepares(link, take_off)
+        elif kind.guided == px4.OFFBOARD:
             px4.prepare(link, take_off)
         else:
             prepare(link, kind.guided, take_off, hold_sticks)

@@ -33,7 +33,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         ("log-dir", "DIR", "where logs of failing tests are kept (default: in pytest's cache)"),
         ("seed", "N", "seed of sensor noise, unless a test says another (default 0)"),
         ("physics", "NAME", "native, pybullet, jsbsim, ..., unless a test says another (default native)"),
-        ("autopilot", "NAME[:PROGRAM]", "native, or ardupilot:PROGRAM, unless a test says another (default native)"),
+        (
+            "autopilot",
+            "NAME[:PROGRAM]",
+            "native, ardupilot:PROGRAM or betaflight, unless a test says so (default native)",
+        ),
         ("params", "FILE", "file of parameters of all vehicles (.parm, .param, .params)"),
     ):
         group.addoption(f"--sitl-{name}", metavar=metavar, help=text)
