@@ -192,7 +192,7 @@ class FreeWays:
 
     def lengths(self, pose: Floats) -> Floats:
         """Length of each robot's way from a pose (x, y, ...) [m], shape (count,); the array is used again."""
-        _read(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
+        _read.unchecked()(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
         return self._out
 
 
