@@ -232,11 +232,14 @@ class Continuous:
         """The action as a row, if it is in the space."""
         try:
             numbers = np.asarray(action, np.float32).tolist()
-            if len(numbers) == len(self._low) and all(a <= x <= b for a, x, b in zip(self._low, numbers, self._high)):
-                return numbers
+            if len(numbers) != len(self._low):
+                return None
+            for a, x, b in zip(self._low, numbers, self._high):
+                if not a <= x <= b:
+                    return None
         except (TypeError, ValueError):
-            pass
-        return None
+            return None
+        return numbers
 
     def clip(self, action: Any) -> Any:
         """As ``check``, but finite numbers outside of their limits become the limits."""

@@ -84,15 +84,15 @@ def march(free: IntTable, row: float, column: float, keys: Line, items: IntLine,
                 out[i, j] = math.sqrt((i - row) * (i - row) + (j - column) * (j - column))
                 count = push(keys, items, count, out[i, j], i * columns + j)
     while count > 0:
-        key, item = keys[0], items[0]
+        key, row_now, column_now = keys[0], items[0] // columns, items[0] % columns
         count = pop(keys, items, count)
-        if key > out[item // columns, item % columns]:
+        if key > out[row_now, column_now]:
             continue
         for side in range(4):
-            i = item // columns + (1 if side == 0 else -1 if side == 1 else 0)
-            j = item % columns + (1 if side == 2 else -1 if side == 3 else 0)
-            if i < 0 or j < 0 or i >= rows or j >= columns or free[i, j] == 0:
-                continue
+            i = row_now + (1 if side == 0 else -1 if side == 1 else 0)
+            j = column_now + (1 if side == 2 else -1 if side == 3 else 0)
+            if i < 0 or j < 0 or i >= rows or j >= columns or free[i, j] == 0 or out[i, j] <= key:
+                continue  # no way there, or as short as one over this cell can be
             a = min(out[i - 1, j] if i > 0 else math.inf, out[i + 1, j] if i + 1 < rows else math.inf)
             b = min(out[i, j - 1] if j > 0 else math.inf, out[i, j + 1] if j + 1 < columns else math.inf)
             there = reach(a, b)
@@ -192,7 +192,7 @@ class FreeWays:
 
     def lengths(self, pose: Floats) -> Floats:
         """Length of each robot's way from a pose (x, y, ...) [m], shape (count,); the array is used again."""
-        _read(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
+        _read.unchecked()(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
         return self._out
 
 

@@ -56,6 +56,7 @@ class Judge:
         """Whether somebody says when robots move."""
         self._stays = arrays_stay(robot)
         self._is_true = self.by == TRUTH
+        self._error = np.zeros((robot.count, 4))
 
     def moved(self) -> None:
         """Robots have moved: what was known of them is old."""
@@ -93,10 +94,10 @@ class Judge:
         return out
 
     def error(self) -> Floats:
-        """Estimate minus truth: x, y, z [m], yaw [rad] within -pi .. pi, shape (count, 4); where ``knows_truth``."""
-        pose, out = np.ascontiguousarray(self._robot.pose), np.empty((self._robot.count, 4))
-        _errors.unchecked()(pose, self.true_table(), out)
-        return out
+        """Estimate minus truth: x, y, z [m], yaw [rad] within -pi .. pi, shape (count, 4); where ``knows_truth``.
+        The array is used again."""
+        _errors.unchecked()(np.ascontiguousarray(self._robot.pose), self.true_table(), self._error)
+        return self._error
 
     def __getstate__(self) -> dict[str, Any]:
         return {**vars(self), "_state": None}

@@ -67,6 +67,9 @@ class Navigate(gym.Env[Any, Any]):
         self._observe, self._info = session.observation.observe, session.info
         told = session.faults is not None or session.details or session.costs
         self._plain_info = type(session.task).info is Task.info and not told
+        self._infos_stay = session.infos_stay()
+        self._takes: list[tuple[str, Callable[[], Any]]] | None = None
+        """Entries of ``info`` and what gives them, where the arrays that they are taken from stay; None: not yet."""
         self._over = getattr(session.robot, "over", None)
         self._is_dict = isinstance(self.observation_space, gym.spaces.Dict)
 
@@ -172,9 +175,15 @@ class Navigate(gym.Env[Any, Any]):
         terminated = bool(session.terminated[0])
         if self._plain_info:
             info: dict[str, Any] = {"crashed": terminated}
+        elif self._takes is not None:
+            session.write_details()
+            info = {name: take() for name, take in self._takes}
         else:
             rows = self._info().items()
-            info = {name: value.item(0) if value.ndim == 1 else value[0].copy() for name, value in rows}
+            takes = [(name, value.item if value.ndim == 1 else value[0].copy) for name, value in rows]
+            info = {name: take() for name, take in takes}
+            if self._infos_stay:
+                self._takes = takes
         if session.varies:
             info["world"] = session.world_names[0]
         truncated = self._over is not None and bool(self._over[0])
@@ -247,7 +256,7 @@ class Navigate(gym.Env[Any, Any]):
             self._session.robot.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        bound = ("_check", "_actions", "_advance", "_observe", "_info", "_over")
+        bound = ("_check", "_actions", "_advance", "_observe", "_info", "_over", "_takes")
         return {**{name: value for name, value in vars(self).items() if name not in bound}, "_watcher": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -23,6 +23,7 @@ from .actions import SETPOINTS, Action, Discrete
 from .arena import normalised
 from .costs import Costs
 from .faults import EpisodeFaults, Faults
+from .gathering import stands_for
 from .judge import TRUTH, Judge
 from .latency import LATENCY, Latency
 from .latency import Memory as Late
@@ -34,7 +35,7 @@ from .pieces import observation_of
 from .randomisation import Randomisation, Randomise, ranges_of
 from .rewards import ByAction, Step
 from .robots.robot import AskedRobot, LateRobot, PreparedRobot, Robot, TravellingRobot, world_of
-from .senses import reads_scan
+from .senses import arrays_stay, reads_scan
 from .starts import StartOption, Starts
 from .tasks import TASKS, Task
 from .worlds import PerWorld, WorldDraw, WorldOption, key_of, load_world
@@ -214,6 +215,7 @@ class Session:
         """Says where robots are for the task; ``judge.by`` is "truth" or "estimate"."""
         self.step = Step(self.robot, self.seconds, self.judge)
         self.step.actions, self.step.commands, self.step.crashed = self.actions, self.commands, self.terminated
+        self._touched = np.zeros(count, np.bool_)
         self._crash_paid = np.zeros(count)
         """What crashes were worth in the last step."""
         self.details = _checked_details(options.info)
@@ -413,10 +415,30 @@ class Session:
         robot. The arrays are written anew by the next step."""
         found = self.task.info(self.step)
         if self.details:
+            self.write_details()
             found |= self._told_in_detail()
         if self.costs:
             found |= self.costs.of(self.step)
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
+
+    def infos_stay(self) -> bool:
+        """Whether ``info`` returns the same arrays in each step, and ``write_details`` alone brings them up to date."""
+        if not stands_for(self.task, "info_stays", "info") or self.task.terms or self.costs or self.faults is not None:
+            return False
+        return self.task.info_stays and arrays_stay(self.robot)
+
+    def write_details(self) -> None:
+        """Bring the arrays up to date that ``details`` names and nothing else writes."""
+        details, judge = self.details, self.judge
+        if "rewards" in details:
+            _tell.unchecked()(np.ascontiguousarray(self.step.crashed), self.rewards, self._crash_paid)
+        if judge.knows_truth:
+            if "true_pose" in details:
+                judge.state()
+            if "estimate_error" in details:
+                judge.error()
+        if "events" in details:
+            np.not_equal(self.robot.collided, 0, self._touched)
 
     def _told_in_detail(self) -> dict[str, npt.NDArray[Any]]:
         """What ``details`` names."""
@@ -428,14 +450,13 @@ class Session:
             for name, line in self.task.paid.items() if isinstance(self.task, Task) else ():
                 found[f"reward_{name}"] = line
             found["reward_crash"] = self._crash_paid
-            _tell.unchecked()(np.ascontiguousarray(crashed), self.rewards, self._crash_paid)
         if self.judge.knows_truth:
             if "true_pose" in self.details:
                 found["true_pose"] = self.judge.state()[:, :4]
             if "estimate_error" in self.details:
                 found["estimate_error"] = self.judge.error()
         if "events" in self.details:
-            found["touched"], found["outside"] = self.robot.collided != 0, step.outside
+            found["touched"], found["outside"] = self._touched, step.outside
         return found
 
     def abandon(self, error: BaseException) -> None:

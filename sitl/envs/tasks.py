@@ -138,6 +138,9 @@ class Task:
         assert self.judge_of is not None
         return self.judge_of.pose
 
+    info_stays = False
+    """Whether ``info`` of the same class returns the same arrays in each step, rewritten in place."""
+
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """Entries of ``info`` for the step: arrays with a row a robot, which are copied before the next step."""
         return {"crashed": step.crashed}

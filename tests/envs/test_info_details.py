@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import pickle
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
 from sitl.envs import EnvOptionError, ids
 from sitl.envs.rewards import EachStep, Forward
+from sitl.envs.targets.waypoints import Waypoints
 from sitl.envs.tasks import ReachGoal, Task
 from tests.envs.vector_equality import same
 
@@ -105,3 +108,28 @@ def test_it_is_not_told_unless_asked_for_and_names_are_checked():
         EnvOptionError, match="info 'reward' is not known; it is one of rewards, true_pose, estimate_error, events"
     ):
         gym.make("GazeboMazeTurtlebotLIDAR-v0", info=["reward"])
+
+
+class _Counting(Waypoints):
+    """A user's task: its info is another array in each step."""
+
+    def info(self, step):
+        return {**super().info(step), "steps": np.rint(step.robot.time / step.seconds)}
+
+
+def test_infos_of_tasks_with_an_info_of_their_own_are_those_of_each_step():
+    env = gym.make("sitl/CopterWaypoint-v1", task=_Counting(1))
+    env.reset(seed=0)
+    assert [env.step(np.zeros(4))[4]["steps"] for _ in range(3)] == [1.0, 2.0, 3.0]
+
+
+def test_infos_are_the_readers_own_and_follow_a_copy():
+    env = gym.make("sitl/CopterWaypoint-v1").unwrapped
+    env.reset(seed=0)
+    first, second = (env.step(np.ones(4))[4] for _ in range(2))
+    assert first["true_pose"].tolist() != second["true_pose"].tolist()
+    copy = pickle.loads(pickle.dumps(env))
+    mine, its = (each.step(np.ones(4))[4] for each in (env, copy))
+    assert {name: np.asarray(value).tolist() for name, value in mine.items()} == {
+        name: np.asarray(value).tolist() for name, value in its.items()
+    }

@@ -66,7 +66,7 @@ from .boots import draw
 from .in_process import MAX_STATES, InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
-from .truth import true_reports, true_states
+from .truth import true_reports, truth_writer
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 SORTS: dict[Encode, int] = {
@@ -156,7 +156,7 @@ class FleetVehicles(InProcessVehicles):
         self._show = show_all.bind(ends, coming, ports, origins, along, arrays)
         self._ranges = fleet.records["sensors"]["lidar_ranges"]
         self._physics = fleet.records["physics"]
-        self._bodies = self._physics["body"]
+        self._write_truth = truth_writer(self._physics["body"])
 
     # ------------------------------------------------------------------ episodes
 
@@ -351,7 +351,7 @@ class FleetVehicles(InProcessVehicles):
         return self.fleet.view(index)
 
     def true_states(self, ahead: float, out: Floats) -> None:
-        true_states(self._bodies, ahead, out)
+        self._write_truth(ahead, out)
         if self._floors is not None:
             out[:, 2] += self._floors  # bodies count from the floor
 

@@ -285,6 +285,8 @@ class Gates(PlacesTask):
         """See ``PlacesTask``."""
         return "progress", "gates", "time"
 
+    info_stays = True
+
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
         laps = {"lap_time": self._lap[:, 1], "best_lap": self._lap[:, 2]}

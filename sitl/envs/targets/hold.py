@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -48,6 +49,26 @@ def sparse_worths(distances: Line, radius: float, far: float, out: Line) -> None
     """Write ``sparse_worth`` of many distances."""
     for i in range(out.shape[0]):
         out[i] = sparse_worth(distances[i], radius, far)
+
+
+@law
+def goal_worths(
+    achieved: Table, desired: Table, errors: Table, axes: Line, radius: float, far: float, out: Line
+) -> None:
+    """Write ``sparse_worth`` of many goals, as ``Hold.compute_reward`` has it, to the last bit.
+
+    Args:
+        achieved, desired: x, y, z [m] and more, shape (count, 3 or more).
+        errors: of what is achieved, likewise.
+        axes: what x, y, z count in distances, shape (3,).
+        radius, far: see ``sparse_worth``.
+        out: shape (count,).
+    """
+    for i in range(out.shape[0]):
+        x = (achieved[i, 0] - desired[i, 0] - errors[i, 0]) * axes[0]
+        y = (achieved[i, 1] - desired[i, 1] - errors[i, 1]) * axes[1]
+        z = (achieved[i, 2] - desired[i, 2] - errors[i, 2]) * axes[2]
+        out[i] = sparse_worth(math.sqrt(x * x + y * y + z * z), radius, far)
 
 
 @law
@@ -98,7 +119,7 @@ def mean_square(rows: Table, i: int) -> float:
     return total / n
 
 
-_judge, _worths = Kernel(judge_hold), Kernel(sparse_worths)
+_judge, _worths, _goals = Kernel(judge_hold), Kernel(sparse_worths), Kernel(goal_worths)
 _NONE = np.zeros((1, 1))
 """In place of actions without numbers."""
 
@@ -156,6 +177,8 @@ class Hold(PlacesTask):
         super().prepare(robot)
         self.since = np.zeros(robot.count)
         """How long each robot has been at its place [s], shape (count,)."""
+        self._none = np.zeros((robot.count, 4))
+        """Errors of an estimate that counts as it is [m], shape (count, 4)."""
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
@@ -174,21 +197,20 @@ class Hold(PlacesTask):
             float(self.effort * step.seconds) if actions is not _NONE else 0.0, self.is_sparse, step.seconds,
         )  # fmt: skip
         if self.is_sparse:
-            self._paid[0] = self._goal_rewards()
+            self._pay_goals()
         _judge.unchecked()(
             rule, self._table, self._spots, self.axes, actions, self.since, self._outcome(rewards, terminated)
         )  # fmt: skip
 
-    def _goal_rewards(self) -> Floats:
-        """What goals pay now. Those of rewards that tell distances are as an agent observes them, in float32: so a
-        library gets the same reward from them, to the last bit."""
+    def _pay_goals(self) -> None:
+        """Write what goals pay now. Those of rewards that tell distances are as an agent observes them, in float32: so
+        a library gets the same reward from them, to the last bit."""
         goals = self.achieved(), self.targets
-        errors = None
-        if self.judge_of is not None and self.judge_of.by == TRUTH:
-            errors = {"estimate_error": self.judge_of.error()}
         if self.far:
-            goals = goals[0].astype(np.float32), goals[1].astype(np.float32)
-        return self.compute_reward(*goals, errors)
+            goals = goals[0].astype(np.float32).astype(np.float64), goals[1].astype(np.float32).astype(np.float64)
+        errors = self._none if self.judge_of is None or self.judge_of.by != TRUTH else self.judge_of.error()
+        achieved, desired = map(np.ascontiguousarray, goals)
+        _goals.unchecked()(achieved, desired, errors, self.axes, float(self.radius), float(self.far), self._paid[0])
 
     def paid_names(self) -> tuple[str, ...]:
         """See ``PlacesTask``."""

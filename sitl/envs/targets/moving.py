@@ -226,6 +226,8 @@ class MovingTask(PlacesTask):
         """See ``PlacesTask``."""
         return ("nearness", "lost") if self.lost_reward else ("nearness",)
 
+    info_stays = True
+
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
         return {**super().info(step), "error": self.errors}

@@ -385,6 +385,9 @@ class PlacesTask(Task):
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         """Add to the rewards, and mark episodes that the task ends, in place."""
 
+    info_stays = True
+    """See ``Task``."""
+
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
         return {"crashed": step.crashed, "is_success": step.reached}

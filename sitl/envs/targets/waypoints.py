@@ -206,6 +206,8 @@ class Waypoints(PlacesTask):
         """How much nearer each robot has come to its place [m], shape (count,)."""
         return self._gain
 
+    info_stays = True
+
     def info(self, step: Step) -> dict[str, npt.NDArray[Any]]:
         """See ``Task``."""
         return {**super().info(step), "passed": self.at}
