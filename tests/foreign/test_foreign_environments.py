@@ -224,7 +224,7 @@ def test_the_port_of_the_physics_follows_the_instance(connection, port):
     ("options", "why"),
     [
         ({"autopilot": "ardupilot:/nowhere"}, "is not there"),
-        ({"autopilot": "betaflight"}, "none of"),
+        ({"autopilot": "paparazzi"}, "none of"),
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "count": 2}, "one vehicle"),
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "connection": "tcp:127.0.0.1:5760"}, "no connection"),
         ({"autopilot": "ardupilot:tcp:127.0.0.1:5760", "gcs": "udp:127.0.0.1:14550"}, "gcs"),

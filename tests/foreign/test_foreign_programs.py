@@ -207,7 +207,7 @@ def test_one_that_runs_already_by_its_connection():
     assert choose("px4:udp:127.0.0.1:14540", "copter").connection == "udp:127.0.0.1:14540"
 
 
-@pytest.mark.parametrize("text", ["", "betaflight", "native:/bin/true", "Ardupilot:", None, 7])
+@pytest.mark.parametrize("text", ["", "paparazzi", "native:/bin/true", "Ardupilot:", None, 7])
 def test_other_texts_are_refused_with_the_forms(text):
     with pytest.raises(OptionError, match='"ardupilot:PROGRAM"'):
         choose(text, "copter")
