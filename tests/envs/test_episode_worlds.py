@@ -443,9 +443,10 @@ def test_tasks_among_solids_are_in_many_worlds_and_their_first_versions_in_one(n
 
 def test_what_belongs_to_one_world_is_in_that_of_the_first_version():
     one = PRESETS["rover-parking"]()["world"]
-    there = {"connection": "udp:127.0.0.1:14551"}, {"autopilot": "ardupilot:x"}, {"gcs": "udpout:127.0.0.1:1"}
+    there = {"connection": "udp:127.0.0.1:14551"}, {"gcs": "udpout:127.0.0.1:1"}
     for given in (*there, {"task": Waypoints(places=[(1.0, 2.0, 0.0)])}, {"robot": lambda world, count: None}):
         assert options_of("rover-parking-v1", given)["world"] == one, given
         assert options_of("rover-parking-v1", {**given, "world": "maze"})["world"] == "maze"
-    for given in ({}, {"connection": "inprocess", "autopilot": "native", "gcs": None}, {"task": Among()}):
+    here = {"connection": "inprocess", "autopilot": "native", "gcs": None}
+    for given in ({}, here, {"autopilot": "ardupilot:x"}, {"task": Among()}):
         assert options_of("rover-parking-v1", given)["world"] == TRAINING["rover-parking"]

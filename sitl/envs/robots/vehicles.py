@@ -205,7 +205,7 @@ class Vehicles(ABC):
         """
         raise EnvOptionError(
             f"world {world.name!r}: a vehicle of {self.where} stays in the world {self.setup.world.name!r} that it was "
-            "made in; only vehicles in process change worlds between episodes"
+            "made in; only vehicles whose physics is in this process change worlds between episodes"
         )
 
     @property
