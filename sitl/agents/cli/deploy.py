@@ -7,7 +7,7 @@ import argparse
 from dataclasses import fields
 
 from sitl.envs.mavlink.guard import NOT_HANDED_OVER, Guard
-from sitl.foreign.choice import ARDUPILOT, FOREIGN
+from sitl.foreign.choice import ARDUPILOT, PX4
 
 from .. import baselines, learnt
 from ..deploy import REPLACED, Deployed, deploy, options_of
@@ -35,7 +35,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="address of the vehicle: udp:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, serial:DEVICE:BAUD",
     )  # fmt: skip
     parser.add_argument(
-        "--autopilot", choices=FOREIGN, default=ARDUPILOT,
+        "--autopilot", choices=(ARDUPILOT, PX4), default=ARDUPILOT,
         help="autopilot of the vehicle (default ardupilot, as of gym-sitl itself). A PX4 is taken over in Hold, into "
         "OFFBOARD",
     )  # fmt: skip
