@@ -20,7 +20,7 @@ from ..run.pacing import Pacing
 from ..run.runner import Pace
 from . import ardupilot, px4
 from .choice import Choice
-from .json_host import JsonHost
+from .json_host import ANSWERS, JsonHost
 from .process import HOST, AutopilotProcess, free_tcp_run
 from .relay import Relay
 from .wind import Wind
@@ -162,7 +162,7 @@ class ArduPilotSession:
                     silence.is_over()
                 if self.time_us >= goal:
                     break
-                host.step(goal - host.before_boot_us)
+                host.step(goal - host.before_boot_us, ANSWERS)
             relay.turn(0.0)
             self._wind.blow()
             on_slice()

@@ -22,7 +22,7 @@ from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.choice import PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
-from sitl.foreign.json_host import JsonHost
+from sitl.foreign.json_host import ANSWERS, JsonHost
 from sitl.foreign.one_core import OneCore
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 from sitl.plants.json_link import PORT
@@ -40,8 +40,6 @@ _ANSWER_US = 3_000_000
 _START_S = 60.0
 """Wall time that a program which was started has until its MAVLink is there [s]."""
 _HEARTBEAT_US = 30_000_000
-_TURNS = 16
-"""Answers of the physics between two looks at MAVLink: the autopilot stands still when nobody reads."""
 
 
 class Host(Protocol):
@@ -57,8 +55,8 @@ class Host(Protocol):
     def listen(self) -> bool:
         """Wait a moment until the autopilot asks for a step; whether it does."""
 
-    def step(self, until_us: int | None = None) -> None:
-        """Give it the step, no further than ``until_us``."""
+    def step(self, until_us: int | None = None, answers: int = 1) -> None:
+        """Give it the step, and up to so many in all, no further than ``until_us``."""
 
     def attach(self, plant: LocalPlant) -> None:
         """Serve this plant from now on."""
@@ -227,14 +225,11 @@ class Foreign(Connection):
         host, goal, boots = self.host, self.host.time_us + us, self.host.boots
         if self.stream is not None:
             self.stream.flush()
-        turns = 0
         with self._one_core:
             while host.time_us < goal and host.boots == boots:
                 self._await()
-                host.step(goal)
-                turns += 1
-                if turns % _TURNS == 0:
-                    self._hear()
+                host.step(goal, ANSWERS)
+                self._hear()
             if us > 0:
                 self._await()
         self._hear()
