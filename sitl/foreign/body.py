@@ -42,8 +42,8 @@ _RECEIVE, _SEND = (
 _FAR_US = 1 << 62
 
 
-class BodyLines:
-    """Steps one vehicle and tells of it in JSON lines.
+class BodyLines(Sequence[bytes]):
+    """Steps one vehicle and tells of it in JSON lines; as a sequence, the lines of the last step.
 
     Args:
         plant: its physics.
@@ -87,6 +87,7 @@ class BodyLines:
             x.list_near = unit_address(list_near, kind)
         self._names: Array = np.zeros((DATAGRAMS, NAME_SIZE), "u1")
         self._frames: Array = np.zeros((DATAGRAMS, LINE_SIZE), "u1")
+        self._named: tuple[str, int] | None = None
         self._peer: Array = np.zeros(NAME_SIZE, "u1")
         read, self._inbox, outbox = np.zeros((DATAGRAMS, 2), "i8"), np.zeros((DATAGRAMS, MMSGHDR), "i8"), np.zeros((MOST_LINES, MMSGHDR), "i8")
         read[:, 0], read[:, 1] = self._frames.ctypes.data + LINE_SIZE * np.arange(DATAGRAMS), LINE_SIZE
@@ -125,17 +126,24 @@ class BodyLines:
             plant.tick()
         x.left, x.stage = 0, WAITS
         self._act(self._address, TELL)
-        return self.lines()
+        return list(self)
 
-    def lines(self) -> list[bytes]:
-        """The last answers."""
-        return [self._text[k, : self._vectors[k, 1]].tobytes() for k in range(int(self.exchange.parts))]
+    def __len__(self) -> int:
+        return int(self.exchange.parts)
+
+    def __getitem__(self, number: Any) -> Any:
+        if isinstance(number, slice):
+            return [self[k] for k in range(len(self))[number]]
+        return self._text[number, : self._vectors[number, 1]].tobytes()
 
     def converse(self, sock: socket.socket, peer: tuple[str, int], until_us: int | None, answers: int) -> int:
         """The step that is asked for, and those that follow; returns how it ended (``exchange.IS_ASKED``)."""
         x, plant = self.exchange, self.plant
-        self._peer[:8] = np.frombuffer(_name(peer), "u1")
-        x.peer, x.socket, x.answers = self._peer[:8].view("i8")[0], sock.fileno(), answers
+        if peer != self._named:
+            self._named, name = peer, _name(peer)
+            self._peer[:8] = np.frombuffer(name, "u1")
+            x.peer = int.from_bytes(name, sys.byteorder, signed=True)
+        x.socket, x.answers, x.is_single = sock.fileno(), answers, answers == 1
         x.until_us = _FAR_US if until_us is None else until_us
         self._act(self._address, BEGIN)
         while True:

@@ -46,9 +46,9 @@ BEGIN, NOTE, TELL, CONVERSE = range(4)
 """What ``act`` does."""
 WAITS, ASKED, STEPS = range(3)
 """Of a step: nobody has asked for one; a frame has; it has begun."""
-IS_ASKED, IS_DUE, IS_SILENT, IS_ODD, HAS_ENOUGH = range(5)
-"""How ``converse`` ends: a step is asked for beyond the time that is allowed; a sensor of a world has to measure before
-the step can go on; nothing came; datagrams came that are Python's to judge; so many answers were given."""
+IS_ASKED, IS_DUE, IS_SILENT, IS_ODD, IS_ANSWERED = range(5)
+"""How ``converse`` ends: a step is asked for beyond the time or the answers that are allowed; a sensor of a world has to measure before
+the step can go on; nothing came; datagrams came that are Python's to judge; the one answer was given."""
 MMSGHDR, MSGHDR_LENGTH = 8, 7
 """Words of 8 bytes of a ``struct mmsghdr`` of 64-bit Linux, and which of them has the length of the datagram."""
 NAME_SIZE = 16
@@ -104,7 +104,8 @@ class Exchange(Record):
     ahead: int  # lines that were sent before the frames that they answer
     first: int  # count of the frame that was stepped last
     until_us: int
-    answers: int  # that are still to be given
+    answers: int  # that may still be given
+    is_single: bool  # only one answer is given, and nothing is waited for
     received: int  # datagrams
     judged: int  # of them; the others are Python's
 
@@ -279,7 +280,7 @@ def converse(x: Exchange) -> int:
     clock, obstacles = ints_at(x.clock, 1), record_at(Obstacles, x.obstacles)
     while True:
         if x.stage == ASKED:
-            if clock[0] >= x.until_us:
+            if clock[0] >= x.until_us or x.answers <= 0:
                 return IS_ASKED
             begin(x)
         if x.stage == STEPS:
@@ -293,8 +294,8 @@ def converse(x: Exchange) -> int:
                 if x.measure_us <= clock[0]:
                     return IS_DUE
             finish(x)
-            if x.answers <= 0:
-                return HAS_ENOUGH
+            if x.is_single:
+                return IS_ANSWERED
         if not listen(x):
             return IS_SILENT
         if not judge(x):

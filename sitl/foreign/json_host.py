@@ -170,7 +170,7 @@ class JsonHost:
         x.count = self.end.count
         how = lines.converse(self._socket, self._peer, until_us, answers)
         self._answered = self._wall()
-        self.end.go_on(int(x.first), int(x.count), lines.lines(), self._answered)
+        self.end.go_on(int(x.first), int(x.count), lines, self._answered)
         if how == IS_ODD:
             self._unread.extend(lines.unjudged())
 
