@@ -21,7 +21,6 @@ from sitl.envs.mavlink.foreign import physics_port
 from sitl.envs.mavlink.preparation import set_intervals
 from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.autopilot import AutopilotRobot
-from sitl.envs.robots.foreign import unlogged
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import Choice
 
@@ -121,13 +120,6 @@ def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, 
             env.close()
         finally:
             program.kill()
-
-
-def test_an_ardupilot_keeps_no_log_in_episodes_unless_it_is_told_to():
-    ours, theirs = Choice("ardupilot", Path("arducopter")), Choice("px4", Path("px4"))
-    assert unlogged(ours, {"WPNAV_SPEED": 300.0}) == {"LOG_BACKEND_TYPE": 0.0, "WPNAV_SPEED": 300.0}
-    assert unlogged(ours, {"LOG_BACKEND_TYPE": 1.0}) == {"LOG_BACKEND_TYPE": 1.0}
-    assert unlogged(theirs, {"MC_ROLL_P": 6.0}) == {"MC_ROLL_P": 6.0}
 
 
 class Refusing(Connection):

@@ -8,6 +8,7 @@ the next step: it has done all that it does at that time. Scans and touches come
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import time
 from collections.abc import Callable, Mapping
 from typing import Protocol
@@ -116,6 +117,9 @@ class Foreign(Connection):
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
         self.stream: ByteStream | None = None
+        self.digests: list[str] = []
+        """Of all true states and outputs from the start until each whole second of the physics' time, and until now."""
+        self._hash = hashlib.blake2b(digest_size=8)
         try:
             self._connect()
             self.find()
@@ -223,9 +227,9 @@ class Foreign(Connection):
 
     def run(self, us: int) -> None:
         host, goal, boots = self.host, self.host.time_us + us, self.host.boots
-        if self.stream is not None:
-            self.stream.flush()
         with self._one_core:
+            if self.stream is not None:  # on the same core as our answers: the kernel delivers both in this order
+                self.stream.flush()
             while host.time_us < goal and host.boots == boots:
                 self._await()
                 host.step(goal, ANSWERS)
@@ -234,6 +238,16 @@ class Foreign(Connection):
                 self._await()
         self._hear()
         self._look()
+        self._digest()
+
+    def _digest(self) -> None:
+        """Put the true state into the digests."""
+        vehicle = self.plant.vehicle
+        state = vehicle.fleet[vehicle.index : vehicle.index + 1]
+        self._hash.update(state["physics"].tobytes() + state["actuators"].tobytes())
+        second = self.time_us // 1_000_000
+        del self.digests[second:]
+        self.digests += (second + 1 - len(self.digests)) * [self._hash.hexdigest()]
 
     def _await(self) -> None:
         """Until the autopilot asks for a step."""
@@ -319,7 +333,8 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
     Args:
         choice: the autopilot.
         plant: at power-on.
-        params: of the autopilot, under its own names.
+        params: of the autopilot, under its own names. The on-board log of an ArduPilot is off, unless they say
+            something of it (``ardupilot.unlogged``).
         inbox: see ``Foreign``.
         patience: wall time without a sign of life after which it is lost [s].
 
@@ -347,7 +362,7 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
         elif choice.program is not None:
             process = ardupilot.start(
                 choice.program, airframe, plant.home, json_host.address[1], base,
-                overrides=text_of(params),
+                overrides=text_of(ardupilot.unlogged(params)),
             )  # fmt: skip
         undo.pop_all()
     return Foreign(host, plant, where, process, inbox, patience)

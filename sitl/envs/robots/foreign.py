@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from sitl.autopilot.params import files
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
-from sitl.foreign.choice import ARDUPILOT, Choice
+from sitl.foreign.choice import Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
 from sitl.vehicles import Airframe, AirframeError
@@ -21,15 +20,6 @@ from ..mavlink.preparation import BY_FORCE, refusal
 from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
-
-_LOG = "LOG_BACKEND_TYPE"
-
-
-def unlogged(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
-    """Parameters of an autopilot, with its on-board log off unless they say something of it: nobody would read the
-    logs of episodes, whose folders are deleted, and to write them takes an ArduPilot a part of its time."""
-    return {_LOG: 0.0, **params} if choice.kind == ARDUPILOT else dict(params)
-
 
 class ForeignVehicles(Vehicles):
     """See ``Vehicles``.
@@ -80,7 +70,7 @@ class ForeignVehicles(Vehicles):
             scenario = replace(self.setup.scenario, frame=airframe, seed=seed, start=start)
             plant = stand_alone(replace(scenario, params=choice.for_physics(params)))
             if rebooted is None:
-                found = launch(choice, plant, unlogged(choice, params), self.setup.inbox(), options.patience)
+                found = launch(choice, plant, params, self.setup.inbox(), options.patience)
                 try:
                     self._check(found)
                 except BaseException:
