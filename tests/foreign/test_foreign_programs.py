@@ -35,7 +35,7 @@ def test_an_ardupilot_keeps_no_log_unless_it_is_told_to():
 
 def test_ardupilots_gps_begins_at_the_same_date_each_time():
     words = ardupilot.command(Path("/x/arducopter"), (-35.0, 149.0, 584.0, 353.0), 9012, 5770, 1, 10, ["a"])
-    assert words[words.index("--start-time") + 1] == "1420070400"
+    assert words[words.index("--start-time") + 1] == "1767225600"
 
 
 def test_ardupilots_parameters_are_the_airframes():

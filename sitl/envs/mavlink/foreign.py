@@ -21,7 +21,7 @@ from sitl.client.connection import Connection
 from sitl.client.endpoint import ACCEPTED, Endpoint, Inbox
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
-from sitl.foreign.choice import PX4, WIND, Choice
+from sitl.foreign.choice import ARDUPILOT, PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import ANSWERS, JsonHost
 from sitl.foreign.one_core import OneCore
@@ -97,6 +97,9 @@ class Foreign(Connection):
     """
 
     is_exact = False
+    repeats = False
+    """Whether the same words at the same times make the same flight, bit for bit: of an ArduPilot that was started here,
+    without on-board log."""
 
     def __init__(
         self,
@@ -365,4 +368,7 @@ def launch(choice: Choice, plant: LocalPlant, params: Mapping[str, float], inbox
                 overrides=text_of(ardupilot.unlogged(params)),
             )  # fmt: skip
         undo.pop_all()
-    return Foreign(host, plant, where, process, inbox, patience)
+    found = Foreign(host, plant, where, process, inbox, patience)
+    unlogged = ardupilot.unlogged(params)
+    found.repeats = choice.kind == ARDUPILOT and process is not None and unlogged[ardupilot.LOG] == 0.0
+    return found
