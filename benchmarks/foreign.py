@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``python -m benchmarks.foreign copter --autopilot ardupilot:PATH``: another autopilot on our physics, and on its own.
 
-Each repeat measures both, one after the other, so that what else the machine does meets both alike: CPU time a simulated
-second of our process (user, system) and of the program, and the speed by the wall clock. The vehicle stands and waits at
-home; a copter's autopilot works as much there as in the air. ArduPilot's own physics is ``quad`` or ``rover`` at
+Each repeat measures both, one after the other, so that what else the machine does meets both alike: CPU time a
+simulated second of our process (user, system) and of the program, and the speed by the wall clock. The vehicle stands
+and waits at home; a copter's autopilot works as much there as in the air. ArduPilot's own physics is ``quad`` or ``rover`` at
 ``--speedup 100``, PX4's is SIH at a factor of 50. Linux only.
 """
 
@@ -65,13 +65,17 @@ def times_of(pid: int) -> tuple[float, float]:
     return int(fields[11]) / tick, int(fields[12]) / tick
 
 
-def costs(clocks: list[Callable[[], tuple[float, float]]], simulated: Callable[[], float], go: Callable[[], None]) -> list[Cost]:
+def costs(
+    clocks: list[Callable[[], tuple[float, float]]], simulated: Callable[[], float], go: Callable[[], None]
+) -> list[Cost]:
     """What of each clock a simulated second takes while ``go`` runs."""
     began, wall, before = [clock() for clock in clocks], time.monotonic(), simulated()
     go()
     passed, lasted = simulated() - before, time.monotonic() - wall
     ended = [clock() for clock in clocks]
-    return [Cost((e[0] - b[0]) / passed, (e[1] - b[1]) / passed, lasted / passed) for b, e in zip(began, ended, strict=True)]
+    return [
+        Cost((e[0] - b[0]) / passed, (e[1] - b[1]) / passed, lasted / passed) for b, e in zip(began, ended, strict=True)
+    ]
 
 
 def on_ours(choice: Choice, kind: str, seconds: float) -> list[Cost]:
@@ -103,7 +107,10 @@ def alone(choice: Choice, kind: str) -> Iterator[tuple[AutopilotProcess, str]]:
             text = "".join(f"{name} {value:g}\n" for name, value in {**UNLOGGED, "FRAME_CLASS": 1}.items())
             words = [str(choice.program), "--model", MODEL[kind], "--speedup", str(factor), "--wipe", "--home", home]
             words += ["--base-port", str(base), "--defaults", "{folder}/vehicle.parm"]
-            process, where = AutopilotProcess(words, {"vehicle.parm": text}, {}, Path(folder), 0.0), f"tcp:{HOST}:{base}"
+            process, where = (
+                AutopilotProcess(words, {"vehicle.parm": text}, {}, Path(folder), 0.0),
+                f"tcp:{HOST}:{base}",
+            )
         else:
             assert choice.program is not None
             number = px4.free_instance()

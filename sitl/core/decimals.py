@@ -59,7 +59,7 @@ def write_number(text: Bytes, at: int, value: float) -> int:
     count = 9
     while digits % 10 == 0:
         digits, count = digits // 10, count - 1
-    if exponent < -5:
+    if exponent < -4:
         return _write_scientific(text, at, digits, count, exponent)
     if exponent < 0:
         text[at], text[at + 1] = _ZERO, DOT

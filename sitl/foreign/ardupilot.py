@@ -3,7 +3,8 @@
 
 Options: ``--model JSON:HOST`` sends servos to the simulator port and waits for answers, ``--sim-port-out`` names that
 port, ``--base-port`` the TCP port of its first MAVLink connection (it waits there for a client before it boots),
-``--defaults`` files of parameters, ``--start-time`` the date of its GPS, which is otherwise the wall clock's. Sources: https://ardupilot.org/dev/docs/sitl-with-JSON.html, the program's --help.
+``--defaults`` files of parameters, ``--start-time`` the date of its GPS, which is otherwise the wall clock's.
+Sources: https://ardupilot.org/dev/docs/sitl-with-JSON.html, the program's --help.
 """
 
 from __future__ import annotations
@@ -79,7 +80,8 @@ def command(
     return [
         str(program), "--base-port", str(base), "--instance", str(instance), "--model", "JSON:127.0.0.1",
         "--sim-port-out", str(port), "--rc-in-port", str(base + SERIAL_PORTS - 1),
-        "--start-time", str(EPOCH_US // 1_000_000), "--home", where, "--speedup", f"{speedup:g}", "--defaults", ",".join(map(str, files)), "--wipe",
+        "--start-time", str(EPOCH_US // 1_000_000), "--home", where, "--speedup", f"{speedup:g}",
+        "--defaults", ",".join(map(str, files)), "--wipe",
     ]  # fmt: skip
 
 

@@ -17,18 +17,22 @@ from ..physics.native.ranging import NEVER, list_near
 from ..plants.local import LocalPlant
 from ..vehicle.core_entry import unit_address
 from .exchange import (
-    BEGIN, CONVERSE, NOTE, NUMBERS, TELL,
+    ASKED,
+    BEGIN,
+    CONVERSE,
     DATAGRAMS,
     IS_DUE,
     LINE_SIZE,
     MMSGHDR,
     MOST_LINES,
     NAME_SIZE,
+    NOTE,
+    NUMBERS,
     OUTPUTS,
     PIECES,
     PLACE,
+    TELL,
     WAITS,
-    ASKED,
     Exchange,
     acted,
 )
@@ -89,7 +93,11 @@ class BodyLines(Sequence[bytes]):
         self._frames: Array = np.zeros((DATAGRAMS, LINE_SIZE), "u1")
         self._named: tuple[str, int] | None = None
         self._peer: Array = np.zeros(NAME_SIZE, "u1")
-        read, self._inbox, outbox = np.zeros((DATAGRAMS, 2), "i8"), np.zeros((DATAGRAMS, MMSGHDR), "i8"), np.zeros((MOST_LINES, MMSGHDR), "i8")
+        read, self._inbox, outbox = (
+            np.zeros((DATAGRAMS, 2), "i8"),
+            np.zeros((DATAGRAMS, MMSGHDR), "i8"),
+            np.zeros((MOST_LINES, MMSGHDR), "i8"),
+        )
         read[:, 0], read[:, 1] = self._frames.ctypes.data + LINE_SIZE * np.arange(DATAGRAMS), LINE_SIZE
         for box, names, vectors in ((self._inbox, self._names, read), (outbox, self._peer, self._vectors)):
             step = NAME_SIZE if box is self._inbox else 0
@@ -160,7 +168,9 @@ class BodyLines(Sequence[bytes]):
         for k in range(int(x.judged), int(x.received)):
             size = min(int(self._inbox[k, MMSGHDR - 1]) & 0xFFFFFFFF, LINE_SIZE)
             name = self._names[k].tobytes()
-            found.append((self._frames[k, :size].tobytes(), (socket.inet_ntoa(name[4:8]), int.from_bytes(name[2:4], "big"))))
+            found.append(
+                (self._frames[k, :size].tobytes(), (socket.inet_ntoa(name[4:8]), int.from_bytes(name[2:4], "big")))
+            )
         x.judged = x.received = 0
         return found
 

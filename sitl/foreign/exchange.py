@@ -15,7 +15,7 @@ from ..core.border import Actuators, Sensors
 from ..core.constants import TICK_US
 from ..core.decimals import DOT, write_digits, write_number, write_whole
 from ..core.elementary import atan2, hypot
-from ..core.kernels import inlined, law
+from ..core.kernels import law
 from ..core.memory import Bytes, bytes_at, call_unit, floats_at, ints_at, record_at
 from ..core.records import Floats, Ints, Record, array
 from ..core.scalars import wrap_pi
@@ -47,8 +47,8 @@ BEGIN, NOTE, TELL, CONVERSE = range(4)
 WAITS, ASKED, STEPS = range(3)
 """Of a step: nobody has asked for one; a frame has; it has begun."""
 IS_ASKED, IS_DUE, IS_SILENT, IS_ODD, IS_ANSWERED = range(5)
-"""How ``converse`` ends: a step is asked for beyond the time or the answers that are allowed; a sensor of a world has to measure before
-the step can go on; nothing came; datagrams came that are Python's to judge; the one answer was given."""
+"""How ``converse`` ends: a step is asked for beyond the time or the answers that are allowed; a sensor of a world has to
+measure before the step can go on; nothing came; datagrams came that are Python's to judge; the one answer was given."""
 MMSGHDR, MSGHDR_LENGTH = 8, 7
 """Words of 8 bytes of a ``struct mmsghdr`` of 64-bit Linux, and which of them has the length of the datagram."""
 NAME_SIZE = 16
@@ -191,7 +191,7 @@ def write_line(x: Exchange, text: Bytes, time_us: int, share: float) -> int:
     for n in range(NUMBERS):
         if n == _RANGE:
             at = _piece(x, text, at, _END_OF_MOTION)
-        if n == _RANGE and not x.has_range or (n == _VANE or n == _SPEED) and not x.has_vane:
+        if (n == _RANGE and not x.has_range) or (_RANGE < n < _BATTERY and not x.has_vane):
             continue
         number = numbers[n]
         if _POSITION <= n < _RANGE:
@@ -244,7 +244,7 @@ def judge(x: Exchange) -> bool:
         size = inbox[MMSGHDR * k + MSGHDR_LENGTH] & 0xFFFFFFFF
         frame = bytes_at(x.frames + k * LINE_SIZE, SIZE_32)
         magic = frame[0] | frame[1] << 8
-        if not (size == SIZE_16 and magic == MAGIC_16 or size == SIZE_32 and magic == MAGIC_32):
+        if not ((size == SIZE_16 and magic == MAGIC_16) or (size == SIZE_32 and magic == MAGIC_32)):
             return False
         count = frame[4] | frame[5] << 8 | frame[6] << 16 | frame[7] << 24
         if names[2 * k] != x.peer or count != (x.count + 1) & 0xFFFFFFFF:

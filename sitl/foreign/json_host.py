@@ -158,16 +158,16 @@ class JsonHost:
         if self._lines.is_quick:
             self._converse(until_us, answers)
             return
-        answers = self._lines.step(until_us)
+        told = self._lines.step(until_us)
         self._answered = self._wall()
-        self.end.answer(answers, self._answered)
-        for line in answers:
+        self.end.answer(told, self._answered)
+        for line in told:
             self._send(line)
 
     def _converse(self, until_us: int | None, answers: int) -> None:
         """Steps and answers in one compiled call."""
         lines, x = self._lines, self._lines.exchange
-        x.count = self.end.count
+        x.count = self.end.count or 0
         how = lines.converse(self._socket, self._peer, until_us, answers)
         self._answered = self._wall()
         self.end.go_on(int(x.first), int(x.count), lines, self._answered)

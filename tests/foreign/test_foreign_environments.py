@@ -7,7 +7,6 @@ import contextlib
 import math
 import socket
 import subprocess
-from pathlib import Path
 
 import gymnasium as gym
 import numpy as np
@@ -22,7 +21,6 @@ from sitl.envs.mavlink.preparation import set_intervals
 from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.errors import LinkLostError
-from sitl.foreign.choice import Choice
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 

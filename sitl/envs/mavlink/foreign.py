@@ -98,8 +98,8 @@ class Foreign(Connection):
 
     is_exact = False
     repeats = False
-    """Whether the same words at the same times make the same flight, bit for bit: of an ArduPilot that was started here,
-    without on-board log."""
+    """Whether the same words at the same times make the same flight, bit for bit: of an ArduPilot that was started
+    here, without on-board log."""
 
     def __init__(
         self,

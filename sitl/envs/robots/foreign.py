@@ -21,6 +21,7 @@ from ..options import EnvOptionError
 from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
 
+
 class ForeignVehicles(Vehicles):
     """See ``Vehicles``.
 

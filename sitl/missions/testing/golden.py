@@ -73,7 +73,8 @@ class Golden(Forking):
         """The flight from power-on until now is like a golden one.
 
         Args:
-            golden: of a real ArduPilot, digests (.digests), which are compared exactly; else a recording (.rec), or a .tlog or .bin, relative to the test's folder.
+            golden: relative to the test's folder: a recording (.rec), or a .tlog or .bin; of a real ArduPilot, digests
+                (.digests), which are compared exactly.
             tolerance: "exact", "same", "alike", a distance with its unit ("0.5 m"), a .toml file relative to the test's
                 folder, or a mapping of the same shape; None: if golden is of the same vehicle, world and seed, "exact"
                 on native physics, "same" on another engine; else "alike".
@@ -86,6 +87,7 @@ class Golden(Forking):
         if path.suffix == digests.SUFFIX:
             self._assert_digests(path, tolerance)
             return
+        self._must_repeat()
         with tempfile.TemporaryDirectory(prefix="sitl-") as folder:
             if self.golden.update:
                 self._update(path, self._record(Path(folder), "new"))
@@ -106,7 +108,9 @@ class Golden(Forking):
         """The flight of a real ArduPilot is a golden one, bit for bit."""
         flight = self.connection
         if not isinstance(flight, Foreign) or not flight.repeats:
-            raise OptionError(f"golden flight {path}: {digests.SUFFIX} is of flights with an ArduPilot that was started here")
+            raise OptionError(
+                f"golden flight {path}: {digests.SUFFIX} is of flights with an ArduPilot that was started here"
+            )
         if tolerance not in (None, "exact"):
             raise OptionError(f"golden flight {path}: tolerance {tolerance!r}: digests are compared exactly")
         if self.golden.update:
@@ -119,12 +123,15 @@ class Golden(Forking):
         if problem := digests.differences(path, flight):
             raise AssertionError("\n".join([*problem, f"  if the change is intended: {self.golden.how}"]))
 
-    def _record(self, folder: Path, stem: str) -> Path:
-        """A recording of the flight so far."""
+    def _must_repeat(self) -> None:
         if self.cannot_repeat:
             raise OptionError(
                 f"{self.cannot_repeat}: its flight cannot be repeated: there is no recording and no golden flight"
             )
+
+    def _record(self, folder: Path, stem: str) -> Path:
+        """A recording of the flight so far."""
+        self._must_repeat()
         flown = fly_again(self, folder, stem, log=False)
         if not flown.same:
             raise AssertionError(NOT_AGAIN)
