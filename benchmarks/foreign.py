@@ -3,8 +3,8 @@
 
 Each repeat measures both, one after the other, so that what else the machine does meets both alike: CPU time a
 simulated second of our process (user, system) and of the program, and the speed by the wall clock. The vehicle stands
-and waits at home; a copter's autopilot works as much there as in the air. ArduPilot's own physics is ``quad`` or ``rover`` at
-``--speedup 100``, PX4's is SIH at a factor of 50. Linux only.
+and waits at home; a copter's autopilot works as much there as in the air. ArduPilot's own physics is ``quad`` or
+``rover`` at ``--speedup 100``, PX4's is SIH at a factor of 50. Linux only.
 """
 
 from __future__ import annotations

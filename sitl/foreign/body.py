@@ -142,6 +142,8 @@ class BodyLines(Sequence[bytes]):
     def __getitem__(self, number: Any) -> Any:
         if isinstance(number, slice):
             return [self[k] for k in range(len(self))[number]]
+        if not 0 <= number < len(self):
+            raise IndexError(f"line {number} of {len(self)}")
         return self._text[number, : self._vectors[number, 1]].tobytes()
 
     def converse(self, sock: socket.socket, peer: tuple[str, int], until_us: int | None, answers: int) -> int:

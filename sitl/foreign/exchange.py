@@ -47,8 +47,8 @@ BEGIN, NOTE, TELL, CONVERSE = range(4)
 WAITS, ASKED, STEPS = range(3)
 """Of a step: nobody has asked for one; a frame has; it has begun."""
 IS_ASKED, IS_DUE, IS_SILENT, IS_ODD, IS_ANSWERED = range(5)
-"""How ``converse`` ends: a step is asked for beyond the time or the answers that are allowed; a sensor of a world has to
-measure before the step can go on; nothing came; datagrams came that are Python's to judge; the one answer was given."""
+"""How ``converse`` ends: a step is asked for beyond the time or the answers that are allowed; a sensor of a world has
+to measure before the step can go on; nothing came; datagrams came that are Python's to judge; the one was given."""
 MMSGHDR, MSGHDR_LENGTH = 8, 7
 """Words of 8 bytes of a ``struct mmsghdr`` of 64-bit Linux, and which of them has the length of the datagram."""
 NAME_SIZE = 16
