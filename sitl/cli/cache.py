@@ -27,6 +27,7 @@ KERNEL_MODULES = (
     "sitl.agents.tabular.learn",
     "sitl.agents.ways",
     "sitl.core.elementary_kernels",
+    "sitl.foreign.exchange",
     "sitl.envs.actions",
     "sitl.envs.costs",
     "sitl.envs.free_ways",

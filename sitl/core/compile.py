@@ -130,7 +130,7 @@ def make_jitable(inline: bool = False) -> None:
     """
     from numba.extending import register_jitable
 
-    from . import numba_constant_tables, numba_float_bits  # noqa: F401  the latter is known when it is imported
+    from . import numba_constant_tables, numba_float_bits, numba_system_call  # noqa: F401  known when imported
 
     numba_constant_tables.make_known()
 

@@ -45,6 +45,17 @@ def locate(dtype: np.dtype[Any], path: str) -> tuple[int, str, int]:
     return offset, _CODES[base.str], int(np.prod(shape, dtype=int)) if shape else 1
 
 
+def place_of(dtype: np.dtype[Any], path: str) -> int:
+    """Offset of a record or field in a record [bytes]: "physics.body"."""
+    offset = 0
+    for name in path.split("."):
+        if dtype.fields is None or name not in dtype.fields:
+            raise UnknownFieldError(f"no field {name!r} of {path!r} in the record; it has {list(dtype.names or ())}")
+        dtype, step = dtype.fields[name][:2]
+        offset += step
+    return offset
+
+
 class RecordReader:
     """Reads fields of vehicle ``index`` of ``fleet``; arrays come element by element.
 

@@ -3,15 +3,17 @@
 
 Options: ``--model JSON:HOST`` sends servos to the simulator port and waits for answers, ``--sim-port-out`` names that
 port, ``--base-port`` the TCP port of its first MAVLink connection (it waits there for a client before it boots),
-``--defaults`` files of parameters. Sources: https://ardupilot.org/dev/docs/sitl-with-JSON.html, the program's --help.
+``--defaults`` files of parameters, ``--start-time`` the date of its GPS, which is otherwise the wall clock's.
+Sources: https://ardupilot.org/dev/docs/sitl-with-JSON.html, the program's --help.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..autopilot.params.files import text_of
+from ..bridge.bridge import EPOCH_US
 from ..core.constants import TICK_HZ
 from ..physics.native.power_on import Home
 from ..vehicle.kinds import KINDS
@@ -26,6 +28,18 @@ FASTEST = 1000.0
 _RANGEFINDER = 100  # the simulator's own
 _DOWN = 25
 """Orientation of a range-finder: pitched by -90 deg."""
+
+
+LOG = "LOG_BACKEND_TYPE"
+
+
+def unlogged(params: Mapping[str, float]) -> dict[str, float]:
+    """Parameters of an ArduPilot with its on-board log off, unless they say something of it.
+
+    A thread of its own writes the log in wall time, and the main loop meets it where it happens to be: flights of a
+    copter then differ in their last bits. To write it takes a part of the autopilot's time, too.
+    """
+    return {LOG: 0.0, **params}
 
 
 def defaults(airframe: Airframe, sees_ground: bool) -> str:
@@ -66,7 +80,8 @@ def command(
     return [
         str(program), "--base-port", str(base), "--instance", str(instance), "--model", "JSON:127.0.0.1",
         "--sim-port-out", str(port), "--rc-in-port", str(base + SERIAL_PORTS - 1),
-        "--home", where, "--speedup", f"{speedup:g}", "--defaults", ",".join(map(str, files)), "--wipe",
+        "--start-time", str(EPOCH_US // 1_000_000), "--home", where, "--speedup", f"{speedup:g}",
+        "--defaults", ",".join(map(str, files)), "--wipe",
     ]  # fmt: skip
 
 

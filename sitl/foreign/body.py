@@ -1,91 +1,182 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The simulated motion as JSON lines for ArduPilot, which has its own sensor models and needs the true state."""
+"""A vehicle of ours at the JSON interface: the memory that the laws of ``exchange`` work on, and who calls them."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+import socket
+import sys
+from collections.abc import Sequence
 from typing import Any
 
-from ..bridge.ardupilot_json import motion
-from ..core.algebra import euler_of
-from ..core.constants import TICK_US
-from ..core.elementary import atan2, hypot
-from ..plants.plant import SimulatedVehicle
+import numpy as np
 
-CLOCK_LEAD = 1e-9
-"""Relative lead of the lines' clock.
+from ..core.kernels import jit_disabled
+from ..core.record_reader import place_of
+from ..core.system_call import function_address
+from ..physics.native.ranging import NEVER, list_near
+from ..plants.local import LocalPlant
+from ..vehicle.core_entry import unit_address
+from .exchange import (
+    ASKED,
+    BEGIN,
+    CONVERSE,
+    DATAGRAMS,
+    IS_DUE,
+    LINE_SIZE,
+    MMSGHDR,
+    MOST_LINES,
+    NAME_SIZE,
+    NOTE,
+    NUMBERS,
+    OUTPUTS,
+    PIECES,
+    PLACE,
+    TELL,
+    WAITS,
+    Exchange,
+    acted,
+)
 
-ArduPilot adds each difference of two timestamps to a clock of whole microseconds and cuts off the rest: with
-differences a rounding error below 2500 us it would lose a microsecond now and then. The lead, a microsecond in 1000 s,
-outweighs rounding.
-"""
-_S = 1e-6 * (1.0 + CLOCK_LEAD)
-_PLACE = 6
-"""Where position, attitude and velocity begin in a motion."""
-Motion = tuple[float, ...]
+Array = np.ndarray[Any, Any]
+_RECEIVE, _SEND = (
+    (function_address("recvmmsg"), function_address("sendmmsg"))
+    if sys.platform == "linux" and sys.maxsize > 1 << 32
+    else (0, 0)
+)
+_FAR_US = 1 << 62
 
 
-class BodyLines:
-    """Encodes JSON lines for one vehicle.
+class BodyLines(Sequence[bytes]):
+    """Steps one vehicle and tells of it in JSON lines; as a sequence, the lines of the last step.
 
     Args:
-        vehicle: the vehicle.
+        plant: its physics.
     """
 
-    def __init__(self, vehicle: SimulatedVehicle) -> None:
-        reader = vehicle.reader
-        self._clock = reader.field("time_us")
-        body = (f"physics.body.{name}" for name in ("rates_mean", "specific_force", "pos", "q", "vel"))
-        self._motion = reader.fields(*body)
-        self._slow = reader.fields(
-            "sensors.rangefinder_count", "sensors.battery_voltage", "sensors.battery_current", "physics.wind.vel"
+    def __init__(self, plant: LocalPlant) -> None:
+        self.plant, vehicle = plant, plant.vehicle
+        self._memory = Exchange.fleet(1)
+        self._address: int = self._memory.ctypes.data
+        self.exchange = x = Exchange.of(self._memory, 0)
+        fleet, at = vehicle.fleet, vehicle.fleet.ctypes.data + vehicle.index * vehicle.fleet.dtype.itemsize
+        x.records, x.vehicles, x.index = fleet.ctypes.data, len(fleet), vehicle.index
+        x.clock, x.body, x.actuators, x.sensors, x.wind, x.obstacles = (
+            at + place_of(fleet.dtype, path)
+            for path in ("time_us", "physics.body", "actuators", "sensors", "physics.wind", "physics.obstacles")
         )
-        airframe = vehicle.airframe
-        self._range_max = float(airframe.value("rangefinder_max"))
-        self._range: Callable[[], float] = reader.field("sensors.rangefinder_range")
-        self._v: Any = vehicle.v
-        self._seen: tuple[Any, ...] = ()
-        self._extras = ""
+        x.is_reversible = vehicle.kind.has_reversible_outputs
+        x.range_max = float(vehicle.airframe.value("rangefinder_max"))
+        x.measure_us, x.until_us = NEVER, _FAR_US
+        text = np.frombuffer(b"".join(PIECES), "u1").copy()
+        x.piece_at[:] = np.cumsum([0, *map(len, PIECES)])
+        self._text: Array = np.zeros((MOST_LINES, LINE_SIZE), "u1")
+        self._vectors: Array = np.zeros((MOST_LINES, 2), "i8")
+        self._vectors[:, 0] = self._text.ctypes.data + LINE_SIZE * np.arange(MOST_LINES)
+        before, numbers = np.zeros(PLACE), np.zeros(NUMBERS)
+        self._kept: list[Array] = [text, before, numbers, self._text, self._vectors]
+        x.pieces, x.before, x.numbers, x.lines, x.vectors = (array.ctypes.data for array in self._kept)
+        self._act = acted.function()
+        self.is_quick = bool(_RECEIVE and _SEND) and plant.engine is None and not jit_disabled()
+        """Whether ``converse`` can be called."""
+        if self.is_quick:
+            self._prepare()
 
-    def state(self) -> Motion:
-        """Rates and force (means over the last tick), position, attitude, velocity: 16 numbers."""
-        return self._motion()
+    def _prepare(self) -> None:
+        """All that ``converse`` needs besides."""
+        x, plant = self.exchange, self.plant
+        plant.load_tick()
+        kind = plant.vehicle.kind
+        x.step, x.receive, x.send = unit_address(kind.step, kind), _RECEIVE, _SEND
+        if plant.rangers is not None:
+            x.list_near = unit_address(list_near, kind)
+        self._names: Array = np.zeros((DATAGRAMS, NAME_SIZE), "u1")
+        self._frames: Array = np.zeros((DATAGRAMS, LINE_SIZE), "u1")
+        self._named: tuple[str, int] | None = None
+        self._peer: Array = np.zeros(NAME_SIZE, "u1")
+        read, self._inbox, outbox = (
+            np.zeros((DATAGRAMS, 2), "i8"),
+            np.zeros((DATAGRAMS, MMSGHDR), "i8"),
+            np.zeros((MOST_LINES, MMSGHDR), "i8"),
+        )
+        read[:, 0], read[:, 1] = self._frames.ctypes.data + LINE_SIZE * np.arange(DATAGRAMS), LINE_SIZE
+        for box, names, vectors in ((self._inbox, self._names, read), (outbox, self._peer, self._vectors)):
+            step = NAME_SIZE if box is self._inbox else 0
+            box[:, 0] = names.ctypes.data + step * np.arange(len(box))
+            box[:, 1] = NAME_SIZE
+            box[:, 2] = vectors.ctypes.data + 16 * np.arange(len(box))
+            box[:, 3] = 1
+        x.inbox, x.outbox, x.names, x.frames = (a.ctypes.data for a in (self._inbox, outbox, self._names, self._frames))
+        self._kept += [read, outbox]
 
-    def lines(self, before: Motion, count: int) -> list[bytes]:
-        """The last tick as JSON lines.
+    @property
+    def is_asked(self) -> bool:
+        """Whether a step is asked for."""
+        return bool(self.exchange.stage != WAITS)
 
-        The last line is the state at the end of the tick. Those before it are on the straight way there; rates and
-        force are the tick's means in all of them, so that an IMU that sums them up gets the same.
+    def ask(self, rate: int, pulses: Sequence[int]) -> None:
+        """A step is asked for.
 
         Args:
-            before: state at its beginning; needed for more than one line.
-            count: number of lines; the tick is cut into parts of whole microseconds.
+            rate: steps a second [Hz].
+            pulses: outputs [us].
         """
-        slow = self._slow()
-        if slow != self._seen:
-            self._seen, self._extras = slow, self._others(slow)
-        now, end_us, extras = self._motion(), self._clock(), self._extras
-        if count == 1:
-            return [motion.encode((end_us * _S, *now), extras)]
-        place, began, began_us = now[_PLACE:], before[_PLACE:], end_us - TICK_US
-        times, places = [], []
-        for k in range(1, count):
-            share = k / count
-            times.append((began_us + k * TICK_US // count) * _S)
-            places.append(tuple([a + share * (b - a) for a, b in zip(began, place)]))
-        return motion.encode_parts([*times, end_us * _S], now[:_PLACE], [*places, place], extras)
+        x = self.exchange
+        x.rate, x.pulses[:], x.stage = rate, pulses[:OUTPUTS], ASKED
 
-    def _others(self, slow: tuple[Any, ...]) -> str:
-        """Range-finder, battery, and apparent wind when there is wind; they change less often than the motion."""
-        readings, voltage, current, *wind = slow
-        reading = None
-        if readings > 0 and self._range_max > 0.0:  # out of range is farther than the sensor sees
-            reading = min(float(self._range()), self._range_max + 1.0)
-        return motion.extra(reading, (voltage, current), self._vane(wind) if any(wind) else None)
+    def step(self, until_us: int | None) -> list[bytes]:
+        """The step, at most until a time [us since power-on]; gives the lines that tell of it."""
+        x, plant = self.exchange, self.plant
+        x.until_us = _FAR_US if until_us is None else until_us
+        self._act(self._address, BEGIN)
+        for left in range(x.left, 0, -1):
+            if left == 1:
+                self._act(self._address, NOTE)
+            plant.tick()
+        x.left, x.stage = 0, WAITS
+        self._act(self._address, TELL)
+        return list(self)
 
-    def _vane(self, wind: list[float]) -> tuple[float, float]:
-        """Apparent wind: direction that it comes from, clockwise from the nose [rad], and speed [m/s]."""
-        body = self._v.physics.body
-        north, east = body.vel.x - wind[0], body.vel.y - wind[1]
-        return math.remainder(atan2(east, north) - euler_of(body.q).yaw, 2.0 * math.pi), hypot(north, east)
+    def __len__(self) -> int:
+        return int(self.exchange.parts)
+
+    def __getitem__(self, number: Any) -> Any:
+        if isinstance(number, slice):
+            return [self[k] for k in range(len(self))[number]]
+        if not 0 <= number < len(self):
+            raise IndexError(f"line {number} of {len(self)}")
+        return self._text[number, : self._vectors[number, 1]].tobytes()
+
+    def converse(self, sock: socket.socket, peer: tuple[str, int], until_us: int | None, answers: int) -> int:
+        """The step that is asked for, and those that follow; returns how it ended (``exchange.IS_ASKED``)."""
+        x, plant = self.exchange, self.plant
+        if peer != self._named:
+            self._named, name = peer, _name(peer)
+            self._peer[:8] = np.frombuffer(name, "u1")
+            x.peer = int.from_bytes(name, sys.byteorder, signed=True)
+        x.socket, x.answers, x.is_single = sock.fileno(), answers, answers == 1
+        x.until_us = _FAR_US if until_us is None else until_us
+        self._act(self._address, BEGIN)
+        while True:
+            if plant.rangers is not None:
+                x.measure_us = plant.rangers.due_us
+            how = int(self._act(self._address, CONVERSE))
+            if how != IS_DUE:
+                return how
+            plant.measure()
+
+    def unjudged(self) -> list[tuple[bytes, tuple[str, int]]]:
+        """Datagrams that ``converse`` has left, with their senders."""
+        x, found = self.exchange, []
+        for k in range(int(x.judged), int(x.received)):
+            size = min(int(self._inbox[k, MMSGHDR - 1]) & 0xFFFFFFFF, LINE_SIZE)
+            name = self._names[k].tobytes()
+            found.append(
+                (self._frames[k, :size].tobytes(), (socket.inet_ntoa(name[4:8]), int.from_bytes(name[2:4], "big")))
+            )
+        x.judged = x.received = 0
+        return found
+
+
+def _name(peer: tuple[str, int]) -> bytes:
+    """The first 8 bytes of a ``struct sockaddr_in``."""
+    return socket.AF_INET.to_bytes(2, sys.byteorder) + peer[1].to_bytes(2, "big") + socket.inet_aton(peer[0])

@@ -108,7 +108,7 @@ class HilHost:
         self.end.greet()
         self.boots += 1
 
-    def step(self, until_us: int | None = None) -> None:
+    def step(self, until_us: int | None = None, answers: int = 1) -> None:
         """Process the answer and step; or step without one, where that is due."""
         if self._connection is None:
             return

@@ -5,16 +5,17 @@ from __future__ import annotations
 
 import socket
 import time
+from collections import deque
 from collections.abc import Callable
 
-from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, Request, lines, ticks
-from ..bridge.ardupilot_json.servos import actuators_writer, is_frame
-from ..core.constants import TICK_US
+from ..bridge.ardupilot_json.physics_end import Asked, PhysicsEnd
+from ..bridge.ardupilot_json.servos import is_frame
 from ..errors import OptionError
 from ..plants.json_link import LOCAL, PORT, WAIT_S, parse_address, wait_in_kernel
 from ..plants.local import LocalPlant, restart
 from ..plants.physics_server import Silence
 from .body import BodyLines
+from .exchange import IS_ODD
 
 _MAX_DATAGRAM = 1024
 """Bytes of a datagram that are read: more than a frame has."""
@@ -24,6 +25,9 @@ _IDLE_S = 0.01
 """Time without an answer of ours after which waiting datagrams are read through [s]."""
 _ENOUGH = (Asked.NOTHING, Asked.REPEAT)
 """What is asked for when the caller gets a turn without a step."""
+ANSWERS = 16
+"""So many answers are given in one call at most: the autopilot's MAVLink is looked at in between, which stands still
+when nobody reads it."""
 
 
 class JsonHost:
@@ -52,7 +56,8 @@ class JsonHost:
         self.before_boot_us = 0
         """Simulated time before the last of them [us]."""
         self.attach(plant)
-        self._pending: Request | None = None
+        self._restarts = False
+        self._unread: deque[tuple[bytes, tuple[str, int]]] = deque()
         self._answered = float("-inf")
         self._peer: tuple[str, int] = ("", 0)
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -67,10 +72,8 @@ class JsonHost:
     def attach(self, plant: LocalPlant) -> None:
         """Serve another plant from now on."""
         self.plant = plant
-        self._lines = BodyLines(plant.vehicle)
+        self._lines = BodyLines(plant)
         self._clock: Callable[[], int] = plant.vehicle.reader.field("time_us")
-        vehicle = plant.vehicle
-        self._put = actuators_writer(vehicle.fleet, vehicle.index, vehicle.kind.has_reversible_outputs)
 
     @property
     def address(self) -> tuple[str, int]:
@@ -85,9 +88,9 @@ class JsonHost:
 
     def listen(self) -> bool:
         """Wait for a frame that requests a step, unless one is pending; returns whether there is one."""
-        while self._pending is None:
+        while not self._lines.is_asked:
             try:
-                datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM)
+                datagram, peer = self._receive()
             except OSError:  # none came, or our last answer met a closed port
                 return False
             now = self._wall()
@@ -100,6 +103,10 @@ class JsonHost:
             if asked in _ENOUGH:
                 return False
         return True
+
+    def _receive(self, flags: int = 0) -> tuple[bytes, tuple[str, int]]:
+        """The next datagram and who sent it."""
+        return self._unread.popleft() if self._unread else self._socket.recvfrom(_MAX_DATAGRAM, flags)
 
     def _process_all(self, waiting: dict[tuple[str, int], bytes], now: float) -> Asked:
         """Process what has waited, the autopilot's datagram before those of strangers, until one is served."""
@@ -118,8 +125,9 @@ class JsonHost:
             self._peer = peer
             self._send(self.end.repeat(now))
             self._answered = now
-        elif request.asked in (Asked.STEP, Asked.RESTART):
-            self._peer, self._pending = peer, request
+        elif request.asked in (Asked.STEP, Asked.RESTART) and request.servos is not None:
+            self._peer, self._restarts = peer, request.asked is Asked.RESTART
+            self._lines.ask(request.servos.rate, request.servos.pulses)
         return request.asked
 
     def _drain(self, datagram: bytes, peer: tuple[str, int]) -> dict[tuple[str, int], bytes]:
@@ -128,36 +136,43 @@ class JsonHost:
         waiting = {peer: datagram}
         for _ in range(_GATHERED):
             try:
-                datagram, peer = self._socket.recvfrom(_MAX_DATAGRAM, socket.MSG_DONTWAIT)
+                datagram, peer = self._receive(socket.MSG_DONTWAIT)
             except OSError:
                 break
             if peer not in waiting or is_frame(datagram) or not is_frame(waiting[peer]):
                 waiting[peer] = datagram
         return waiting
 
-    def step(self, until_us: int | None = None) -> None:
-        """Perform the requested step and answer it; at most until ``until_us`` [us since power-on]."""
-        request, self._pending = self._pending, None
-        if request is None or request.servos is None:
+    def step(self, until_us: int | None = None, answers: int = 1) -> None:
+        """Perform the requested step and answer it; at most until ``until_us`` [us since power-on].
+
+        With more ``answers`` it may wait for the steps that follow and answer as many of them, up to the same time.
+        """
+        if not self._lines.is_asked:
             return
-        plant, servos = self.plant, request.servos
-        if request.asked is Asked.RESTART:
+        if self._restarts:
+            self._restarts = False
             self.before_boot_us += self._clock()
-            restart(plant)
+            restart(self.plant)
             self.boots += 1
-        self._put(servos.pulses)
-        count = ticks(servos.rate)
-        if until_us is not None:
-            count = min(count, max((until_us - self._clock()) // TICK_US, 1))
-        parts = lines(servos.rate)
-        before = self._lines.state() if parts > 1 else ()
-        for _ in range(count):
-            plant.tick()
-        answers = self._lines.lines(before, parts)
+        if self._lines.is_quick:
+            self._converse(until_us, answers)
+            return
+        told = self._lines.step(until_us)
         self._answered = self._wall()
-        self.end.answer(answers, self._answered)
-        for line in answers:
+        self.end.answer(told, self._answered)
+        for line in told:
             self._send(line)
+
+    def _converse(self, until_us: int | None, answers: int) -> None:
+        """Steps and answers in one compiled call."""
+        lines, x = self._lines, self._lines.exchange
+        x.count = self.end.count or 0
+        how = lines.converse(self._socket, self._peer, until_us, answers)
+        self._answered = self._wall()
+        self.end.go_on(int(x.first), int(x.count), lines, self._answered)
+        if how == IS_ODD:
+            self._unread.extend(lines.unjudged())
 
     def _send(self, line: bytes) -> None:
         try:
@@ -174,13 +189,13 @@ class JsonHost:
             if turn():
                 if silence.waits:
                     silence.is_over()
-                self.step()
+                self.step(answers=ANSWERS)
                 turns += 1
             else:
                 turns = 0
                 if self.end.peer is not None:
                     silence.goes_on()
-            if turns & 31 == 0:
+            if turns & 1 == 0:
                 if not running():
                     return
                 on_turn()

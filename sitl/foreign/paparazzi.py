@@ -13,7 +13,6 @@ import math
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from ..bridge.ardupilot_json.servos import OUTPUTS, actuators_writer
 from ..core.algebra import Quat, Vec3, multiply, rotate
 from ..core.constants import GRAVITY, TICK_US
 from ..errors import OptionError
@@ -53,7 +52,7 @@ class BulletFDM:
             plant.close()
             raise OptionError(f"airframe {urdf} is a {vehicle.kind.name}: this interface has copters")
         self._plant, self._body = plant, vehicle.v.physics.body
-        self._put = actuators_writer(vehicle.fleet, vehicle.index, vehicle.kind.has_reversible_outputs)
+        self._actuators = vehicle.v.actuators
 
     def step(self, commands: Sequence[float]) -> dict[str, tuple[float, ...]]:
         """Make one step.
@@ -66,8 +65,9 @@ class BulletFDM:
             (front, left, up) to east, north, up, as x, y, z, w; ang_v [rad/s] and ang_accel [rad/s^2], east, north,
             up. accel is such that NPS's accelerometer measures the mean of the last tick.
         """
-        pulses = [round(LOWEST + RANGE * min(max(float(part), 0.0), 1.0)) for part in commands]
-        self._put([*pulses, *(0 for _ in range(OUTPUTS - len(pulses)))])
+        parts = [min(max(float(part), 0.0), 1.0) for part in commands]
+        self._actuators.controls[: len(parts)] = parts
+        self._actuators.pwm[: len(parts)] = [round(LOWEST + RANGE * part) for part in parts]
         before = self._turning()
         for _ in range(self._ticks):
             self._plant.tick()

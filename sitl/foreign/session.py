@@ -55,7 +55,8 @@ class ArduPilotSession(SlicedSession):
         folder: see ``AutopilotProcess``.
         say: prints a message for the user.
         tap: see ``Relay``.
-        is_relayed_by_slice: clients are served by ``serve_slices`` alone, else by a thread.
+        is_relayed_by_slice: clients are served by ``serve_slices`` alone, else by a thread. Without a ``folder`` its
+            on-board log is off then, so that a flight repeats (``ardupilot.unlogged``).
 
     Raises:
         OptionError: no port, or a program that cannot be started.
@@ -92,6 +93,8 @@ class ArduPilotSession(SlicedSession):
             undo.callback(self.host.close)
             if choice.program is not None:
                 base = free_tcp_run(ardupilot.SERIAL_PORTS)
+                if is_relayed_by_slice and folder is None:  # its files are deleted in the end
+                    params = ardupilot.unlogged(params or {})
                 number = {"MAV_SYSID": 1.0 + instance, "SYSID_THISMAV": 1.0 + instance}
                 self.process = ardupilot.start(
                     choice.program, plant.vehicle.airframe, plant.home, self.host.address[1], base, instance=instance,

@@ -9,6 +9,7 @@ from typing import Protocol
 from ..errors import LinkLostError
 from ..plants.physics_server import WAIT_S, Silence
 from ..run.runner import Pace
+from .json_host import ANSWERS
 from .process import AutopilotProcess
 from .relay import Relay
 
@@ -28,8 +29,8 @@ class StepHost(Protocol):
     def listen(self) -> bool:
         """Wait a moment until the autopilot asks for a step; whether it does."""
 
-    def step(self, until_us: int | None = None) -> None:
-        """Give it the step, no further than ``until_us``."""
+    def step(self, until_us: int | None = None, answers: int = 1) -> None:
+        """Give it the step, and up to so many in all, no further than ``until_us``."""
 
     def close(self) -> None:
         """Serve no more."""
@@ -90,7 +91,7 @@ class SlicedSession:
                     silence.is_over()
                 if self.time_us >= goal:
                     break
-                host.step(goal - host.before_boot_us)
+                host.step(goal - host.before_boot_us, ANSWERS)
             relay.turn(0.0)
             self.act()
             on_slice()

@@ -33,6 +33,7 @@ def options(words: list[str]) -> argparse.Namespace:
     parser.add_argument("--sim-port-out", type=int, default=9002)
     parser.add_argument("--rc-in-port", type=int, default=5501)
     parser.add_argument("--home", "-O", required=True)
+    parser.add_argument("--start-time", type=int)
     parser.add_argument("--speedup", "-s", type=float, default=1.0)
     parser.add_argument("--defaults", default="")
     parser.add_argument("--wipe", "-w", action="store_true")

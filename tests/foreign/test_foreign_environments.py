@@ -124,10 +124,9 @@ def test_an_ardupilot_that_runs_already_is_rebooted_for_each_episode(ardurover, 
             program.kill()
 
 
-def test_an_ardupilot_keeps_no_log_in_episodes_unless_it_is_told_to():
+def test_a_px4_takes_sticks_from_mavlink_in_episodes():
     ours, theirs = Choice("ardupilot", Path("arducopter")), Choice("px4", Path("px4"))
-    assert of_episodes(ours, {"WPNAV_SPEED": 300.0}) == {"LOG_BACKEND_TYPE": 0.0, "WPNAV_SPEED": 300.0}
-    assert of_episodes(ours, {"LOG_BACKEND_TYPE": 1.0}) == {"LOG_BACKEND_TYPE": 1.0}
+    assert of_episodes(ours, {"WPNAV_SPEED": 300.0}) == {"WPNAV_SPEED": 300.0}
     sticks = {"COM_RC_IN_MODE": 1.0, "COM_RCL_EXCEPT": 4.0}
     assert of_episodes(theirs, {"MC_ROLL_P": 6.0}) == {**sticks, "MC_ROLL_P": 6.0}
 

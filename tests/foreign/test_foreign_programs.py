@@ -29,6 +29,16 @@ def test_ardupilots_command_line():
     assert words[-1] == "--wipe"
 
 
+def test_an_ardupilot_keeps_no_log_unless_it_is_told_to():
+    assert ardupilot.unlogged({"WPNAV_SPEED": 300.0}) == {"LOG_BACKEND_TYPE": 0.0, "WPNAV_SPEED": 300.0}
+    assert ardupilot.unlogged({"LOG_BACKEND_TYPE": 1.0}) == {"LOG_BACKEND_TYPE": 1.0}
+
+
+def test_ardupilots_gps_begins_at_the_same_date_each_time():
+    words = ardupilot.command(Path("/x/arducopter"), (-35.0, 149.0, 584.0, 353.0), 9012, 5770, 1, 10, ["a"])
+    assert words[words.index("--start-time") + 1] == "1767225600"
+
+
 def test_ardupilots_parameters_are_the_airframes():
     text = ardupilot.defaults(vehicles.load("erle_copter"), sees_ground=True)
     values = dict(line.split(" ") for line in text.splitlines())

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import json
 import socket
+import threading
 
 import pytest
 
@@ -222,6 +223,78 @@ def test_an_autopilot_started_anew_begins_at_power_on(copter_plant):
         line = again.ask(0)
         again.close()
         assert line["position"] == [0.0, 0.0, 0.0] and host.time_us == 2500 and host.boots == 1
+
+
+def converse(host, answers: int, until_us: int, rate: int = 400, pulse: int = 1500) -> list[bytes]:
+    """What an autopilot in a thread of its own is told until a time."""
+    told, peer = [], Peer(host)
+    peer.socket.settimeout(5.0)
+
+    def ask():
+        with contextlib.suppress(OSError):
+            while True:
+                peer.send(len(told), rate=rate, pulse=pulse + len(told) % 100)
+                told.append(peer.socket.recv(65535))
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    while host.time_us < until_us:
+        if host.listen():
+            host.step(until_us, answers)
+    while not host.listen():
+        pass
+    peer.socket.shutdown(socket.SHUT_RDWR)
+    thread.join()
+    peer.close()
+    return told
+
+
+@pytest.mark.parametrize("rate", [400, 800, 1200])
+def test_a_burst_says_what_single_answers_say(rate):
+    def said(answers, in_python=False):
+        plant = stand_alone("erle_copter", home=DEFAULT_HOME)
+        with served(plant) as (host, _):
+            if in_python:
+                host._lines.is_quick = False
+            found = converse(host, answers, 500_000, rate)
+            assert host.time_us == 500_000 and host.end.count == len(found)
+        plant.close()
+        return found[: 200 * rate // 400]
+
+    single = said(1)
+    assert len(single) == 200 * rate // 400 and said(16) == single and said(1, in_python=True) == single
+
+
+def test_a_lidar_measures_in_a_burst_when_it_is_due():
+    def scanned(answers):
+        plant = stand_alone("erle_rover", home=DEFAULT_HOME, world="maze_erlerover")
+        with served(plant) as (host, _):
+            converse(host, answers, 1_000_000)
+        sensors = plant.vehicle.v.sensors
+        found = int(sensors.lidar_count), sensors.lidar_ranges.tolist()
+        plant.close()
+        return found
+
+    single = scanned(1)
+    assert single[0] > 3 and scanned(16) == single
+
+
+def test_strangers_within_a_burst_are_told_of_and_its_frames_are_answered(copter_plant):
+    with served(copter_plant) as (host, peer):
+        peer.send(0)
+        assert host.listen()
+        other = Peer(host)
+        other.send(7)
+        peer.socket.send(b"junk")
+        peer.send(1)
+        host.step(answers=9)
+        while host.time_us < 5000:
+            if host.listen():
+                host.step(answers=9)
+        other.close()
+        assert len(peer.lines()) == 2 and host.end.count == 1
+        assert any("second autopilot" in text for text in host.said)
+        assert any("no frame of servos" in text for text in host.said)
 
 
 def test_strangers_and_junk_are_told_of_and_change_nothing(copter_plant):

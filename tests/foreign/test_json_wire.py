@@ -8,14 +8,12 @@ import math
 import re
 import struct
 
-import numpy as np
 import pytest
 
 from sitl.bridge.ardupilot_json.motion import MotionError, extra
 from sitl.bridge.ardupilot_json.motion import decode as decode_motion
 from sitl.bridge.ardupilot_json.motion import encode as encode_motion
-from sitl.bridge.ardupilot_json.servos import Controls, ServoError, Servos, actuators_writer, decode, encode
-from sitl.vehicle.kinds import KINDS
+from sitl.bridge.ardupilot_json.servos import ServoError, Servos, decode, encode
 
 
 @pytest.mark.parametrize(("pulses", "magic", "size"), [(16, 18458, 40), (32, 29569, 72)])
@@ -45,33 +43,6 @@ def test_other_datagrams_are_refused_with_the_reason(datagram, why):
 def test_only_16_or_32_pulses_make_a_frame():
     with pytest.raises(ServoError, match="not 8"):
         encode(Servos(400, 0, (1500,) * 8))
-
-
-@pytest.mark.parametrize(
-    ("pulse", "rotor", "servo"),
-    [(0, 0.0, 0.0), (900, 0.0, -1.0), (1000, 0.0, -1.0), (1250, 0.25, -0.5), (1500, 0.5, 0.0), (2100, 1.0, 1.0)],
-)
-def test_a_pulse_is_a_rotors_or_a_servos_control(pulse, rotor, servo):
-    assert Controls(False).of([pulse]) == [rotor]
-    assert Controls(True).of([pulse, pulse]) == [servo, servo]
-
-
-def test_the_border_takes_sixteen_of_32_pulses():
-    assert Controls(False).of((1500,) * 16 + (2000,) * 16) == [0.5] * 16
-
-
-@pytest.mark.parametrize("kind", ["copter", "rover"])
-def test_pulses_are_written_into_the_actuators_of_their_vehicle_alone(kind):
-    record, is_reversible = KINDS[kind].record, KINDS[kind].has_reversible_outputs
-    fleet = record.fleet(3)
-    before = np.frombuffer(bytearray(fleet.tobytes()), fleet.dtype)  # with the padding, which a copy may leave out
-    pulses = (*range(1000, 2000, 100), 0, 900, 2100, 1500, 1501, 65535, *(1234,) * 16)
-    actuators_writer(fleet, 1, is_reversible)(pulses)
-    assert fleet[1]["actuators"]["pwm"].tolist() == list(pulses[:16])
-    wanted = np.float32(Controls(is_reversible).of(pulses))
-    assert fleet[1]["actuators"]["controls"].tolist() == wanted.tolist()
-    before[1]["actuators"]["pwm"], before[1]["actuators"]["controls"] = pulses[:16], wanted
-    assert fleet.tobytes() == before.tobytes()  # nothing else
 
 
 MOTION = (1.25, 0.1, -0.2, 0.3, 0.0, 0.0, -9.80665, 10.5, -20.25, -3.125, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, -0.5)

@@ -28,13 +28,6 @@ _LINE = (
     '\n{"timestamp":%r,"imu":{"gyro":[%r,%r,%r],"accel_body":[%r,%r,%r]},"position":[%r,%r,%r],'
     '"quaternion":[%r,%r,%r,%r],"velocity":[%r,%r,%r]'
 )
-_TIME, _FELT, _PLACE = (
-    '\n{"timestamp":%r',
-    ',"imu":{"gyro":[%.9g,%.9g,%.9g],"accel_body":[%.9g,%.9g,%.9g]}',
-    ',"position":[%.9g,%.9g,%.9g],"quaternion":[%.9g,%.9g,%.9g,%.9g],"velocity":[%.9g,%.9g,%.9g]',
-)
-"""The same in parts. The timestamp is whole, the others have as many digits as the numbers of 4 bytes that ArduPilot
-makes of them."""
 
 
 class MotionError(SitlError, ValueError):
@@ -73,21 +66,6 @@ def encode(motion: Sequence[float], extras: str = "") -> bytes:
         extras: more members, each with its comma before it (``extra``).
     """
     return (_LINE % tuple(motion) + extras + "}\n").encode()
-
-
-def encode_parts(
-    times: Sequence[float], felt: tuple[float, ...], places: Sequence[tuple[float, ...]], extras: str = ""
-) -> list[bytes]:
-    """Lines with nine digits a number, which are quicker to write and to read, of times in which the same is felt.
-
-    Args:
-        times: timestamps.
-        felt: gyro, accel: 6 numbers.
-        places: position, attitude (w x y z), velocity at each time: 10 numbers.
-        extras: see ``encode``.
-    """
-    same, end = _FELT % felt, extras + "}\n"
-    return [(_TIME % time + same + _PLACE % place + end).encode() for time, place in zip(times, places, strict=True)]
 
 
 def extra(

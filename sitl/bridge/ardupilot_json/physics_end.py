@@ -26,6 +26,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from ...core.constants import TICK_HZ
+from ...core.kernels import inlined
 from .servos import COUNT_AT, COUNT_MASK, ServoError, Servos, decode, is_frame
 
 MOST_TICKS = 8
@@ -60,11 +61,13 @@ class Request(NamedTuple):
 _AHEAD = Request(Asked.AHEAD)
 
 
+@inlined
 def ticks(rate: int) -> int:
     """Ticks of 2500 us to step for a frame: the whole ones in 1 / ``rate`` [Hz], at least one, at most 20 ms."""
     return min(max(TICK_HZ // rate, 1), MOST_TICKS) if rate > 0 else 1
 
 
+@inlined
 def lines(rate: int) -> int:
     """Lines that a tick is told in: as often as 1 / ``rate`` [Hz] goes into it, at least one, at most five.
 
@@ -91,8 +94,6 @@ class PhysicsEnd:
         """The last answers: to the frame that was stepped, and to those that follow it."""
         self._first = 0
         """Count of the frame that was stepped."""
-        self._ahead: dict[bytes, int] = {}
-        """Of the frames that are answered before they come: the count as it is written -> the count."""
         self.refused = 0
         """Datagrams that were no frames, or of another autopilot."""
         self._stepped_any = False
@@ -101,12 +102,20 @@ class PhysicsEnd:
 
     def is_answered(self, datagram: bytes, peer: Hashable, now: float) -> bool:
         """Whether a datagram is a frame whose line was sent before it: nothing is to be done."""
-        if self._ahead and peer == self.peer and is_frame(datagram):
-            number = self._ahead.pop(datagram[COUNT_AT], None)
-            if number is not None:
+        if self.ahead and peer == self.peer and is_frame(datagram):
+            number = int.from_bytes(datagram[COUNT_AT], "little")
+            if 0 < (number - (self.count or 0)) & COUNT_MASK <= self.ahead:
                 self.count, self._received_at = number, now
                 return True
         return False
+
+    @property
+    def ahead(self) -> int:
+        """Number of lines that were sent before the frames that they answer."""
+        if self.count is None or not self.lines:
+            return 0
+        number = (self._first + len(self.lines) - 1 - self.count) & COUNT_MASK
+        return number if number < len(self.lines) else 0
 
     def receive(self, datagram: bytes, peer: Hashable, now: float) -> Request:
         """What a datagram from ``peer`` at wall time ``now`` [s] asks for; ``answer`` follows, if it is a step."""
@@ -141,9 +150,19 @@ class PhysicsEnd:
     def answer(self, lines: Sequence[bytes], now: float) -> None:
         """Keep the answers to the last frame and those that follow, for when one is asked for again."""
         self.lines, self._answered_at, self._stepped_any = lines, now, True
-        self._first = first = self.count or 0
-        counts = [(first + k) & COUNT_MASK for k in range(1, len(lines))]
-        self._ahead = {number.to_bytes(4, "little"): number for number in counts}
+        self._first = self.count or 0
+
+    def go_on(self, first: int, count: int, lines: Sequence[bytes], now: float) -> None:
+        """Frames were received and answered elsewhere.
+
+        Args:
+            first: count of the frame that was stepped last.
+            count: of the last frame.
+            lines: see ``answer``.
+            now: wall time [s].
+        """
+        self.lines, self._first, self.count, self._stepped_any = lines, first, count, True
+        self._received_at = self._answered_at = now
 
     def repeat(self, now: float) -> bytes:
         """The answer to the last frame once more; ``now``: wall time [s]."""

@@ -8,6 +8,7 @@ the next step: it has done all that it does at that time. Scans and touches come
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
@@ -25,9 +26,9 @@ from sitl.foreign.betaflight.clients import InProcess
 from sitl.foreign.betaflight.face import Face
 from sitl.foreign.betaflight.host import BetaflightHost
 from sitl.foreign.betaflight.session import starter
-from sitl.foreign.choice import BETAFLIGHT, PX4, WIND, Choice
+from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
-from sitl.foreign.json_host import JsonHost
+from sitl.foreign.json_host import ANSWERS, JsonHost
 from sitl.foreign.one_core import OneCore
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
 from sitl.foreign.sim_parameters import SimParameterPort
@@ -46,8 +47,6 @@ _ANSWER_US = 3_000_000
 _START_S = 60.0
 """Wall time that a program which was started has until its MAVLink is there [s]."""
 _HEARTBEAT_US = 30_000_000
-_TURNS = 16
-"""Answers of the physics between two looks at MAVLink: the autopilot stands still when nobody reads."""
 
 
 class Host(Protocol):
@@ -63,8 +62,8 @@ class Host(Protocol):
     def listen(self) -> bool:
         """Wait a moment until the autopilot asks for a step; whether it does."""
 
-    def step(self, until_us: int | None = None) -> None:
-        """Give it the step, no further than ``until_us``."""
+    def step(self, until_us: int | None = None, answers: int = 1) -> None:
+        """Give it the step, and up to so many in all, no further than ``until_us``."""
 
     def attach(self, plant: LocalPlant) -> None:
         """Serve this plant from now on."""
@@ -105,6 +104,9 @@ class Foreign(Connection):
     """
 
     is_exact = False
+    repeats = False
+    """Whether the same words at the same times make the same flight, bit for bit: of an ArduPilot that was started
+    here, without on-board log."""
 
     def __init__(
         self,
@@ -127,6 +129,9 @@ class Foreign(Connection):
         self.tap: Callable[[bytes], None] = lambda data: None
         """Gets all that the autopilot says."""
         self.stream: ByteStream | None = None
+        self.digests: list[str] = []
+        """Of all true states and outputs from the start until each whole second of the physics' time, and until now."""
+        self._hash = hashlib.blake2b(digest_size=8)
         try:
             self._connect()
             self.find()
@@ -235,22 +240,29 @@ class Foreign(Connection):
 
     def run(self, us: int) -> None:
         host, goal, boots = self.host, self.host.time_us + us, self.host.boots
-        if self.stream is not None:
-            self.stream.flush()
         if self._port is not None:
             self._port.act()
-        turns = 0
         with self._one_core:
+            if self.stream is not None:  # on the same core as our answers: the kernel delivers both in this order
+                self.stream.flush()
             while host.time_us < goal and host.boots == boots:
                 self._await()
-                host.step(goal)
-                turns += 1
-                if turns % _TURNS == 0:
-                    self._hear()
+                host.step(goal, ANSWERS)
+                self._hear()
             if us > 0:
                 self._await()
         self._hear()
         self._look()
+        self._digest()
+
+    def _digest(self) -> None:
+        """Put the true state into the digests."""
+        vehicle = self.plant.vehicle
+        state = vehicle.fleet[vehicle.index : vehicle.index + 1]
+        self._hash.update(state["physics"].tobytes() + state["actuators"].tobytes())
+        second = self.time_us // 1_000_000
+        del self.digests[second:]
+        self.digests += (second + 1 - len(self.digests)) * [self._hash.hexdigest()]
 
     def _await(self) -> None:
         """Until the autopilot asks for a step."""
@@ -338,7 +350,8 @@ def launch(
     Args:
         choice: the autopilot.
         plant: at power-on.
-        params: of the autopilot, under its own names; or lines of Betaflight's command line.
+        params: of the autopilot, under its own names; or lines of Betaflight's command line. The on-board log of an
+            ArduPilot is off, unless they say something of it (``ardupilot.unlogged``).
         inbox: see ``Foreign``.
         patience: wall time without a sign of life after which it is lost [s].
 
@@ -374,11 +387,13 @@ def launch(
         elif choice.program is not None:
             process = ardupilot.start(
                 choice.program, airframe, plant.home, json_host.address[1], base,
-                overrides=text_of(params),
+                overrides=text_of(ardupilot.unlogged(params)),
             )  # fmt: skip
         undo.pop_all()
-    made = Foreign(host, plant, where, process, inbox, patience)
+    found = Foreign(host, plant, where, process, inbox, patience)
     if choice.kind == PX4 and process is not None and (unknown := px4.unknown_names(process, params)):
-        made.close()
+        found.close()
         raise OptionError(f"params: autopilot {choice.name} has no {', '.join(unknown)}")
-    return made
+    if choice.kind == ARDUPILOT and process is not None:
+        found.repeats = ardupilot.unlogged(params)[ardupilot.LOG] == 0.0
+    return found

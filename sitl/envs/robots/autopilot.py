@@ -23,7 +23,7 @@ from sitl.client.connection import Connection
 from sitl.core.elementary import cos, sin
 from sitl.errors import LinkLostError
 from sitl.foreign.betaflight import configuration
-from sitl.foreign.choice import BETAFLIGHT, FOREIGN, PX4, Choice, choose
+from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, PX4, Choice, choose
 from sitl.move import Move
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
@@ -113,7 +113,7 @@ class AutopilotRobot:
             raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
         if kind.takes_off and not 0.5 <= chosen.take_off <= 100.0:
             raise EnvOptionError(f"take_off = {chosen.take_off}; it must be 0.5 .. 100 m")
-        runs = chosen.connection != INPROCESS and chosen.autopilot in FOREIGN
+        runs = chosen.connection != INPROCESS and chosen.autopilot in (ARDUPILOT, PX4)
         try:
             choice = None if runs else choose(chosen.autopilot, airframe.kind, chosen.autopilot_path)
         except OptionError as error:

@@ -12,7 +12,7 @@ from sitl.autopilot.params import files
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.foreign.betaflight import configuration
-from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, Choice
+from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, PX4, Choice
 from sitl.physics.engine import EngineError
 from sitl.plants.local import stand_alone
 from sitl.scenario import Scenario
@@ -27,16 +27,14 @@ from .robot import Pose
 from .vehicles import INPROCESS, EpisodeState, Vehicles, VehicleSetup
 from .wind import wind_and_own
 
-_LOG = "LOG_BACKEND_TYPE"
 _NOT_ITS_OWN = ("mocap", "uwb")
 """Sensor sets that an ArduPilot's own receiver is nothing like."""
 
 
 def of_episodes(choice: Choice, params: Mapping[str, float]) -> dict[str, float]:
-    """Parameters of an autopilot in episodes, unless they say something else themselves: an ArduPilot keeps no log,
-    because nobody would read it (its folder is deleted) and to write it takes a part of its time; a PX4 takes sticks
-    from MAVLink."""
-    return {**({_LOG: 0.0} if choice.kind == ARDUPILOT else px4.PARAMETERS), **params}
+    """Parameters of an autopilot in episodes, unless they say something else themselves: a PX4 takes sticks from
+    MAVLink."""
+    return {**(px4.PARAMETERS if choice.kind == PX4 else {}), **params}
 
 
 class ForeignVehicles(Vehicles):

@@ -119,7 +119,7 @@ class BetaflightHost:
         self._say(f"betaflight reboots at {1e-6 * self.time_us:.1f} s")
         self.face.rebooted()
 
-    def step(self, until_us: int | None = None) -> None:
+    def step(self, until_us: int | None = None, answers: int = 1) -> None:
         """Let the program do a tick, then the physics with its motors; nothing, when it does not answer in 0.2 s."""
         if not self._is_granted:
             self._grant()

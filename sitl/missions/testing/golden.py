@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from sitl.core.whole_file import write_whole
+from sitl.envs.mavlink.foreign import Foreign
 from sitl.errors import OptionError, SitlError
 from sitl.logs.tlog import LogError
 from sitl.recording.entries import RecordingError
 
 from ..comparison.alignment import AlignmentError
+from . import digests
 from .logs import NOT_AGAIN, fly_again
 from .moments import Forking
 
@@ -71,7 +73,8 @@ class Golden(Forking):
         """The flight from power-on until now is like a golden one.
 
         Args:
-            golden: a recording (.rec), or a .tlog or .bin, relative to the test's folder.
+            golden: relative to the test's folder: a recording (.rec), or a .tlog or .bin; of a real ArduPilot, digests
+                (.digests), which are compared exactly.
             tolerance: "exact", "same", "alike", a distance with its unit ("0.5 m"), a .toml file relative to the test's
                 folder, or a mapping of the same shape; None: if golden is of the same vehicle, world and seed, "exact"
                 on native physics, "same" on another engine; else "alike".
@@ -81,6 +84,10 @@ class Golden(Forking):
                 ``--sitl-update-golden`` writes goldens.
         """
         path = self.golden.folder / golden
+        if path.suffix == digests.SUFFIX:
+            self._assert_digests(path, tolerance)
+            return
+        self._must_repeat()
         with tempfile.TemporaryDirectory(prefix="sitl-") as folder:
             if self.golden.update:
                 self._update(path, self._record(Path(folder), "new"))
@@ -97,12 +104,34 @@ class Golden(Forking):
         if problem:
             raise AssertionError("\n".join([*problem, f"  if the change is intended: {self.golden.how}"]))
 
-    def _record(self, folder: Path, stem: str) -> Path:
-        """A recording of the flight so far."""
+    def _assert_digests(self, path: Path, tolerance: Limits) -> None:
+        """The flight of a real ArduPilot is a golden one, bit for bit."""
+        flight = self.connection
+        if not isinstance(flight, Foreign) or not flight.repeats:
+            raise OptionError(
+                f"golden flight {path}: {digests.SUFFIX} is of flights with an ArduPilot that was started here"
+            )
+        if tolerance not in (None, "exact"):
+            raise OptionError(f"golden flight {path}: tolerance {tolerance!r}: digests are compared exactly")
+        if self.golden.update:
+            self._claim(path)
+            if digests.write(path, flight):
+                self.golden.written.append(path)
+            return
+        if not path.exists():
+            raise AssertionError(f"there is no golden flight {path}; to write it from this flight: {self.golden.how}")
+        if problem := digests.differences(path, flight):
+            raise AssertionError("\n".join([*problem, f"  if the change is intended: {self.golden.how}"]))
+
+    def _must_repeat(self) -> None:
         if self.cannot_repeat:
             raise OptionError(
                 f"{self.cannot_repeat}: its flight cannot be repeated: there is no recording and no golden flight"
             )
+
+    def _record(self, folder: Path, stem: str) -> Path:
+        """A recording of the flight so far."""
+        self._must_repeat()
         flown = fly_again(self, folder, stem, log=False)
         if not flown.same:
             raise AssertionError(NOT_AGAIN)
@@ -113,12 +142,7 @@ class Golden(Forking):
         store = self.golden
         if path.suffix != ".rec":
             raise AssertionError(f"golden flight {path} is not written: it must be a recording (.rec)")
-        before = store.taken.setdefault(path.resolve(), store.test)
-        if before != store.test or path in store.checked:
-            raise AssertionError(
-                f"golden flight {path} is already used by another flight of {before}; each flight needs its own"
-            )
-        store.checked.append(path)
+        self._claim(path)
         if path.exists() and _kept(path) == _kept(new):
             return
         try:
@@ -129,6 +153,16 @@ class Golden(Forking):
         except SitlError as error:
             raise AssertionError(str(error)) from None
         store.written.append(path)
+
+    def _claim(self, path: Path) -> None:
+        """This flight is the one that the golden is of."""
+        store = self.golden
+        before = store.taken.setdefault(path.resolve(), store.test)
+        if before != store.test or path in store.checked:
+            raise AssertionError(
+                f"golden flight {path} is already used by another flight of {before}; each flight needs its own"
+            )
+        store.checked.append(path)
 
     def _compare(self, path: Path, new: Path, tolerance: Limits) -> list[str]:
         """What is wrong, in lines; nothing when it flies like golden."""

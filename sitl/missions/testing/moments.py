@@ -127,7 +127,7 @@ class Forking(client.Client):
         """Why its flight cannot be flown again; "": it can."""
         simulation = self.connection.simulation
         if simulation is None:
-            return f"autopilot {self.connection.name}"
+            return f"autopilot {self.connection.name} (golden flights of a real ArduPilot are .digests)"
         return f"physics {simulation.physics}" if is_remote(simulation.physics) else ""
 
     def set_link_faults(self, faults: LinkFaults | None) -> None:
