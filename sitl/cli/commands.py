@@ -20,6 +20,7 @@ COMMANDS = {
     "demo": Listed("sitl.cli.demo", "run a MAVSDK example and draw what the vehicle did"),
     "mission": Listed("sitl.missions.cli", "fly mission files, record, replay and compare flights"),
     "view": Listed("sitl.missions.view", "show logs and recordings on a page in the browser"),
+    "twin": Listed("sitl.missions.twin.cli", "fly a log's flight again beside the log, and ask what if"),
     "train": Listed("sitl.agents.cli.train", "let an agent learn in an environment"),
     "evaluate": Listed("sitl.agents.cli.evaluate", "evaluate the trained agent of a run: reward, crashes, laps"),
     "watch": Listed("sitl.agents.cli.watch", "show the trained agent of a run: browser, window, GIF or MP4"),

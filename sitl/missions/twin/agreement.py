@@ -76,6 +76,10 @@ def compare(
     else:
         here = _at(now, time)
         difference = here - logged
+    if each and quantity.adds_up:
+        first = np.array([np.argmax(member == k) for k in range(len(windows))])
+        difference = difference - difference[first[member]]
+        here = logged + difference
     return _figures(quantity, time, logged, here, difference, member if each else np.zeros(len(time), int))
 
 
@@ -108,7 +112,7 @@ def _figures(q: Quantity, time: Array, logged: Array, here: Array, difference: A
 
 def _variance(values: Array, member: Array) -> float:
     """About the mean of each window, over all columns."""
-    numbers, place = np.unique(member, return_inverse=True)
+    _, place = np.unique(member, return_inverse=True)
     count = np.bincount(place).astype(float)
     total = 0.0
     for column in values.T:

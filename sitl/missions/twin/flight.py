@@ -297,7 +297,7 @@ class TwinFlight:
         found: set[float] = set()
         for k in np.flatnonzero(moves).tolist():
             begin, end = time[k], time[k + 1]
-            count = max(int(math.ceil((end - begin) / _STICK_S)), 1)
+            count = max(math.ceil((end - begin) / _STICK_S), 1)
             found.update(round(begin + (end - begin) * n / count, 4) for n in range(1, min(count, 50) + 1))
         return [(t,) for t in sorted(found)]
 

@@ -22,6 +22,12 @@ _ARMED, _DISARMED = 10, 11
 _ESTIMATES = ("XKF1", "NKF1", "EKF1", "SIM2")
 """The last one is in logs of a vehicle that flies by its true state."""
 _PRIMARY = {"XKF1": "XKF4", "NKF1": "NKF4"}
+_NAMES = (
+    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC", "MODE", "NKF1",
+    "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2", "STER", "THR", "XKF1",
+    "XKF2", "XKF4",
+)  # fmt: skip
+"""Messages that are read."""
 _LEAST_S = 3.0
 """A shorter time armed is no flight."""
 _LEAST_WAY_M = 1.0
@@ -65,7 +71,7 @@ class FlightLog:
         form = forms.of(self.path)
         if form != forms.DATAFLASH:
             raise TwinError(f"log {str(path)!r} is {form}: a twin is made of a DataFlash log (.bin, .log)")
-        self.columns = Columns(self.path)
+        self.columns = Columns(self.path, _NAMES)
         self.kind = self.columns.kind
         if "PARM" not in self.columns:
             raise TwinError(
@@ -95,6 +101,12 @@ class FlightLog:
         found = _VERSION.search(self.columns.firmware)
         return (int(found[1]), int(found[2])) if found else (4, 7)
 
+    @property
+    def began(self) -> float:
+        """Time of the first message [s]."""
+        times = (self.columns[name].time for name in self.columns)
+        return min((float(time[0]) for time in times if len(time)), default=0.0)
+
     def has(self, name: str, *fields: str) -> bool:
         """Whether it has messages of a name with these fields."""
         return name in self.columns and all(field in self.columns[name] for field in fields)
@@ -110,7 +122,7 @@ class FlightLog:
 
     def every(self, name: str) -> Table | None:
         """All messages of a name, of one time, too; None: it has none."""
-        return self.columns[name] if name in self.columns else None
+        return self.columns[name] if name in self.columns else None  # noqa: SIM401 it is no dictionary
 
     def since_arming(self, table: Table) -> Array:
         """Times of messages since the arming [s]."""
@@ -169,10 +181,14 @@ class FlightLog:
         return []
 
     def _flights(self) -> list[Span]:
-        end = max((float(self.columns[n].time[-1]) for n in self.columns if len(self.columns[n].time)), default=0.0)
+        times = [self.columns[name].time for name in self.columns]
+        end = max((float(time[-1]) for time in times if len(time)), default=0.0)
         spans: list[Span] = []
         since: float | None = None
-        for time, state in self._changes():
+        changes = self._changes()
+        if changes and not changes[0][1] and self.columns.parameters.get("LOG_DISARMED", 0.0) == 0.0:
+            since = self.began  # the arming opened the log, which misses it
+        for time, state in changes:
             if state and since is None:
                 since = time
             elif not state and since is not None:

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was done to the vehicle of a log: missions, modes, commands, set-points, sticks, wind; times since arming [s]."""
+"""What was done to the vehicle of a log: missions, modes, commands, set-points, sticks, wind.
+
+Times are since arming [s].
+"""
 
 from __future__ import annotations
 
@@ -38,6 +41,8 @@ _METRES_SINCE = (4, 7)
 """Version since which GUIP is in metres, down; before: centimetres, up."""
 _LOCAL_NED = 1
 CHANNELS = 16
+_OPENING_S = 5.0
+"""A mission that is written into a log so soon after its beginning was there before: arming opens logs."""
 _CALM = 0.05
 """A wind estimate that never exceeds it is none [m/s]."""
 
@@ -128,7 +133,8 @@ def _missions(log: FlightLog) -> list[tuple[float, tuple[MissionItem, ...]]]:
         if len(items) == int(total) and sorted(items) == list(range(int(total))):
             mission = tuple(items[seq] for seq in range(int(total)))
             if not found or found[-1][1] != mission:
-                found.append((float(time), mission))
+                is_old = not found and (time <= 0.0 or table.time[0] - log.began < _OPENING_S)
+                found.append((min(float(time), 0.0) if is_old else float(time), mission))
     return found
 
 
@@ -193,11 +199,14 @@ def _positions(log: FlightLog, notes: list[str]) -> Iterator[Message]:
             "coordinate_frame": _LOCAL_NED, "type_mask": mask,
             "x": scale * row["pX"] - north, "y": scale * row["pY"] - east, "z": up * scale * row["pZ"] - down,
             "vx": scale * row["vX"], "vy": scale * row["vY"], "vz": up * scale * row["vZ"],
-            "afx": scale * row.get("aX", 0.0), "afy": scale * row.get("aY", 0.0), "afz": up * scale * row.get("aZ", 0.0),
+            "afx": scale * row.get("aX", 0.0), "afy": scale * row.get("aY", 0.0),
+            "afz": up * scale * row.get("aZ", 0.0),
         }  # fmt: skip
         yield Message(float(times[k]), "SET_POSITION_TARGET_LOCAL_NED", fields)
     if left:
-        notes.append(f"{left} set-points of GUIDED are left out: over terrain, or their frame of altitude is not logged")
+        notes.append(
+            f"{left} set-points of GUIDED are left out: over terrain, or their frame of altitude is not logged"
+        )
 
 
 def _attitudes(log: FlightLog) -> Iterator[Message]:

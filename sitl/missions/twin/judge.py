@@ -17,8 +17,6 @@ _PUSH = 0.3
 _VOLTS = 0.02
 """Share by which voltages may differ."""
 _AXES = ("roll_rate", "pitch_rate", "yaw_rate")
-_RATE_HZ = 20.0
-"""Motor outputs that are logged less often say nothing of rates."""
 
 
 def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: Sequence[Agreement]) -> list[str]:
@@ -31,8 +29,8 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
         flown = float(throttle.flown.mean())
         if logged > 1.0 and abs(flown / logged - 1.0) > _LIFT:
             found.append(
-                f"model: mean motor output of the log is {logged:.1f} %, of the twin {flown:.1f} %: the airframe's thrust "
-                f"over weight is {'less' if flown > logged else 'more'} than the vehicle's"
+                f"model: mean throttle output of the log is {logged:.1f} %, of the twin {flown:.1f} %: the thrust "
+                f"over weight of the airframe is {'less' if flown > logged else 'more'} than the vehicle's"
             )
     push = of_model.get("acceleration")
     if push is not None and abs(push.bias) > _PUSH:
@@ -40,10 +38,9 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
             f"model: at the log's motor outputs the model accelerates {abs(push.bias):.2f} m/s^2 more "
             f"{'up' if push.bias > 0.0 else 'down'} than the vehicle did"
         )
-    motors = of_whole.get("motors")
     for name in _AXES:
         closed, alone = of_segments.get(name), of_model.get(name)
-        if alone is not None and _is_bad(alone) and _often(motors) and (closed is None or _is_bad(closed)):
+        if alone is not None and _is_bad(alone) and (closed is None or _is_bad(closed)):
             found.append(
                 f"model: {alone.quantity.title} at the log's motor outputs accounts for {max(alone.vaf, 0.0):.0f} % of "
                 "its variance: torque over inertia, damping or motor lag differ"
@@ -67,9 +64,3 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
 
 def _is_bad(one: Agreement) -> bool:
     return math.isfinite(one.vaf) and one.vaf < _GOOD
-
-
-def _often(one: Agreement | None) -> bool:
-    if one is None or len(one.time) < 3:
-        return False
-    return len(one.time) / max(float(one.time[-1] - one.time[0]), 1e-3) >= _RATE_HZ

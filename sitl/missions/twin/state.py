@@ -21,6 +21,8 @@ Array = np.ndarray[Any, Any]
 
 _FRESH_S = 0.3
 """A controller whose last message is older did not work then."""
+_NEAR_M, _NEAR_MS = 2.0, 1.0
+"""Targets that are farther apart are not the same point of a path [m], [m/s]."""
 _NE, _D = ("N", "E"), ("D",)
 
 
@@ -69,9 +71,7 @@ class LoggedState:
 
     def _angles(self, *names: str) -> Series:
         table = self.log.table("ATT")
-        return Series(
-            self.log.since_arming(table), np.stack([np.unwrap(np.radians(table[name])) for name in names], 1)
-        )
+        return Series(self.log.since_arming(table), np.stack([np.unwrap(np.radians(table[name])) for name in names], 1))
 
     def _rates(self) -> Series:
         log = self.log
@@ -109,37 +109,60 @@ class LoggedState:
         v = simulation.v
         if driven:
             v.physics.rotors.stuck = ALL_DRIVEN
-        body = v.physics.body
+        body, control = v.physics.body, v.autopilot.control
         motion = np.array(self.motion.at(time))
-        was, away = body.pos, motion[:3] - self.start
-        body.pos = Vec3(place.x + float(away[0]), place.y + float(away[1]), place.z + float(away[2]))
-        body.vel = Vec3(*map(float, motion[3:]))
+        origin = np.array(place)
+        wanted = np.concatenate([origin + motion[:3] - self.start, motion[3:]])
+        was = body.pos
+        follows = self._follow_targets(control, time, wanted)
+        body.pos, body.vel = Vec3(*map(float, wanted[:3])), Vec3(*map(float, wanted[3:]))
         body.q = quat_from_euler(Euler(*self.attitude.at(time)))
         rates = Vec3(*self.rates.at(time))
         body.rates = body.rates_mean = rates
         settle(v.autopilot.inertial_filter.gyro, rates)
         self.drive(simulation, time, at_once=True)
-        control = v.autopilot.control
         if self.asked is not None:
             control.attitude.target_q = quat_from_euler(Euler(*self.asked.at(time)))
         moved = body.pos - was
-        self._put_targets(control, time, moved)
+        if not follows[0]:
+            control.pos_ne.pos_desired += Vec2(moved.x, moved.y)
+        if not follows[1]:
+            control.pos_d.pos_desired += moved.z
 
-    def _put_targets(self, control: Any, time: float, moved: Vec3) -> None:
-        north, east, down = self.position
+    def _follow_targets(self, control: Any, time: float, wanted: Array) -> tuple[bool, bool]:
+        """Where a controller follows a path, put the vehicle as far from its own target as the log's was from its: two
+        flights come to the same point of a path some hundredths of a second apart, which is no error of the state.
+
+        Args:
+            control: the controllers.
+            time: since arming [s].
+            wanted: position and velocity, changed in place, shape (6,).
+
+        Returns:
+            Whether that was done of north and east, and of down.
+        """
         level, height = control.pos_ne, control.pos_d
-        if north is not None and east is not None and north.is_fresh(time):
-            n, e = north.at(time), east.at(time)
-            level.pos_desired = Vec2(n[0] - float(self.start[0]), e[0] - float(self.start[1]))
-            level.vel_desired, level.accel_desired = Vec2(n[1], e[1]), Vec2(n[2], e[2])
-        else:
-            level.pos_desired += Vec2(moved.x, moved.y)
-        if down is not None and down.is_fresh(time):
-            d = down.at(time)
-            height.pos_desired = d[0] - float(self.start[2])
-            height.vel_desired, height.accel_desired = d[1], d[2]
-        else:
-            height.pos_desired += moved.z
+        own = (
+            (float(level.pos_desired[0]), float(level.vel_desired[0])),
+            (float(level.pos_desired[1]), float(level.vel_desired[1])),
+            (float(height.pos_desired), float(height.vel_desired)),
+        )
+        found = [False, False]
+        for part, axes in enumerate(((0, 1), (2,))):
+            series = [self.position[axis] for axis in axes]
+            if any(one is None or not one.is_fresh(time) for one in series):
+                continue
+            moves = []
+            for axis, one in zip(axes, series):
+                assert one is not None
+                pos, vel = one.at(time)[:2]
+                moves.append((own[axis][0] - (pos - float(self.start[axis])), own[axis][1] - vel))
+            if all(abs(by) < _NEAR_M and abs(faster) < _NEAR_MS for by, faster in moves):
+                for axis, (by, faster) in zip(axes, moves):
+                    wanted[axis] += by
+                    wanted[axis + 3] += faster
+                found[part] = True
+        return found[0], found[1]
 
     def drive(self, simulation: Simulation, time: float, at_once: bool = False) -> None:
         """Command the rotors as the log's motors were; ``at_once``: their speeds follow without lag."""
@@ -161,4 +184,3 @@ class LoggedState:
             rotors.command[rotor] = min(max(command, 0.0), 1.0)
             if at_once:
                 rotors.speed[rotor] = min(rotors.command[rotor] * full, top)
-

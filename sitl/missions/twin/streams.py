@@ -41,6 +41,8 @@ class Quantity:
     """In degrees, and turns round."""
     is_vector: bool = False
     """The root mean square is that of the vector's length, not that of a column."""
+    adds_up: bool = False
+    """In open segments it counts from the beginning of each."""
     is_asked: bool = False
     """The autopilot's, not the vehicle's: what it asks for."""
 
@@ -83,6 +85,16 @@ def _speed(log: FlightLog) -> Stream | None:
     return Stream(log.since_arming(table), np.hypot(table["VN"], table["VE"])[:, None])
 
 
+def _acceleration(field: str) -> Callable[[FlightLog], Stream | None]:
+    """Upward; ArduPilot writes m/s^2 since 4.7, cm/s^2 before, and this simulator as its units say."""
+
+    def of(log: FlightLog) -> Stream | None:
+        in_metres = log.version >= (4, 7) and "gym-sitl" not in log.columns.firmware
+        return _fields("RATE", field, scale=1.0 if in_metres else 0.01)(log)
+
+    return of
+
+
 def motor_numbers(log: FlightLog) -> list[int]:
     """Channels of RCOU that drive motors, from 1 (SERVOn_FUNCTION 33 to 40); as many as the log has."""
     parameters = log.columns.parameters
@@ -115,15 +127,18 @@ def motors(log: FlightLog) -> Stream | None:
 _BATTERY = (
     Quantity("voltage", "battery voltage", "V", 0.05, _fields("BAT", "Volt", instance=0)),
     Quantity("current", "battery current", "A", 0.5, _fields("BAT", "Curr", instance=0)),
-    Quantity("consumed", "charge drawn", "mAh", 1.0, _from_arming(_fields("BAT", "CurrTot", instance=0))),
-)
+    Quantity("consumed", "charge drawn", "mAh", 1.0, _from_arming(_fields("BAT", "CurrTot", instance=0)),
+             adds_up=True),
+)  # fmt: skip
 _PLACE = Quantity(
-    "position", "horizontal position", "m", 0.3, _from_arming(_estimate("PN", "PE")), ("north", "east"), is_vector=True
-)
+    "position", "horizontal position", "m", 0.3, _from_arming(_estimate("PN", "PE")), ("north", "east"),
+    is_vector=True, adds_up=True,
+)  # fmt: skip
 _HEADING = Quantity("yaw", "heading", "deg", 2.0, _fields("ATT", "Yaw"), is_angle=True)
 
 COPTER = (
-    Quantity("height", "height above the place of arming", "m", 0.3, _from_arming(_estimate("PD"), -1.0)),
+    Quantity("height", "height above the place of arming", "m", 0.3, _from_arming(_estimate("PD"), -1.0),
+             adds_up=True),
     _PLACE,
     Quantity("climb", "climb rate", "m/s", 0.15, _estimate("VD", scale=-1.0)),
     Quantity("speed", "ground speed", "m/s", 0.2, _speed),
@@ -133,12 +148,12 @@ COPTER = (
     Quantity("roll_rate", "roll rate", "deg/s", 2.0, _fields("RATE", "R")),
     Quantity("pitch_rate", "pitch rate", "deg/s", 2.0, _fields("RATE", "P")),
     Quantity("yaw_rate", "yaw rate", "deg/s", 2.0, _fields("RATE", "Y")),
-    Quantity("acceleration", "upward acceleration", "m/s^2", 0.3, _fields("RATE", "A", scale=0.01)),
+    Quantity("acceleration", "upward acceleration", "m/s^2", 0.3, _acceleration("A")),
     Quantity("asked_roll", "roll asked for", "deg", 1.0, _fields("ATT", "DesRoll"), is_asked=True),
     Quantity("asked_pitch", "pitch asked for", "deg", 1.0, _fields("ATT", "DesPitch"), is_asked=True),
     Quantity("asked_acceleration", "upward acceleration asked for", "m/s^2", 0.3,
-             _fields("RATE", "ADes", scale=0.01), is_asked=True),
-    Quantity("throttle", "mean motor output", "%", 1.0, _fields("CTUN", "ThO", scale=100.0)),
+             _acceleration("ADes"), is_asked=True),
+    Quantity("throttle", "throttle output", "%", 1.0, _fields("CTUN", "ThO", scale=100.0)),
     Quantity("motors", "motor outputs", "%", 1.0, motors),
     *_BATTERY,
 )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,8 +15,8 @@ import numpy as np
 
 from sitl import vehicles
 from sitl.autopilot.params import files
-from sitl.core.compile import Progress
 from sitl.core.algebra import euler_of
+from sitl.core.compile import Progress
 from sitl.core.geodesy import add_offset
 from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
@@ -65,6 +65,8 @@ class Twin:
     """Of segments in which the model's motors do what the log's did."""
     difference: list[Agreement] = field(default_factory=list)
     """Of the changed twin from the twin."""
+    begins: tuple[float, ...] = ()
+    """Of open segments, since arming [s]."""
 
     @property
     def findings(self) -> list[str]:
@@ -180,10 +182,19 @@ class _Twins:
         found.whole = _compared(quantities, self.log, flown, all_of_it)
         if changed is not None:
             found.difference = _compared(quantities, flown, changed, all_of_it)
-        if segments and self.log.kind == "copter" and self.physics == NATIVE:
+        if segments and not (self.log.kind == "copter" and self.physics == NATIVE):
+            found.notes.append("open segments are flown by copters on native physics only")
+        elif segments:
             found.segments = self._segments("segments", SEGMENT_S, False, then)
             found.model = self._segments("model", MODEL_S, True, then)
-            found.model = [one for one in found.model if not one.quantity.is_asked and one.quantity.name in _BY_MOTORS]
+            found.begins = tuple(window.begin for window in self._windows(SEGMENT_S))
+            by_motors = _BY_THRUST if self._outputs_hz < RATES_HZ else (*_BY_THRUST, *_BY_TORQUE)
+            found.model = [one for one in found.model if one.quantity.name in by_motors]
+            if by_motors == _BY_THRUST and found.model:
+                found.notes.append(
+                    f"motor outputs are logged {self._outputs_hz:.0f} times a second: at less than {RATES_HZ:.0f} they "
+                    "tell of the model's thrust, not of its torques"
+                )
         return found
 
     def _notes(self) -> list[str]:
@@ -195,13 +206,17 @@ class _Twins:
         if log.kind == "copter":
             motors, rotors = len(streams.motor_numbers(log)), len(self.airframe.rotors)  # type: ignore[attr-defined]
             if motors and motors != rotors:
-                notes.insert(0, f"the log is of a vehicle with {motors} motors, frame {self.airframe.name} has {rotors}")
+                notes.insert(
+                    0, f"the log is of a vehicle with {motors} motors, frame {self.airframe.name} has {rotors}"
+                )
         if len(log.flights) > 1:
             notes.append(f"flight {log.number} of {len(log.flights)} in the log (--flight)")
         if not log.span.is_whole:
             notes.append(f"the log ends {log.span.length:.0f} s after arming, while armed: it is compared up to there")
-        if log.columns.skipped or log.columns.truncated:
+        if log.columns.skipped:
             notes.append(f"the log is damaged: {log.columns.skipped} bytes of it are no messages")
+        if log.columns.truncated:
+            notes.append("the log is cut off within a message")
         if self.wind is not None:
             notes.append(f"wind of the log's flight: {self.wind[0]:g} m/s from {self.wind[1]:g} deg, as given")
         elif self.inputs.wind:
@@ -270,6 +285,10 @@ class _Twins:
         flown, _ = self._flown(name, self.airframe, change, Segments(windows, driven))
         return _compared(streams.QUANTITIES[self.log.kind], self.log, flown, windows, each=True)
 
+    @property
+    def _outputs_hz(self) -> float:
+        return self.log.table("RCOU").rate if self.log.has("RCOU") else 0.0
+
     def _windows(self, seconds: float) -> tuple[Window, ...]:
         """One after the other while the log's vehicle is in the air; each begins when rates were logged."""
         log = self.log
@@ -296,17 +315,21 @@ class _Twins:
         return tuple(found)
 
 
-_BY_MOTORS = (
-    "height", "climb", "position", "speed", "roll", "pitch", "yaw", "roll_rate", "pitch_rate", "yaw_rate",
-    "acceleration", "voltage", "current",
-)  # fmt: skip
-"""Quantities that follow from the motors' outputs."""
+_BY_THRUST = ("height", "climb", "acceleration", "voltage", "current")
+"""Quantities that follow from the motors' outputs together."""
+_BY_TORQUE = ("position", "speed", "roll", "pitch", "yaw", "roll_rate", "pitch_rate", "yaw_rate")
+"""Those that follow from their differences."""
+RATES_HZ = 20.0
+"""Motor outputs that are logged less often say nothing of rates."""
 
 
 def _compared(
-    quantities: Iterable[streams.Quantity], log: FlightLog, flown: FlightLog, windows: list[Window] | tuple[Window, ...],
+    quantities: Iterable[streams.Quantity],
+    log: FlightLog,
+    flown: FlightLog,
+    windows: Sequence[Window],
     each: bool = False,
-) -> list[Agreement]:  # fmt: skip
+) -> list[Agreement]:
     found = (compare(quantity, log, flown, windows, each=each) for quantity in quantities)
     return [one for one in found if one is not None]
 
@@ -324,5 +347,7 @@ def with_mass(airframe: Airframe, text: str) -> Airframe:
         value = math.nan
     mass = was + value if text.strip()[:1] in "+-" else value
     if not (math.isfinite(mass) and mass > 0.001):
-        raise OptionError(f"mass {text!r}: a mass [kg] is needed, or what is added to the {was:g} kg of the airframe: +0.5")
+        raise OptionError(
+            f"mass {text!r}: a mass [kg] is needed, or what is added to the {was:g} kg of the airframe: +0.5"
+        )
     return replace(airframe, figures={**airframe.figures, "mass": mass})
