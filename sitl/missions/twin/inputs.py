@@ -36,10 +36,12 @@ _GUIDED_MASKS = {
 }
 """GUIP.Type (ArduCopter's sub-modes of GUIDED) -> type_mask of a set-point. 0 is a take-off, 6 attitudes."""
 _ON_THE_GLOBE = 1e5
-"""A GUIP position beyond it is latitude and longitude, whose frame of altitude is not logged [m]."""
+"""A GUIP position beyond it is latitude and longitude [m]."""
+_GLOBAL, _ABOVE_HOME = 5, 6
 _METRES_SINCE = (4, 7)
 """Version since which GUIP is in metres, down; before: centimetres, up."""
 _LOCAL_NED = 1
+_LONG_GUIDED_S = 3.0
 CHANNELS = 16
 _OPENING_S = 5.0
 """A mission that is written into a log so soon after its beginning was there before: arming opens logs."""
@@ -99,9 +101,18 @@ def of(log: FlightLog) -> Inputs:
     found.wind = _wind(log)
     if found.sticks is None:
         found.notes.append("the log has no RCIN: nobody holds the sticks")
-    if found.modes and mode_name(log.kind, found.modes[0].number) == "GUIDED" and not found.messages:
+    if _guided_s(log, found.modes) > _LONG_GUIDED_S and not found.messages:
         found.notes.append("the log has no set-points of GUIDED (MAVC, GUIP, GUIA)")
     return found
+
+
+def _guided_s(log: FlightLog, modes: list[Mode]) -> float:
+    """How long it was in GUIDED [s]."""
+    ends = [*(mode.time for mode in modes[1:]), log.span.length]
+    guided = (max(mode.time, 0.0) for mode in modes)
+    return sum(
+        end - begin for mode, begin, end in zip(modes, guided, ends) if mode_name(log.kind, mode.number) == "GUIDED"
+    )
 
 
 def _inside(log: FlightLog, table: Table) -> Array:
@@ -186,14 +197,19 @@ def _positions(log: FlightLog, notes: list[str]) -> Iterator[Message]:
     north, east, down = (log.at_arming(since, estimate[field]) for field in ("PN", "PE", "PD"))
     scale, up = (1.0, 1.0) if log.version >= _METRES_SINCE else (0.01, -1.0)
     columns = {name: table[name] for name in table.fields}
-    times, left = log.since_arming(table), 0
+    times, home = log.since_arming(table), log.home()[2]
+    left = on_globe = 0
     for k in np.flatnonzero(_inside(log, table)):
         row = {name: float(column[k]) for name, column in columns.items()}
         mask = _GUIDED_MASKS.get(int(row["Type"]))
         if mask is None:
             continue
-        if row.get("Terrain", 0.0) or (not mask & _POSITION_IGNORED and abs(row["pX"]) > _ON_THE_GLOBE):
+        if row.get("Terrain", 0.0):
             left += 1
+            continue
+        if not mask & _POSITION_IGNORED and abs(row["pX"]) > _ON_THE_GLOBE:
+            on_globe += 1
+            yield Message(float(times[k]), "SET_POSITION_TARGET_GLOBAL_INT", _on_the_globe(row, mask, home))
             continue
         fields = {
             "coordinate_frame": _LOCAL_NED, "type_mask": mask,
@@ -204,9 +220,20 @@ def _positions(log: FlightLog, notes: list[str]) -> Iterator[Message]:
         }  # fmt: skip
         yield Message(float(times[k]), "SET_POSITION_TARGET_LOCAL_NED", fields)
     if left:
-        notes.append(
-            f"{left} set-points of GUIDED are left out: over terrain, or their frame of altitude is not logged"
-        )
+        notes.append(f"{left} set-points of GUIDED over terrain are left out")
+    if on_globe:
+        notes.append(f"{on_globe} set-points of GUIDED are places on the globe, which logs keep to about a metre")
+
+
+def _on_the_globe(row: dict[str, float], mask: int, home: float) -> dict[str, Any]:
+    """A set-point whose place is in 1e-7 degrees and centimetres. Whether its altitude is above home or above the sea
+    is not logged: the nearer one is taken."""
+    alt = 0.01 * row["pZ"]
+    return {
+        "coordinate_frame": _GLOBAL if abs(alt - home) < abs(alt) else _ABOVE_HOME,
+        "type_mask": mask | _VELOCITY_IGNORED | _ACCELERATION_IGNORED,
+        "lat_int": int(row["pX"]), "lon_int": int(row["pY"]), "alt": alt,
+    }  # fmt: skip
 
 
 def _attitudes(log: FlightLog) -> Iterator[Message]:
