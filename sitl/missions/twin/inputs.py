@@ -42,6 +42,7 @@ _METRES_SINCE = (4, 7)
 """Version since which GUIP is in metres, down; before: centimetres, up."""
 _LOCAL_NED = 1
 _LONG_GUIDED_S = 3.0
+_LONG_GAP_S = 0.25
 CHANNELS = 16
 _OPENING_S = 5.0
 """A mission that is written into a log so soon after its beginning was there before: arming opens logs."""
@@ -99,7 +100,11 @@ def of(log: FlightLog) -> Inputs:
     found.messages = sorted([*_commands(log, found.notes), *_positions(log, found.notes), *_attitudes(log)])
     found.sticks = _sticks(log)
     found.wind = _wind(log)
-    if found.sticks is None:
+    if found.sticks is not None:
+        gap = float(np.diff(found.sticks[0]).max(initial=0.0))
+        if gap > _LONG_GAP_S:
+            found.notes.append(f"sticks are missing in the log for up to {gap:.1f} s: they move evenly in between")
+    else:
         found.notes.append("the log has no RCIN: nobody holds the sticks")
     if _guided_s(log, found.modes) > _LONG_GUIDED_S and not found.messages:
         found.notes.append("the log has no set-points of GUIDED (MAVC, GUIP, GUIA)")

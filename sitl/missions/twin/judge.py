@@ -63,4 +63,4 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
 
 
 def _is_bad(one: Agreement) -> bool:
-    return math.isfinite(one.vaf) and one.vaf < _GOOD
+    return math.isfinite(one.vaf) and one.vaf < _GOOD and one.rms > one.quantity.moves

@@ -32,7 +32,7 @@ class Quantity:
     title: str
     unit: str
     moves: float
-    """Standard deviation below which nothing is to be accounted for: noise and rounding, in its unit."""
+    """In its unit: what moves less is noise and rounding, of which nothing is to be accounted for."""
     of: Callable[[FlightLog], Stream | None]
     """None: the log does not have it."""
     columns: tuple[str, ...] = ("",)
@@ -145,13 +145,13 @@ COPTER = (
     Quantity("roll", "roll", "deg", 1.0, _fields("ATT", "Roll")),
     Quantity("pitch", "pitch", "deg", 1.0, _fields("ATT", "Pitch")),
     _HEADING,
-    Quantity("roll_rate", "roll rate", "deg/s", 1.0, _fields("RATE", "R")),
-    Quantity("pitch_rate", "pitch rate", "deg/s", 1.0, _fields("RATE", "P")),
-    Quantity("yaw_rate", "yaw rate", "deg/s", 1.0, _fields("RATE", "Y")),
-    Quantity("acceleration", "upward acceleration", "m/s^2", 0.15, _acceleration("A")),
+    Quantity("roll_rate", "roll rate", "deg/s", 2.0, _fields("RATE", "R")),
+    Quantity("pitch_rate", "pitch rate", "deg/s", 2.0, _fields("RATE", "P")),
+    Quantity("yaw_rate", "yaw rate", "deg/s", 2.0, _fields("RATE", "Y")),
+    Quantity("acceleration", "upward acceleration", "m/s^2", 0.3, _acceleration("A")),
     Quantity("asked_roll", "roll asked for", "deg", 1.0, _fields("ATT", "DesRoll"), is_asked=True),
     Quantity("asked_pitch", "pitch asked for", "deg", 1.0, _fields("ATT", "DesPitch"), is_asked=True),
-    Quantity("asked_acceleration", "upward acceleration asked for", "m/s^2", 0.15,
+    Quantity("asked_acceleration", "upward acceleration asked for", "m/s^2", 0.3,
              _acceleration("ADes"), is_asked=True),
     Quantity("throttle", "throttle output", "%", 1.0, _fields("CTUN", "ThO", scale=100.0)),
     Quantity("motors", "motor outputs", "%", 1.0, motors),
@@ -162,9 +162,9 @@ ROVER = (
     _PLACE,
     Quantity("speed", "speed", "m/s", 0.1, _fields("THR", "Speed")),
     _HEADING,
-    Quantity("yaw_rate", "turn rate", "deg/s", 1.0, _fields("STER", "TurnRate")),
+    Quantity("yaw_rate", "turn rate", "deg/s", 2.0, _fields("STER", "TurnRate")),
     Quantity("asked_speed", "speed asked for", "m/s", 0.1, _fields("THR", "DesSpeed"), is_asked=True),
-    Quantity("asked_yaw_rate", "turn rate asked for", "deg/s", 1.0, _fields("STER", "DesTurnRate"), is_asked=True),
+    Quantity("asked_yaw_rate", "turn rate asked for", "deg/s", 2.0, _fields("STER", "DesTurnRate"), is_asked=True),
     Quantity("throttle", "throttle output", "%", 2.0, _fields("THR", "ThrOut")),
     Quantity("steering", "steering output", "%", 2.0, _fields("STER", "SteerOut", scale=1.0 / 45.0)),
     *_BATTERY,

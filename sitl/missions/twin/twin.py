@@ -34,6 +34,9 @@ from .judge import findings
 
 SEGMENT_S = 2.0
 """Length of an open segment."""
+SETTLES_S = 0.3
+"""Its beginning, which does not count: an estimated attitude errs by some tenths of a degree, and the controllers
+find that out."""
 MODEL_S = 0.5
 """Length of a segment in which the model alone flies."""
 _ABOVE_M = 1.0
@@ -283,6 +286,8 @@ class _Twins:
         if not windows:
             return []
         flown, _ = self._flown(name, self.airframe, change, Segments(windows, driven))
+        if not driven:
+            windows = tuple(Window(begin + SETTLES_S, end) for begin, end in windows)
         return _compared(streams.QUANTITIES[self.log.kind], self.log, flown, windows, each=True)
 
     @property
