@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python docs/draw_twin.py``: flies a mission, its twin, and the twin with a payload in wind, as twin.md shows them."""
+"""``python docs/draw_twin.py``: a mission, its twin, and the twin with a payload in wind, as twin.md shows them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sitl.missions.twin.flight import Change
 from sitl.run.runner import open_dataflash
 
 MISSION = Path(__file__).parents[1] / "missions" / "library" / "copter" / "square.plan"
-SHOWN = ("height", "roll", "pitch", "pitch_rate", "throttle", "current")
+SHOWN = ("height", "speed", "roll", "pitch", "throttle", "current")
 
 
 def main() -> None:

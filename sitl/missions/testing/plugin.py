@@ -106,7 +106,7 @@ def assert_flies_like(vehicle_factory: VehicleFactory) -> Callable[..., None]:
 
 @pytest.fixture
 def assert_twin(request: pytest.FixtureRequest) -> Callable[..., Any]:
-    """``assert_twin(log, limits, frame=...)``: ``sitl.missions.testing.assert_twin`` with a log of the test's folder."""
+    """``assert_twin(log, limits, frame=...)`` of ``sitl.missions.testing``, with a log of the test's folder."""
 
     def check(log: str | Path, limits: Mapping[str, float], **options: Any) -> Any:
         __tracebackhide__ = True

@@ -117,8 +117,9 @@ class FlightLog:
         if instance is not None:
             table = table.where(table["Inst"] == instance) if "Inst" in table else table.instance(instance)
         time = table.time
-        later = np.concatenate([[True], time[1:] > np.maximum.accumulate(time)[:-1]]) if len(time) else []
-        return table.where(np.asarray(later, bool))
+        later = np.ones(len(time), bool)
+        later[1:] = time[1:] > np.maximum.accumulate(time)[:-1]
+        return table.where(later)
 
     def every(self, name: str) -> Table | None:
         """All messages of a name, of one time, too; None: it has none."""

@@ -106,7 +106,7 @@ class LoggedState:
             place: where its body was when it was armed.
             driven: its rotors do from now on what ``drive`` says, not what the autopilot wants.
         """
-        v = simulation.v
+        v: Any = simulation.v
         if driven:
             v.physics.rotors.stuck = ALL_DRIVEN
         body, control = v.physics.body, v.autopilot.control
@@ -168,7 +168,7 @@ class LoggedState:
         """Command the rotors as the log's motors were; ``at_once``: their speeds follow without lag."""
         if self.motors is None:
             return
-        v = simulation.v
+        v: Any = simulation.v
         physics, params = v.physics, v.autopilot.params.MOT
         rotors, figures = physics.rotors, physics.airframe
         low, high = (params.PWM_MIN, params.PWM_MAX) if params.PWM_MAX > params.PWM_MIN else (1000.0, 2000.0)

@@ -78,7 +78,7 @@ class Twin:
 
     def figures(self) -> dict[str, float]:
         """All figures by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
-        found = {}
+        found: dict[str, float] = {}
         for part, agreements in (
             (WHOLE, self.whole), (OPEN, self.segments), (MODEL, self.model), (CHANGED, self.difference)
         ):  # fmt: skip

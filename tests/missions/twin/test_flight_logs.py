@@ -26,9 +26,9 @@ def test_a_flight_is_from_arming_to_disarming_and_begins_where_the_vehicle_stood
 def test_the_longest_flight_is_taken_or_the_one_that_is_asked_for(written: Log) -> None:
     path = written(("ARM", 15_000_000, 1, 0), ("ARM", 19_000_000, 0, 0))
     assert FlightLog(path).number == 2
-    with pytest.raises(TwinError, match="flight 1 of 2 .4 s armed. the vehicle never left"):
+    with pytest.raises(TwinError, match=r"flight 1 of 2 .4 s armed. the vehicle never left"):
         FlightLog(path, 1)
-    with pytest.raises(OptionError, match="flight 3: log .* has flights 1 to 2"):
+    with pytest.raises(OptionError, match=r"flight 3: log .* has flights 1 to 2"):
         FlightLog(path, 3)
 
 
@@ -56,14 +56,14 @@ def test_logs_without_a_flight(written: Log, options: dict[str, Any], text: str)
 def test_a_file_that_is_no_log(tmp_path: Path) -> None:
     path = tmp_path / "junk.bin"
     path.write_bytes(bytes(range(256)) * 100)
-    with pytest.raises(TwinError, match="junk.bin.*is made of a DataFlash log"):
+    with pytest.raises(TwinError, match=r"junk.bin.*is made of a DataFlash log"):
         FlightLog(path)
 
 
 def test_damaged_real_logs(own_log: Path, tmp_path: Path) -> None:
-    with pytest.raises((TwinError, LogError), match="does not say what vehicle it is of"):
+    with pytest.raises((TwinError, LogError), match=r"does not say what vehicle it is of"):
         FlightLog(cut(own_log, tmp_path / "tiny.bin", 0.003))
-    with pytest.raises(TwinError, match="has no PARM"):
+    with pytest.raises(TwinError, match=r"has no PARM"):
         FlightLog(without_messages(own_log, tmp_path / "none.bin", b"PARM"))
     log = FlightLog(cut(own_log, tmp_path / "half.bin", 0.6))
     assert not log.span.is_whole and log.columns.truncated
@@ -74,7 +74,7 @@ def test_nothing_is_written_of_a_log_that_cannot_be_flown(written: Log, tmp_path
     kept.mkdir()
     with pytest.raises(TwinError):
         twin.fly(written(height=0.0), "erle_copter", keep=kept)
-    with pytest.raises(OptionError, match="frame erle_rover is a rover, log .* is of a copter"):
+    with pytest.raises(OptionError, match=r"frame erle_rover is a rover, log .* is of a copter"):
         twin.fly(written(), "erle_rover", keep=kept)
     assert not list(kept.iterdir())
 
