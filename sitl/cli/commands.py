@@ -36,6 +36,7 @@ COMMANDS = {
     "ardurover": Listed("sitl.cli.drop_in", "run a rover in place of ArduPilot's ardurover"),
     "examples": Listed("sitl.cli.examples", "list and copy the example programs"),
     "params": Listed("sitl.cli.params", "list the parameters, or look for some"),
+    "frame": Listed("sitl.cli.frame", "list the airframes, or print one as a file to change and fly"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),
     "envs": Listed("sitl.envs.listing", "list the environments, or describe one"),
     "cache": Listed("sitl.cli.cache", "show, clear or build the compiled core"),

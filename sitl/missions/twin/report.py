@@ -18,9 +18,9 @@ from .limits import Verdict
 from .twin import MODEL_S, SEGMENT_S, Twin
 
 _MEANING = (
-    "RMS: root mean square of twin minus log. VAF: variance accounted for, 100 % when the twin moves exactly as the log, "
-    "0 % when it tells nothing of it; - where what was logged hardly moved. Largest: the largest difference; the pointer "
-    "over it shows when."
+    "RMS: root mean square of twin minus log. VAF: variance accounted for, 100 % when the twin moves exactly as the "
+    "log, 0 % when it tells nothing of it; - where what was logged hardly moved. Largest: the largest difference; the "
+    "pointer over it shows when."
 )
 
 
