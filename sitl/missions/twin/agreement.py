@@ -99,8 +99,9 @@ def _at(stream: Stream, time: Array) -> Array:
 
 
 def _figures(q: Quantity, time: Array, logged: Array, here: Array, difference: Array, member: Array) -> Agreement:
-    size = np.sqrt((difference**2).sum(1)) if q.is_vector else np.abs(difference).max(1)
-    rms = math.sqrt(float((difference**2).sum(1).mean() if q.is_vector else (difference**2).mean()))
+    squares = difference * difference
+    size = np.sqrt(squares.sum(1)) if q.is_vector else np.abs(difference).max(1)
+    rms = math.sqrt(float(squares.sum(1).mean() if q.is_vector else squares.mean()))
     left, was = _variance(difference, member), _variance(logged, member)
     moved = math.sqrt(was)
     vaf = 100.0 * (1.0 - left / was) if moved >= q.moves else math.nan
@@ -117,5 +118,5 @@ def _variance(values: Array, member: Array) -> float:
     total = 0.0
     for column in values.T:
         mean = np.bincount(place, column) / count
-        total += float(((column - mean[place]) ** 2).mean())
+        total += float(np.square(column - mean[place]).mean())
     return total / values.shape[1]

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
 from sitl.errors import OptionError, SitlError
 from sitl.logs import forms
 from sitl.logs.dataflash.columns import Columns, Table
@@ -210,7 +211,7 @@ class FlightLog:
             way, what = float(height.max() - height[0]), "left the ground"
         else:
             north, east = table["PN"][inside], table["PE"][inside]
-            way, what = float(np.hypot(north - north[0], east - east[0]).max()), "drove"
+            way, what = float(arrays.hypot(north - north[0], east - east[0]).max()), "drove"
         if way < _LEAST_WAY_M:
             raise TwinError(
                 f"log {str(self.path)!r}: in flight {self.number} of {len(self.flights)} "

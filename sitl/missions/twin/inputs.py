@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.core import elementary_arrays as arrays
+from sitl.core.elementary import atan2, cos, hypot, sin
 from sitl.logs.dataflash.columns import Table
 from sitl.logs.kind import mode_name
 
@@ -115,7 +117,7 @@ def _guided_s(log: FlightLog, modes: list[Mode]) -> float:
     """How long it was in GUIDED [s]."""
     ends = [*(mode.time for mode in modes[1:]), log.span.length]
     guided = (max(mode.time, 0.0) for mode in modes)
-    return sum(
+    return math.fsum(
         end - begin for mode, begin, end in zip(modes, guided, ends) if mode_name(log.kind, mode.number) == "GUIDED"
     )
 
@@ -250,7 +252,7 @@ def _attitudes(log: FlightLog) -> Iterator[Message]:
     for k in np.flatnonzero(_inside(log, table)):
         row = {name: float(column[k]) for name, column in columns.items()}
         half = [math.radians(row[name]) / 2.0 for name in ("Roll", "Pitch", "Yaw")]
-        (sr, sp, sy), (cr, cp, cy) = map(math.sin, half), map(math.cos, half)
+        (sr, sp, sy), (cr, cp, cy) = map(sin, half), map(cos, half)
         q = (
             cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy,
             cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy,
@@ -282,12 +284,12 @@ def _wind(log: FlightLog) -> list[Wind]:
             continue
         table = log.table(name, 0)
         time, north, east = log.since_arming(table), table["VWN"], table["VWE"]
-        if not len(time) or np.hypot(north, east).max() < _CALM:
+        if not len(time) or arrays.hypot(north, east).max() < _CALM:
             continue
         seconds = np.arange(0.0, log.span.length, 1.0)
         north, east = (np.interp(seconds, time, values) for values in (north, east))
         return [
-            Wind(t, math.hypot(n, e), math.degrees(math.atan2(-e, -n)) % 360.0)
+            Wind(t, hypot(n, e), math.degrees(atan2(-e, -n)) % 360.0)
             for t, n, e in zip(seconds.tolist(), north.tolist(), east.tolist())
         ]
     return []

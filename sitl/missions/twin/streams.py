@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sitl.core import elementary_arrays as arrays
+
 from .flight_log import FlightLog
 
 Array = np.ndarray[Any, Any]
@@ -82,7 +84,7 @@ def _estimate(*fields: str, scale: float = 1.0) -> Callable[[FlightLog], Stream 
 
 def _speed(log: FlightLog) -> Stream | None:
     table = log.estimate()
-    return Stream(log.since_arming(table), np.hypot(table["VN"], table["VE"])[:, None])
+    return Stream(log.since_arming(table), arrays.hypot(table["VN"], table["VE"])[:, None])
 
 
 def _acceleration(field: str) -> Callable[[FlightLog], Stream | None]:
