@@ -7,6 +7,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sitl.cli import main
@@ -14,6 +15,7 @@ from sitl.errors import OptionError
 from sitl.missions.testing import assert_twin
 from sitl.missions.twin import limits, report, twin
 from sitl.missions.twin.flight import Change
+from sitl.missions.twin.flight_log import FlightLog
 from sitl.missions.twin.twin import Twin
 from sitl.simulation import Core
 from tests.missions.twin.conftest import FRAME, SEED, cut
@@ -34,6 +36,16 @@ def test_open_segments_begin_in_the_logged_state(own_twin: Twin) -> None:
         assert figures[f"segments.{name}.vaf"] > 95.0, name
     assert figures["segments.yaw_rate.vaf"] > 90.0 and figures["segments.height.rms"] < 0.05
     assert abs(figures["model.acceleration.bias"]) < 0.05  # the log's motor outputs hold the same vehicle
+
+
+def test_a_segment_begins_in_the_logged_state_wherever_the_twin_is(own_log: Path, core: Core, tmp_path: Path) -> None:
+    found = twin.fly(own_log, FRAME, seed=SEED, wind=(8.0, 90.0), core=core, keep=tmp_path)  # the log has no wind
+    assert found.figures()["pitch.rms"] > 1.5
+    logged, flown = (log.table("ATT") for log in (found.log, FlightLog(tmp_path / "segments.bin")))
+    begins = np.array(found.begins) + found.log.span.armed
+    for name in ("Roll", "Pitch"):
+        then, now = (np.interp(begins + 0.02, table.time, table[name]) for table in (logged, flown))
+        assert np.abs(now - then).max() < 1.2, name
 
 
 def test_another_seed_errs_as_receivers_do(own_log: Path, core: Core) -> None:
