@@ -227,9 +227,9 @@ class Scenario:
 
 
 def _frame_of(data: Mapping[str, Any]) -> str | Airframe:
-    """Ours by its name, any other from its figures: an airframe's file is Python, and would be run."""
+    """Ours by its name, any other from its figures: a file may be Python, which would be run, or have changed since."""
     frame = data["frame"]
-    if isinstance(frame, str) and not frame.endswith(".py"):
+    if isinstance(frame, str) and not vehicles.is_file(frame):
         return frame
     return vehicles.of_data(KINDS[data["vehicle"]].airframe, data["airframe"])
 

@@ -144,10 +144,10 @@ class Simulation:
         self.logger: Logger | None = None
         self.firmware.table.set_defaults(self.v.autopilot.params)
         self.parameters = Values(self.firmware.table, self.v.autopilot.params)
-        label = f"airframe {self.airframe.name}"
+        label = self.airframe.title
         unknown = files.apply(self.parameters, self.airframe.parameters, label)
         if unknown:
-            raise AirframeError(f"{label}: the firmware has no parameters {', '.join(unknown)}")
+            raise AirframeError(f"{label}: {files.unknown(self.kind.name, unknown, self.firmware.table)}")
         if unknown := files.apply(self.parameters, scenario.parameters):
             raise files.ParameterError(files.unknown(self.kind.name, unknown, self.firmware.table))
         if core is not None and core.kind is not self.kind:

@@ -84,7 +84,7 @@ def seconds(text: str) -> float:
 
 def add_vehicle_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe the vehicle and its start."""
-    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (sitl help vehicles)")
+    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .toml or .py file of one (sitl help vehicles)")
     parser.add_argument(
         "--sensors",
         choices=SETS,

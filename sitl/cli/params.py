@@ -25,7 +25,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="print value, range and meaning of the parameters that have all these words in name or meaning",
     )  # fmt: skip
     parser.add_argument("--vehicle", choices=sorted(KINDS), help=f"firmware (default: that of --frame, or {DEFAULT})")
-    parser.add_argument("--frame", metavar="NAME", help="use the values of this airframe")
+    parser.add_argument(
+        "--frame", metavar="NAME", help="use the values of this airframe, or of a .toml or .py file of one"
+    )
     form = parser.add_mutually_exclusive_group()
     form.add_argument(
         "--markdown", action="store_true", help="print the documentation page: meaning, range, unit, default"
@@ -55,7 +57,7 @@ def params(options: argparse.Namespace) -> int:
     table.set_defaults(holder)
     values = Values(table, holder)
     if airframe:
-        files.apply(values, airframe.parameters, f"airframe {airframe.name}")
+        files.apply(values, airframe.parameters, airframe.title)
     found = [p for p in table if has_words(p, options.words)]
     if not found:
         known = did_you_mean(options.words[0].upper(), [p.name for p in table]) if len(options.words) == 1 else ""

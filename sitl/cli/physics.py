@@ -44,7 +44,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="N",
         help="add N to the default TCP port, or 10 N to the UDP port",
     )
-    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .py file that defines one (sitl help vehicles)")
+    parser.add_argument("--frame", metavar="NAME", help="airframe, or a .toml or .py file of one (sitl help vehicles)")
     parser.add_argument(
         "--home",
         type=shared.home,

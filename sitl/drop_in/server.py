@@ -253,7 +253,11 @@ def _model(kind: str, line: CommandLine) -> tuple[str, str]:
     own = line.model.replace("-", "_")
     if own in vehicles.names(kind):
         return own, "native"
-    known = ", ".join((*models, f"{JSON}:HOST", *vehicles.names(kind)))
+    if vehicles.is_file(line.model):
+        if (found := vehicles.load(line.model).kind) != kind:
+            raise OptionError(f"--model {line.model!r} is a {found}; this program runs a {kind}")
+        return line.model, "native"
+    known = ", ".join((*models, f"{JSON}:HOST", *vehicles.names(kind), "a .toml file of an airframe"))
     raise OptionError(f"--model {line.model!r} is none of {known}")
 
 

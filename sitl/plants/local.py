@@ -230,7 +230,7 @@ def stand_alone(
     v, table = kind.record.of(fleet, 0), kind.firmware.table
     table.set_defaults(v.autopilot.params)
     values = Values(table, v.autopilot.params)
-    files.apply(values, airframe.parameters, f"airframe {airframe.name}")
+    files.apply(values, airframe.parameters, airframe.title)
     files.apply(values, scenario.parameters)
     vehicle = SimulatedVehicle(kind, airframe, fleet, 0, v, RecordReader(fleet, 0), lambda: None)
     plant = LocalPlant(vehicle, scenario, None, progress)

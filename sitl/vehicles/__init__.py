@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Vehicles as data: one file an airframe, or a row of ``ardupilot_frames``.
+"""Vehicles as data: one file an airframe, or a row of ``ardupilot_frames``; files of users are in ``airframe_file``.
 
 To add one, write its file and name it in ``_MODULES``; another package names it in the entry point group
 ``sitl.airframes``.
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import importlib
 import runpy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from . import airframe_file
 from .airframe import Airframe, AirframeError, apply
 from .copter_airframe import CopterAirframe, Rotor
 from .rover_airframe import RoverAirframe
@@ -28,10 +29,12 @@ __all__ = [
     "Rotor",
     "RoverAirframe",
     "apply",
+    "is_file",
     "load",
     "names",
     "of_data",
     "to_data",
+    "to_toml",
 ]
 
 _FRAMES = (
@@ -57,8 +60,8 @@ def names(kind: str | None = None, *, on_bench: bool = True) -> tuple[str, ...]:
 
 
 def load(name: str | Airframe) -> Airframe:
-    """An airframe by its name (hyphens and underscores are the same), or by the path of a Python file of the user's
-    own that defines ``AIRFRAME``; an airframe is returned as it is.
+    """An airframe by its name (hyphens and underscores are the same), or by the path of a user's own file: a .toml file
+    (data, as ``to_toml`` writes it), or a .py file that defines ``AIRFRAME``; an airframe is returned as it is.
 
     Raises:
         AirframeError: no airframe of that name (the message lists those there are), or the file cannot be used.
@@ -66,12 +69,16 @@ def load(name: str | Airframe) -> Airframe:
     if isinstance(name, Airframe):
         return name
     if not isinstance(name, str):
-        raise AirframeError(f"airframe {name!r} is neither a name, a .py file nor an Airframe")
+        raise AirframeError(f"airframe {name!r} is neither a name, a .toml or .py file nor an Airframe")
+    if name.endswith(airframe_file.ENDING):
+        return airframe_file.read(name, _classes())
     if name.endswith(".py"):
         return _load_file(Path(name))
     module = name.strip().lower().replace("-", "_")
     if module not in names():
-        raise AirframeError(f"airframe {name!r} is not known; it is one of {', '.join(names())}, or a .py file")
+        raise AirframeError(
+            f"airframe {name!r} is not known; it is one of {', '.join(names())}, or a .toml or .py file"
+        )
     if module in _FRAMES:
         found = importlib.import_module(f"{__name__}.ardupilot_frames").FRAMES[module]
     elif module in _MODULES:
@@ -81,6 +88,32 @@ def load(name: str | Airframe) -> Airframe:
     if not isinstance(found, Airframe):
         raise AirframeError(f"airframe {name!r}: {found!r} is no Airframe")
     return found
+
+
+def is_file(name: str) -> bool:
+    """Whether ``load`` takes a text for the path of a file."""
+    return name.endswith((airframe_file.ENDING, ".py"))
+
+
+def to_toml(airframe: Airframe, *, head: Sequence[str] = (), notes: Mapping[str, str] | None = None) -> str:
+    """An airframe as the text of a .toml file, of which ``load`` makes the same airframe, bit for bit.
+
+    Args:
+        airframe: of a kind that comes with the simulator.
+        head: lines that the file begins with, as comments.
+        notes: name of a figure or parameter -> what stands behind its value, as a comment.
+    """
+    return airframe_file.written(airframe, head=head, notes=notes)
+
+
+def _classes() -> dict[str, type[Airframe]]:
+    """Kind of vehicle -> class of its airframes: those that come with the simulator, and those of packages that have
+    an airframe here."""
+    known: dict[str, type[Airframe]] = {cls.kind: cls for cls in (CopterAirframe, RoverAirframe)}
+    for point in _installed():
+        found = load(point)
+        known.setdefault(found.kind, type(found))
+    return known
 
 
 @cache

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from ..errors import SitlError
+from ..errors import SitlError, did_you_mean
 from .figures.figure import Figure
 
 Figures = Mapping[str, float | Sequence[float]]
@@ -30,6 +30,7 @@ class Airframe:
         description: one line.
         figures: every figure of the kind that its model uses; those with a default may be left out.
         parameters: values under ArduPilot's names that differ from the firmware's defaults.
+        file: path of the user's file that it was read from, for messages; "": of none.
 
     Raises:
         AirframeError: a figure is missing, unknown, not a number or out of range.
@@ -48,6 +49,7 @@ class Airframe:
     description: str
     figures: Figures
     parameters: Mapping[str, float] = field(default_factory=dict)
+    file: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
         if not self.kind:
@@ -55,7 +57,7 @@ class Airframe:
         names = {figure.name: figure for figure in self.known}
         for name in self.figures:
             if name not in names:
-                raise AirframeError(f"airframe {self.name!r}: unknown figure {name!r}")
+                raise AirframeError(f"airframe {self.name!r}: unknown figure {name!r}{did_you_mean(name, names)}")
         missing = [figure.name for figure in self.known if self._needs(figure) and figure.name not in self.figures]
         if missing:
             raise AirframeError(f"airframe {self.name!r}: figures missing: {', '.join(missing)}")
@@ -89,6 +91,11 @@ class Airframe:
     def _rest(cls, record: Mapping[str, Any]) -> dict[str, Any]:
         """What a kind has besides figures, as its arguments."""
         return {}
+
+    @property
+    def title(self) -> str:
+        """What messages call it."""
+        return f"airframe file {self.file!r}" if self.file else f"airframe {self.name}"
 
     def has(self, name: str) -> bool:
         """Whether airframes of this kind have a figure of this name."""

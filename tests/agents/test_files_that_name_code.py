@@ -8,7 +8,7 @@ import os
 
 import pytest
 
-from sitl import cli, worlds
+from sitl import cli, vehicles, worlds
 from sitl.agents import environments
 from sitl.agents.errors import AgentError
 from sitl.agents.recipes import recipe
@@ -232,6 +232,12 @@ def test_a_suite_reaches_no_further_than_its_folder(tmp_path, monkeypatch, table
         cases.find(tmp_path / "suite")
 
 
+def test_a_suite_may_name_the_data_of_an_airframe_in_its_folder(tmp_path):
+    (tmp_path / "mine.toml").write_text(vehicles.to_toml(vehicles.load("erle_rover")))
+    (tmp_path / cases.TOML).write_text("[[missions]]\nlibrary = 'rover/square'\nframe = 'mine.toml'\n")
+    assert [case.frame for case in cases.find(tmp_path)] == [str(tmp_path / "mine.toml")]
+
+
 @pytest.mark.parametrize("file", ["/etc/hosts", "../*.txt", "link.txt", "*.txt"])
 def test_a_suites_missions_lie_in_its_folder(tmp_path, file):
     (tmp_path / "suite").mkdir()
@@ -243,9 +249,10 @@ def test_a_suites_missions_lie_in_its_folder(tmp_path, file):
 
 
 @pytest.mark.parametrize("table", ["[defaults]", "[[missions]]\nlibrary = 'rover/*'"])
-def test_a_suite(tmp_path, table):
+@pytest.mark.parametrize("frame", ["theirs.py", "../mine.toml"])
+def test_a_suite(tmp_path, table, frame):
     marking(tmp_path)
-    text = f"{table}\nframe = 'theirs.py'\n"
+    text = f"{table}\nframe = {frame!r}\n"
     (tmp_path / cases.TOML).write_text(text)
     with pytest.raises(cases.SuiteError, match=r"suite\.toml " + REFUSED.format("frame")):
         cases.find(tmp_path)

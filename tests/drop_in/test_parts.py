@@ -13,10 +13,12 @@ from pathlib import Path
 
 import pytest
 
+from sitl import vehicles
 from sitl.autopilot.mission.item import FENCE_INCLUSION, NAV_WAYPOINT, RALLY_POINT, MissionItem, home_item
 from sitl.bridge.services.parameters import ParameterService
 from sitl.bridge.signing import SigningState
 from sitl.core.vectors import Vec3
+from sitl.drop_in import server
 from sitl.drop_in.command_line import parse
 from sitl.drop_in.server import Session
 from sitl.drop_in.statistics import SINCE_S, Statistics
@@ -245,6 +247,15 @@ def test_a_model_that_there_is_not_is_named(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path)
     with pytest.raises(OptionError, match=r"--model 'zeppelin' is none of \+, quad, .*JSON:HOST.*erle_copter"):
         Session("arducopter", parse(["--model", "zeppelin"]))
+
+
+def test_a_model_may_be_the_file_of_an_airframe_of_this_kind(tmp_path: Path) -> None:
+    for frame in ("erle_copter", "erle_rover"):
+        (tmp_path / f"{frame}.toml").write_text(vehicles.to_toml(vehicles.load(frame)))
+    own, rover = (str(tmp_path / f"{frame}.toml") for frame in ("erle_copter", "erle_rover"))
+    assert server._model("copter", parse(["--model", own])) == (own, "native")
+    with pytest.raises(OptionError, match=r"erle_rover\.toml' is a rover; this program runs a copter"):
+        server._model("copter", parse(["--model", rover]))
 
 
 def test_the_search_for_a_real_one_passes_our_scripts_by(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

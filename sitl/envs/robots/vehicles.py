@@ -62,7 +62,7 @@ class AutopilotOptions:
     """Options of vehicles with an autopilot.
 
     Args:
-        frame: airframe with a lidar: a name, a .py file, or an ``Airframe``.
+        frame: airframe with a lidar: a name, a .toml or .py file, or an ``Airframe``.
         connection: "inprocess", or the address of a vehicle: "udp:HOST:PORT", "udpout:HOST:PORT", "tcp:HOST:PORT".
             A vehicle started with ``sitl run --lockstep`` advances by exactly one step at a time; others run in real
             time.

@@ -153,6 +153,8 @@ def _outside(folder: Path, row: Mapping[str, Any]) -> list[str]:
     options = {key: row[key] for key in ("frame", "physics", "world") if key in row}
     if _lies_beside(folder, options.get("world")):
         del options["world"]
+    if str(options.get("frame")).endswith(".toml") and _lies_beside(folder, options["frame"]):  # data, and no code
+        del options["frame"]
     named = code_in_files.code_of_options(options)
     tolerance, file = row.get("tolerance", {}), row.get("file", "")
     is_file = isinstance(tolerance, str) and (not code_in_files.is_name(tolerance) or Path(tolerance).exists())
@@ -254,7 +256,7 @@ def _cases(folder: Path, row: dict[str, Any], variant: dict[str, Any]) -> list[C
     stem = entry.name.replace("/", "-") if entry else Path(row["file"]).stem
     if not any(fnmatch(stem, pattern) for pattern in variant.get("missions", ["*"])):
         return []
-    kind, frame = _vehicle(path, row, entry)
+    kind, frame = _vehicle(folder, path, row, entry)
     if variant.get("vehicle", kind) != kind:
         return []
     settings = {**row, **variant}
@@ -286,11 +288,12 @@ def _cases(folder: Path, row: dict[str, Any], variant: dict[str, Any]) -> list[C
     return found
 
 
-def _vehicle(path: Path, row: dict[str, Any], entry: library.Entry | None) -> tuple[str, str]:
+def _vehicle(folder: Path, path: Path, row: dict[str, Any], entry: library.Entry | None) -> tuple[str, str]:
     """(kind, airframe) of a mission."""
     frame = row.get("frame", entry.frame if entry else None)
     if frame is not None:
-        return vehicles.load(_local(path.parent, frame) or frame).kind, _local(path.parent, frame) or frame
+        frame = _local(folder, frame) or frame
+        return vehicles.load(frame).kind, frame
     kind = row.get("vehicle") or load(path).kind or DEFAULT
     return kind, KINDS[kind].default_frame
 

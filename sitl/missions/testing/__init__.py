@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .factory import VehicleFactory
+    from .twin import assert_twin
     from .vehicle import Copter, Rover
 
-__all__ = ["Copter", "Rover", "VehicleFactory"]
+__all__ = ["Copter", "Rover", "VehicleFactory", "assert_twin"]
 
-_LAZY = {"Copter": "vehicle", "Rover": "vehicle", "VehicleFactory": "factory"}
+_LAZY = {"Copter": "vehicle", "Rover": "vehicle", "VehicleFactory": "factory", "assert_twin": "twin"}
 """Name -> the module that has it, loaded when it is first used."""
 
 

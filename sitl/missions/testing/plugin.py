@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -104,6 +104,19 @@ def assert_flies_like(vehicle_factory: VehicleFactory) -> Callable[..., None]:
         if not vehicle_factory.vehicles:
             raise pytest.UsageError("assert_flies_like needs a vehicle: copter, rover or one of vehicle_factory")
         vehicle_factory.vehicles[-1].assert_flies_like(golden, tolerance)
+
+    return check
+
+
+@pytest.fixture
+def assert_twin(request: pytest.FixtureRequest) -> Callable[..., Any]:
+    """``assert_twin(log, limits, frame=...)`` of ``sitl.missions.testing``, with a log of the test's folder."""
+
+    def check(log: str | Path, limits: Mapping[str, float], **options: Any) -> Any:
+        __tracebackhide__ = True
+        from .twin import assert_twin
+
+        return assert_twin(request.path.parent / log, limits, **options)
 
     return check
 

@@ -125,7 +125,7 @@ def setup(
 
     Args:
         kind: "copter" or "rover"; None: what the frame or the mission says, or a copter.
-        frame: airframe name, a .py file, or an airframe; None: the kind's first.
+        frame: airframe name, a .toml or .py file, or an airframe; None: the kind's first.
         home: latitude, longitude [deg], altitude [m], heading [deg].
         params: values, or a file of parameters (docs/reference/parameter-files.md).
         world, start: as ``Simulation`` takes them.
@@ -162,7 +162,7 @@ def setup(
     if frame is None:
         frame = KINDS[kind or DEFAULT].default_frame
     elif not isinstance(frame, Airframe):
-        frame = str(_beside(frame, defaults.folders)) if str(frame).endswith(".py") else str(frame)
+        frame = str(_beside(frame, defaults.folders)) if vehicles.is_file(str(frame)) else str(frame)
     if kind is not None and vehicles.load(frame).kind != kind:
         raise OptionError(f"frame {frame} is a {vehicles.load(frame).kind}, not a {kind}")
     if isinstance(world, str | Path) and str(world).endswith(".toml"):

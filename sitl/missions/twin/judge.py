@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where model or autopilot differ, told by which figures agree and which do not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from .agreement import Agreement
+
+_GOOD = 80.0
+"""Variance accounted for from which on a quantity counts as agreeing [%]."""
+_LIFT = 0.05
+"""Share by which the mean motor outputs may differ."""
+_PUSH = 0.3
+"""Vertical acceleration by which the model may differ at the log's motor outputs [m/s^2]."""
+_VOLTS = 0.02
+"""Share by which voltages may differ."""
+_AXES = ("roll_rate", "pitch_rate", "yaw_rate")
+
+
+def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: Sequence[Agreement]) -> list[str]:
+    """Sentences, the model's first; none: they agree as far as these figures tell."""
+    of_whole, of_segments, of_model = ({one.quantity.name: one for one in part} for part in (whole, segments, model))
+    found: list[str] = []
+    throttle = (of_segments or of_whole).get("throttle") or of_whole.get("throttle")
+    if throttle is not None and "motors" in of_whole:
+        logged = float(throttle.logged.mean())
+        flown = float(throttle.flown.mean())
+        if logged > 1.0 and abs(flown / logged - 1.0) > _LIFT:
+            found.append(
+                f"model: mean throttle output of the log is {logged:.1f} %, of the twin {flown:.1f} %: the thrust "
+                f"over weight of the airframe is {'less' if flown > logged else 'more'} than the vehicle's"
+            )
+    push = of_model.get("acceleration")
+    if push is not None and abs(push.bias) > _PUSH:
+        found.append(
+            f"model: at the log's motor outputs the model accelerates {abs(push.bias):.2f} m/s^2 more "
+            f"{'up' if push.bias > 0.0 else 'down'} than the vehicle did"
+        )
+    for name in _AXES:
+        closed, alone = of_segments.get(name), of_model.get(name)
+        if alone is not None and _is_bad(alone) and (closed is None or _is_bad(closed)):
+            found.append(
+                f"model: {alone.quantity.title} at the log's motor outputs accounts for {max(alone.vaf, 0.0):.0f} % of "
+                "its variance: torque over inertia, damping or motor lag differ"
+            )
+        elif closed is not None and _is_bad(closed):
+            found.append(
+                f"{closed.quantity.title} in open segments accounts for {max(closed.vaf, 0.0):.0f} % of its variance: "
+                "model or rate controller differ"
+            )
+    for one in segments:
+        if one.quantity.is_asked and _is_bad(one):
+            found.append(
+                f"autopilot: {one.quantity.title}, from the same state, accounts for {max(one.vaf, 0.0):.0f} % of its "
+                "variance: targets of the mode differ (sticks, path, wind)"
+            )
+    voltage = of_whole.get("voltage")
+    if voltage is not None and voltage.logged.mean() > 1.0 and voltage.rms > _VOLTS * float(voltage.logged.mean()):
+        found.append(f"model: battery voltage differs by {voltage.rms:.2f} V (RMS): resistance or capacity differ")
+    return found
+
+
+def _is_bad(one: Agreement) -> bool:
+    return math.isfinite(one.vaf) and one.vaf < _GOOD and one.rms > one.quantity.moves

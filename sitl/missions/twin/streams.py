@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What of two flights is laid over each other: quantities, each with its unit, from the messages of a log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sitl.core import elementary_arrays as arrays
+
+from .flight_log import FlightLog
+
+Array = np.ndarray[Any, Any]
+
+
+class Stream(NamedTuple):
+    """A quantity over a flight."""
+
+    time: Array
+    """Since arming, shape (n,) [s]."""
+    values: Array
+    """Shape (n, columns), in the quantity's unit."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that two flights have."""
+
+    name: str
+    """As limits and JSON have it."""
+    title: str
+    unit: str
+    moves: float
+    """In its unit: what moves less is noise and rounding, of which nothing is to be accounted for."""
+    of: Callable[[FlightLog], Stream | None]
+    """None: the log does not have it."""
+    columns: tuple[str, ...] = ("",)
+    """What its columns are."""
+    is_angle: bool = False
+    """In degrees, and turns round."""
+    is_vector: bool = False
+    """The root mean square is that of the vector's length, not that of a column."""
+    adds_up: bool = False
+    """In open segments it counts from the beginning of each."""
+    is_asked: bool = False
+    """The autopilot's, not the vehicle's: what it asks for."""
+
+
+def _fields(name: str, *fields: str, scale: float = 1.0, instance: int | None = None) -> Callable[..., Stream | None]:
+    def of(log: FlightLog) -> Stream | None:
+        if not log.has(name, *fields):
+            return None
+        table = log.table(name, instance)
+        if not len(table):
+            return None
+        return Stream(log.since_arming(table), np.stack([scale * table[field] for field in fields], 1))
+
+    return of
+
+
+def _from_arming(stream: Callable[[FlightLog], Stream | None], sign: float = 1.0) -> Callable[..., Stream | None]:
+    """The same, counted from what it was when the vehicle was armed."""
+
+    def of(log: FlightLog) -> Stream | None:
+        found = stream(log)
+        if found is None:
+            return None
+        first = np.array([log.at_arming(found.time, column) for column in found.values.T])
+        return Stream(found.time, sign * (found.values - first))
+
+    return of
+
+
+def _estimate(*fields: str, scale: float = 1.0) -> Callable[[FlightLog], Stream | None]:
+    def of(log: FlightLog) -> Stream | None:
+        table = log.estimate()
+        return Stream(log.since_arming(table), np.stack([scale * table[field] for field in fields], 1))
+
+    return of
+
+
+def _speed(log: FlightLog) -> Stream | None:
+    table = log.estimate()
+    return Stream(log.since_arming(table), arrays.hypot(table["VN"], table["VE"])[:, None])
+
+
+def _acceleration(field: str) -> Callable[[FlightLog], Stream | None]:
+    """Upward; ArduPilot writes m/s^2 since 4.7, cm/s^2 before, and this simulator as its units say."""
+
+    def of(log: FlightLog) -> Stream | None:
+        in_metres = log.version >= (4, 7) and "gym-sitl" not in log.columns.firmware
+        return _fields("RATE", field, scale=1.0 if in_metres else 0.01)(log)
+
+    return of
+
+
+def motor_numbers(log: FlightLog) -> list[int]:
+    """Channels of RCOU that drive motors, from 1 (SERVOn_FUNCTION 33 to 40); as many as the log has."""
+    parameters = log.columns.parameters
+    found = {}
+    for channel in range(1, 15):
+        function = int(parameters.get(f"SERVO{channel}_FUNCTION", 0))
+        if 33 <= function <= 40:
+            found[function] = channel
+    return [found[function] for function in sorted(found)]
+
+
+def pulse_range(log: FlightLog) -> tuple[float, float]:
+    """Pulses of motors at rest and at full output [us]."""
+    parameters = log.columns.parameters
+    low, high = parameters.get("MOT_PWM_MIN", 1000.0), parameters.get("MOT_PWM_MAX", 2000.0)
+    return (low, high) if high > low else (1000.0, 2000.0)
+
+
+def motors(log: FlightLog) -> Stream | None:
+    """Outputs of the motors [%], in the order of their numbers."""
+    channels = motor_numbers(log)
+    if not channels or not log.has("RCOU", *(f"C{channel}" for channel in channels)):
+        return None
+    table = log.table("RCOU")
+    low, high = pulse_range(log)
+    outputs = [100.0 * np.clip((table[f"C{channel}"] - low) / (high - low), 0.0, 1.0) for channel in channels]
+    return Stream(log.since_arming(table), np.stack(outputs, 1))
+
+
+_BATTERY = (
+    Quantity("voltage", "battery voltage", "V", 0.05, _fields("BAT", "Volt", instance=0)),
+    Quantity("current", "battery current", "A", 0.5, _fields("BAT", "Curr", instance=0)),
+    Quantity("consumed", "charge drawn", "mAh", 1.0, _from_arming(_fields("BAT", "CurrTot", instance=0)),
+             adds_up=True),
+)  # fmt: skip
+_PLACE = Quantity(
+    "position", "horizontal position", "m", 0.3, _from_arming(_estimate("PN", "PE")), ("north", "east"),
+    is_vector=True, adds_up=True,
+)  # fmt: skip
+_HEADING = Quantity("yaw", "heading", "deg", 2.0, _fields("ATT", "Yaw"), is_angle=True)
+
+COPTER = (
+    Quantity("height", "height above the place of arming", "m", 0.3, _from_arming(_estimate("PD"), -1.0),
+             adds_up=True),
+    _PLACE,
+    Quantity("climb", "climb rate", "m/s", 0.15, _estimate("VD", scale=-1.0)),
+    Quantity("speed", "ground speed", "m/s", 0.2, _speed),
+    Quantity("roll", "roll", "deg", 1.0, _fields("ATT", "Roll")),
+    Quantity("pitch", "pitch", "deg", 1.0, _fields("ATT", "Pitch")),
+    _HEADING,
+    Quantity("roll_rate", "roll rate", "deg/s", 2.0, _fields("RATE", "R")),
+    Quantity("pitch_rate", "pitch rate", "deg/s", 2.0, _fields("RATE", "P")),
+    Quantity("yaw_rate", "yaw rate", "deg/s", 2.0, _fields("RATE", "Y")),
+    Quantity("acceleration", "upward acceleration", "m/s^2", 0.3, _acceleration("A")),
+    Quantity("asked_roll", "roll asked for", "deg", 1.0, _fields("ATT", "DesRoll"), is_asked=True),
+    Quantity("asked_pitch", "pitch asked for", "deg", 1.0, _fields("ATT", "DesPitch"), is_asked=True),
+    Quantity("asked_acceleration", "upward acceleration asked for", "m/s^2", 0.3,
+             _acceleration("ADes"), is_asked=True),
+    Quantity("throttle", "throttle output", "%", 1.0, _fields("CTUN", "ThO", scale=100.0)),
+    Quantity("motors", "motor outputs", "%", 1.0, motors),
+    *_BATTERY,
+)  # fmt: skip
+
+ROVER = (
+    _PLACE,
+    Quantity("speed", "speed", "m/s", 0.1, _fields("THR", "Speed")),
+    _HEADING,
+    Quantity("yaw_rate", "turn rate", "deg/s", 2.0, _fields("STER", "TurnRate")),
+    Quantity("asked_speed", "speed asked for", "m/s", 0.1, _fields("THR", "DesSpeed"), is_asked=True),
+    Quantity("asked_yaw_rate", "turn rate asked for", "deg/s", 2.0, _fields("STER", "DesTurnRate"), is_asked=True),
+    Quantity("throttle", "throttle output", "%", 2.0, _fields("THR", "ThrOut")),
+    Quantity("steering", "steering output", "%", 2.0, _fields("STER", "SteerOut", scale=1.0 / 45.0)),
+    *_BATTERY,
+)
+QUANTITIES = {"copter": COPTER, "rover": ROVER}

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Twins of a log whose truth is known: they lie on it; another airframe, mass or fault does not."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sitl.cli import main
+from sitl.errors import OptionError
+from sitl.missions.testing import assert_twin
+from sitl.missions.twin import limits, report, twin
+from sitl.missions.twin.flight import Change
+from sitl.missions.twin.flight_log import FlightLog
+from sitl.missions.twin.twin import Twin
+from sitl.simulation import Core
+from tests.missions.twin.conftest import FRAME, SEED, cut
+
+
+def test_the_twin_of_our_own_flight_lies_on_it(own_twin: Twin) -> None:
+    figures = own_twin.figures()
+    assert figures["height.rms"] < 0.1 and figures["position.rms"] < 0.2 and figures["yaw.rms"] < 2.5
+    for name in ("climb", "speed", "roll", "pitch", "pitch_rate", "throttle", "motors"):
+        assert figures[f"{name}.vaf"] > 95.0, name
+    assert own_twin.findings == [] and own_twin.went == []
+
+
+def test_open_segments_begin_in_the_logged_state(own_twin: Twin) -> None:
+    figures = own_twin.figures()
+    assert len(own_twin.begins) >= 5
+    for name in ("height", "position", "roll", "pitch", "yaw"):
+        assert figures[f"segments.{name}.vaf"] > 95.0, name
+    assert figures["segments.yaw_rate.vaf"] > 90.0 and figures["segments.height.rms"] < 0.05
+    assert abs(figures["model.acceleration.bias"]) < 0.05  # the log's motor outputs hold the same vehicle
+
+
+def test_a_segment_begins_in_the_logged_state_wherever_the_twin_is(own_log: Path, core: Core, tmp_path: Path) -> None:
+    found = twin.fly(own_log, FRAME, seed=SEED, wind=(8.0, 90.0), core=core, keep=tmp_path)  # the log has no wind
+    assert found.figures()["pitch.rms"] > 1.5
+    logged, flown = (log.table("ATT") for log in (found.log, FlightLog(tmp_path / "segments.bin")))
+    begins = np.array(found.begins) + found.log.span.armed
+    for name in ("Roll", "Pitch"):
+        then, now = (np.interp(begins + 0.02, table.time, table[name]) for table in (logged, flown))
+        assert np.abs(now - then).max() < 1.2, name
+
+
+def test_another_seed_errs_as_receivers_do(own_log: Path, core: Core) -> None:
+    figures = twin.fly(own_log, FRAME, seed=SEED + 1, segments=False, core=core).figures()
+    assert figures["height.rms"] < 0.5 and 0.01 < figures["position.rms"] < 1.0 and figures["pitch.vaf"] > 90.0
+
+
+def test_another_airframe_is_a_misfit(own_log: Path, core: Core) -> None:
+    found = twin.fly(own_log, "erle_copter", core=core)
+    figures = found.figures()
+    assert figures["throttle.bias"] < -1.0 and figures["model.acceleration.bias"] > 0.3
+    assert any(text.startswith("model: mean throttle output") for text in found.findings)
+    assert any("more up than the vehicle did" in text for text in found.findings)
+
+
+def test_what_if(own_log: Path, own_twin: Twin, core: Core) -> None:
+    change = Change({"WPNAV_SPEED": 150.0}, (6.0, 270.0), (), "+0.5")
+    found = twin.fly(own_log, FRAME, seed=SEED, change=change, segments=False, core=core)
+    assert found.figures()["height.rms"] == own_twin.figures()["height.rms"]  # the twin stays what it was
+    figures = found.figures()
+    assert figures["changed.throttle.bias"] > 3.0 and figures["changed.position.max"] > 1.0
+    assert found.change.words == ["WPNAV_SPEED = 150", "wind of 6 m/s from 270 deg", "mass +0.5 kg"]
+
+
+def test_what_if_a_motor_fails_in_flight(own_log: Path, core: Core) -> None:
+    change = Change(faults=("motor:1=0@12",))  # 12 s after arming
+    found = twin.fly(own_log, FRAME, seed=SEED, change=change, segments=False, core=core)
+    figures = found.figures()
+    assert figures["changed.roll.max"] > 30.0 and figures["height.rms"] < 0.05
+    one = next(one for one in found.difference if one.quantity.name == "roll")
+    before = one.time < 11.9
+    assert abs(one.flown - one.logged)[before].max() < 0.2
+
+
+def test_a_log_that_ends_in_the_air_is_compared_up_to_there(own_log: Path, tmp_path: Path, core: Core) -> None:
+    found = twin.fly(cut(own_log, tmp_path / "half.bin", 0.6), FRAME, seed=SEED, segments=False, core=core)
+    assert any("while armed: it is compared up to there" in note for note in found.notes)
+    assert found.figures()["height.rms"] < 0.05
+
+
+def test_the_report_is_one_file_with_all_that_matters(own_twin: Twin, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    report.write(own_twin, limits.judge(own_twin.figures(), {"height.rms": 1e-6}), page)
+    text = page.read_text()
+    assert "0 of 1 limits are kept" in text and "height.rms is" in text and text.count("data:image/png") == 3
+    assert "http" not in text and "<script" not in text and 'src="data:' in text
+
+
+def test_the_command_says_by_its_exit_code_whether_limits_are_kept(
+    own_log: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["twin", str(own_log), "--frame", FRAME, "--seed", str(SEED), "--no-segments"]
+    assert main([*words, "--limit", "height=0.1", "--limit", "roll.vaf=90"]) == 0
+    assert "ok: roll.vaf is" in capsys.readouterr().out
+    assert main([*words, "--limit", "height=1e-6", "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert not found["ok"] and found["figures"]["height.rms"] < 0.1 and found["beyond_limits"]
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["--set", "FOO=1"], "no parameters FOO"),
+        (["--set", "WPNAV_SPEED"], "is not NAME=VALUE"),
+        (["--mass", "heavy"], "mass 'heavy': a mass .kg. is needed"),
+        (["--wind", "99"], "is not SPEED"),
+        (["--limit", "height"], "is not NAME=VALUE"),
+        (["--flight", "4"], "has flights 1 to 1"),
+        (["--fail", "link@3"], "has no links"),
+        (["--report", "page.pdf"], "does not end in .html"),
+    ],
+)
+def test_mistakes(own_log: Path, capsys: pytest.CaptureFixture[str], words: list[str], text: str) -> None:
+    try:
+        code = main(["twin", str(own_log), "--frame", FRAME, *words])
+    except SystemExit as left:
+        code = left.code  # type: ignore[assignment]
+    error = capsys.readouterr().err
+    assert code == 2 and error.count("\n") == 1
+    assert re.search(text, error), error
+
+
+def test_assert_twin(own_log: Path) -> None:
+    assert_twin(own_log, {"height": 0.1, "pitch.vaf": 90.0}, frame=FRAME, seed=SEED, segments=False)
+    with pytest.raises(AssertionError, match=r"does not fly like the log:\n  height.max is"):
+        assert_twin(own_log, {"height.max": 1e-6}, frame=FRAME, seed=SEED, segments=False)
+    with pytest.raises(OptionError, match="without limits tests nothing"):
+        assert_twin(own_log, {}, frame=FRAME)
