@@ -24,6 +24,7 @@ from typing import NamedTuple
 from sitl.client.connection import Connection, connect
 from sitl.client.endpoint import Inbox
 from sitl.envs.mavlink.foreign import launch
+from sitl.errors import LinkLostError
 from sitl.foreign import px4
 from sitl.foreign.choice import ARDUPILOT, Choice, choose
 from sitl.foreign.process import HOST, AutopilotProcess, free_tcp_run
@@ -124,10 +125,20 @@ def alone(choice: Choice, kind: str) -> Iterator[tuple[AutopilotProcess, str]]:
             process.stop()
 
 
+def reach(process: AutopilotProcess, where: str) -> Connection:
+    """Its MAVLink, when it is there."""
+    while True:
+        try:
+            return connect(where, Inbox(), 60.0, warn=lambda text: None)
+        except LinkLostError:
+            process.check()
+            time.sleep(0.1)
+
+
 def on_its_own(choice: Choice, kind: str, seconds: float) -> Cost:
     """The program on its own physics, with a client that reads."""
     with alone(choice, kind) as (process, where):
-        link: Connection = connect(where, Inbox(), 60.0, warn=lambda text: None)
+        link = reach(process, where)
         try:
             link.request(511, (2, 100_000))  # SYSTEM_TIME, ten times a simulated second
 

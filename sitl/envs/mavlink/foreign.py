@@ -290,7 +290,8 @@ class Foreign(Connection):
         try:
             data = self.stream.receive()
         except LinkLostError:
-            if self.process is None or not self.process.is_running():
+            self._check()  # its exit code and last output say more
+            if self.process is None:
                 raise
             self._connect()  # it reboots, and opens its port anew
             return
