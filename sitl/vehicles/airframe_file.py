@@ -185,5 +185,5 @@ def _rotor(number: int, row: Any) -> Rotor:
             raise AirframeError(f"{title}: {key} is missing; there are {', '.join(allowed)}")
     if not isinstance(row["direction"], str) or row["direction"] not in _DIRECTIONS:
         raise AirframeError(f"{title}: direction = {row['direction']!r}; it is one of {', '.join(_DIRECTIONS)}")
-    places = [_number(title, axis, row[axis]) for axis in _ROTOR]
-    return Rotor(*places, _DIRECTIONS[row["direction"]])
+    x, y, z = (_number(title, axis, row[axis]) for axis in _ROTOR)
+    return Rotor(x, y, z, _DIRECTIONS[row["direction"]])

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The airframe of a copter from its logs, each figure with a 95 % interval (docs/identify.md).
+
+from sitl.identify import identify
+
+found = identify(["flight.bin"], mass=1.8)
+print(found.table())
+found.write("my_copter.toml")
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .figure import Figure
+    from .flight import FlightLog, IdentifyError
+    from .identification import Identification, identify
+
+__all__ = ["Figure", "FlightLog", "Identification", "IdentifyError", "identify"]
+
+_MODULES = {
+    "Figure": "figure",
+    "FlightLog": "flight",
+    "Identification": "identification",
+    "IdentifyError": "flight",
+    "identify": "identification",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Loaded when it is first used: the command line must work without scipy."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""``sitl identify``: an airframe's file from the logs of a vehicle; ``--plan``: what to fly so that logs tell more."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..errors import MissingExtra, OptionError
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare the command."""
+    parser = commands.add_parser("identify")
+    parser.add_argument("logs", nargs="*", type=Path, metavar="LOG", help=".bin logs of flights of one copter")
+    parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the airframe that --frame takes")
+    parser.add_argument("--mass", type=float, metavar="KG", help="mass of the vehicle: logs alone tell ratios")
+    parser.add_argument(
+        "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the figures observable"
+    )
+    parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
+    parser.set_defaults(function=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print what the logs tell; write the airframe or the plan."""
+    if options.plan is None and not options.logs:
+        raise OptionError("LOG is missing: a .bin log, or --plan FILE for what to fly")
+    if options.out is not None and options.out.suffix != ".toml":
+        raise OptionError(f"--out {str(options.out)!r} does not end in .toml, by which --frame tells such files")
+    if options.plan is not None:
+        from .plan import ADVICE, write
+
+        write(options.plan, _home(options.home))
+        print(ADVICE)
+        print(f"mission: {options.plan}")
+    if options.logs:
+        _identify(options.logs, options.mass, options.out)
+    return 0
+
+
+def _home(text: str | None) -> tuple[float, float]:
+    try:
+        latitude, longitude = (float(word) for word in (text or "").split(","))
+    except ValueError:
+        latitude = longitude = math.nan
+    if not (abs(latitude) < 89.0 and abs(longitude) <= 180.0):
+        raise OptionError(f"--home {text!r} is not LAT,LON in degrees, as 47.397,8.545: the mission lies around it")
+    return latitude, longitude
+
+
+def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> None:
+    try:
+        from .identification import identify
+    except ModuleNotFoundError as error:
+        if error.name != "scipy":
+            raise
+        raise MissingExtra("sitl identify needs scipy: pip install 'gym-sitl[identify]'") from None
+    from tqdm import tqdm
+
+    with tqdm(total=0, unit="B", unit_scale=True, leave=False, file=sys.stderr, disable=not sys.stderr.isatty()) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        found = identify(logs, mass, progress)
+    print(found.table())
+    if out is not None:
+        found.write(out)
+        print(f"airframe: {out}")

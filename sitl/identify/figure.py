@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One figure that was looked for in logs: its value with an interval, or why the logs do not tell it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+NORMAL_95 = 1.959964
+"""Half of a 95 % interval by its standard error."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure, observed or not.
+
+    Args:
+        name: of the figure.
+        unit: "" for a number without one.
+        meaning: what it is.
+        value: the estimate; nan: not observable.
+        low, high: ends of its 95 % interval.
+        data: what it rests on ("212 s of RCOU and IMU in the air").
+        reason: why it is not observable.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    data: str = ""
+    reason: str = ""
+
+    @property
+    def is_observed(self) -> bool:
+        """Whether the logs tell it."""
+        return math.isfinite(self.value)
+
+    @property
+    def half(self) -> float:
+        """Half of the interval."""
+        return 0.5 * (self.high - self.low)
+
+    @property
+    def relative(self) -> float:
+        """Half of the interval by the value."""
+        return abs(self.half / self.value) if self.value else math.inf
+
+    def __str__(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        if not self.is_observed:
+            return f"{self.name}: not observable in this log: {self.reason}"
+        return f"{self.name}: {self.value:.4g}{unit} (95 %: {self.low:.4g} .. {self.high:.4g}); {self.data}"
+
+
+@dataclass(frozen=True)
+class Sought:
+    """A figure by name, unit and meaning, before the logs were looked at."""
+
+    name: str
+    unit: str
+    meaning: str
+
+    def found(self, value: float, error: float, data: str) -> Figure:
+        """Observed, with its standard error."""
+        half = NORMAL_95 * error
+        return Figure(self.name, self.unit, self.meaning, float(value), float(value - half), float(value + half), data)
+
+    def between(self, value: float, low: float, high: float, data: str) -> Figure:
+        """Observed, with an interval."""
+        return Figure(self.name, self.unit, self.meaning, float(value), float(low), float(high), data)
+
+    def hidden(self, reason: str) -> Figure:
+        """Not observable."""
+        return Figure(self.name, self.unit, self.meaning, reason=reason)

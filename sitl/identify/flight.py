@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A log as what an identification needs: when the vehicle moved by itself and as usual, and its streams."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import SitlError
+from ..logs.dataflash.columns import Columns, Progress, Table
+from .signals import Span, increasing
+
+Array = np.ndarray[Any, Any]
+
+_ARMED, _DISARMED, _LANDED, _NOT_LANDED = 10, 11, 18, 28
+"""EV.Id"""
+_MAYBE_LANDED = 17
+_FAILSAFES = {5: "radio", 6: "battery", 8: "GCS", 12: "crash", 16: "EKF", 17: "EKF", 18: "barometer", 29: "vibration"}
+"""ERR.Subsys whose errors end what counts as a usual flight, until their ECode is 0."""
+_SETTLES_S = 3.0
+"""After take-off and before landing [s]."""
+_LOW_M = 2.0
+"""Nearer to the ground than this the rotors' air comes back [m]."""
+_NAMES = (
+    "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
+)  # fmt: skip
+
+
+class IdentifyError(SitlError, ValueError):
+    """A log of which no airframe can be made; the message names it and says why."""
+
+
+class FlightLog:
+    """A log.
+
+    Args:
+        path: of the .bin.
+        progress: is told how far it is read.
+
+    Raises:
+        sitl.logs.tlog.LogError: it cannot be read, or is of a vehicle that the simulator does not have.
+        IdentifyError: it has no parameters, or the vehicle never moved.
+    """
+
+    def __init__(self, path: str | Path, progress: Progress | None = None) -> None:
+        self.columns = Columns(path, _NAMES, progress)
+        self.path = Path(path)
+        self.kind = self.columns.kind
+        if self.kind != "copter":
+            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; only copters are identified as yet")
+        self.parameters = self.columns.parameters
+        if not self.parameters:
+            raise IdentifyError(
+                f"log {str(path)!r} has no PARM, which say what its outputs mean: "
+                "it begins in the middle, or its start is damaged"
+            )
+        self.armed = self._armed()
+        self.spans = self._flying()
+        """When it moved by itself, without failsafe."""
+        if not self.spans:
+            raise IdentifyError(
+                f"log {str(path)!r}: the vehicle was never in the air for {4 * _SETTLES_S:.0f} s, {_LOW_M:g} m over "
+                "the ground and without failsafe"
+            )
+
+    @property
+    def seconds(self) -> float:
+        """How long it moved [s]."""
+        return sum(span.length for span in self.spans)
+
+    def parameter(self, *names: str, default: float) -> float:
+        """The first of these that the log has, under the names of several versions."""
+        return next((self.parameters[name] for name in names if name in self.parameters), default)
+
+    def has(self, *names: str) -> bool:
+        """Whether it has messages of all these names."""
+        return all(name in self.columns for name in names)
+
+    def stream(self, name: str, instance: int | None = None) -> Table:
+        """Messages of a name, or of one sensor of these, in the order of their times."""
+        table = self.columns[name] if instance is None else self.columns[name].instance(instance)
+        return table.where(increasing(table.time))
+
+    def estimate(self) -> Table:
+        """XKF1 of the lane that was flown by."""
+        lane = 0
+        if self.has("XKF4") and "PI" in self.columns["XKF4"]:
+            lane = int(np.median(self.columns["XKF4"]["PI"]))
+        return self.stream("XKF1", lane)
+
+    # ------------------------------------------------------------------
+
+    def _events(self, begin: tuple[int, ...], end: tuple[int, ...]) -> list[Span]:
+        """From each event that begins to the next one that ends."""
+        if not self.has("EV"):
+            return []
+        spans, since = [], None
+        for time, event in zip(self.columns["EV"].time.tolist(), self.columns["EV"]["Id"].astype(int).tolist()):
+            if event in begin:
+                since = time if since is None else since
+            elif event in end and since is not None:
+                spans.append(Span(since, time))
+                since = None
+        if since is not None:
+            spans.append(Span(since, self._end))
+        return spans
+
+    @property
+    def _end(self) -> float:
+        return max(float(self.columns[name].time[-1]) for name in self.columns if len(self.columns[name].time))
+
+    def _armed(self) -> list[Span]:
+        if found := self._events((_ARMED,), (_DISARMED,)):
+            return found
+        if self.has("ARM") and "ArmState" in self.columns["ARM"]:
+            spans, since = [], None
+            for time, state in zip(self.columns["ARM"].time.tolist(), self.columns["ARM"]["ArmState"].tolist()):
+                if state and since is None:
+                    since = time
+                elif not state and since is not None:
+                    spans.append(Span(since, time))
+                    since = None
+            return spans + ([Span(since, self._end)] if since is not None else [])
+        # A log begins with the arming, unless it is kept while disarmed, too.
+        if self.parameter("LOG_DISARMED", default=0.0) == 0.0 and self.has("ATT"):
+            return [Span(float(self.columns["ATT"].time[0]), self._end)]
+        return []
+
+    def _flying(self) -> list[Span]:
+        """In the air, high enough, without failsafe."""
+        found = self._events((_NOT_LANDED,), (_LANDED, _MAYBE_LANDED, _DISARMED)) or self.armed
+        spans = [Span(span.begin + _SETTLES_S, span.end - _SETTLES_S) for span in found]
+        spans = [span for span in spans if span.length > 0.0]
+        spans = _without(spans, self._failsafes())
+        spans = _without(spans, self._near_ground(found))
+        return [span for span in spans if span.length > 2.0 * _SETTLES_S]
+
+    def _near_ground(self, flights: list[Span]) -> list[Span]:
+        """When it was near the height at which it took off; all of it when the log has no heights."""
+        if not self.has("XKF1"):
+            return []
+        table = self.estimate()
+        time, height = table.time, -table["PD"]
+        low: list[Span] = []
+        for flight in flights:
+            k = int(np.clip(np.searchsorted(time, flight.begin), 0, len(time) - 1))
+            inside = (time >= flight.begin) & (time <= flight.end)
+            near = inside & (height < height[k] + _LOW_M)
+            low += _spans_of(time, near)
+        return low
+
+    def _failsafes(self) -> list[Span]:
+        if not self.has("ERR"):
+            return []
+        table, spans = self.columns["ERR"], []
+        begun: dict[int, float] = {}
+        for time, which, code in zip(table.time, table["Subsys"].astype(int), table["ECode"].astype(int)):
+            if which not in _FAILSAFES:
+                continue
+            if code:
+                begun.setdefault(which, float(time))
+            elif which in begun:
+                spans.append(Span(begun.pop(which), float(time) + _SETTLES_S))
+        return spans + [Span(time, np.inf) for time in begun.values()]
+
+    def inside(self, time: Array) -> Array:
+        """Which times are within ``spans``."""
+        found = np.zeros(len(time), bool)
+        for span in self.spans:
+            found |= (time >= span.begin) & (time <= span.end)
+        return found
+
+
+def _spans_of(time: Array, inside: Array) -> list[Span]:
+    """Stretches where a mask is true."""
+    steps = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
+    return [Span(float(time[a]), float(time[b - 1])) for a, b in zip(steps[::2], steps[1::2])]
+
+
+def _without(spans: list[Span], others: list[Span]) -> list[Span]:
+    """What is left of spans."""
+    for other in others:
+        left: list[Span] = []
+        for span in spans:
+            if other.end <= span.begin or other.begin >= span.end:
+                left.append(span)
+                continue
+            left += [Span(span.begin, other.begin)] * (other.begin > span.begin)
+            left += [Span(other.end, span.end)] * (other.end < span.end)
+        spans = left
+    return spans

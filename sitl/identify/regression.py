@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Estimates from time series, with intervals that hold when residuals are correlated in time.
+
+Residuals of a flight are not independent: gusts last for seconds, and models leave things out. The covariance is that
+of Newey and West (1987); because it is itself an estimate, intervals widen with its share of the series as Kiefer and
+Vogelsang (2005, "fixed-b", Bartlett kernel) say. Where regressors have errors of their own, instruments stand in
+(two-stage least squares): signals that move the vehicle and have no part in those errors, as what the pilot asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import optimize
+
+from .figure import NORMAL_95
+
+Array = np.ndarray[Any, Any]
+
+
+class Fit(NamedTuple):
+    """An estimate."""
+
+    value: Array
+    covariance: Array
+    """With the widening for its own uncertainty, so that 1.96 standard errors are 95 %."""
+    residual: Array
+
+    @property
+    def error(self) -> Array:
+        """Standard errors."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+
+def long_run(scores: Array, groups: Array, lag: int) -> Array:
+    """Sum of the covariances of scores (n, k) over all pairs up to a lag of each other, within the same group."""
+    total = np.zeros((scores.shape[1], scores.shape[1]))
+    for group in np.unique(groups):
+        part = scores[groups == group]
+        total += part.T @ part
+        for j in range(1, min(lag, len(part) - 1) + 1):
+            weight = 1.0 - j / (lag + 1.0)
+            cross = part[j:].T @ part[:-j]
+            total += weight * (cross + cross.T)
+    return total
+
+
+def widening(count: int, used: int, lag: int) -> float:
+    """Factor on a covariance: degrees of freedom that are used up, and fixed-b critical values."""
+    b = min((lag + 1) / count, 1.0)
+    critical = NORMAL_95 + 2.9694 * b + 0.4160 * b * b - 0.5324 * b**3
+    return float(count / max(count - used, 1) * (critical / NORMAL_95) ** 2)
+
+
+def least_squares(
+    residuals: Callable[[Array], Array], start: Array, groups: Array, lag: int, scale: Array | None = None
+) -> Fit:
+    """Parameters that make residuals small (robust to outliers by Huber's loss).
+
+    Args:
+        residuals: of parameters (k,) -> (n,).
+        start: parameters to begin with.
+        groups: (n,) stretches within which residuals are correlated.
+        lag: over how many samples.
+        scale: typical size of each parameter.
+    """
+    first = optimize.least_squares(residuals, start, x_scale=scale if scale is not None else 1.0)
+    spread = 1.4826 * float(np.median(np.abs(first.fun - np.median(first.fun)))) or 1.0
+    found = optimize.least_squares(
+        residuals, first.x, loss="huber", f_scale=3.0 * spread, x_scale=scale if scale is not None else 1.0
+    )
+    error = residuals(found.x)
+    slopes = _slopes(residuals, found.x, scale)
+    weight = np.minimum(1.0, 3.0 * spread / np.maximum(np.abs(error), 1e-300))
+    bread = np.linalg.pinv((slopes * weight[:, None]).T @ slopes)
+    meat = long_run(slopes * (weight * error)[:, None], groups, lag)
+    covariance = bread @ meat @ bread * widening(len(error), len(start), lag)
+    return Fit(found.x, covariance, error)
+
+
+def _slopes(function: Callable[[Array], Array], at: Array, scale: Array | None) -> Array:
+    steps = 1e-5 * (np.abs(at) + (scale if scale is not None else 1.0))
+    columns = []
+    for k, step in enumerate(steps):
+        there, back = at.copy(), at.copy()
+        there[k] += step
+        back[k] -= step
+        columns.append((function(there) - function(back)) / (2.0 * step))
+    return np.stack(columns, -1)
+
+
+class Instrumented(NamedTuple):
+    """A two-stage estimate."""
+
+    value: Array
+    covariance: Array
+    residual: Array
+    objective: float
+    """Size of what instruments still explain of the residuals: small when the model is right."""
+    strength: float
+    """Least F statistic of the first stage over the regressors that have errors: below 10 instruments are weak."""
+
+
+def instrumented(y: Array, x: Array, z: Array, groups: Array, lag: int, extra: int = 0) -> Instrumented:
+    """y = x b by two-stage least squares with instruments z.
+
+    Args:
+        y: (n,). x: (n, k). z: (n, m), m >= k.
+        groups, lag: as of ``least_squares``.
+        extra: parameters besides that were found from the same data.
+    """
+    q, _ = np.linalg.qr(z)
+    fitted = q @ (q.T @ x)
+    value = np.linalg.lstsq(fitted, y, rcond=None)[0]
+    residual = y - x @ value
+    bread = np.linalg.pinv(fitted.T @ fitted)
+    covariance = bread @ long_run(fitted * residual[:, None], groups, lag) @ bread
+    covariance = covariance * widening(len(y), x.shape[1] + extra, lag)
+    seen = q.T @ residual
+    strengths = []
+    for k in range(x.shape[1]):
+        rest = x[:, k] - fitted[:, k]
+        moved = fitted[:, k] - fitted[:, k].mean()
+        noise = float(rest @ rest) / max(len(y) - z.shape[1], 1)
+        strengths.append(float(moved @ moved) / z.shape[1] / max(noise, 1e-300) if moved.any() else np.inf)
+    return Instrumented(value, covariance, residual, float(seen @ seen), min(strengths))
