@@ -42,7 +42,7 @@ class Entry:
         return self.recipe.config(seed, env=self.env, steps=self.steps)
 
     def playing(self) -> RunConfig:
-        """The run whose environment it is evaluated in: the plain recipe's, as that checks it."""
+        """The run whose environment it is evaluated in: the plain recipe's."""
         return _playing(self.plain)
 
     def training_key(self, seed: int, env_digest: str) -> str:
@@ -66,8 +66,7 @@ class Entry:
 @cache
 def _playing(plain: str) -> RunConfig:
     recipe, env = baselines.recipe_of(plain)
-    options = {**recipe.options, **recipe.evaluation.options}
-    return RunConfig(env, recipe.algorithm, options, steps=1, max_steps=recipe.max_steps)
+    return RunConfig(env, recipe.algorithm, dict(recipe.options), steps=1, max_steps=recipe.max_steps)
 
 
 def names() -> tuple[str, ...]:

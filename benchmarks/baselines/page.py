@@ -24,6 +24,8 @@ from .work import figures
 
 PAGE, REAL_PAGE = shipped.DOCS / "baselines.md", shipped.DOCS / "mental-rehearsal.md"
 NONE = "*No results yet.*"
+LEARNT = 0.5
+"""Share of episodes that a policy solves at least before it comes with the package."""
 
 
 def row(cells: Sequence[object]) -> str:
@@ -200,6 +202,9 @@ def ship(found: Campaign, say: Callable[[str], None]) -> None:
             seed: (float(figures(one, "reached").mean()), float(figures(one, "reward").mean()))
             for seed, one in records.items()
         })  # fmt: skip
+        if figures(records[seed], "reached").mean() < LEARNT:
+            say(f"{entry.name}: seed {seed} has not learnt its task; the policy in the package stays")
+            continue
         training = found.training(entry, seed)
         assert training is not None
         if training["key"] != shipped.key_of(entry.name):

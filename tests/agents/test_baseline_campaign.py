@@ -19,7 +19,7 @@ from sitl.agents import baselines
 from sitl.agents.errors import AgentError, ResumeError
 from sitl.agents.runs.backends import Workers
 from sitl.agents.runs.files import make_folder, write_bytes
-from sitl.envs.worlds import TEST, TRAINING
+from sitl.envs.worlds import TEST
 
 NAME = "rover-waypoint"
 FOREVER = float("inf")
@@ -264,8 +264,7 @@ def test_conditions_change_what_they_say_and_keep_the_rest():
     assert conditions.named("wind-8").config(hover).env_options["randomise"]["wind_speed"] == (8.0, 8.0)
     rooms = entries.load("copter-rooms-discrete").playing()
     assert conditions.named("worlds-unseen").config(rooms).env_options["world"] == "rooms:seed=1001..1100"
-    labyrinth = entries.load("rover-labyrinth").playing()  # which learns in easier ones, too
-    assert labyrinth.env_options["world"] == TRAINING["rover-labyrinth"]
+    labyrinth = entries.load("rover-labyrinth").playing()
     world = conditions.named("worlds-unseen").config(labyrinth).env_options["world"]
     assert world == TEST["rover-labyrinth"]
     assert "wind-8" not in conditions.of_group(ROBUST, "rover-race")
@@ -306,6 +305,15 @@ def test_shipping_takes_the_medians_file_and_figures(few, tmp_path, monkeypatch)
     path.unlink()
     job = Job(NAME, 2, (), False, found.references.digest(NAME), found.runs)
     assert work._shipped(job) and path.read_bytes() == b"p"  # it is not trained again
+
+
+def test_a_training_that_has_not_learnt_is_not_shipped(few, tmp_path, monkeypatch):
+    monkeypatch.setattr(shipped, "FILE", tmp_path / "baselines.json")
+    found, said = made(tmp_path, seeds=1, checked=False), []
+    fill(found, ["0100"])
+    page.ship(found, said.append)
+    assert said == [f"{NAME}: seed 0 has not learnt its task; the policy in the package stays"]
+    assert shipped.kept() == {}
 
 
 def test_programs_fly_what_is_trained_and_nothing_else_is_done(few, trained, tmp_path):
