@@ -56,7 +56,7 @@ class Judge:
         """Whether somebody says when robots move."""
         self._stays = arrays_stay(robot)
         self._is_true = self.by == TRUTH
-        self._error = np.zeros((robot.count, 4))
+        self._error = np.zeros((len(robot.pose), 4))
 
     def moved(self) -> None:
         """Robots have moved: what was known of them is old."""

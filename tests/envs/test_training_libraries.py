@@ -330,3 +330,20 @@ def test_d3rlpy(algorithm, name):
                      logger_adapter=silent)  # fmt: skip
     assert buffer.transition_count >= 40
     env.close()
+
+
+@pytest.mark.parametrize("name", ["sitl/CopterHover-v1", "sitl/CopterHoverDiscrete-v1", "sitl/CopterReachGoal-v1"])
+def test_emulation_of_pufferlib(name):
+    pytest.importorskip("pufferlib", reason="needs PufferLib")
+    from pufferlib import vector
+    from pufferlib.emulation import GymnasiumPufferEnv
+
+    def creator(buf=None, seed=0):
+        return GymnasiumPufferEnv(env_creator=gym.make, env_args=[name], buf=buf, seed=seed)
+
+    envs = vector.make(creator, num_envs=2, backend=vector.Serial)
+    envs.reset(seed=0)
+    for _ in range(3):
+        observations, rewards, *_ = envs.step(envs.action_space.sample())
+    assert np.isfinite(rewards).all()
+    assert observations.shape == (2, *envs.single_observation_space.shape)
