@@ -37,6 +37,7 @@ EXTRAS = {
     "viz": (("matplotlib", "pygame"), "pictures of flights and worlds, windows of environments"),
     "view": (("viser",), "the page in the browser: sitl run --view, sitl view"),
     "report": (("matplotlib", "scipy"), "reports on learning"),
+    "identify": (("scipy",), "airframes from logs: sitl identify"),
     "rl": (("stable_baselines3", "torch"), "sitl train with deep learning"),
     "onnx": (("onnx",), "sitl export to .onnx"),
     "minari": (("minari", "h5py"), "datasets of flights: sitl dataset"),

@@ -35,12 +35,18 @@ SIZE_16, SIZE_32 = 40, 72
 PIECES = (
     b',"imu":{"gyro":[', b",", b",", b'],"accel_body":[', b",", b",", b']},"position":[', b",", b",",
     b'],"quaternion":[', b",", b",", b",", b'],"velocity":[', b",", b",",
-    b',"rng_1":', b',"windvane":{"direction":', b',"speed":', b',"battery":{"voltage":', b',"current":',
+    b',"attitude":[', b",", b",", b'],"rng_1":',
+    b',"windvane":{"direction":', b',"speed":', b',"battery":{"voltage":', b',"current":',
     b'\n{"timestamp":', b"]", b"}", b"}}\n",
 )  # fmt: skip
 """Text of a line: that before each number but the time, and the rest of it. ArduPilot looks for keys from the front:
-none is part of one before it."""
-_POSITION, _ATTITUDE, _VELOCITY, _RANGE, _VANE, _SPEED, _BATTERY, NUMBERS = 6, 9, 13, 16, 17, 18, 19, 21
+none is part of one before it.
+
+The attitude as roll, pitch, yaw comes with a range only. Of both attitudes ArduPilot takes the quaternion; but 4.7-dev
+of December 2025 looks at the bit of "attitude" to see whether "rng_1" came (SIM_JSON.cpp; three keys were put before
+both in its table), and does not arm without a range from a sensor that it has.
+"""
+_POSITION, _ATTITUDE, _VELOCITY, _EULER, _RANGE, _VANE, _SPEED, _BATTERY, NUMBERS = 6, 9, 13, 16, 19, 20, 21, 22, 24
 _BEGIN, _END_OF_MOTION, _END_OF_VANE, _END = range(NUMBERS, NUMBERS + 4)
 BEGIN, NOTE, TELL, CONVERSE = range(4)
 """What ``act`` does."""
@@ -172,10 +178,12 @@ def gather(x: Exchange) -> None:
     numbers[0], numbers[1], numbers[2] = rates.x, rates.y, rates.z
     numbers[3], numbers[4], numbers[5] = force.x, force.y, force.z
     write_place(x, numbers, _POSITION)
+    euler = euler_of(body.q)
+    numbers[_EULER], numbers[_EULER + 1], numbers[_EULER + 2] = euler.roll, euler.pitch, euler.yaw
     numbers[_RANGE] = min(float(sensors.rangefinder_range[0]), x.range_max + 1.0)  # out of range: farther than it sees
     if wind.x != 0.0 or wind.y != 0.0 or wind.z != 0.0:
         north, east = vel.x - wind.x, vel.y - wind.y
-        numbers[_VANE], numbers[_SPEED] = wrap_pi(atan2(east, north) - euler_of(body.q).yaw), hypot(north, east)
+        numbers[_VANE], numbers[_SPEED] = wrap_pi(atan2(east, north) - euler.yaw), hypot(north, east)
         x.has_vane = True
     else:
         x.has_vane = False
@@ -189,12 +197,12 @@ def write_line(x: Exchange, text: Bytes, time_us: int, share: float) -> int:
     numbers, was = floats_at(x.numbers, NUMBERS), floats_at(x.before, PLACE)
     at = write_time(text, _piece(x, text, 0, _BEGIN), time_us)
     for n in range(NUMBERS):
-        if n == _RANGE:
+        if n == _EULER:
             at = _piece(x, text, at, _END_OF_MOTION)
-        if (n == _RANGE and not x.has_range) or (_RANGE < n < _BATTERY and not x.has_vane):
+        if (_EULER <= n <= _RANGE and not x.has_range) or (_RANGE < n < _BATTERY and not x.has_vane):
             continue
         number = numbers[n]
-        if _POSITION <= n < _RANGE:
+        if _POSITION <= n < _EULER:
             number = (1.0 - share) * was[n - _POSITION] + share * number
         at = write_number(text, _piece(x, text, at, n), number)
         if n == _SPEED:

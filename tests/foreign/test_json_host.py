@@ -11,6 +11,7 @@ import threading
 import pytest
 
 from sitl.bridge.ardupilot_json.servos import Servos, encode
+from sitl.core.algebra import Quat, euler_of
 from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.plants.local import stand_alone
@@ -74,7 +75,7 @@ def test_a_standing_copter_is_told_as_it_is(copter_plant):
         assert line["position"] == [0.0, 0.0, 0.0] and line["velocity"] == [0.0, 0.0, 0.0]
         assert line["imu"]["accel_body"] == pytest.approx([0.0, 0.0, -9.80665])
         assert line["battery"]["voltage"] == pytest.approx(12.6, abs=0.1)
-        assert "windvane" not in line and "rng_1" not in line
+        assert "windvane" not in line and "rng_1" not in line and "attitude" not in line
 
 
 def test_ardupilots_clock_of_whole_microseconds_keeps_step_with_ours(copter_plant):
@@ -333,6 +334,8 @@ def test_range_finder_and_vane_are_told_where_there_is_something_to_tell():
     with served(plant) as (_, peer):
         line = peer.ask(0)
         assert 0.0 <= line["rng_1"] < 0.3
+        attitude = euler_of(Quat(*line["quaternion"]))  # ArduPilot sees a range only where it is told, too
+        assert line["attitude"] == pytest.approx(tuple(attitude), abs=1e-7)
         assert line["windvane"]["direction"] == pytest.approx(0.0, abs=1e-6)  # head to wind
         assert line["windvane"]["speed"] == pytest.approx(5.0, abs=0.1)
     plant.close()

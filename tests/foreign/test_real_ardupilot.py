@@ -66,7 +66,7 @@ def client():
 def test_it_is_ready_as_soon_as_on_its_own_physics_and_its_clock_is_ours(client, kind, frame):
     vehicle = client(kind, frame)
     vehicle.wait_ready()
-    assert 38.0 < vehicle.now < 46.0  # 41.7 s on its own
+    assert 35.0 < vehicle.now < 46.0  # 41.7 s on its own, with its log
     theirs = vehicle.message("SYSTEM_TIME").time_boot_ms * 1e-3
     assert theirs == pytest.approx(vehicle.now, abs=0.15)
     full = stand_alone(frame).vehicle.airframe.value("battery_voltage_full")
@@ -219,6 +219,7 @@ def test_a_rover_is_run_in_a_world(running):
     rover = running("rover", "--world", "maze_erlerover")
     rover.wait_ready()
     rover.guided_and_armed()
+    rover.home()  # it may have been set before the client came
     began = rover.position
     rover.set_velocity(0.6, 0.0)
     rover.delay(3.0)
