@@ -129,7 +129,8 @@ def test_it_is_run_from_the_command_line_and_its_physics_has_wind(tmp_path, prog
         assert client.params["SIM_WIND_SPD"] == 3.0
         client.set_mode("ACRO")
         client.arm()
-        assert abs(client.message("SERVO_OUTPUT_RAW").servo1_raw - 1090) < 30
+        pulses = client.message("SERVO_OUTPUT_RAW")[1:5]
+        assert min(pulses) == pytest.approx(1090, abs=5)  # the loops add to one or the other
         client.disarm()
         client.close()
 
