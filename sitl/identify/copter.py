@@ -167,11 +167,12 @@ def vibration(logs: Sequence[FlightLog]) -> Figure:
 
 
 def not_yet() -> list[Figure]:
-    """Figures for which there is no method yet whose intervals hold."""
-    reason = "there is no method here yet whose intervals hold the truth of logs with known truth"
+    """Figures for which there is no method yet."""
+    reason = "no method yet"
+    tried = "no method yet: intervals of what was tried did not hold the truth of simulated flights"
     return [
-        Sought("thrust_expo", "", "curve of thrust over output").hidden(reason),
+        Sought("thrust_expo", "", "curve of thrust over output").hidden(tried),
         Sought("motor_lag", "s", "time constant of motors and their controllers").hidden(reason),
-        Sought("drag", "1/s", "deceleration by air speed").hidden(reason),
+        Sought("drag", "1/s", "deceleration by air speed").hidden(tried),
         Sought("battery_capacity", "Ah", "charge of the full battery").hidden("a flight does not empty the battery"),
     ]

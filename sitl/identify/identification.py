@@ -138,7 +138,10 @@ class Identification:
             "",
             "Figures without the word 'identified' are those of the airframe that",
         ]
-        head += ["this one began with, by the logs' FRAME_CLASS and FRAME_TYPE."]
+        head += [
+            "this one began with, by the logs' FRAME_CLASS and FRAME_TYPE, inertia and drag scaled to the mass;",
+            "parameters are those of the log.",
+        ]
         return vehicles.to_toml(self.airframe(), head=head, notes=notes)
 
     def write(self, path: str | Path) -> None:
