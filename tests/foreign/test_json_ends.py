@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.bridge.ardupilot_json import motion
 from sitl.bridge.ardupilot_json.autopilot_end import AutopilotEnd
 from sitl.bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, lines, ticks
 from sitl.bridge.ardupilot_json.servos import Servos, decode, encode
+from tests.foreign import json_lines
 
 HERE, THERE = ("127.0.0.1", 1111), ("127.0.0.1", 2222)
 
@@ -18,7 +18,7 @@ def frame(number: int, rate: int = 400) -> bytes:
 
 
 def line(time: float) -> bytes:
-    return motion.encode((time, 0, 0, 0, 0, 0, -9.8, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0))
+    return json_lines.encode((time, 0, 0, 0, 0, 0, -9.8, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0))
 
 
 @pytest.mark.parametrize(

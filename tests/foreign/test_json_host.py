@@ -16,6 +16,7 @@ from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.plants.local import stand_alone
 from sitl.scenario import DEFAULT_HOME
+from tests.foreign.json_lines import found_by_text
 
 ANY = ("127.0.0.1", 0)
 
@@ -52,9 +53,10 @@ class Peer:
         found = []
         while True:
             try:
-                found.append(json.loads(self.socket.recv(65535)))
+                self.text = self.socket.recv(65535).decode()
             except BlockingIOError:
                 return found
+            found.append(json.loads(self.text))
 
     def ask(self, number: int, **frame) -> dict:
         """A frame, and the one line that answers it."""
@@ -66,6 +68,11 @@ class Peer:
 
     def close(self) -> None:
         self.socket.close()
+
+
+def first_value(text: str):
+    """The number or list that a text begins with."""
+    return json.JSONDecoder().raw_decode(text)[0]
 
 
 def test_a_standing_copter_is_told_as_it_is(copter_plant):
@@ -338,7 +345,14 @@ def test_range_finder_and_vane_are_told_where_there_is_something_to_tell():
         assert line["attitude"] == pytest.approx(tuple(attitude), abs=1e-7)
         assert line["windvane"]["direction"] == pytest.approx(0.0, abs=1e-6)  # head to wind
         assert line["windvane"]["speed"] == pytest.approx(5.0, abs=0.1)
+        text = peer.text
     plant.close()
+    assert text.startswith("\n{") and text.endswith("}\n") and " " not in text
+    for key in ("timestamp", "position", "quaternion", "velocity", "rng_1", "attitude"):
+        assert first_value(found_by_text(text, "", key)) == line[key], key
+    for section in ("imu", "windvane", "battery"):
+        for key, value in line[section].items():
+            assert first_value(found_by_text(text, section, key)) == value, key
 
 
 def test_same_pulses_same_lines(copter_plant):

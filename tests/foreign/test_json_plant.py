@@ -13,7 +13,6 @@ import time
 
 import pytest
 
-from sitl.bridge.ardupilot_json import motion
 from sitl.bridge.ardupilot_json.servos import decode
 from sitl.client.endpoint import Endpoint
 from sitl.core.algebra import ZERO
@@ -26,6 +25,7 @@ from sitl.plants.local import stand_alone
 from sitl.plants.plant import PhysicsLostError
 from sitl.scenario import DEFAULT_HOME
 from sitl.simulation import Simulation
+from tests.foreign import json_lines
 
 ANY = ("127.0.0.1", 0)
 REST = (0.0, 0.0, 0.0, 0.0, 0.0, -9.80665, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -77,7 +77,7 @@ class Scripted:
 
 
 def still(*times):
-    return iter([motion.encode((time, *REST)) for time in times])
+    return iter([json_lines.encode((time, *REST)) for time in times])
 
 
 def on_script(answers, **options):
@@ -109,7 +109,7 @@ def test_a_flight_over_the_wire(server):
 
 def test_the_imu_feels_what_the_line_says():
     turning = (0.1, -0.2, 0.3, 1.0, 2.0, -9.0, *REST[6:])
-    lines = (motion.encode((0.0025 * k, *turning)) for k in range(1, 1000))
+    lines = (json_lines.encode((0.0025 * k, *turning)) for k in range(1, 1000))
     simulation = on_script(lines)
     for name in ("acc_noise", "gyro_noise"):
         simulation.v.physics.derived[name] = 0.0
@@ -177,7 +177,7 @@ def test_physics_whose_time_stands_is_asked_again_and_then_lost():
 
 
 def test_what_was_felt_in_half_a_tick_is_not_lost_with_the_physics():
-    part = motion.encode((0.0035, 1.0, *REST[1:]))
+    part = json_lines.encode((0.0035, 1.0, *REST[1:]))
     simulation = on_script(iter([*still(0.0025), part, *(None,) * 100]))
     with pytest.raises(PhysicsLostError):
         simulation.advance(0.005)
@@ -188,7 +188,7 @@ def test_what_was_felt_in_half_a_tick_is_not_lost_with_the_physics():
 
 
 def test_a_frame_is_sent_again_and_then_the_physics_is_lost_with_no_time_passed():
-    good = motion.encode((0.0025, *REST))
+    good = json_lines.encode((0.0025, *REST))
     simulation = on_script(iter([good, *(None,) * 100]))
     simulation.advance(0.0025)
     with pytest.raises(PhysicsLostError, match="does not answer"):
@@ -202,8 +202,8 @@ def test_a_frame_is_sent_again_and_then_the_physics_is_lost_with_no_time_passed(
 
 
 def test_a_line_that_cannot_be_is_not_believed_and_time_stands():
-    bad = motion.encode((0.005, math.nan, *REST[1:])).replace(b"nan", b"NaN")
-    simulation = on_script(iter([motion.encode((0.0025, *REST)), *(bad,) * 100]))
+    bad = json_lines.encode((0.005, math.nan, *REST[1:])).replace(b"nan", b"NaN")
+    simulation = on_script(iter([json_lines.encode((0.0025, *REST)), *(bad,) * 100]))
     with pytest.raises(PhysicsLostError, match="NaN"):
         simulation.advance(1.0)
     assert simulation.v.time_us == 2500
@@ -228,7 +228,7 @@ def test_a_reboot_begins_the_physics_anew(server):
 
 
 def test_what_a_line_tells_of_battery_and_range_is_sensed():
-    line = motion.encode((0.0025, *REST), motion.extra(1.25, (10.5, 7.5)))
+    line = json_lines.encode((0.0025, *REST), json_lines.extra(1.25, (10.5, 7.5)))
     simulation = on_script(iter([line]))
     simulation.advance(0.0025)
     assert float(simulation.v.sensors.rangefinder_range[0]) == 1.25
@@ -237,7 +237,7 @@ def test_what_a_line_tells_of_battery_and_range_is_sensed():
 
 def test_a_receiver_of_the_simulators_takes_the_place_of_ours():
     sticks = {f"rc_{k + 1}": pulse for k, pulse in enumerate((1510, 1520, 1130, 1540, 1550, 1560, 1570, 1580))}
-    line = motion.encode((0.0025, *REST), f',"rc":{json.dumps(sticks)}')
+    line = json_lines.encode((0.0025, *REST), f',"rc":{json.dumps(sticks)}')
     lines = (line.replace(b"0.0025", b"%.4f" % (0.0025 * k), 1) for k in range(1, 100))
     simulation = on_script(lines)
     simulation.advance(0.1)

@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import struct
 
 import pytest
 
-from sitl.bridge.ardupilot_json.motion import MotionError, extra
+from sitl.bridge.ardupilot_json.motion import MotionError
 from sitl.bridge.ardupilot_json.motion import decode as decode_motion
-from sitl.bridge.ardupilot_json.motion import encode as encode_motion
 from sitl.bridge.ardupilot_json.servos import ServoError, Servos, decode, encode
+from tests.foreign import json_lines
 
 
 @pytest.mark.parametrize(("pulses", "magic", "size"), [(16, 18458, 40), (32, 29569, 72)])
@@ -45,7 +44,6 @@ def test_only_16_or_32_pulses_make_a_frame():
         encode(Servos(400, 0, (1500,) * 8))
 
 
-MOTION = (1.25, 0.1, -0.2, 0.3, 0.0, 0.0, -9.80665, 10.5, -20.25, -3.125, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, -0.5)
 GOOD = {
     "timestamp": 2.5,
     "imu": {"gyro": [0, 0, 0.1], "accel_body": [0, 0, -9.8]},
@@ -55,55 +53,11 @@ GOOD = {
 }
 
 
-def found_by_text(line: str, section: str, key: str) -> str:
-    """What follows a key where ArduPilot looks: the first text of that name behind the section's, and two bytes on."""
-    at = line.index(section) + len(section) + 1
-    at = line.index(key, at) + len(key) + 2
-    return line[at:]
-
-
-def test_a_line_stands_between_line_feeds_without_spaces():
-    line = encode_motion(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode()
-    assert line.startswith("\n{") and line.endswith("}\n") and " " not in line
-    assert json.loads(line)["quaternion"] == [1.0, 0.0, 0.0, 0.0]
-
-
-@pytest.mark.parametrize(
-    ("section", "key", "numbers"),
-    [
-        ("imu", "gyro", MOTION[1:4]),
-        ("imu", "accel_body", MOTION[4:7]),
-        ("", "position", MOTION[7:10]),
-        ("", "quaternion", MOTION[10:14]),
-        ("", "velocity", MOTION[14:17]),
-    ],
-)
-def test_ardupilots_parser_finds_every_vector(section, key, numbers):
-    line = encode_motion(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
-    values = re.match(r"\[([^]]*)\]", found_by_text(line, section, key))
-    assert values is not None
-    assert tuple(map(float, values[1].split(","))) == numbers
-
-
-@pytest.mark.parametrize(
-    ("section", "key", "number"),
-    [
-        ("", "timestamp", 1.25),
-        ("", "rng_1", 1.5),
-        ("windvane", "direction", 0.5),
-        ("windvane", "speed", 2.0),
-        ("battery", "voltage", 12.5),
-        ("battery", "current", 3.0),
-    ],
-)
-def test_ardupilots_parser_finds_every_number(section, key, number):
-    line = encode_motion(MOTION, extra(1.5, (12.5, 3.0), (0.5, 2.0))).decode().strip()
-    assert float(re.match(r"[-0-9.e]+", found_by_text(line, section, key))[0]) == number
-
-
 def test_what_is_written_is_read_to_the_last_bit():
     motion = decode_motion(
-        encode_motion((1 / 3, *(math.sin(k) for k in range(9)), 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3), extra(0.7))
+        json_lines.encode(
+            (1 / 3, *(math.sin(k) for k in range(9)), 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3), json_lines.extra(0.7)
+        )
     )
     assert motion.time == 1 / 3
     assert motion.gyro + motion.accel + motion.position == tuple(math.sin(k) for k in range(9))

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,10 +23,6 @@ _LATEST = 1e9
 _KINDS = {float, int}
 _RANGE = b"rng_"
 RANGES = tuple(f"rng_{k}" for k in range(1, 7))
-_LINE = (
-    '\n{"timestamp":%r,"imu":{"gyro":[%r,%r,%r],"accel_body":[%r,%r,%r]},"position":[%r,%r,%r],'
-    '"quaternion":[%r,%r,%r,%r],"velocity":[%r,%r,%r]'
-)
 
 
 class MotionError(SitlError, ValueError):
@@ -56,38 +51,6 @@ class Motion:
     """Voltage [V], current [A]."""
     receiver: tuple[int, ...] = ()
     """Pulses of a radio receiver's channels [us]."""
-
-
-def encode(motion: Sequence[float], extras: str = "") -> bytes:
-    """A line, with all the digits that its numbers have.
-
-    Args:
-        motion: timestamp, gyro, accel, position, attitude (w x y z), velocity: 17 numbers.
-        extras: more members, each with its comma before it (``extra``).
-    """
-    return (_LINE % tuple(motion) + extras + "}\n").encode()
-
-
-def extra(
-    reading: float | None = None,
-    battery: tuple[float, float] | None = None,
-    wind: tuple[float, float] | None = None,
-) -> str:
-    """Members that a line may have beside the motion.
-
-    Args:
-        reading: of a range-finder [m].
-        battery: voltage [V], current [A].
-        wind: that a vane on the vehicle meets: where it comes from, clockwise from the nose [rad], and speed [m/s].
-    """
-    text = ""
-    if reading is not None:
-        text += f',"rng_1":{reading!r}'
-    if wind is not None:
-        text += f',"windvane":{{"direction":{wind[0]!r},"speed":{wind[1]!r}}}'
-    if battery is not None:
-        text += f',"battery":{{"voltage":{battery[0]!r},"current":{battery[1]!r}}}'
-    return text
 
 
 def decode(line: bytes) -> Motion:
