@@ -127,9 +127,10 @@ def test_actions_that_are_no_numbers_and_a_policy_that_thinks_too_long_end_it(fl
     assert mode(simulation) == BRAKE
 
 
-def _heed_ctrl_c():
-    """In the child: tests that run in the background have inherited that SIGINT is passed over."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+def _heed_signals():
+    """As a shell starts a program: who runs tests in the background, or by nohup, passes ignored signals on."""
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT):
+        signal.signal(number, signal.SIG_DFL)
 
 
 @pytest.mark.slow
@@ -145,7 +146,7 @@ def test_a_process_that_ends_leaves_the_vehicle_flying(flown, number):
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with RealVehicle(simulation, waits=True) as vehicle:
         words += ["--connection", f"udpout:127.0.0.1:{vehicle.port}"]
-        process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=paths, preexec_fn=_heed_ctrl_c)
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=paths, preexec_fn=_heed_signals)
         try:
             while vehicle.count("SET_POSITION_TARGET_LOCAL_NED") < 20 and process.poll() is None:
                 vehicle.wait()
