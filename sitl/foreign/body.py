@@ -157,8 +157,8 @@ class BodyLines(Sequence[bytes]):
         x.until_us = _FAR_US if until_us is None else until_us
         self._act(self._address, BEGIN)
         while True:
-            if plant.rangers is not None:
-                x.measure_us = plant.rangers.due_us
+            if plant.rangers is not None:  # other ones after each power-on
+                x.ranging, x.measure_us = plant.ranging, plant.rangers.due_us
             how = int(self._act(self._address, CONVERSE))
             if how != IS_DUE:
                 return how

@@ -355,6 +355,27 @@ def test_range_finder_and_vane_are_told_where_there_is_something_to_tell():
             assert first_value(found_by_text(text, section, key)) == value, key
 
 
+@pytest.mark.parametrize("answers", [1, 16])
+def test_solids_near_a_vehicle_that_has_moved_are_listed_anew(answers):
+    plant = stand_alone("erle_rover", home=DEFAULT_HOME, world="maze_erlerover", start=(0.0, 0.0, 0.0, 0.0))
+    obstacles = plant.vehicle.v.physics.obstacles
+
+    def step(number):
+        obstacles.wanted = True
+        peer.send(number)
+        assert host.listen()
+        host.step(answers=answers)
+        assert peer.lines() and not obstacles.wanted
+
+    with served(plant) as (host, peer):
+        peer.ask(100)
+        step(101)
+        peer.ask(0)  # the autopilot was restarted: sensors have other memory from now on
+        assert host.boots == 1
+        step(1)
+    plant.close()
+
+
 def test_same_pulses_same_lines(copter_plant):
     def flight():
         plant = stand_alone("erle_copter", home=DEFAULT_HOME)
