@@ -15,6 +15,7 @@ from ...plants.physics_server import WAIT_S, Silence
 from ...run.pacing import Pacing
 from ..choice import Choice
 from ..process import HOST
+from ..slices import LOST_S
 from . import airframe
 from .clients import Clients
 from .configuration import BEGINNING, ENDING, configure
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 Say = Callable[[str], None]
 _SLICE_US = 20_000
 """Clients are heard at least so often [us]."""
-LOST_S = 30.0
-"""Wall time after which a program that does not answer is lost to a script that waits for it [s]."""
 
 
 def starter(
