@@ -54,10 +54,19 @@ def test_home_has_the_nearest_centimetre(alt: float) -> None:
     assert stored_home(1, 2, alt).z == 584.0
 
 
+def test_a_wrapped_height_loses_a_centimetre_when_it_is_kept_again() -> None:
+    """ArduPilot multiplies 327.36 m by 100 in single precision, which gives 32735.998 cm, and cuts that off."""
+    once = stored(MissionItem(c.DO_ENGINE_CONTROL, 3, p3=-328.0))
+    assert once.p3 == pytest.approx(327.36, abs=1e-4)
+    assert stored(once).p3 == pytest.approx(327.35, abs=1e-4)
+
+
 @given(st.sampled_from(sorted(STORED)), st.tuples(NUMBERS, NUMBERS, NUMBERS, NUMBERS, HEIGHTS))
 def test_what_was_read_back_is_kept_as_it_is(command: int, values: tuple[float, ...]) -> None:
     p1, p2, p3, p4, z = values
-    if command == c.NAV_PAYLOAD_PLACE:
-        p1 = float(round(abs(p1)) % 600)  # a height, too, which wraps at 655.36 m
+    if command == c.NAV_PAYLOAD_PLACE:  # centimetres that wrap at 655.36 m
+        p1 = float(round(abs(p1)) % 600)
+    elif command == c.DO_ENGINE_CONTROL:
+        p3 = float(round(abs(p3)) % 600)
     once = stored(MissionItem(command, 3, p1, p2, p3, p4, 350_000_001, -1_490_000_001, z))
     assert stored(once) == once
