@@ -402,7 +402,7 @@ class Fleet:
             v = self.view(row)
             move.write(order, int(row), v, kind)
             for name, value in move.figures.items():
-                self._figures[name][row] = value
+                self._figures[name][row] = tuple(value) if isinstance(value, Sequence) else value
             order.other_world = False
             if move.seed is not None:
                 rng.seed(v.rng, move.seed)

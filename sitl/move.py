@@ -15,6 +15,7 @@ from .vehicle.kind import Kind
 from .vehicle.move import MoveOrder
 from .vehicle.walks import walk
 from .vehicles import Airframe
+from .vehicles.airframe import Value
 from .vehicles.figures.figure import Figure
 
 WIND = (
@@ -44,7 +45,7 @@ class Move:
         heading: from north towards east [rad].
         velocity: north, east, down, up to 100 m/s [m/s]; of a vehicle in the air, or along a rover's nose.
         wind: speed [m/s], where it comes from [deg], turbulence [m/s].
-        figures: of the airframe, that are numbers: name -> value.
+        figures: of the airframe that are numbers or vectors of three: name -> value.
         seed: of the noise of all sensors from now on.
         walks: slow error of the receiver north and east, in standard deviations, before the heading is changed: as if
             it had walked there, so that the estimate has it, too.
@@ -56,7 +57,7 @@ class Move:
     heading: float | None = None
     velocity: tuple[float, float, float] | None = None
     wind: tuple[float, float, float] | None = None
-    figures: Mapping[str, float] = field(default_factory=dict)
+    figures: Mapping[str, Value] = field(default_factory=dict)
     seed: int | None = None
     walks: tuple[float, float] | None = None
 
@@ -83,7 +84,10 @@ class Move:
             for name, value in self.figures.items():
                 if name not in known:
                     raise OptionError(f"figure {name!r} cannot be changed by a move{did_you_mean(name, known)}")
-                _number(f"figure {name}", value, known[name].low, known[name].high, known[name].unit)
+                figure = known[name]
+                elements: Any = (value,) if figure.length == 1 else _some(f"figure {name}", value, figure.length)
+                for one in elements:
+                    _number(f"figure {name}", one, figure.low, figure.high, figure.unit)
 
     def write(self, order: MoveOrder, vehicle: int, v: Any, kind: Kind) -> None:
         """Write it as the order for a vehicle.
@@ -138,10 +142,15 @@ class Move:
             raise OptionError(f"velocity = {self.velocity!r}: vehicle {vehicle} is on the ground; {allowed}")
 
 
+def is_changeable(figure: Figure) -> bool:
+    """Whether a vehicle that was prepared with one value of a figure may go on with another."""
+    return figure.length in (1, 3) and not figure.whole
+
+
 def _numbers(kind: type[Airframe]) -> dict[str, Figure]:
     """The figures that may be changed, by name."""
     if kind not in _known:
-        _known[kind] = {f.name: f for f in kind.known if f.length == 1 and not f.whole}
+        _known[kind] = {f.name: f for f in kind.known if is_changeable(f)}
     return _known[kind]
 
 

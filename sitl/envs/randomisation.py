@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from sitl.vehicle.faults import Failure, is_fault
+from sitl.vehicles import Airframe
+from sitl.vehicles.airframe import Value
 from sitl.vehicles.figures.figure import Figure
 
 from .faults import FailingRobot, amount_of, drawn
@@ -17,30 +19,38 @@ from .latency import LATENCY, Latency
 from .options import EnvOptionError, unknown
 from .robots.robot import Robot
 
-Randomise = Mapping[str, tuple[float, float] | Callable[[np.random.Generator], float] | int]
-"""Figure, or fault -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of sets.
-A fault ("gps/wrong", "motor:2", "SIM_WIND_SPD") begins with the episode; its amount is drawn."""
+Range = tuple[Value, Value]
+Randomise = str | Mapping[str, Range | Callable[[np.random.Generator], Any] | int]
+"""Figure, or fault -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of sets;
+IDENTIFIED -> whether the intervals of the airframe are among them. IDENTIFIED itself: only these. Vectors are drawn
+element by element. A fault ("gps/wrong", "motor:2", "SIM_WIND_SPD") begins with the episode; its amount is drawn."""
+IDENTIFIED = "identified"
+"""Key, or value of the option: each figure within the 95 % interval that was measured (``Airframe.intervals``)."""
 DRAWS = "draws"
 """Key whose value N means: N sets of figures are drawn once (always the same ones), and each episode takes one."""
 _MAX_DRAWS = 100_000
 
 
-def ranges_of(randomise: Any) -> Randomise:
-    """The option, {} for None.
+def ranges_of(randomise: Any) -> Mapping[str, Any]:
+    """The option as a mapping, {} for None.
 
     Raises:
-        EnvOptionError: it is no mapping.
+        EnvOptionError: it is none, and no word for one.
     """
     if randomise is None or isinstance(randomise, Mapping):
         return randomise or {}
-    raise EnvOptionError(f"randomise = {randomise!r}; it must map figures to (low, high), or be None (null)")
+    if isinstance(randomise, str) and randomise == IDENTIFIED:
+        return {IDENTIFIED: True}
+    raise EnvOptionError(
+        f"randomise = {randomise!r}; it must map figures to (low, high), or be {IDENTIFIED!r} or None (null)"
+    )
 
 
 class Randomisation:
     """Draws figures of a robot, and amounts of faults, for each episode.
 
     Args:
-        ranges: see ``Randomise``; "latency" is one of the figures.
+        ranges: see ``ranges_of``; "latency" is one of the figures.
         robot: robot whose figures are drawn.
         latency: latency of its commands; None: it has none.
 
@@ -48,8 +58,8 @@ class Randomisation:
         EnvOptionError: unknown figure or fault, no valid range, or a range beyond the limits.
     """
 
-    def __init__(self, ranges: Randomise, robot: Robot, latency: Latency | None = None) -> None:
-        self.ranges: dict[str, Any] = dict(ranges)
+    def __init__(self, ranges: Mapping[str, Any], robot: Robot, latency: Latency | None = None) -> None:
+        self.ranges: dict[str, Any] = _with_intervals(ranges, robot)
         self._latency = latency
         draws = self.ranges.pop(DRAWS, None)
         known = {**robot.figures, LATENCY.name: LATENCY}
@@ -58,12 +68,12 @@ class Randomisation:
         """Robot -> what fails in its next episode."""
         for name, values in self.ranges.items():
             if is_fault(name):
-                self._faults[name] = amount_of(name, values if callable(values) else _range(name, values), robot)
+                self._faults[name] = amount_of(name, values if callable(values) else _range(name, values, 1), robot)
             elif name not in known:
                 raise unknown("randomise: figure", name, [*known, DRAWS])
             elif not callable(values):
                 self._check(known[name], values, robot)
-        self._sets: list[dict[str, float]] | None = None
+        self._sets: list[dict[str, Any]] | None = None
         if draws is not None:
             if not isinstance(draws, int) or isinstance(draws, bool) or not 1 <= draws <= _MAX_DRAWS:
                 raise EnvOptionError(f"randomise: {DRAWS} = {draws!r}; it must be a whole number 1 .. {_MAX_DRAWS}")
@@ -73,8 +83,9 @@ class Randomisation:
     @staticmethod
     def _check(figure: Figure, values: Any, robot: Robot) -> None:
         name = figure.name
-        low, high = _range(name, values)
-        if not figure.low <= low <= high <= figure.high:
+        low, high = _range(name, values, figure.length)
+        ends = np.atleast_1d(low), np.atleast_1d(high)
+        if not all(figure.low <= least <= most <= figure.high for least, most in zip(*ends)):
             limits = f"{figure.low:g} .. {figure.high:g} {figure.unit}".strip()
             raise EnvOptionError(f"randomise: {name} = {values!r}; it must be low <= high within {limits}")
         if name in ("range_max", "lidar_max"):
@@ -82,9 +93,9 @@ class Randomisation:
         if name == "radius":  # random places have room for the greatest
             robot.volume = replace(robot.volume, radius=max(robot.volume.radius, high))
 
-    def _drawn(self, rng: np.random.Generator) -> dict[str, float]:
+    def _drawn(self, rng: np.random.Generator) -> dict[str, Any]:
         return {
-            name: float(values(rng) if callable(values) else rng.uniform(*values))
+            name: _plain(values(rng) if callable(values) else rng.uniform(*values))
             for name, values in self.ranges.items()
         }
 
@@ -110,9 +121,38 @@ class Randomisation:
                 robot.fail(index, failure)
 
 
-def _range(name: str, values: Any) -> tuple[float, float]:
+def _with_intervals(ranges: Mapping[str, Any], robot: Robot) -> dict[str, Any]:
+    """The ranges, and where IDENTIFIED is true those of the airframe that are not given otherwise."""
+    out = dict(ranges)
+    wanted = out.pop(IDENTIFIED, False)
+    if not isinstance(wanted, bool):
+        raise EnvOptionError(f"randomise: {IDENTIFIED} = {wanted!r}; it must be True or False")
+    if not wanted:
+        return out
+    airframe: Airframe | None = getattr(robot, "airframe", None)
+    if airframe is None or not airframe.intervals:
+        title = f"robot {robot.name!r}" if airframe is None else airframe.title
+        raise EnvOptionError(
+            f"randomise: {IDENTIFIED}: {title} has no intervals: give the frame of a file with [intervals], as "
+            "`sitl identify` writes it"
+        )
+    return {**airframe.intervals, **out}
+
+
+def _range(name: str, values: Any, length: int) -> tuple[Any, Any]:
+    """Low and high: numbers, or vectors of this length."""
+    shape = () if length == 1 else (length,)
     try:
-        low, high = (float(v) for v in values)
+        low, high = (np.asarray(v, float) for v in values)
     except (TypeError, ValueError):
-        raise EnvOptionError(f"randomise: {name} = {values!r}; it must be (low, high) or a function") from None
-    return low, high
+        low = high = np.empty(0)
+    if low.shape != shape or high.shape != shape:
+        each = "" if length == 1 else f", of {length} numbers each,"
+        raise EnvOptionError(f"randomise: {name} = {values!r}; it must be (low, high){each} or a function")
+    return _plain(low), _plain(high)
+
+
+def _plain(value: Any) -> Any:
+    """A float, or a tuple of floats: what ``Robot.set_figure`` takes."""
+    found = np.asarray(value, float)
+    return tuple(found.tolist()) if found.ndim else float(found)

@@ -107,7 +107,8 @@ class NavigateOptions:
             "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
             or a function of a random generator that gives one; None: the world's for the robot.
         randomise: figure of the robot, "latency", or a fault whose amount is drawn -> (low, high), drawn for each
-            episode; "draws" -> N: of N sets.
+            episode; "draws" -> N: of N sets; "identified" -> True: within the airframe's intervals, too. "identified":
+            within these alone.
         latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
             The previous command holds until then; at the start of an episode the robot stands or hovers.
         faults: fault, as "gps" or "motor:2=0.5" ("": none) -> when it begins in an episode [s], or (earliest, latest);
@@ -239,8 +240,15 @@ class Session:
         self.observation_space = self.observation.space(self.robot)
         self.remembers: tuple[Remembering, ...] = tuple(getattr(self.observation, "remembers", ()))
         """Pieces of the observation that remember the last steps."""
+        readers = {"observation": self.observation, "task": self.task, "costs": self.costs}
+        reading = [name for name, piece in readers.items() if reads_scan(piece)]
+        if reading and not len(self.robot.angles):
+            raise EnvOptionError(
+                f"{' and '.join(reading)}: lidar readings are needed, and {self.robot.name!r} has no lidar "
+                "(its lidar_samples is 0); choose others, or give the airframe one"
+            )
         if isinstance(self.robot, AskedRobot):
-            self.robot.use_scan(reads_scan(self.observation) or reads_scan(self.task) or reads_scan(self.costs))
+            self.robot.use_scan(bool(reading))
             if self.robot.is_live:
                 self._rehearse()
 

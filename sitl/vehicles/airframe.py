@@ -13,7 +13,9 @@ import numpy as np
 from ..errors import SitlError, did_you_mean
 from .figures.figure import Figure
 
-Figures = Mapping[str, float | Sequence[float]]
+Value = float | Sequence[float]
+Figures = Mapping[str, Value]
+Intervals = Mapping[str, tuple[Value, Value]]
 A = TypeVar("A", bound="Airframe")
 
 
@@ -30,6 +32,8 @@ class Airframe:
         description: one line.
         figures: every figure of the kind that its model uses; those with a default may be left out.
         parameters: values under ArduPilot's names that differ from the firmware's defaults.
+        intervals: figure -> low and high of its 95 % interval, of those that were measured; each is a number, or a
+            vector of as many as the figure has, and the figure lies between them.
         file: path of the user's file that it was read from, for messages; "": of none.
 
     Raises:
@@ -49,6 +53,7 @@ class Airframe:
     description: str
     figures: Figures
     parameters: Mapping[str, float] = field(default_factory=dict)
+    intervals: Intervals = field(default_factory=dict)
     file: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
@@ -63,6 +68,8 @@ class Airframe:
             raise AirframeError(f"airframe {self.name!r}: figures missing: {', '.join(missing)}")
         for name, value in self.figures.items():
             self._check(names[name], value)
+        for name, interval in self.intervals.items():
+            self._check_interval(name, interval, names)
         if "lidar_rays" in names and self.value("lidar_samples") > self.value("lidar_rays"):
             raise AirframeError(
                 f"airframe {self.name!r}: lidar_samples = {self.value('lidar_samples')!r}; at most lidar_rays, "
@@ -109,8 +116,9 @@ class Airframe:
         return 0.0 if default is None else default
 
     def changed(self: A, **figures: float | Sequence[float]) -> A:
-        """A copy with some figures replaced."""
-        return replace(self, figures={**self.figures, **figures})
+        """A copy with some figures replaced; what was measured of them is not true of these any more."""
+        kept = {name: interval for name, interval in self.intervals.items() if name not in figures}
+        return replace(self, figures={**self.figures, **figures}, intervals=kept)
 
     def record(self) -> np.ndarray[Any, Any]:
         """All figures, in their units, as one record of the kind (an array without dimensions)."""
@@ -123,6 +131,18 @@ class Airframe:
         if figure.default is not None:
             return False
         return not figure.models or self.figures.get(self.model) in figure.models
+
+    def _check_interval(self, name: str, interval: Any, names: Mapping[str, Figure]) -> None:
+        title = f"airframe {self.name!r}: interval of {name!r}"
+        if name not in names:
+            raise AirframeError(f"{title}: there is no such figure{did_you_mean(name, names)}")
+        if not isinstance(interval, list | tuple) or len(interval) != 2:
+            raise AirframeError(f"{title} = {interval!r}; low and high are needed")
+        for end in interval:
+            self._check(names[name], end)
+        low, value, high = (np.asarray(one, dtype=float) for one in (interval[0], self.value(name), interval[1]))
+        if np.any(low > value) or np.any(value > high):
+            raise AirframeError(f"{title} = {interval!r} does not hold the figure, which is {self.value(name)!r}")
 
     def _check(self, figure: Figure, value: float | Sequence[float]) -> None:
         title = f"airframe {self.name!r}: {figure.name} = {value!r}"

@@ -2,7 +2,7 @@
 """An airframe's file (TOML): data only, read and written. What is wrong is said with file, key, value, what is allowed.
 
 The file has ``name``, ``kind`` and ``description``, a table ``figures`` in SI units, a table ``rotor`` for each rotor
-of a copter, and a table ``parameters`` under ArduPilot's names::
+of a copter, a table ``parameters`` under ArduPilot's names, and ``intervals`` of figures that were measured::
 
     kind = "copter"
 
@@ -14,6 +14,9 @@ of a copter, and a table ``parameters`` under ArduPilot's names::
     y = 0.141  # [m] to the right
     z = -0.03  # [m] down
     direction = "ccw"
+
+    [intervals]
+    mass = [1.12, 1.16]  # 95 %
 """
 
 from __future__ import annotations
@@ -39,6 +42,7 @@ _KEYS: dict[str, tuple[type, str]] = {
     "description": (str, "a text"),
     "figures": (dict, "a table: [figures]"),
     "parameters": (dict, "a table: [parameters]"),
+    "intervals": (dict, "a table: [intervals]"),
     "rotor": (list, "a table for each rotor: [[rotor]]"),
 }
 _ROTOR = {"x": "[m] forward", "y": "[m] to the right", "z": "[m] down"}
@@ -97,6 +101,9 @@ def written(airframe: Airframe, *, head: Sequence[str] = (), notes: Mapping[str,
         lines += [f"{axis} = {_value(getattr(rotor, axis))}  # {meaning}" for axis, meaning in _ROTOR.items()]
         turns = next(word for word, value in _DIRECTIONS.items() if value == rotor.direction)
         lines += [f'direction = "{turns}"  # seen from above']
+    if airframe.intervals:
+        lines += ["", "[intervals] # low and high of 95 %, of figures that were measured"]
+        lines += [f"{name} = {_value(interval)}" for name, interval in airframe.intervals.items()]
     lines += ["", "[parameters] # that differ from the firmware's defaults, in ArduPilot's units"]
     for name, value in airframe.parameters.items():
         lines.append(f"{name} = {_value(value)}" + (f"  # {notes[name]}" if name in notes else ""))
@@ -154,6 +161,7 @@ def _airframe(document: Mapping[str, Any], stem: str, kinds: Mapping[str, type[A
         description=document.get("description", ""),
         figures={name: _number("figures", name, value) for name, value in document.get("figures", {}).items()},
         parameters={name: _parameter(name, value) for name, value in document.get("parameters", {}).items()},
+        intervals={name: _number("intervals", name, value) for name, value in document.get("intervals", {}).items()},
         **extra,
     )
 

@@ -205,6 +205,15 @@ def test_what_training_covered_is_seen():
         assert not is_covered({**home, **other}, home, drawn)
 
 
+def test_what_is_drawn_at_home_does_not_need_to_be_covered():
+    home = {"randomise": None}
+    windy = {"randomise": {"wind_speed": (0.0, 5.0), "mass": (1.5, 1.5)}}
+    assert is_covered(windy, home, {"mass": [1.0, 2.0]})
+    assert not is_covered(windy, home, {"grip": [1.0, 2.0]})
+    assert not is_covered({"randomise": {"identified": True}}, home, {"mass": [1.0, 2.0]})
+    assert not is_covered(windy, home, "identified")
+
+
 def test_default_episodes_are_the_runs(group):
     assert {t.episodes for t in trials_of(group.runs, CHANGES[:1])} == {5}
     assert [t.episodes for t in trials_of(group.runs, CHANGES[1:2], 9)] == [9, 9, 2, 2]

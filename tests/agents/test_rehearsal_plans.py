@@ -80,6 +80,9 @@ def test_a_stretched_world_is_larger_and_as_high():
         ({"scal": {}}, "did you mean 'scale'"),
         ({"latency": -1}, "latency = -1; it must be a number from 0 on"),
         ({"set": {"range_noise": "much"}}, "set.range_noise = 'much'; it must be a number"),
+        ({"set": {"inertia": [1.0, "x"]}}, "set.inertia = .* it must be a number, or a list"),
+        ({"identified": 1}, "identified = 1; it must be true or false"),
+        ({"scale": {"mass": 1.1}, "options": {"frame": "f.toml"}}, "scale is of the robot at home"),
         ({"scale": 1.1}, "scale = 1.1; it must be a table"),
         ({"scale": {"mass": 1.1}, "set": {"mass": 2.0}}, "figure 'mass' is both scaled and set"),
         ({"stretch": 0}, "stretch = 0; it must be a number from 0.1"),
@@ -97,6 +100,16 @@ def test_wrong_changes_are_refused(values, text):
 def test_figures_that_the_robot_lacks_are_refused(turtlebot):
     with pytest.raises(AgentError, match="no figure 'wheel_radius_lef'; did you mean 'wheel_radius_left'"):
         change(scale={"wheel_radius_lef": 1.1}).env_options(turtlebot, {})
+
+
+def test_what_is_drawn_at_home_is_drawn_under_a_change(turtlebot):
+    wind = {"wind_speed": (0.0, 5.0)}
+    options = change(set={"mass": 2.0}).env_options(turtlebot, {}, wind)
+    assert options["randomise"] == {**wind, "mass": (2.0, 2.0)}
+    assert "randomise" not in change(latency=0.1).env_options(turtlebot, {}, wind)
+    identified = change(identified=True, set={"inertia": [1.0, 1.0, 2.0]}).env_options(turtlebot, {}, wind)
+    vector = [1.0, 1.0, 2.0]
+    assert identified["randomise"] == {**wind, "identified": True, "inertia": (vector, vector)}
 
 
 ONE = '[[change]]\nname = "a"\ngroup = "sensors"\n'

@@ -233,7 +233,7 @@ def test_a_file_of_parameters_is_taken_as_a_vehicle_takes_it(tmp_path):
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"frame": "skid_rover"}, "has no lidar"),
+        ({"frame": "skid_rover"}, "observation and task: lidar readings are needed, and 'skid_rover' has no lidar"),
         ({"frame": "no_rover"}, "'no_rover' is not known"),
         ({"take_of": 2.0}, "did you mean 'take_off'"),
         ({"setpoint": "drive"}, "takes velocity, rc, position, attitude"),

@@ -66,6 +66,35 @@ def test_notes_and_head_are_comments(tmp_path) -> None:
     assert "FRAME_CLASS = 1  # from the log\n" in text
 
 
+def test_intervals_are_data_and_go_with_their_figures(tmp_path) -> None:
+    known = vehicles.load("erle_copter")
+    inertia = tuple(known.value("inertia"))
+    measured = {"mass": (1.12, 1.16), "inertia": (tuple(0.9 * x for x in inertia), tuple(1.1 * x for x in inertia))}
+    path = tmp_path / "mine.toml"
+    path.write_text(vehicles.to_toml(dataclasses.replace(known, intervals=measured)))
+    read = vehicles.load(str(path))
+    assert read.intervals == measured
+    assert read.record().tobytes() == known.record().tobytes()
+    assert read.changed(mass=2.0).intervals == {"inertia": measured["inertia"]}
+
+
+@pytest.mark.parametrize(
+    ("interval", "says"),
+    [
+        ("mass = [1.2, 1.3]", r"interval of 'mass' = \(1.2, 1.3\) does not hold the figure, which is 1.14"),
+        ("mass = [1.1]", r"interval of 'mass' = \(1.1,\); low and high are needed"),
+        ("mass = 1.14", r"interval of 'mass' = 1.14; low and high are needed"),
+        ("mass = [-1, 2]", r"mass = -1 is outside 0.001 .. 10000 kg"),
+        ("inertia = [0.0, 1.0]", r"inertia = 0.0; expected 3 numbers"),
+        ("mas = [1.0, 2.0]", r"interval of 'mas': there is no such figure; did you mean 'mass'"),
+        ("mass = ['a', 'b']", r"intervals.mass = 'a'; numbers are allowed"),
+    ],
+)
+def test_intervals_that_cannot_be_are_named(own, interval, says) -> None:
+    with pytest.raises(AirframeError, match=rf"airframe file '.*mine\.toml'.*({says})"):
+        vehicles.load(own(("[parameters]", f"[intervals]\n{interval}\n[parameters]")))
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

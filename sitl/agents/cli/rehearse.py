@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +16,15 @@ from sitl.envs.robots.boots import check_boots
 
 from ..errors import AgentError
 from ..rehearsal import plan as plans
+from ..rehearsal.airframe_plan import airframe_plan
 from ..rehearsal.change import Change
+from ..rehearsal.plan import Plan
 from ..rehearsal.rehearse import EPISODES, Rehearsed, rehearse, trials_of
 from ..rehearsal.report import write_report
 from ..rehearsal.trial import robot_name
 from ..report.group import Group, unique_names
 from ..runs.backends import Workers
+from ..runs.config import RunConfig
 from ..runs.files import make_folder
 from ..runs.plan import EvaluationPlan
 from .options import add_jobs, add_said_again, check_report_libraries, positive, whole, workers
@@ -38,6 +42,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders, or folders of several seeds")
     parser.add_argument(
         "--plan", metavar="NAME", help=f"list of changes: a .toml file, or {shipped} (default: that of the robot)"
+    )
+    parser.add_argument(
+        "--airframe",
+        metavar="FILE",
+        help="rehearse on the vehicle of an airframe's file with intervals, as sitl identify writes it: as it is, at "
+        "both ends of each interval, and drawn within all; with --plan besides that plan's changes",
     )
     parser.add_argument("--only", action="append", metavar="CHANGE", help="a change or a group of changes, by name")
     parser.add_argument(
@@ -72,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
     if len(environments) > 1:
         raise AgentError(f"runs in {' and '.join(sorted(environments))} cannot be held side by side; give one of them")
     config = groups[0].config
-    plan = plans.load(options.plan) if options.plan else plans.plan_for(robot_name(config))
+    plan = _plan(options, config)
     changes = plan.chosen(options.only or ())
     EvaluationPlan().changed(jitter=options.jitter)  # refuses one that cannot be
     if options.boots is not None:
@@ -87,6 +97,16 @@ def run(options: argparse.Namespace) -> int:
         print(f"not played, for reasons that the report has: {', '.join(refused)}", file=sys.stderr)
     print(write_report({config.env: found}, options.out, options.seed))
     return 0
+
+
+def _plan(options: argparse.Namespace, config: RunConfig) -> Plan:
+    if options.airframe is None:
+        return plans.load(options.plan) if options.plan else plans.plan_for(robot_name(config))
+    of_airframe = airframe_plan(options.airframe)
+    if not options.plan:
+        return of_airframe
+    given = plans.load(options.plan)
+    return replace(of_airframe, changes=(*of_airframe.changes, *given.changes))
 
 
 def with_bar(

@@ -9,8 +9,12 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from sitl import worlds
+from sitl.envs.randomisation import IDENTIFIED
 from sitl.errors import did_you_mean
+from sitl.vehicles.airframe import Value
 from sitl.worlds import World
 from sitl.worlds.lists import is_range
 from sitl.worlds.shapes import Box, Solid
@@ -52,6 +56,7 @@ def altered(world: str | Path | World, mirror: bool = False, stretch: float = 1.
     )
 
 
+Options = Mapping[str, Any]
 GROUPS = ("world", "physics", "vehicle", "sensors", "latency", "step", "together")
 """Groups of changes; reports are divided by them."""
 
@@ -69,8 +74,10 @@ class Change:
     """One of ``GROUPS``."""
     scale: Mapping[str, float] = field(default_factory=dict)
     """Figure of the robot -> factor of its default value."""
-    set: Mapping[str, float] = field(default_factory=dict)
-    """Figure -> value, in the figure's unit."""
+    set: Mapping[str, Value] = field(default_factory=dict)
+    """Figure -> value, in the figure's unit; of a vector a list."""
+    identified: bool = False
+    """Each episode draws the figures that were measured within their intervals (``Airframe.intervals``)."""
     latency: float | None = None
     """Latency [s]; None: unchanged."""
     mirror: bool = False
@@ -90,17 +97,19 @@ class Change:
         where = f"change {self.name!r}"
         if self.group not in GROUPS:
             raise AgentError(f"{where}: group = {self.group!r}; it is one of {', '.join(GROUPS)}")
-        for key in ("scale", "set"):
-            for figure, value in _table(where, key, getattr(self, key)).items():
-                if not _is_number(value):
-                    raise AgentError(f"{where}: {key}.{figure} = {value!r}; it must be a number")
+        for figure, value in _table(where, "scale", self.scale).items():
+            if not _is_number(value):
+                raise AgentError(f"{where}: scale.{figure} = {value!r}; it must be a number")
+        for figure, given in _table(where, "set", self.set).items():
+            if not _is_number(given) and not (isinstance(given, list | tuple) and all(map(_is_number, given))):
+                raise AgentError(f"{where}: set.{figure} = {given!r}; it must be a number, or a list of a vector's")
         for figure in {*self.scale} & {*self.set}:
             raise AgentError(f"{where}: figure {figure!r} is both scaled and set; give one of them")
         if self.latency is not None and not (_is_number(self.latency) and self.latency >= 0.0):
             raise AgentError(f"{where}: latency = {self.latency!r}; it must be a number from 0 on [s]")
         if not _is_number(self.stretch) or not 0.1 <= self.stretch <= 10.0:
             raise AgentError(f"{where}: stretch = {self.stretch!r}; it must be a number from 0.1 to 10")
-        for key in ("mirror", "by_default"):
+        for key in ("mirror", "by_default", "identified"):
             if not isinstance(getattr(self, key), bool):
                 raise AgentError(f"{where}: {key} = {getattr(self, key)!r}; it must be true or false")
         count = self.episodes
@@ -111,6 +120,8 @@ class Change:
         }
         if taken:
             raise AgentError(f"{where}: {taken.pop()} has keys of its own in a change, it is no option there")
+        if self.scale and "frame" in self.options:
+            raise AgentError(f"{where}: scale is of the robot at home; with another frame give the values by set")
 
     @property
     def _alters_world(self) -> bool:
@@ -131,21 +142,25 @@ class Change:
                 raise AgentError(f"change {dict(values)!r}: key {key!r} is missing")
         return cls(**values)
 
-    def env_options(self, robot: Any, home: Mapping[str, Any]) -> dict[str, Any]:
+    def env_options(
+        self, robot: Any, home: Mapping[str, Any], drawn: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
         """Options of the environment with this change.
 
         Args:
             robot: robot of the environment at home (``sitl.envs.robots.robot.Robot``).
             home: options of the environment at home.
+            drawn: what its episodes draw by themselves, as its wind (``Randomisation.ranges``), which stays.
 
         Raises:
             AgentError: the robot has no such figure.
         """
         out = {**home, **self.options}
-        figures = {name: scaled(robot, name, factor) for name, factor in self.scale.items()}
-        figures.update({name: float(value) for name, value in self.set.items()})
-        if figures:
-            out["randomise"] = {name: (value, value) for name, value in figures.items()}
+        figures = {name: scaled(robot, name, factor) for name, factor in self.scale.items()} | dict(self.set)
+        if figures or self.identified:
+            out["randomise"] = dict(drawn or {}) | {name: (value, value) for name, value in figures.items()}
+        if self.identified:
+            out["randomise"][IDENTIFIED] = True
         if self.latency is not None:
             out["latency"] = float(self.latency)
         if self._alters_world:
@@ -166,16 +181,20 @@ def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mappi
         drawn: the option ``randomise`` of the training.
     """
     changed = {name: value for name, value in options.items() if name not in home or home[name] is not value}
-    values = {name: value for name, (value, _) in (changed.pop("randomise", None) or {}).items()}
+    randomise = changed.pop("randomise", None) or {}
+    if IDENTIFIED in randomise:
+        return False  # of another vehicle, which ``options`` says, or of one whose figures were not guessed
+    fixed = ((name, tuple(range_)) for name, range_ in randomise.items() if not callable(range_))
+    values = {name: low for name, (low, high) in fixed if low == high}  # others are drawn at home, too
     if "latency" in changed:
         values["latency"] = changed.pop("latency")
-    if changed or not drawn:
+    if changed or not drawn or isinstance(drawn, str):
         return False
     ranges = {name: drawn[name] for name in values if isinstance(drawn.get(name), list | tuple)}
     return len(ranges) == len(values) and all(low <= values[name] <= high for name, (low, high) in ranges.items())
 
 
-def usual(robot: Any, figure: str) -> float:
+def usual(robot: Any, figure: str) -> Value:
     """Default value of a figure of the robot.
 
     Raises:
@@ -186,14 +205,18 @@ def usual(robot: Any, figure: str) -> float:
         raise AgentError(f"robot {robot.name!r} has no figure {figure!r}{hint}")
     airframe = getattr(robot, "airframe", None)
     try:
-        return float(airframe.value(figure))  # type: ignore[union-attr]
+        value: Any = np.asarray(airframe.value(figure), float)  # type: ignore[union-attr,type-var]
     except (AttributeError, KeyError):
         raise AgentError(f"figure {figure!r} of robot {robot.name!r} has no usual value to scale: set it") from None
+    return tuple(value.tolist()) if value.ndim else float(value)
 
 
-def scaled(robot: Any, figure: str, factor: float) -> float:
-    """``factor`` times the default value, rounded."""
-    return float(f"{factor * usual(robot, figure):.12g}")
+def scaled(robot: Any, figure: str, factor: float) -> Value:
+    """``factor`` times the default value, rounded; of a vector each element."""
+    value = usual(robot, figure)
+    if isinstance(value, tuple):
+        return tuple(float(f"{factor * one:.12g}") for one in value)
+    return float(f"{factor * value:.12g}")  # type: ignore[operator]
 
 
 def _is_number(value: Any) -> bool:

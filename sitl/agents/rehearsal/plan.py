@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from sitl.core import code_in_files, documents
 from sitl.errors import did_you_mean
 
@@ -82,7 +84,8 @@ class Plan:
         """
         out: dict[str, Any] = {}
         for figure, (low, high) in self.randomise.get("scale", {}).items():
-            out[figure] = sorted((scaled(robot, figure, low), scaled(robot, figure, high)))
+            ends = scaled(robot, figure, low), scaled(robot, figure, high)
+            out[figure] = [np.minimum(*ends).tolist(), np.maximum(*ends).tolist()]
         for name, limits in self.randomise.get("set", {}).items():
             out[name] = [float(limit) for limit in limits]
         if "latency" in self.randomise:

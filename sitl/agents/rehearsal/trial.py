@@ -39,7 +39,7 @@ def is_false_alarm(env: Any) -> bool:
     """
     inner = env.unwrapped
     robot, limit = inner.robot, getattr(inner.task, "limit", math.inf)
-    if robot.collided[0]:
+    if robot.collided[0] or limit == 0.0:  # no reading is a crash
         return False
     return lidar_distance(robot) > limit + MARGIN
 
@@ -202,7 +202,7 @@ def _options(config: RunConfig, home: Mapping[str, Any], change: Change | None) 
         return home
     env = environments.make(config, **home)
     try:
-        return change.env_options(_robot(env), home)
+        return change.env_options(_robot(env), home, env.unwrapped.session.randomisation.ranges)  # type: ignore[attr-defined]
     finally:
         env.close()
 

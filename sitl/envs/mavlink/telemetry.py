@@ -37,7 +37,7 @@ class StepTelemetry(Inbox):
     """The latest of each message.
 
     Args:
-        readings: of a scan.
+        readings: of a scan; 0: there is no lidar.
         wanted: messages that are asked for besides (``reports``).
     """
 
@@ -76,7 +76,7 @@ class StepTelemetry(Inbox):
         """Above home [m]."""
         self.scans_by_mavlink = True
         """Whether scans and touches come by MAVLink; else the connection reads them off the physics."""
-        self.scans_used = True
+        self.scans_used = readings > 0
         """Whether anybody reads scans; else they are not asked for."""
         self.longest_interval_us = 1 << 62
         """Greatest interval of telemetry that is new enough at the end of a step [us]."""

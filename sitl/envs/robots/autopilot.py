@@ -24,7 +24,7 @@ from sitl.core.elementary import cos, sin
 from sitl.errors import LinkLostError
 from sitl.foreign.betaflight import configuration
 from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, PX4, Choice, choose
-from sitl.move import Move
+from sitl.move import Move, is_changeable
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Scenario
 from sitl.simulation import OptionError, Simulation
@@ -32,6 +32,7 @@ from sitl.vehicle.equipment import Equipment
 from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import AirframeError
+from sitl.vehicles.airframe import Value
 from sitl.vehicles.figures.figure import Figure
 from sitl.vehicles.receivers import equipped
 from sitl.worlds import World, planar
@@ -108,9 +109,7 @@ class AutopilotRobot:
         first, self.count = worlds.load(world), count
         self.name = airframe.name
         self.kind = kind = robot_kind(airframe.kind)
-        readings = int(airframe.value("lidar_samples"))
-        if readings < 1:
-            raise EnvOptionError(f"airframe {self.name!r} has no lidar: its lidar_samples is 0")
+        readings = int(airframe.value("lidar_samples"))  # 0: it has no lidar
         if kind.takes_off and not 0.5 <= chosen.take_off <= 100.0:
             raise EnvOptionError(f"take_off = {chosen.take_off}; it must be 0.5 .. 100 m")
         runs = chosen.connection != INPROCESS and chosen.autopilot in (ARDUPILOT, PX4)
@@ -148,9 +147,7 @@ class AutopilotRobot:
         self.step_time, self.setpoints = 0.1, tuple(s for s in kind.setpoints if s is not MOTORS or is_driven)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
         self.figures: Mapping[str, Figure] = (
-            {**{f.name: f for f in airframe.known if f.length == 1 and not f.whole}, **made.extra_figures}
-            if made.simulates
-            else {}
+            {**{f.name: f for f in airframe.known if is_changeable(f)}, **made.extra_figures} if made.simulates else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
         each_boots = not made.simulates or choice is not None or (chosen.begin == BOOT and chosen.boots > 1)
@@ -206,7 +203,7 @@ class AutopilotRobot:
 
     # ------------------------------------------------------------------ episodes
 
-    def set_figure(self, index: int, name: str, value: float) -> None:
+    def set_figure(self, index: int, name: str, value: Value) -> None:
         """See ``Robot``."""
         self._vehicles.changed[index][name] = value
 

@@ -22,6 +22,7 @@ from sitl.plants.local import LocalPlant
 from sitl.scenario import Scenario
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicles import AirframeError
+from sitl.vehicles.airframe import Value
 from sitl.worlds import World
 
 from ..mavlink.preparation import INTERVAL_US
@@ -100,7 +101,7 @@ class InProcessVehicles(Vehicles):
         return seed if self.options.begin == BOOT and boots > 1 else draw(boots, seed).boot
 
     def _restored(
-        self, pose: Pose, figures: tuple[tuple[str, float], ...], world: World, boot: int = SINGLE
+        self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int = SINGLE
     ) -> EpisodeState:
         """The state after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
         key = (pose, figures, world.name, boot)
@@ -121,7 +122,7 @@ class InProcessVehicles(Vehicles):
     def _simulation(
         self,
         pose: Pose | None = None,
-        figures: Sequence[tuple[str, float]] = (),
+        figures: Sequence[tuple[str, Value]] = (),
         world: World | None = None,
         boot: int = SINGLE,
     ) -> Simulation:
@@ -136,7 +137,7 @@ class InProcessVehicles(Vehicles):
     def _made(
         self,
         pose: Pose | None,
-        figures: Sequence[tuple[str, float]],
+        figures: Sequence[tuple[str, Value]],
         make: Callable[[Scenario], Any],
         world: World | None = None,
         boot: int = SINGLE,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from sitl.core.elementary import cos, sin
 from sitl.errors import OptionError
 from sitl.move import WIND, Move
 from sitl.plants.surroundings import start_pose
+from sitl.vehicles.airframe import Value
 from sitl.worlds import World
 from sitl.worlds.shapes import to_heading, to_ned
 
@@ -45,7 +47,7 @@ class Prepared:
     def to(
         self,
         pose: Pose,
-        figures: Sequence[tuple[str, float]],
+        figures: Sequence[tuple[str, Value]],
         seed: int,
         world: World,
         walks: tuple[float, float] | None = None,
@@ -62,7 +64,7 @@ class Prepared:
         Raises:
             EnvOptionError: the pose is off the floor.
         """
-        changed = dict(figures)
+        changed: dict[str, Any] = dict(figures)
         wind = None
         if any(name in changed for name in _WINDS):
             speed, direction, turbulence = (changed.pop(name, self._wind[name]) for name in _WINDS)

@@ -97,8 +97,8 @@ class Robot(Protocol):
     def advance(self, seconds: float, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Advance these robots (None: all; shape (count,)) by simulated time [s], and read all lidars."""
 
-    def set_figure(self, index: int, name: str, value: float) -> None:
-        """Change a figure of one robot, in the figure's unit, before its ``reset``."""
+    def set_figure(self, index: int, name: str, value: Any) -> None:
+        """Change a figure of one robot, in the figure's unit, before its ``reset``; a vector as a tuple."""
 
     def snapshot(self, index: int) -> Any:
         """State of one robot; after ``restore`` it continues bit for bit. Picklable."""

@@ -19,6 +19,7 @@ from sitl.scenario import DEFAULT_HOME, Home, Scenario
 from sitl.simulation import Simulation
 from sitl.vehicle.faults import Failure
 from sitl.vehicles import Airframe
+from sitl.vehicles.airframe import Value
 from sitl.vehicles.figures.figure import Figure
 from sitl.worlds import World
 
@@ -181,8 +182,8 @@ class Vehicles(ABC):
         """See ``AutopilotOptions``."""
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
-        self.changed: list[dict[str, float]] = [{} for _ in range(count)]
-        """Changed figures of each vehicle: name -> value, in the figure's unit."""
+        self.changed: list[dict[str, Value]] = [{} for _ in range(count)]
+        """Changed figures of each vehicle: name -> value, in the figure's unit; vectors are tuples."""
         self.watch: Watch | None = None
         """The guard of a vehicle that runs elsewhere."""
         self.scans_used = True

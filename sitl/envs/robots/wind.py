@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sitl.move import WIND
+from sitl.vehicles.airframe import Value
 
 PARAMETERS = {
     "wind_speed": "SIM_WIND_SPD",
@@ -17,13 +18,13 @@ FIGURES = {figure.name: figure for figure in WIND}
 assert FIGURES.keys() == PARAMETERS.keys()
 
 
-def wind_and_own(figures: Iterable[tuple[str, float]]) -> tuple[dict[str, float], dict[str, float]]:
+def wind_and_own(figures: Iterable[tuple[str, Value]]) -> tuple[dict[str, float], dict[str, Value]]:
     """Figures that were changed, apart: the parameters of the wind, and the airframe's own figures."""
     wind: dict[str, float] = {}
-    own: dict[str, float] = {}
+    own: dict[str, Value] = {}
     for name, value in figures:
         if name in PARAMETERS:
-            wind[PARAMETERS[name]] = value
+            wind[PARAMETERS[name]] = float(value)  # type: ignore[arg-type]
         else:
             own[name] = value
     return wind, own
