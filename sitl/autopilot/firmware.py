@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .aux_functions import AuxFunction
+from .events import Event
 from .mission.commands import Commands
 from .params.table import Table
 
@@ -26,6 +27,8 @@ class Firmware:
     """Starts its rooms on the cleared record of a vehicle whose parameters are set."""
     commands: Commands
     """What its missions may hold and how that is run."""
+    events: Mapping[int, Event]
+    """What its laws tell, by code."""
     aux_functions: Mapping[int, AuxFunction] = field(default_factory=dict)
     """What its switches can do, by number."""
     give_back: Callable[[Any], None] = lambda v: None
