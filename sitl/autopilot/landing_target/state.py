@@ -18,7 +18,7 @@ NEVER_SEEN, OUT_OF_RANGE, LOST, FOUND = 0, 1, 2, 3
 # What LANDING_TARGET_DID says
 SAID_FOUND, SAID_READY, SAID_FAILED, SAID_LOST, SAID_RETRY, SAID_RETRIED, SAID_FAILSAFE = range(7)
 SAID_NO_BEACON, SAID_NO_FRAME = 7, 8
-_TEXTS = {
+_TEXTS: dict[int, str | tuple[int, str]] = {
     SAID_FOUND: "PrecLand: Target Found",
     SAID_READY: "PrecLand: Init Complete",
     SAID_FAILED: (CRITICAL, "PrecLand: Init Failed"),

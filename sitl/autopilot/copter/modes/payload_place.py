@@ -29,7 +29,7 @@ NO_GRIPPER, HOLDS, OPEN = range(3)
 
 # What it did (PAYLOAD_PLACE_DID)
 LANDED, ABORTED, BY_HAND, AT_LIMIT, NO_RANGE, PLACED, RELEASED = range(7)
-_TEXTS = {
+_TEXTS: dict[int, str | tuple[int, str]] = {
     LANDED: "PayloadPlace: landed",
     ABORTED: "PayloadPlace: Abort: Gripper Open",
     BY_HAND: "PayloadPlace: Manual release",

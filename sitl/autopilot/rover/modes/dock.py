@@ -25,7 +25,7 @@ DOCK = 8
 
 NO_TARGET, NO_DIRECTION, ARRIVED = 0, 1, 2
 """What DOCK_DID says."""
-_TEXTS = {
+_TEXTS: dict[int, str | tuple[int, str]] = {
     NO_TARGET: "Dock: target not acquired",
     NO_DIRECTION: "Dock: Set DOCK_DIR or disable heading correction",
     ARRIVED: (INFO, "Dock: Docking complete"),
