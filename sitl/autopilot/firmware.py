@@ -27,8 +27,6 @@ class Firmware:
     """Starts its rooms on the cleared record of a vehicle whose parameters are set."""
     commands: Commands
     """What its missions may hold and how that is run."""
-    events: Mapping[int, Event]
-    """What its laws tell, by code."""
     aux_functions: Mapping[int, AuxFunction] = field(default_factory=dict)
     """What its switches can do, by number."""
     give_back: Callable[[Any], None] = lambda v: None
@@ -37,3 +35,5 @@ class Firmware:
     """Room for fences in ArduPilot's storage,"""
     rally_bytes: int = 750
     """and for rally points."""
+    events: Mapping[int, Event] = field(default_factory=dict)
+    """What its laws tell, by code: others are neither said nor logged."""

@@ -41,5 +41,14 @@ def power_on(v: Vehicle) -> None:
 
 
 FIRMWARE = Firmware(
-    "copter", TABLE, NAMES, power_on, COMMANDS, EVENTS, AUX_FUNCTIONS, give_back, fence_bytes=560, rally_bytes=690
+    "copter",
+    TABLE,
+    NAMES,
+    power_on,
+    COMMANDS,
+    AUX_FUNCTIONS,
+    give_back,
+    fence_bytes=560,
+    rally_bytes=690,
+    events=EVENTS,
 )

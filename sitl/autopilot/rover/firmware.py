@@ -40,4 +40,4 @@ def power_on(v: Vehicle) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS, EVENTS, AUX_FUNCTIONS)
+FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS, events=EVENTS)

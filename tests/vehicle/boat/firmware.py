@@ -90,4 +90,4 @@ def power_on(v: Any) -> None:
     v.autopilot.modes.number = AHEAD
 
 
-FIRMWARE = Firmware("boat", TABLE, {AHEAD: "AHEAD"}, power_on, NoMissions(), {})
+FIRMWARE = Firmware("boat", TABLE, {AHEAD: "AHEAD"}, power_on, NoMissions())
