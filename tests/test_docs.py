@@ -206,7 +206,9 @@ def test_an_example_of_extending_does_what_it_says(title: str, tmp_path: Path) -
     assert not name, "the last block is the program"
     for file, text in files:
         (tmp_path / file).write_text(text)
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("SITL_M") and k != "SITL_PARAMETERS"}
+    environment = {
+        k: v for k, v in os.environ.items() if not k.startswith(("SITL_M", "SITL_EVENTS", "SITL_PARAMETERS"))
+    }
     environment["PYTHONPATH"] = os.pathsep.join((str(tmp_path), str(ROOT)))
     ran = subprocess.run(
         [sys.executable, "-c", program], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=900

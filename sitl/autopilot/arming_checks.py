@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 from ..core import border
 from ..core.algebra import dot, norm
@@ -16,9 +17,10 @@ from ..core.kernels import law
 from . import gps_receivers, radio_checks, sensor_calibration
 from .avoidance.proximity import SECTORS, Proximity, has_data, sees
 from .battery import is_healthy
-from .events import ARMING_REFUSED, Events, emit
+from .events import Event, Events, Row, emit, ev
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
+from .notes import ChecksFailed
 from .params.parameters import Parameters
 from .params.system import Arming, Compass
 from .radio_checks import RC_MISSING, THROTTLE_FAILSAFE
@@ -163,6 +165,20 @@ def refuse(events: Events, time_us: int, failed: int, method: int) -> None:
 def refusal(a: float, b: float) -> tuple[int, int]:
     """The bits of failed checks and the method of an event ARMING_REFUSED with these two numbers."""
     return int(b) >> _METHOD_BITS << _LOW_BITS | int(a), int(b) & ((1 << _METHOD_BITS) - 1)
+
+
+def _told_refusal(v: Any, a: float, b: float) -> list[ChecksFailed]:
+    failed, method = refusal(a, b)
+    return [] if method == BY_MAVLINK else [ChecksFailed(failed)]  # a command tells of its own
+
+
+def _arm(v: Any, is_armed: bool, method: float) -> Row:
+    return "ARM", (int(is_armed), int(v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF, 0, int(method) & 255)
+
+
+ARMED = Event(1, log=lambda v, a, b: [_arm(v, True, a), ev(10)])  # a: method
+DISARMED = Event(2, log=lambda v, a, b: [_arm(v, False, a), ev(11)])  # a: method
+ARMING_REFUSED = Event(20, says=_told_refusal)  # a and b: see ``refusal``
 
 
 @law

@@ -12,16 +12,18 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..core.geodesy import add_offset
-from . import events, payload
+from . import payload
 from .arming_checks import BY_SWITCH
-from .aux_switch import HIGH, LOW, MIDDLE
+from .aux_switch import AUX_SWITCH, HIGH, LOW, MIDDLE
 from .estimation.sources import choose_set
+from .events import EVENT_RING
 from .fence.checks import ALL, switch_by_user
 from .mission.item import NAV_WAYPOINT, RELATIVE, MissionItem, home_item
 from .mission.mission import Mission
-from .mission.notes import INFO, Note, Switched, Text
+from .mission.notes import Note
 from .mission.sequencer import Sequencer
 from .modes import REASON_RC, shown
+from .notes import INFO, Switched, Text
 
 POSITIONS = {LOW: "LOW", MIDDLE: "MIDDLE", HIGH: "HIGH"}
 
@@ -65,11 +67,11 @@ class AuxFunctions:
         """Do what the switches ask that were moved since the last call."""
         ap = self._holder.v.autopilot
         ring, notes = ap.events, list[Note]()
-        ap.rc.switch_events = max(ap.rc.switch_events, ring.count - events.EVENT_RING)
+        ap.rc.switch_events = max(ap.rc.switch_events, ring.count - EVENT_RING)
         while ap.rc.switch_events < ring.count:
-            k = ap.rc.switch_events % events.EVENT_RING
+            k = ap.rc.switch_events % EVENT_RING
             ap.rc.switch_events += 1
-            if ring.code[k] == events.AUX_SWITCH:
+            if ring.code[k] == AUX_SWITCH:
                 notes += self._moved(int(ring.a[k]), int(ring.b[k]))
         return notes
 

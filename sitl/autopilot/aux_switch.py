@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..core.border import RC_INPUTS
 from ..core.kernels import law
-from .events import AUX_SWITCH, Events, emit_and_return
+from .events import Event, Events, emit_and_return
 from .mode_switch import DEBOUNCE_US
 from .params.parameters import Parameters
 from .state import Arming, Radio
@@ -19,6 +19,8 @@ LOW_BELOW, HIGH_ABOVE = 1200, 1800
 """Pulses [us]."""
 MOTOR_INTERLOCK = 32
 """Function of a switch."""
+
+AUX_SWITCH = Event(30)  # a: channel, b: position, negative the first one since boot
 
 
 @law

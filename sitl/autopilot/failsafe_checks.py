@@ -6,12 +6,12 @@ FAILSAFE (which, 1 on or 0 off) tells the shell.
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..core.kernels import law
 from ..core.scalars import TWO_PI
-from .events import BATTERY_CRITICAL as EVENT_BATTERY_CRITICAL
-from .events import BATTERY_LOW as EVENT_BATTERY_LOW
-from .events import BATTERY_MISSING as EVENT_BATTERY_MISSING
-from .events import FAILSAFE, Events, emit
+from .events import Event, Events, Row, emit, err
+from .notes import WARNING
 from .params.radio import RcMap
 from .params.system import Battery, Failsafes
 from .radio import THROTTLE, stick_pulse
@@ -29,8 +29,8 @@ VARIANCE = 7
 """The estimate is bad (said in all modes)."""
 GLITCH = 10
 """The receiver's fixes are not believed."""
-CRITICAL = (EKF, VARIANCE, VIBRATION, GLITCH)
-"""Told with MAV_SEVERITY_CRITICAL."""
+SEVERE = (EKF, VARIANCE, VIBRATION, GLITCH)
+"""Told with MAV_SEVERITY_CRITICAL (a rover: the first two)."""
 
 _ON = {
     RADIO: "Radio Failsafe",
@@ -57,20 +57,21 @@ def text(which: int, on: bool) -> str | None:
     return (_ON if on else _OFF).get(which)
 
 
+_SUBSYSTEMS = {RADIO: 5, BATTERY_LOW: 6, BATTERY_CRITICAL: 6, GCS: 8, EKF: 17, TERRAIN: 23}
+"""Of ERR."""
+
+
+def _logged(v: Any, which: float, on: float) -> list[Row]:
+    return [err(_SUBSYSTEMS[int(which)], int(on != 0.0))] if int(which) in _SUBSYSTEMS else []
+
+
+FAILSAFE = Event(18, log=_logged)  # a: which, b: 1 on (or what follows), 0 off
+
 MISSING = 3
-"""Of ``report_battery``."""
-_OF_BATTERY = {
-    EVENT_BATTERY_LOW: "low",
-    EVENT_BATTERY_CRITICAL: "critical",
-    EVENT_BATTERY_MISSING: "missing, last:",
-}
-
-
-def battery_text(code: int, voltage: float, used_mah: float) -> str | None:
-    """Status text (MAV_SEVERITY_WARNING) of an event of the battery, None of others."""
-    if code not in _OF_BATTERY:
-        return None
-    return f"Battery 1 is {_OF_BATTERY[code]} {voltage:.2f}V used {used_mah:.0f} mAh"
+"""Of ``report_battery``, which emits these three by their order; a: voltage, b: charge used [mAh]."""
+EVENT_BATTERY_LOW = Event(80, WARNING, "Battery 1 is low {a:.2f}V used {b:.0f} mAh")
+EVENT_BATTERY_CRITICAL = Event(81, WARNING, "Battery 1 is critical {a:.2f}V used {b:.0f} mAh")
+EVENT_BATTERY_MISSING = Event(82, WARNING, "Battery 1 is missing, last: {a:.2f}V used {b:.0f} mAh")
 
 
 @law

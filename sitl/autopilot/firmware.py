@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .aux_functions import AuxFunction
+from .events import Event
 from .mission.commands import Commands
 from .params.table import Table
 
@@ -34,3 +35,5 @@ class Firmware:
     """Room for fences in ArduPilot's storage,"""
     rally_bytes: int = 750
     """and for rally points."""
+    events: Mapping[int, Event] = field(default_factory=dict)
+    """What its laws tell, by code: others are neither said nor logged."""

@@ -24,6 +24,8 @@ from .control.shaping import (
     shape_pos_vel_accel,
     shape_pos_vel_accel_2d,
 )
+from .events import Event
+from .notes import INFO, WARNING
 from .params.follow import Follow
 from .state import FollowState
 
@@ -32,6 +34,9 @@ FORGET_US = 10_000_000
 RELATIVE = 1
 """FOLL_OFS_TYPE: offsets turn with the lead."""
 _STILL = Vec2(0.0, 0.0)
+
+FOLLOW_OFFSET = Event(42, INFO, {0: "N-E-D follow offset loaded", 1: "Relative follow offset loaded"})
+FOLLOW_OFF = Event(43, WARNING, "Set FOLL_ENABLE = 1")
 
 
 class Report(NamedTuple):

@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 from ..core.kernels import law
 from ..core.places import ExtensionError, Places
 from ..core.records import Record
-from .events import MODE_CHANGED, Events, emit
+from .events import Event, Events, emit, err
 from .state import Modes
 
 # Why a mode changed (ArduPilot's ModeReason, the number that its logs carry)
@@ -52,6 +52,11 @@ NO_LANDING = 10
 IN_FENCE_RECOVERY = 11
 NO_RADIO = 12
 GCS_BLOCKED = 13
+
+MODE_CHANGED = Event(3, log=lambda v, a, b: [("MODE", (int(a) & 255, int(a) & 255, int(b) & 255))])
+"""a: number, b: reason"""
+MODE_REFUSED = Event(19, log=lambda v, a, b: [err(10, int(a) & 255)])
+"""a: number, b: cause"""
 
 _NO_SEQUENCE = "Unable to start landing sequence"
 _HINTS = {

@@ -7,15 +7,33 @@ https://ardupilot.org/copter/docs/common-rally-points.html
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from ..core.algebra import horizontal, norm2, with_down
 from ..core.geodesy import offset_ne
 from ..core.kernels import law
 from ..core.vectors import Vec3
+from .events import Event, Row
 from .fence.checks import allows
 from .fence.state import POINTS, FenceState, RallyState
 from .params.parameters import Parameters
 from .state import Estimate, HomeState
+
+_FROM_HOME, _FROM_SEA = 12, 4
+"""Flags of RALY: its height is one above home, or above mean sea level."""
+
+
+def rows(v: Any, a: float = 0.0, b: float = 0.0) -> list[Row]:
+    """RALY of each point that counts."""
+    points, total = v.autopilot.rally, min(int(v.autopilot.params.RALLY.TOTAL), len(v.autopilot.rally.lat))
+    return [
+        ("RALY", (total, k, int(points.lat[k]), int(points.lon[k]), min(max(int(points.alt[k]), -32768), 32767),
+                  _FROM_SEA if points.is_amsl[k] else _FROM_HOME))
+        for k in range(total)
+    ]  # fmt: skip
+
+
+RALLY_LOADED = Event(74, log=rows)
 
 
 @law

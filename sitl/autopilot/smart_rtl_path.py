@@ -16,7 +16,8 @@ from ..core.elementary import hypot
 from ..core.kernels import law
 from ..core.scalars import constrain
 from ..core.vectors import Vec3
-from .events import PATH_LOST, PATH_LOW, Events, emit
+from .events import Event, Events, emit
+from .notes import INFO, WARNING
 from .params.system import SmartRtl
 from .state import PATH_POINTS, PathState
 
@@ -31,15 +32,12 @@ EPSILON_RATIO = 0.5
 LOOP_RATIO = 0.99
 """Of SRTL_ACCURACY: stretches of the path closer than this are one place."""
 
-# Why the path was given up (PATH_LOST)
 BAD_POSITION, FULL = 0, 1
-LOW_TEXT = "SmartRTL Low on space!"
-_LOST = {BAD_POSITION: "bad position", FULL: "buffer full"}
+"""Why the path was given up."""
+_LOST = {BAD_POSITION: "SmartRTL deactivated: bad position", FULL: "SmartRTL deactivated: buffer full"}
 
-
-def lost_text(reason: int) -> str:
-    """Status text (MAV_SEVERITY_WARNING) of PATH_LOST."""
-    return f"SmartRTL deactivated: {_LOST[reason]}"
+PATH_LOST = Event(25, WARNING, _LOST)
+PATH_LOW = Event(35, INFO, "SmartRTL Low on space!")
 
 
 class Farthest(NamedTuple):

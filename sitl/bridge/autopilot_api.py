@@ -8,14 +8,13 @@ autopilot did it; what it wants to tell the pilot meanwhile waits in ``take_note
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
 
 from ..autopilot.firmware import Firmware
 from ..autopilot.mission.item import MissionItem
-from ..autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, ParametersFound, Switched, Text
+from ..autopilot.mission.notes import Note
 from ..autopilot.params.table import Values
 from ..physics.carried import Carried
 
@@ -65,7 +64,6 @@ class Vehicle(Protocol):
 
 
 Vector = tuple[float, float, float]
-Note = Text | ItemReached | CurrentChanged | OutputItem | Switched | ParametersFound
 
 
 class Autopilot(Protocol):
@@ -106,4 +104,4 @@ class Autopilot(Protocol):
     def start_mission(self) -> bool: ...
 
     def take_notes(self) -> list[Note]: ...
-    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]: ...
+    def refusal_texts(self, failed: int) -> list[str]: ...  # of an arming; bits of failed checks

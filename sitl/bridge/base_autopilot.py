@@ -6,25 +6,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..autopilot import battery, events, home, modes, parameter_checks, sensor_calibration
-from ..autopilot.arming_checks import BY_MAVLINK, refusal
+from ..autopilot import battery, home, modes, parameter_checks, sensor_calibration
+from ..autopilot.arming_checks import BY_MAVLINK
 from ..autopilot.estimation import aiding, sources
-from ..autopilot.failsafe_checks import CRITICAL as MOST_SEVERE
-from ..autopilot.failsafe_checks import battery_text
-from ..autopilot.fence import texts as fence_texts
-from ..autopilot.landing_target.texts import TEXTS as LANDING_TARGET_TEXTS
+from ..autopilot.events import emit
 from ..autopilot.mission.item import MissionItem
 from ..autopilot.mission.mission import Mission
-from ..autopilot.mission.notes import Text
+from ..autopilot.mission.notes import Note
 from ..autopilot.mission.storage import stored_home
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
+from ..autopilot.notes import CRITICAL, Text
 from ..autopilot.radio_checks import PARAMETERS
 from ..autopilot.shell_parameters import MODE_BLOCK, NEED_LOCATION
-from .autopilot_api import Note, Vector, Vehicle
+from .autopilot_api import Vector, Vehicle
 
-EMERGENCY, CRITICAL, WARNING, INFO = 0, 2, 4, 6
-"""MAV_SEVERITY"""
 BY_GROUND_STATION = 2
 """Reason of a mode change (ArduPilot's number)."""
 
@@ -34,8 +30,6 @@ class BaseAutopilot:
 
     _arming: Any
     """The firmware's module of arming,"""
-    _failsafe: Any
-    """of failsafes,"""
     _set_mode: Any
     """and of changing the mode."""
     _auto: int
@@ -60,32 +54,6 @@ class BaseAutopilot:
         """What there is to tell, once."""
         notes, self._notes = self._notes, []
         return notes
-
-    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
-        """What only the firmware can tell of an event of the core; nothing for most."""
-        if code == events.MODE_REFUSED:
-            return [Text(WARNING, text) for text in self._set_mode.refusal_texts(int(a), int(b))]
-        if code == events.ARMING_REFUSED:
-            failed, method = refusal(a, b)
-            # arm() gives its own
-            said = [] if method == BY_MAVLINK else self._arming_texts(self._v, failed, "Arm: ", arming=True)
-            return [Text(CRITICAL, text) for text in said]
-        fence = fence_texts.note(code, a, b)
-        if fence is not None:
-            return [fence]
-        if code == events.LANDING_TARGET_DID:
-            return [Text(*LANDING_TARGET_TEXTS[int(a)])]
-        if code == events.FOLLOW_OFF:
-            return [Text(WARNING, "Set FOLL_ENABLE = 1")]
-        if code == events.FOLLOW_OFFSET:
-            return [Text(INFO, f"{'Relative' if a else 'N-E-D'} follow offset loaded")]
-        said_of_battery = battery_text(code, a, b)
-        if said_of_battery is not None:
-            return [Text(WARNING, said_of_battery)]
-        if code == events.FAILSAFE:
-            text = self._failsafe.text(int(a), int(b))
-            return [Text(CRITICAL if int(a) in MOST_SEVERE else WARNING, text)] if text else []
-        return []
 
     def _say(self, severity: int, texts: list[str]) -> None:
         self._notes.extend(Text(severity, text) for text in texts)
@@ -114,6 +82,9 @@ class BaseAutopilot:
     def run_prearm_checks(self) -> None:
         self.check_parameters()
         self._say(CRITICAL, self.prearm_texts(self._v, "PreArm: "))
+
+    def refusal_texts(self, failed: int) -> list[str]:
+        return self._arming_texts(self._v, failed, "Arm: ", arming=True)
 
     def prearm_texts(self, v: Any, prefix: str = "") -> list[str]:
         """What keeps a vehicle of this firmware from arming; ``v``: its record, or a copy of one."""
@@ -172,7 +143,7 @@ class BaseAutopilot:
         order, v = self._block_order, self._v
         blocked = number in order and modes.is_blocked(number, order, self._vehicle.parameters[MODE_BLOCK])
         if blocked:
-            events.emit(v.autopilot.events, v.time_us, events.MODE_REFUSED, float(number), float(modes.GCS_BLOCKED))
+            emit(v.autopilot.events, v.time_us, modes.MODE_REFUSED, float(number), float(modes.GCS_BLOCKED))
         return blocked
 
     def run_aux_function(self, number: int, position: int) -> bool:

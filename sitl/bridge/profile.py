@@ -52,8 +52,6 @@ class Profile:
     commands: Mapping[int, Entry]
     """MAV_CMD -> how it is carried out. A number that is not here is answered UNSUPPORTED."""
     set_points: type[SetpointService]
-    texts: Mapping[int, tuple[int, str]]
-    """Code of an event -> (severity, text with the event's numbers ``a`` and ``b``)."""
     core: CoreUnits
     """Units that hear and tell clients, with what they can build and take."""
     autopilot: Callable[[Any], Autopilot]

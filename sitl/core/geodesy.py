@@ -59,3 +59,9 @@ def add_offset(lat0_e7: float, lon0_e7: float, north: float, east: float) -> Pla
     if abs(lat) > _POLE:
         lat = (2.0 * _POLE - abs(lat)) * sign(lat)
     return Place(lat, wrap_longitude(lon))
+
+
+def place_e7(lat0_e7: float, lon0_e7: float, north: float, east: float) -> tuple[int, int]:
+    """``add_offset`` in whole degE7 (shell side)."""
+    place = add_offset(lat0_e7, lon0_e7, north, east)
+    return round(place.lat), round(place.lon)

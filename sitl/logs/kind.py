@@ -30,8 +30,6 @@ class KindLogs:
     """MAV_TYPEs whose telemetry logs can be read as this kind's."""
     mode_names: tuple[str, ...]
     """ArduPilot's names of all modes by their numbers, those that we do not have included; "-": not in use."""
-    event_rows: Callable[[Any, int, float], list[tuple[str, tuple[float, ...]]]] | None = None
-    """Further messages of an event: name and values of each, of (the vehicle's record, code, first number)."""
     saved: Callable[[Any], tuple[str, ...]] | None = None
     """Parameters that the firmware learns in flight and saves with each disarming, of the vehicle's record."""
     parameters: tuple[str, ...] = ()

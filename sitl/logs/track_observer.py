@@ -10,8 +10,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..autopilot import events as core
-from ..autopilot.modes import shown
+from ..autopilot.arming_checks import ARMED, DISARMED
+from ..autopilot.events import EVENT_RING
+from ..autopilot.modes import MODE_CHANGED, shown
 from ..core.geodesy import offset_ne
 from .track import COLUMNS, LONGEST_S, STEP_US, Track
 
@@ -126,14 +127,14 @@ class TrackObserver:
         if count == self._seen:
             return
         ring = self._vehicle.v.autopilot.events
-        for number in range(max(self._seen, count - core.EVENT_RING), count):
-            k = number % core.EVENT_RING
+        for number in range(max(self._seen, count - EVENT_RING), count):
+            k = number % EVENT_RING
             time = (self._boot_us + int(ring.time_us[k])) * 1e-6
             code = int(ring.code[k])
-            if code == core.MODE_CHANGED:
+            if code == MODE_CHANGED:
                 self._note_mode(time, int(ring.a[k]))
-            elif code in (core.ARMED, core.DISARMED):
-                self._note_armed(time, code == core.ARMED)
+            elif code in (ARMED, DISARMED):
+                self._note_armed(time, code == ARMED)
         self._seen = count
 
     def _note_mode(self, time: float, number: int) -> None:

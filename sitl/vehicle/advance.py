@@ -14,7 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from ..autopilot.events import HIT_OBSTACLE, emit
+from ..autopilot.events import emit
+from ..autopilot.hits import HIT_OBSTACLE
 from ..autopilot.inertial_ring import remember
 from ..autopilot.vibration import update_vibration
 from ..core.kernels import inlined, law

@@ -12,7 +12,8 @@ from ..autopilot.copter.move import move as move_firmware
 from ..autopilot.copter.state import Autopilot
 from ..autopilot.copter.trim import is_flying, total_thrust
 from ..autopilot.copter.trim import trim as trim_firmware
-from ..autopilot.events import HIT_GROUND, emit
+from ..autopilot.events import emit
+from ..autopilot.hits import HIT_GROUND
 from ..autopilot.terrain.ground import height_in_square
 from ..core.algebra import rotate
 from ..core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER

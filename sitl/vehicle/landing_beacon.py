@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from ..autopilot.events import LANDING_TARGET_DID, emit
+from ..autopilot.events import emit
 from ..autopilot.landing_target.measurement import take
 from ..autopilot.landing_target.orientation import axis
-from ..autopilot.landing_target.state import BODY, SAID_NO_BEACON, TOLD_BEACON
+from ..autopilot.landing_target.state import BODY, LANDING_TARGET_DID, SAID_NO_BEACON, TOLD_BEACON
 from ..autopilot.params.simulation import LandingBeacon
 from ..core.algebra import dot, norm, rotate_inverse, with_down
 from ..core.geodesy import offset_ne

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ..autopilot.events import HIT_OBSTACLE, emit
+from ..autopilot.events import emit
+from ..autopilot.hits import HIT_OBSTACLE
 from ..core.algebra import rotate
 from ..core.kernels import law
 from ..core.vectors import Vec3

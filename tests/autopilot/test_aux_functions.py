@@ -10,7 +10,7 @@ import pytest
 
 from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
 from sitl.autopilot.copter.modes import guided
-from sitl.autopilot.mission.notes import Text
+from sitl.autopilot.notes import Text
 from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
 
 STABILIZE, GUIDED, LOITER = 0, 4, 5

@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot.aux_functions import COMMON, by_number
-from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE, position, watch
+from sitl.autopilot.aux_switch import AUX_SWITCH, HIGH, LOW, MIDDLE, position, watch
 from sitl.autopilot.copter.parameters import TABLE
-from sitl.autopilot.events import AUX_SWITCH, Events
+from sitl.autopilot.events import Events
 from sitl.autopilot.state import Arming, Radio
 
 

@@ -9,15 +9,16 @@ from hypothesis import strategies as st
 
 from sitl.autopilot import arming_checks, battery, radio_checks
 from sitl.autopilot.arming_checks import BATTERY_UNHEALTHY, COMPASSES, battery_checks, compass_checks
+from sitl.autopilot.copter.events import EVENTS
 from sitl.autopilot.events import Events
 from sitl.autopilot.failsafe_checks import (
     BATTERY_MISSING,
     battery_fell_to,
-    battery_text,
     is_estimate_bad,
     is_gcs_lost,
     watch_monitor,
 )
+from sitl.autopilot.notes import Text
 from sitl.autopilot.params.parameters import Parameters
 from sitl.autopilot.params.simulation import DELIVERED
 from sitl.autopilot.params.system import Battery, Compass, Failsafes
@@ -128,7 +129,8 @@ def test_a_monitor_that_fails_in_flight_is_told_once_and_keeps_what_it_measured(
         watch_monitor(fs, state, True, events, 100_000 * tenth)
         assert (events.count, fs.battery_missing) == ((2, True) if tenth > 70 else (0, False)), tenth
     assert state.voltage == 12.0 and not state.healthy and events.a[1] == BATTERY_MISSING
-    assert battery_text(int(events.code[0]), events.a[0], 3.0) == "Battery 1 is missing, last: 12.00V used 3 mAh"
+    told = EVENTS[int(events.code[0])].notes(None, events.a[0], 3.0)
+    assert told == [Text(4, "Battery 1 is missing, last: 12.00V used 3 mAh")]
 
 
 def compasses(second: Vec3, params: Compass) -> int:
@@ -195,7 +197,7 @@ NUMBERS = ("_SHIFT", "SECTORS", "REFUSED")
 
 
 def test_every_check_is_a_bit_of_its_own_and_has_a_text() -> None:
-    public = {name: value for name, value in vars(arming_checks).items() if name.isupper() and isinstance(value, int)}
+    public = {name: value for name, value in vars(arming_checks).items() if name.isupper() and type(value) is int}
     bits = [
         value
         for name, value in public.items()

@@ -7,8 +7,9 @@ import pytest
 
 from sitl.autopilot import modes
 from sitl.autopilot.copter.modes.state import PilotState
-from sitl.autopilot.events import MODE_CHANGED, Events
+from sitl.autopilot.events import Events
 from sitl.autopilot.mode_switch import RUDDER_US, is_rudder_held, rudder_command
+from sitl.autopilot.modes import MODE_CHANGED
 from sitl.autopilot.state import Modes
 
 AUTO = 3

@@ -10,9 +10,11 @@ import pytest
 
 from sitl.autopilot.arming_checks import BY_SWITCH
 from sitl.autopilot.copter import arming as copter_arming
+from sitl.autopilot.copter.events import EVENTS
 from sitl.autopilot.copter.parameters import TABLE as COPTER
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
+from sitl.autopilot.notes import ChecksFailed
 from sitl.autopilot.params.table import Values
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.parameters import TABLE as ROVER
@@ -142,8 +144,8 @@ def test_the_core_knows_and_a_switch_is_refused_too() -> None:
     assert copter_arming.try_arm(v, BY_SWITCH, False) != 0
     events = v.autopilot.events
     at = int(events.count) - 1
-    said = autopilot.texts_of(int(events.code[at]), float(events.a[at]), float(events.b[at]))
-    assert [note.text for note in said] == ["Arm: Check ANGLE_MAX"]
+    (note,) = EVENTS[int(events.code[at])].notes(v, float(events.a[at]), float(events.b[at]))
+    assert isinstance(note, ChecksFailed) and autopilot.refusal_texts(note.failed) == ["Arm: Check ANGLE_MAX"]
     vehicle.parameters["ANGLE_MAX"] = 3000.0
     autopilot.parameter_changed("ANGLE_MAX")
     assert v.autopilot.calibrated.state == 0

@@ -9,7 +9,9 @@ import pytest
 
 from sitl.autopilot.arming_checks import BY_MAVLINK, BY_RUDDER, BY_SWITCH, refusal
 from sitl.autopilot.copter import arming as copter_arming
+from sitl.autopilot.copter.events import EVENTS
 from sitl.autopilot.copter.parameters import TABLE as COPTER
+from sitl.autopilot.notes import ChecksFailed
 from sitl.autopilot.parameter_checks import Found
 from sitl.autopilot.params.table import Values
 from sitl.autopilot.radio_checks import OFF_CENTRE, PARAMETERS, STICK_NAMES, calibration_texts
@@ -159,5 +161,6 @@ def test_a_refused_switch_says_all() -> None:
     events = v.autopilot.events
     pilot = CopterAutopilot.__new__(CopterAutopilot)
     pilot._v, pilot._found = v, [Found("Roll radio min too high", False, True)]
-    said = pilot.texts_of(int(events.code[0]), float(events.a[0]), float(events.b[0]))
-    assert [note.text for note in said] == ["Arm: RC not found", "Arm: Roll radio min too high"]
+    (note,) = EVENTS[int(events.code[0])].notes(v, float(events.a[0]), float(events.b[0]))
+    assert isinstance(note, ChecksFailed)
+    assert pilot.refusal_texts(note.failed) == ["Arm: RC not found", "Arm: Roll radio min too high"]

@@ -9,9 +9,9 @@ import math
 import pytest
 
 from sitl.autopilot import smart_rtl_path as srtl
-from sitl.autopilot.events import PATH_LOST
 from sitl.autopilot.params.system import SmartRtl
 from sitl.autopilot.rover.modes.update import keep_path
+from sitl.autopilot.smart_rtl_path import PATH_LOST
 from sitl.autopilot.state import PathState
 from sitl.core.vectors import Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover

@@ -12,8 +12,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.copter.firmware import FIRMWARE as COPTER
 from sitl.autopilot.firmware import Firmware
-from sitl.autopilot.mission.notes import CurrentChanged, Text
 from sitl.autopilot.mission.validate import check_all
+from sitl.autopilot.notes import CurrentChanged, Text
 from sitl.autopilot.params.table import Values
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.bridge.bridge import Bridge
@@ -125,9 +125,6 @@ class FakeAutopilot:
     def take_notes(self) -> list[Any]:
         notes, self.notes = self.notes, []
         return notes
-
-    def texts_of(self, code: int, a: int, b: int) -> list[Text]:
-        return []
 
     def home_changed(self) -> None:
         pass

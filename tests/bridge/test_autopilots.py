@@ -9,11 +9,14 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot import events
+from sitl.autopilot.arming_checks import ARMED, DISARMED
+from sitl.autopilot.events import emit
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.rover.modes import guided as guided_mode
+from sitl.autopilot.rover.modes.guided import GUIDED_REACHED, GUIDED_TIMEOUT
+from sitl.autopilot.rover.modes.rtl import DESTINATION_REACHED
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.copter.autopilot import CopterAutopilot
@@ -202,15 +205,15 @@ def test_speed_is_set_on_the_way_to_a_place_only(rover: FirmwareBench) -> None:
 
 
 def test_arrival_in_guided_is_told_as_item_0(rover: FirmwareBench) -> None:
-    events.emit(rover.vehicle.v.autopilot.events, 0, events.GUIDED_REACHED, 0.0, 0.0)
+    emit(rover.vehicle.v.autopilot.events, 0, GUIDED_REACHED, 0.0, 0.0)
     rover.bridge.on_events()
     assert [m.seq for m in rover.client.receive("MISSION_ITEM_REACHED")] == [0]
 
 
 def test_texts_of_events(rover: FirmwareBench) -> None:
     ring = rover.vehicle.v.autopilot.events
-    for code in (events.ARMED, events.GUIDED_TIMEOUT, events.DESTINATION_REACHED, events.DISARMED):
-        events.emit(ring, 0, code, 3.0, 0.0)
+    for code in (ARMED, GUIDED_TIMEOUT, DESTINATION_REACHED, DISARMED):
+        emit(ring, 0, code, 3.0, 0.0)
     rover.bridge.on_events()
     assert [(m.severity, m.text) for m in rover.client.receive("STATUSTEXT")] == [
         (6, "Throttle armed"), (4, "target not received last 3secs, stopping"), (6, "Reached destination"),

@@ -2,7 +2,12 @@
 from __future__ import annotations
 
 from sitl.autopilot import events
-from sitl.autopilot.mission.notes import CurrentChanged, ItemReached, Text
+from sitl.autopilot.arming_checks import ARMED, DISARMED
+from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
+from sitl.autopilot.events import EVENT_RING
+from sitl.autopilot.hits import HIT_GROUND
+from sitl.autopilot.modes import MODE_CHANGED
+from sitl.autopilot.notes import CurrentChanged, ItemReached, Text
 from sitl.bridge.services.statustext import StatusTextService
 from tests.bridge.fakes import Bench
 
@@ -19,9 +24,9 @@ def texts(bench: Bench) -> list[str]:
 def test_texts_of_a_flight(bench: Bench) -> None:
     bench.run(3.0)
     assert texts(bench) == ["Barometer 1 calibration complete", "ArduPilot Ready"]
-    emit(bench, events.ARMED)
-    emit(bench, events.HIT_GROUND, 0.499648)
-    emit(bench, events.DISARMED)
+    emit(bench, ARMED)
+    emit(bench, HIT_GROUND, 0.499648)
+    emit(bench, DISARMED)
     bench.run(0.1)
     assert texts(bench) == ["Arming motors", "SIM Hit ground at 0.499648 m/s", "Disarming motors"]
     bench.run(1.0)
@@ -31,15 +36,15 @@ def test_texts_of_a_flight(bench: Bench) -> None:
 def test_a_full_ring_loses_the_oldest_only(bench: Bench) -> None:
     bench.run(3.0)
     texts(bench)
-    for _ in range(events.EVENT_RING + 10):
-        emit(bench, events.ARMED)
+    for _ in range(EVENT_RING + 10):
+        emit(bench, ARMED)
     bench.run(0.1)
-    assert len(texts(bench)) == events.EVENT_RING
+    assert len(texts(bench)) == EVENT_RING
 
 
 def test_origin_and_home_are_told_when_they_come(bench: Bench) -> None:
     bench.vehicle.locate()
-    emit(bench, events.EKF_ORIGIN_SET)
+    emit(bench, EKF_ORIGIN_SET)
     bench.run(0.1)
     found = bench.client.receive()
     assert {"HOME_POSITION", "GPS_GLOBAL_ORIGIN"} <= {m.get_type() for m in found}
@@ -50,7 +55,7 @@ def test_a_mode_change_is_told_by_a_heartbeat_at_once(bench: Bench) -> None:
     bench.run(1.0)
     bench.client.receive()
     bench.vehicle.v.autopilot.modes.number = 6
-    emit(bench, events.MODE_CHANGED, 6.0)
+    emit(bench, MODE_CHANGED, 6.0)
     bench.bridge.on_events()
     bench.bridge.flush()
     assert [m.custom_mode for m in bench.client.receive("HEARTBEAT")] == [6]

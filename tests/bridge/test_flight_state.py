@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.mission.notes import ItemReached
+from sitl.autopilot.notes import ItemReached
 from sitl.bridge.copter.autopilot import CopterAutopilot
 from sitl.bridge.services.statustext import EventService
 from sitl.core.algebra import quat_about_down

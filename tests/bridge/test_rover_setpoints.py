@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot import events
 from sitl.autopilot.rover.modes.auto import AUTO, GUIDED_IN_MISSION, ON_PATH
 from sitl.autopilot.rover.modes.guided import GUIDED, HEADING_AND_SPEED, POSITION, STOP, TURN_RATE_AND_SPEED
+from sitl.autopilot.rover.modes.guided_setpoints import SETPOINT_IGNORED
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
 from sitl.bridge.rover.setpoints import attitude_target, position_target_global, position_target_local
@@ -169,7 +169,7 @@ def test_attitude_is_heading_or_turn_rate_and_a_share_of_the_speed(v: Rover) -> 
 def test_an_acceleration_is_an_event(v: Rover, cls: Any) -> None:
     ring, guided = v.autopilot.events, bytes(v.autopilot.modes.guided._bytes)
     LAWS[cls](filled(cls, coordinate_frame=1 if cls is SetPositionTargetLocalNed else 3, type_mask=0xC07), v, 255)
-    assert (ring.count, ring.code[0], ring.a[0], ring.time_us[0]) == (1, events.SETPOINT_IGNORED, cls.kind.id, NOW)
+    assert (ring.count, ring.code[0], ring.a[0], ring.time_us[0]) == (1, SETPOINT_IGNORED, cls.kind.id, NOW)
     assert bytes(v.autopilot.modes.guided._bytes) == guided
 
 

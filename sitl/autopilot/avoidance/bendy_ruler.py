@@ -12,19 +12,20 @@ Behaviour: https://ardupilot.org/copter/docs/common-oa-bendyruler.html
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ...core.algebra import cross2, direction, dot, dot2, horizontal, norm, norm2, with_down
-from ...core.elementary import atan2, sincos
+from ...core.elementary import atan2, hypot, sincos
+from ...core.geodesy import place_e7
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_pi
 from ...core.vectors import Vec2, Vec3
-from ..events import BENDY_RULER_LOOKED, LEG_ENDING, emit, emit_and_return
+from ..events import Event, Row, emit, emit_and_return
 from ..fence import shapes
 from ..fence.checks import active
 from ..fence.checks import margin_of as wanted_margin
 from ..fence.state import AREAS, CIRCLE, MAX_ALT, FenceState
-from ..navigation.state import BENT, DETOUR_REQUEST, ENDED, STRAIGHT
+from ..navigation.state import BENT, DETOUR_REQUEST, ENDED, LEG_ENDING, STRAIGHT
 from ..state import Autopilot
 from . import objects
 from .objects import BENDY_RULER
@@ -45,6 +46,23 @@ PAST = 2.0
 SLOW = 0.2
 """Below this speed [m/s] the nose is the course."""
 FAR = 1e9
+
+
+def _rows(v: Any, margin: float, how: float) -> list[Row]:
+    """OABR"""
+    ap = v.autopilot
+    nav, est, here, home = ap.modes.nav, ap.estimate, ap.estimate.pos, ap.home.pos.z
+    upright = getattr(ap.params.OA, "BR_TYPE", 1.0) == 2.0  # a copter's
+    target = nav.detour.bent_target
+    towards = atan2(nav.target.y - here.y, nav.target.x - here.x)
+    slope = atan2(here.z - target.z, hypot(target.x - here.x, target.y - here.y)) if upright else 0.0
+    angles = (round(math.degrees(angle)) % 360 for angle in (towards, est.yaw, slope))
+    origin = est.origin_lat, est.origin_lon
+    places = [(*place_e7(*origin, place.x, place.y), home - place.z) for place in (nav.target, target)]
+    return [("OABR", (2 if upright else 1, int(how) & 1, *angles, int(how) >> 1, margin, *places[0], *places[1]))]
+
+
+BENDY_RULER_LOOKED = Event(72, log=_rows)  # a: margin [m], b: 1 it steers, 3 and goes on as before
 
 
 class Ruler(NamedTuple):

@@ -10,7 +10,8 @@ from .. import payload
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
 from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
-from ..mission.notes import INFO, WARNING, Note, Text
+from ..mission.notes import Note
+from ..notes import INFO, WARNING, Text
 from . import arming
 from .modes import autotune_gains, commands, simple, zigzag
 from .modes.auto import AUTO

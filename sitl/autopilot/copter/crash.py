@@ -14,7 +14,8 @@ from ...core.elementary import cos
 from ...core.kernels import inlined
 from ...core.vectors import Vec3
 from ..arming_checks import BY_CRASH
-from ..events import CRASH_DISARM, emit
+from ..events import Event, emit, err
+from ..notes import CRITICAL
 from ..state import Estimate
 from . import landing
 from .control.state import AttitudeState, MotorsState
@@ -32,6 +33,8 @@ STILL_TICKS = 2000
 """5 s."""
 STILL_ACCEL, STILL_SPEED, STILL_RATE = 0.5, 0.3, math.radians(3.0)
 """What counts as no movement [m/s^2], [m/s], [rad/s]."""
+
+CRASH_DISARM = Event(8, CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0", log=err(12, 1))
 
 
 @inlined

@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION, BY_TERRAIN_FAILSAFE
 from ..estimation.status import GPS_GLITCHING
-from ..events import FAILSAFE, TERRAIN_DID, emit
+from ..events import emit
 from ..failsafe_checks import (
     EKF,
     GCS,
     GLITCH,
     RADIO,
+    SEVERE,
     TERRAIN,
     VARIANCE,
     VIBRATION,
@@ -32,10 +35,11 @@ from ..modes import (
     REASON_RADIO_FAILSAFE,
     REASON_TERRAIN_FAILSAFE,
 )
+from ..notes import CRITICAL, WARNING, Text
 from ..state import Arming, Failsafe
 from ..terrain.ground import is_long_missing
 from ..terrain.state import FAILSAFE as GROUND_MISSING
-from ..terrain.state import RTL_BEGINS_ANEW
+from ..terrain.state import RTL_BEGINS_ANEW, TERRAIN_DID
 from .control import vibration
 from .failsafe_actions import (
     CONTINUE_LANDING,
@@ -110,6 +114,14 @@ def text(which: int, how: int) -> str | None:
     if which == RADIO and how == AUTO_GOES_ON:
         return f"{said} - Continuing Auto"
     return f"{said} - {_ENDINGS[how]}" if said and how in _ENDINGS else said
+
+
+def _told(v: Any, which: float, how: float) -> list[Text]:
+    said = text(int(which), int(how))
+    return [Text(CRITICAL if int(which) in SEVERE else WARNING, said)] if said else []
+
+
+FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_told)
 
 
 @law

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...core.kernels import law
-from ..events import NO_WAY_BACK, emit
+from ..events import Event, emit
 from ..modes import ACCEPTED
+from ..notes import WARNING, Text
 from .modes import ground, set_mode
 from .modes.auto import AUTO_RTL
 from .modes.brake import BRAKE
@@ -25,6 +28,16 @@ DO_SMART_RTL_OR_LAND = 4
 DO_STOP = 5
 DO_AUTO_RTL = 6  # else RTL, else LAND
 DO_BRAKE = 7
+
+_INSTEAD = {DO_RTL: "Trying RTL Mode", DO_LAND: "Using Land Mode"}
+
+
+def _told(v: Any, does: float, by_mission: float) -> list[Text]:
+    instead = _INSTEAD[int(does)]
+    return [Text(WARNING, instead if by_mission else f"SmartRTL Unavailable, {instead}")]
+
+
+NO_WAY_BACK = Event(36, says=_told)  # SMART_RTL cannot be entered, or (b: 1) AUTO_RTL; a: what it does
 
 _BATTERY = (NOTHING, DO_LAND, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_STOP, DO_AUTO_RTL, DO_BRAKE)
 _RADIO = (NOTHING, DO_RTL, DO_RTL, DO_LAND, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_AUTO_RTL, DO_BRAKE)

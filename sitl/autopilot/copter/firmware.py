@@ -13,6 +13,7 @@ from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
 from .control.frames import load_frame
 from .control.update import init as init_control
 from .control.update import update as control
+from .events import EVENTS
 from .mission import COMMANDS
 from .modes.autotune_gains import give_back
 from .modes.table import NAMES
@@ -40,5 +41,14 @@ def power_on(v: Vehicle) -> None:
 
 
 FIRMWARE = Firmware(
-    "copter", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS, give_back, fence_bytes=560, rally_bytes=690
+    "copter",
+    TABLE,
+    NAMES,
+    power_on,
+    COMMANDS,
+    AUX_FUNCTIONS,
+    give_back,
+    fence_bytes=560,
+    rally_bytes=690,
+    events=EVENTS,
 )

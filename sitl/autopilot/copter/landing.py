@@ -15,7 +15,7 @@ from ...core.algebra import euler_of, norm
 from ...core.kernels import inlined, law
 from ...core.vectors import Quat
 from ..arming_checks import BY_LANDING
-from ..events import LANDED, emit
+from ..events import Event, emit
 from ..state import Arming
 from .control import throttle_mix
 from .control.attitude_target import cos_lean
@@ -26,6 +26,8 @@ from .modes.state import LandingState, Modes
 from .parameters import Parameters
 from .parameters.control import Attitude
 from .state import Vehicle
+
+LANDED = Event(4)
 
 TRIGGER_TICKS = 400
 """1 s."""

@@ -10,12 +10,13 @@ from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import TERRAIN_FRAMES, MissionItem
-from ..mission.notes import INFO, WARNING, Note, OutputItem, Text
+from ..mission.notes import Note, OutputItem
 from ..mission.place import down, point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
+from ..notes import INFO, WARNING, Text
 from ..terrain.ground import lose_ground
 from .modes import auto, auto_yaw
 from .modes.auto import AUTO, AUTO_RTL

@@ -10,13 +10,16 @@ from __future__ import annotations
 from ...core.kernels import inlined
 from ...core.scalars import constrain
 from ..arming_checks import BY_MOTOR_TEST
-from ..events import MOTOR_TEST, emit
+from ..events import Event, emit
+from ..notes import INFO
 from ..state import Arming
 from .control.state import MotorsState
 from .modes import ground
 from .state import Vehicle
 
 LONGEST_S = 600.0
+
+MOTOR_TEST = Event(21, INFO, {0: "finished motor test", 1: "starting motor test"})  # b: motor
 
 # Answers of start()
 OK = 0

@@ -5,7 +5,8 @@ TKOFF_RPM_MAX)."""
 from __future__ import annotations
 
 from ...core.kernels import law
-from ..events import TAKEOFF_BLOCKED, emit
+from ..events import Event, emit
+from ..notes import CRITICAL
 from ..state import Sensors
 from .parameters.flight import TakeOff
 from .state import Vehicle
@@ -15,6 +16,11 @@ STALE_US = 1_000_000
 WARNING_US = 5_000_000
 NO_TELEMETRY, OUT_OF_RANGE = 0, 1
 """Why it is blocked."""
+_BLOCKED = {
+    NO_TELEMETRY: "Takeoff blocked: waiting for ESC RPM",
+    OUT_OF_RANGE: "Takeoff blocked: ESC RPM out of range",
+}
+TAKEOFF_BLOCKED = Event(41, CRITICAL, _BLOCKED)
 
 
 @law

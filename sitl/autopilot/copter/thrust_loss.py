@@ -5,9 +5,13 @@ boosts the others (FLIGHT_OPTIONS 1 switches that off)."""
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from ...core.kernels import inlined, law
-from ..events import THRUST_LOST, emit
+from ..aux_switch import LOW
+from ..events import Event, emit, err
+from ..notes import EMERGENCY, EventNote, Switched, Text
+from ..payload import SWITCH_GRIPPER
 from .control.mixer import BOOST_MOTORS, watch_balance
 from .control.state import AttitudeState, MotorsState
 from .state import Vehicle
@@ -19,7 +23,17 @@ LEAN_MAX = math.radians(15.0)
 """Greatest lean that is asked for."""
 ERROR_MAX = math.radians(30.0)
 """From there on a crash is more likely."""
-_OFF = 1
+_OFF, _OPENS_GRIPPER = 1, 4
+"""FLIGHT_OPTIONS"""
+
+
+def _told(v: Any, motor: float, b: float) -> list[EventNote]:
+    told: list[EventNote] = [Text(EMERGENCY, f"Potential Thrust Loss ({motor:.0f})")]
+    opens = int(v.autopilot.params.FLIGHT_OPTIONS) & _OPENS_GRIPPER != 0
+    return [*told, Switched(SWITCH_GRIPPER, LOW)] if opens else told
+
+
+THRUST_LOST = Event(40, says=_told, log=err(25, 1))  # a: motor 1 .. that seems to fail
 
 
 @inlined

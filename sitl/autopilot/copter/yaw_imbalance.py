@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
-from ..events import YAW_IMBALANCE, emit
+from ..events import Event, emit
+from ..notes import EMERGENCY, Text
 from .state import Vehicle
 
 PERIOD = 0.1
@@ -21,6 +22,9 @@ SHARE = 0.75
 """Of ATC_RAT_YAW_IMAX."""
 TOLD_US = 10_000_000
 _OFF = 2
+
+YAW_IMBALANCE = Event(64, says=lambda v, a, b: [Text(EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")])
+"""a: the integrator of the yaw rate loop"""
 
 
 @law

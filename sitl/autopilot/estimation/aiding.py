@@ -9,11 +9,12 @@ from ...core.algebra import ZERO2, horizontal, with_down
 from ...core.geodesy import offset_ne
 from ...core.kernels import law
 from ...core.vectors import Vec2
-from .. import events
+from ..events import Events, emit
 from ..gps_receivers import Fix
 from ..state import Estimate
 from . import noise
 from .covariance import clear
+from .events import EKF_ORIGIN_SET, EKF_STOPPED_GPS, EKF_USES_GPS
 from .history import shift
 from .magnetometer import learn_field
 from .state import POS, VEL, Ekf
@@ -28,16 +29,16 @@ class Origin(NamedTuple):
 
 
 @law
-def place_origin(ekf: Ekf, estimate: Estimate, log: events.Events, origin: Origin) -> None:
+def place_origin(ekf: Ekf, estimate: Estimate, log: Events, origin: Origin) -> None:
     """Set the origin."""
     estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = origin.lat, origin.lon, origin.alt
     estimate.origin_set = True
     learn_field(ekf, estimate, origin.lat, origin.lon)
-    events.emit(log, ekf.now_us, events.EKF_ORIGIN_SET, float(ekf.imu), 0.0)
+    emit(log, ekf.now_us, EKF_ORIGIN_SET, float(ekf.imu), 0.0)
 
 
 @law
-def set_origin(ekf: Ekf, estimate: Estimate, log: events.Events, origin: Origin) -> bool:
+def set_origin(ekf: Ekf, estimate: Estimate, log: Events, origin: Origin) -> bool:
     """Origin given by a ground station (SET_GPS_GLOBAL_ORIGIN); whether it is taken: not when there is one already."""
     if estimate.origin_set or abs(origin.lat) > 900000000 or abs(origin.lon) > 1800000000 or not abs(origin.alt) < 1e5:
         return False
@@ -75,7 +76,7 @@ def reset_to_fix(ekf: Ekf, estimate: Estimate, fix: Fix, age: float) -> None:
 
 
 @law
-def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, fix: Fix, age: float) -> None:
+def start_using(ekf: Ekf, estimate: Estimate, log: Events, fix: Fix, age: float) -> None:
     """From holding the position to GPS, whose fix is ``age`` [s] old."""
     reset_to_fix(ekf, estimate, fix, age)
     ekf.absolute = True
@@ -85,15 +86,15 @@ def start_using(ekf: Ekf, estimate: Estimate, log: events.Events, fix: Fix, age:
     ekf.vel_fused_us = ekf.now_us
     ekf.gps_passed_us = ekf.now_us
     ekf.gps_glitch = False
-    events.emit(log, ekf.now_us, events.EKF_USES_GPS, float(ekf.imu), 0.0)
+    emit(log, ekf.now_us, EKF_USES_GPS, float(ekf.imu), 0.0)
 
 
 @law
-def stop_using(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
+def stop_using(ekf: Ekf, estimate: Estimate, log: Events) -> None:
     """From GPS to holding the position."""
     ekf.absolute = False
     ekf.hold_pos = horizontal(ekf.pos)
     estimate.variance_pos = 0.0
     estimate.variance_vel = 0.0
     reset_ne(ekf, estimate, ekf.hold_pos, ZERO2)
-    events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, float(ekf.imu), 0.0)
+    emit(log, ekf.now_us, EKF_STOPPED_GPS, float(ekf.imu), 0.0)

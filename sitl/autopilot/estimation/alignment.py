@@ -12,8 +12,9 @@ from __future__ import annotations
 from ...core.algebra import ZERO, horizontal, normalise, quat_from_euler, quat_norm_squared, with_down
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
-from .. import events
+from ..events import Events, emit
 from . import covariance, height
+from .events import EKF_TILT_ALIGNED
 from .magnetometer import clear_samples
 from .state import RING, THETA, Ekf, N
 from .strapdown import tilt_from_acc, within
@@ -120,13 +121,13 @@ def begin_step(ekf: Ekf) -> None:
 
 
 @law
-def check_tilt(ekf: Ekf, log: events.Events) -> None:
+def check_tilt(ekf: Ekf, log: Events) -> None:
     """TILT to YAW when the tilt variance has fallen."""
     if ekf.P[THETA, THETA] + ekf.P[THETA + 1, THETA + 1] < TILT_VARIANCE:
         ekf.tilt_aligned = True
         ekf.phase = YAW
         clear_samples(ekf)
-        events.emit(log, ekf.now_us, events.EKF_TILT_ALIGNED, float(ekf.imu), 0.0)
+        emit(log, ekf.now_us, EKF_TILT_ALIGNED, float(ekf.imu), 0.0)
 
 
 @law

@@ -6,12 +6,13 @@ from __future__ import annotations
 from ...core.border import Sensors
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from .. import events
+from ..events import Events, emit
 from ..params.parameters import Parameters
 from ..params.system import Compass
 from ..sensor_calibration import COMPASSES, differs, field_of, is_heard
 from . import magnetometer, noise
 from .covariance import clear
+from .events import EKF_COMPASS_CHANGED
 from .magnetometer import TIMEOUT_US
 from .state import BM, Ekf
 
@@ -37,7 +38,7 @@ def better(ekf: Ekf, sensors: Sensors, params: Parameters) -> int:
 
 
 @law
-def take(ekf: Ekf, log: events.Events, compass: int, both: bool) -> None:
+def take(ekf: Ekf, log: Events, compass: int, both: bool) -> None:
     """Go on with another compass, whose bias is unknown; ``both``: there is one filter for two."""
     ekf.compass = compass
     ekf.mag_changed_us = ekf.now_us
@@ -46,13 +47,13 @@ def take(ekf: Ekf, log: events.Events, compass: int, both: bool) -> None:
     clear(ekf.P, BM, 3, noise.INITIAL_MAG_BIAS * noise.INITIAL_MAG_BIAS)
     magnetometer.clear_samples(ekf)
     if ekf.yaw_aligned:
-        events.emit(log, ekf.now_us, events.EKF_COMPASS_CHANGED, float(ekf.imu), float(compass))
+        emit(log, ekf.now_us, EKF_COMPASS_CHANGED, float(ekf.imu), float(compass))
         if both:
-            events.emit(log, ekf.now_us, events.EKF_COMPASS_CHANGED, float(1 - ekf.imu), float(compass))
+            emit(log, ekf.now_us, EKF_COMPASS_CHANGED, float(1 - ekf.imu), float(compass))
 
 
 @law
-def watch(ekf: Ekf, log: events.Events, sensors: Sensors, params: Parameters, armed: bool, both: bool) -> None:
+def watch(ekf: Ekf, log: Events, sensors: Sensors, params: Parameters, armed: bool, both: bool) -> None:
     """Each filter step: leave a compass that fails; go back to the first one on the ground when both show the same."""
     if (ekf.yaw_aligned and ekf.now_us - ekf.mag_fused_us > TIMEOUT_US) or not is_used(ekf.compass, params.COMPASS):
         other = better(ekf, sensors, params)

@@ -9,7 +9,7 @@ from ...core.algebra import horizontal, rotate, with_down, yaw_of
 from ...core.kernels import law
 from ...core.scalars import wrap_pi
 from ...core.vectors import Vec2, Vec3
-from .. import events
+from ..events import Events, emit
 from ..params.estimator import Ekf3
 from ..params.without_gps import Sources
 from ..params.without_gps import VisualOdometry as Settings
@@ -18,14 +18,12 @@ from ..visual_odometry import VisualOdometry
 from . import flow, height
 from .aiding import reset_ne
 from .alignment import YAW
+from .events import BY_OTHERS, EKF_RELATIVE, EKF_USES, YAW_BY_OTHERS
 from .fusion import NO_NIS, Innovation, correct, gate_ratio, innovate_position, innovate_state
 from .history import past_at
 from .magnetometer import turn
 from .sources import EXTERNAL
 from .state import THETA, VEL, Ekf
-
-BY_OTHERS, YAW_BY_OTHERS = 2.0, 3.0
-"""Of EKF_USES."""
 
 
 @law
@@ -52,13 +50,13 @@ def velocity_of(ekf: Ekf, seen: VisualOdometry) -> Vec3:
 
 
 @law
-def begin(ekf: Ekf, estimate: Estimate, log: events.Events, seen: VisualOdometry, source: Sources, age: float) -> None:
+def begin(ekf: Ekf, estimate: Estimate, log: Events, seen: VisualOdometry, source: Sources, age: float) -> None:
     """From holding the position, or a relative one, to the position told, ``age`` [s] old."""
     jump_to(ekf, estimate, seen, source, age)
     ekf.absolute, ekf.relative = True, False
     ekf.pos_fused_us = ekf.now_us
     ekf.vel_fused_us = ekf.now_us
-    events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), BY_OTHERS)
+    emit(log, ekf.now_us, EKF_USES, float(ekf.imu), BY_OTHERS)
 
 
 @law
@@ -126,11 +124,11 @@ def fuse_velocity(
 
 
 @law
-def align_yaw(ekf: Ekf, estimate: Estimate, log: events.Events, yaw: float) -> None:
+def align_yaw(ekf: Ekf, estimate: Estimate, log: Events, yaw: float) -> None:
     """Take the first heading told [rad]."""
     turn(ekf, estimate, wrap_pi(yaw - yaw_of(ekf.q)))
     ekf.yaw_aligned = True
-    events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), YAW_BY_OTHERS)
+    emit(log, ekf.now_us, EKF_USES, float(ekf.imu), YAW_BY_OTHERS)
 
 
 @law
@@ -150,7 +148,7 @@ def fuse_yaw(ekf: Ekf, estimate: Estimate, residual: float, sigma: float, params
 
 @law
 def take_pose(
-    ekf: Ekf, estimate: Estimate, log: events.Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
+    ekf: Ekf, estimate: Estimate, log: Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
 ) -> bool:
     """Look at a new pose; whether something was fused."""
     when_us, yaw = seen.pose.time_us - delay_us(p), yaw_of(seen.pose.q)
@@ -177,7 +175,7 @@ def take_pose(
 
 @law
 def take_velocity(
-    ekf: Ekf, estimate: Estimate, log: events.Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
+    ekf: Ekf, estimate: Estimate, log: Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
 ) -> bool:
     """Look at a new velocity; whether something was fused. Without positions it makes a relative one."""
     if not ekf.yaw_aligned:
@@ -188,7 +186,7 @@ def take_velocity(
         vel = velocity_of(ekf, seen)
         reset_ne(ekf, estimate, horizontal(ekf.pos), Vec2(vel.x, vel.y))
         ekf.relative, ekf.relative_us = True, ekf.now_us
-        events.emit(log, ekf.now_us, events.EKF_RELATIVE, float(ekf.imu), 0.0)
+        emit(log, ekf.now_us, EKF_RELATIVE, float(ekf.imu), 0.0)
         return False
     when_us = seen.velocity.time_us - delay_us(p)
     return fuse_velocity(ekf, estimate, seen, params, when_us, source.VELZ == EXTERNAL)
@@ -196,7 +194,7 @@ def take_velocity(
 
 @law
 def fuse(
-    ekf: Ekf, estimate: Estimate, log: events.Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
+    ekf: Ekf, estimate: Estimate, log: Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
 ) -> bool:
     """Look at what the other system has told since the last step; whether something was fused."""
     fused = False

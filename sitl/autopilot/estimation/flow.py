@@ -12,18 +12,17 @@ import math
 from ...core.algebra import cross, horizontal, norm2, rotate, rotate_inverse
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
-from .. import events
+from ..events import Events, emit
 from ..optical_flow import OpticalFlow
 from ..params.estimator import Ekf3
 from ..state import Estimate, Sensors
 from . import noise
 from .aiding import reset_ne
+from .events import BY_FLOW, EKF_RELATIVE, EKF_STOPPED_AIDING, EKF_USES
 from .fusion import NO_NIS, Innovation, clear_row, correct, gate_ratio, innovate
 from .history import past_at
 from .state import THETA, VEL, Ekf
 
-BY_FLOW = 1.0
-"""Of EKF_USES."""
 LEAST_DISTANCE = 0.1
 """Of the lens from the ground [m]: that of a vehicle that stands."""
 LEAST_COS = 0.5
@@ -68,15 +67,15 @@ def speed_limit(ekf: Ekf, params: Ekf3) -> float:
 
 
 @law
-def begin(ekf: Ekf, estimate: Estimate, log: events.Events, shown: Vec2) -> None:
+def begin(ekf: Ekf, estimate: Estimate, log: Events, shown: Vec2) -> None:
     """From holding the position to flow ``shown`` [rad/s]: velocity from it, position from where it is."""
     away = distance(ekf)
     vel = rotate(ekf.q, Vec3(shown.y * away, -shown.x * away, 0.0))
     reset_ne(ekf, estimate, horizontal(ekf.pos), horizontal(vel))
     ekf.relative = True
     ekf.relative_us = ekf.now_us
-    events.emit(log, ekf.now_us, events.EKF_USES, float(ekf.imu), BY_FLOW)
-    events.emit(log, ekf.now_us, events.EKF_RELATIVE, float(ekf.imu), 0.0)
+    emit(log, ekf.now_us, EKF_USES, float(ekf.imu), BY_FLOW)
+    emit(log, ekf.now_us, EKF_RELATIVE, float(ekf.imu), 0.0)
 
 
 @law
@@ -113,7 +112,7 @@ def fuse_rates(ekf: Ekf, estimate: Estimate, shown: Vec2, when_us: int, params: 
 
 
 @law
-def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, flow: OpticalFlow, params: Ekf3) -> bool:
+def fuse(ekf: Ekf, estimate: Estimate, log: Events, flow: OpticalFlow, params: Ekf3) -> bool:
     """Look at a new sample of optical flow; whether it was fused."""
     if flow.count == ekf.flow_seen:
         return False
@@ -128,11 +127,11 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, flow: OpticalFlow, pa
 
 
 @law
-def watch(ekf: Ekf, estimate: Estimate, log: events.Events, has_source: bool) -> None:
+def watch(ekf: Ekf, estimate: Estimate, log: Events, has_source: bool) -> None:
     """Hold the position when nothing has been fused for long, or nothing will be."""
     if ekf.relative and (ekf.now_us - ekf.relative_us > STOP_US or not has_source):
         stop(ekf, estimate)
-        events.emit(log, ekf.now_us, events.EKF_STOPPED_AIDING, float(ekf.imu), 0.0)
+        emit(log, ekf.now_us, EKF_STOPPED_AIDING, float(ekf.imu), 0.0)
 
 
 @law

@@ -19,11 +19,12 @@ from ...core.algebra import ZERO, rotate, rotation_matrix
 from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_pi
-from .. import events
+from ..events import Events, emit
 from ..params.estimator import Ekf3
 from ..state import Estimate
 from . import noise
 from .covariance import clear
+from .events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
 from .fusion import NIS_MAGNETOMETER, Innovation, clear_row, correct, gate_ratio, innovate
 from .magnetometer import (
     FUSE_SAMPLES,
@@ -106,7 +107,7 @@ def loosen(ekf: Ekf) -> None:
 
 
 @law
-def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: bool) -> bool:
+def fuse(ekf: Ekf, estimate: Estimate, log: Events, params: Ekf3, armed: bool) -> bool:
     """Align or fuse yaw when there are enough samples; whether something was fused."""
     if ekf.mag_n < FUSE_SAMPLES:
         return False
@@ -120,13 +121,13 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     residual = wrap_pi(ekf.declination - atan2(field.y, field.x))
     if not ekf.yaw_aligned:
         ekf.yaw_aligned = True
-        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))
+        emit(log, ekf.now_us, EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))
         align(ekf, estimate, residual, params)
         forget_bias(ekf)
         return True
     if is_leaving_ground(ekf, armed):
         ekf.yaw_in_flight = True
-        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED_IN_FLIGHT, float(ekf.imu), float(ekf.compass))
+        emit(log, ekf.now_us, EKF_YAW_ALIGNED_IN_FLIGHT, float(ekf.imu), float(ekf.compass))
         align_in_flight(ekf, estimate, residual, params)
         return True
     add_noise(ekf, params, min(1e-6 * (ekf.now_us - ekf.mag_fused_us), LONGEST))

@@ -18,12 +18,13 @@ from ...core.memory import words_of
 from ...core.records import Ints
 from ...core.scalars import wrap_pi
 from ...core.vectors import Vec3
-from .. import events
+from ..events import emit
 from ..params.estimator import Ekf3
 from ..sensor_calibration import Calibrated
 from ..state import Autopilot, Estimate
 from . import alignment
 from .alignment import RUN
+from .events import EKF_LANE_SWITCHED
 from .state import Ekf
 
 FAILED_SCORE = 1.0
@@ -106,7 +107,7 @@ def switch(ap: Autopilot) -> None:
     seen.reset_pos, seen.reset_vel, seen.reset_yaw = pos, vel, yaw
     seen.reset_ne_count, seen.reset_d_count, seen.reset_yaw_count = ne, d, yaws
     lane.lead = 0.0
-    events.emit(ap.events, ap.ekf.now_us, events.EKF_LANE_SWITCHED, float(ap.ekf.imu), 0.0)
+    emit(ap.events, ap.ekf.now_us, EKF_LANE_SWITCHED, float(ap.ekf.imu), 0.0)
 
 
 @law

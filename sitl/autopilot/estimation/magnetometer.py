@@ -28,11 +28,12 @@ from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.scalars import wrap_pi
 from ...core.vectors import Vec3
-from .. import events
+from ..events import Events, emit
 from ..params.estimator import Ekf3
 from ..state import Estimate
 from . import noise
 from .covariance import clear, turn_frame
+from .events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
 from .fusion import NIS_MAGNETOMETER, NO_NIS, clear_row, correct, gate_ratio, innovate
 from .state import BM, THETA, Ekf
 from .strapdown import within
@@ -152,7 +153,7 @@ def is_yaw_confirmed(ekf: Ekf, estimate: Estimate) -> bool:
 
 
 @law
-def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: bool) -> bool:
+def fuse(ekf: Ekf, estimate: Estimate, log: Events, params: Ekf3, armed: bool) -> bool:
     """Align or fuse yaw when there are enough samples; whether something was fused."""
     count = ekf.mag_n
     if count < FUSE_SAMPLES:
@@ -168,7 +169,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     residual = wrap_pi(ekf.declination - atan2(field.y, field.x))
     if not ekf.yaw_aligned:
         ekf.yaw_aligned = True
-        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))
+        emit(log, ekf.now_us, EKF_YAW_ALIGNED, float(ekf.imu), float(ekf.compass))
         _realign(ekf, estimate, residual, variance)
         return True
     set_row(ekf)
@@ -180,7 +181,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: events.Events, params: Ekf3, armed: 
     leaving = is_leaving_ground(ekf, armed)
     if leaving:
         ekf.yaw_in_flight = True
-        events.emit(log, ekf.now_us, events.EKF_YAW_ALIGNED_IN_FLIGHT, float(ekf.imu), float(ekf.compass))
+        emit(log, ekf.now_us, EKF_YAW_ALIGNED_IN_FLIGHT, float(ekf.imu), float(ekf.compass))
     if ratio < 1.0:
         correct(ekf, innovation, NIS_MAGNETOMETER)
         ekf.mag_fused_us = ekf.now_us

@@ -7,7 +7,8 @@ from ...core.algebra import IDENTITY
 from ...core.border import BAROS_DIFFER, IMUS_DIFFER
 from ...core.kernels import inline_unit, inlined, law, unit
 from ...core.records import Records
-from .. import barometers, events, gps_receivers, optical_flow
+from .. import barometers, gps_receivers, optical_flow
+from ..events import Events, emit
 from ..inertial_filter import smoothed_acc, smoothed_rates
 from ..sensor_calibration import field_of, read_sensors
 from ..state import Autopilot, Estimate, Vehicle
@@ -34,6 +35,7 @@ from . import (
     yaw_reset,
 )
 from .alignment import CALIBRATE, RUN, TILT, YAW
+from .events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES
 from .state import POS, VEL, Ekf
 
 DT = 0.0025
@@ -65,7 +67,7 @@ def hold(ekf: Ekf, armed: bool, sigma: float) -> bool:
 
 
 @law
-def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
+def watch_alignment(ekf: Ekf, log: Events, armed: bool) -> None:
     """From phase to phase of the alignment; a filter that lost its health begins anew."""
     if ekf.phase == TILT:
         alignment.check_tilt(ekf, log)
@@ -76,7 +78,7 @@ def watch_alignment(ekf: Ekf, log: events.Events, armed: bool) -> None:
         ekf.yaw_in_flight = False
     if not alignment.is_healthy(ekf):
         if ekf.absolute:
-            events.emit(log, ekf.now_us, events.EKF_STOPPED_GPS, float(ekf.imu), 0.0)
+            emit(log, ekf.now_us, EKF_STOPPED_GPS, float(ekf.imu), 0.0)
         alignment.restart(ekf)
 
 
@@ -95,7 +97,7 @@ def fuse_others(v: Vehicle, ekf: Ekf, estimate: Estimate) -> bool:
         ekf.absolute = False
         ekf.relative, ekf.relative_us = True, ekf.now_us
         if source.VELXY == sources.FLOW:
-            events.emit(ap.events, ekf.now_us, events.EKF_USES, float(ekf.imu), flow.BY_FLOW)
+            emit(ap.events, ekf.now_us, EKF_USES, float(ekf.imu), flow.BY_FLOW)
     flow.watch(ekf, estimate, ap.events, sources.aid(source))
     return fused
 
@@ -159,12 +161,12 @@ def step(fleet: Records[Vehicle], i: int, lane: int) -> None:
 
 
 @law
-def _boot(ekf: Ekf, estimate: Estimate, log: events.Events) -> None:
+def _boot(ekf: Ekf, estimate: Estimate, log: Events) -> None:
     """A tick of gyro calibration."""
     if alignment.calibrate(ekf):
         barometer.set_ground(ekf)
         alignment.initialise(ekf)
-        events.emit(log, ekf.now_us, events.EKF_INITIALISED, float(ekf.imu), 0.0)
+        emit(log, ekf.now_us, EKF_INITIALISED, float(ekf.imu), 0.0)
         return
     ekf.q = IDENTITY
     estimate.q = IDENTITY

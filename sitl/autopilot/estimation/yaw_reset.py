@@ -7,13 +7,14 @@ from ...core.algebra import horizontal, yaw_of
 from ...core.border import Sensors
 from ...core.kernels import law
 from ...core.scalars import wrap_pi
-from .. import events
+from ..events import emit
 from ..gps_receivers import Fix, fix_of
 from ..params.parameters import Parameters
 from ..state import Autopilot, Estimate
 from . import gps, noise, yaw_bank
 from .aiding import reset_to_fix
 from .covariance import clear
+from .events import EKF_EMERGENCY_YAW
 from .magnetometer import clear_samples
 from .state import BG, THETA, Ekf
 from .yaw_bank import YawBank
@@ -53,12 +54,12 @@ def answer(ap: Autopilot, fix: Fix, age: float) -> None:
     if bank.resets >= params.GSF_RST_MAX or not has_bit(params.GSF_USE_MASK, ap.ekf.imu):
         return
     jump(ap.ekf, ap.estimate, bank, fix, age)
-    events.emit(ap.events, ap.ekf.now_us, events.EKF_EMERGENCY_YAW, float(ap.ekf.imu), 0.0)
+    emit(ap.events, ap.ekf.now_us, EKF_EMERGENCY_YAW, float(ap.ekf.imu), 0.0)
     other = 1 - ap.ekf.imu
     if has_bit(params.GSF_USE_MASK, other):
         if second.runs != 0 and second.ekf.phase == ap.ekf.phase:
             jump(second.ekf, second.estimate, bank, fix, age)
-        events.emit(ap.events, ap.ekf.now_us, events.EKF_EMERGENCY_YAW, float(other), 0.0)
+        emit(ap.events, ap.ekf.now_us, EKF_EMERGENCY_YAW, float(other), 0.0)
     bank.resets += 1
     bank.asked_us = 0
     bank.runs = False

@@ -8,8 +8,7 @@ from ...core.vectors import Vec3
 from ..params.fence import Fence
 from ..state import Estimate, HomeState
 from .checks import kinds, margin_of
-from .state import AREAS, CIRCLE, MAX_ALT, MIN_ALT, FenceState
-from .texts import names
+from .state import AREAS, CIRCLE, MAX_ALT, MIN_ALT, FenceState, names
 
 READY = 0
 NONE_CHOSEN, NEEDS_POSITION, BAD_RADIUS, BAD_ALT_MAX, BAD_ALT_MIN, BAD_ORDER, BAD_MARGIN, BIG_MARGIN = range(16, 24)

@@ -7,10 +7,11 @@ https://mavlink.io/en/services/mission.html#geofence
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ...core.geodesy import offset_ne
+from ...core.geodesy import add_offset, offset_ne
 from ...errors import SitlError
+from ..events import Event, Row
 from ..mission.item import (
     FENCE_CIRCLE,
     FENCE_CIRCLE_OUT,
@@ -113,3 +114,24 @@ def stored_bytes(items: Sequence[MissionItem], areas: Sequence[Shape]) -> int:
     """Room that a list takes in ArduPilot's storage: its size depends on the board, not on this record."""
     total = 5 + sum(9 for item in items if item.command == FENCE_RETURN_POINT)
     return total + sum(13 if area.radius > 0.0 else 2 + 8 * len(area.places) for area in areas)
+
+
+_LOGGED_KINDS = {STAY_IN: 98, STAY_OUT: 97, CIRCLE_IN: 92, CIRCLE_OUT: 93}
+"""Kind of area -> Type of FNCE."""
+
+
+def rows(v: Any, a: float = 0.0, b: float = 0.0) -> list[Row]:
+    """FNCE of each corner, and of each circle's centre."""
+    fence, found = v.autopilot.fence, list[Row]()
+    for s in range(fence.shapes):
+        kind, first = int(fence.kind[s]), int(fence.first[s])
+        is_round = kind in (CIRCLE_IN, CIRCLE_OUT)
+        for k in range(first, first + int(fence.count[s])):
+            at = add_offset(fence.reference_lat, fence.reference_lon, float(fence.north[k]), float(fence.east[k]))
+            size = (0, float(fence.radius[s])) if is_round else (int(fence.count[s]) & 255, 0.0)
+            place = (round(at.lat), round(at.lon))
+            found.append(("FNCE", (fence.corners & 255, k & 255, _LOGGED_KINDS[kind], *place, *size)))
+    return found
+
+
+FENCE_LOADED = Event(73, log=rows)

@@ -20,6 +20,14 @@ MAX_ALT, CIRCLE, AREAS, MIN_ALT = 1, 2, 4, 8
 """Bits of fences, as FENCE_TYPE has them: greatest height, circle around home, areas, least height."""
 FENCES = 4
 """Bit k is fence k."""
+_NAMES = {MAX_ALT: "Max Alt", CIRCLE: "Circle", AREAS: "Polygon", MIN_ALT: "Min Alt"}
+
+
+def names(fences: int) -> str:
+    """ "Circle and Polygon fences" of the bits of fences."""
+    listed = [name for bit, name in _NAMES.items() if fences & bit]
+    joined = " and ".join([", ".join(listed[:-1]), listed[-1]] if len(listed) > 1 else listed)
+    return f"{joined} fences" if len(listed) > 1 else f"{joined} fence"
 
 
 class FenceState(Record):

@@ -11,12 +11,13 @@ from ...core.constants import TICK_S as DT
 from ...core.kernels import law
 from ...core.records import Floats
 from ...core.vectors import Vec2, Vec3
-from ..events import LANDING_TARGET_DID, Events, emit
+from ..events import Events, emit
 from ..params.precision_landing import PrecisionLanding
 from ..state import Estimate, Vehicle
 from .measurement import height_over_ground, measure
 from .state import (
     FOUND,
+    LANDING_TARGET_DID,
     LOST,
     NEVER_SEEN,
     OUT_OF_RANGE,

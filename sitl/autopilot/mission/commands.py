@@ -8,13 +8,14 @@ from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
 from ..fence.checks import ALL, switch_by_user
-from ..fence.texts import names
+from ..fence.state import names
 from ..navigation.planner import Planner
 from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
+from ..notes import INFO, NOTICE, Text
 from ..state import Vehicle
 from . import item as commands
 from .item import UNREPORTED, MissionItem
-from .notes import INFO, NOTICE, Note, OutputItem, Text
+from .notes import Note, OutputItem
 from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)

@@ -1,41 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the sequencer tells the outside: the bridge turns each into a message."""
+"""What the sequencer tells the outside: what all of the autopilot does, and do-commands for the outside."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..notes import CurrentChanged, EventNote
 from .item import MissionItem
-
-INFO = 6
-"""MAV_SEVERITY"""
-CRITICAL = 2
-NOTICE = 5
-WARNING = 4
-
-
-@dataclass(frozen=True, slots=True)
-class Text:
-    """STATUSTEXT."""
-
-    severity: int
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class ItemReached:
-    """MISSION_ITEM_REACHED."""
-
-    seq: int
-    is_sent: bool = True
-    """False: only logs have it."""
-
-
-@dataclass(frozen=True, slots=True)
-class CurrentChanged:
-    """MISSION_CURRENT."""
-
-    seq: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,19 +16,4 @@ class OutputItem:
     item: MissionItem
 
 
-@dataclass(frozen=True, slots=True)
-class Switched:
-    """A switch of something that is fitted to the vehicle was moved (``payload.SWITCH_*``)."""
-
-    function: int
-    position: int
-
-
-@dataclass(frozen=True, slots=True)
-class ParametersFound:
-    """The firmware has changed these parameters for good: clients are told, and they are kept."""
-
-    names: tuple[str, ...]
-
-
-Note = Text | ItemReached | CurrentChanged | OutputItem | Switched | ParametersFound
+Note = EventNote | CurrentChanged | OutputItem

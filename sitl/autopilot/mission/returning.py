@@ -14,7 +14,9 @@ from collections.abc import Iterator
 from ...core.algebra import dot, norm
 from ...core.elementary import hypot
 from ...core.vectors import Vec3
+from ..events import Event
 from ..navigation.state import JUMPS, LANDING, RETURN_PATH
+from ..notes import INFO
 from ..state import Autopilot
 from . import jumps
 from .item import COMMANDS, DO_LAND_START, DO_RETURN_PATH_START, NAV_LAND, NAV_VTOL_LAND, MissionItem
@@ -22,8 +24,9 @@ from .mission import Mission
 from .place import point
 
 LANDINGS = (NAV_LAND, NAV_VTOL_LAND)
-ACTIVE_TEXTS = {RETURN_PATH: "Return path active", LANDING: "Landing sequence active"}
-"""By ``mission_part``."""
+RETURN_WANTED = Event(50)  # AUTO_RTL; a: way (BEST, ...), b: 1 AUTO flies already
+RETURN_ACTIVE = Event(51, INFO, {RETURN_PATH: "Return path active", LANDING: "Landing sequence active"})
+"""It flies a part that brings it back already; a: ``mission_part``"""
 
 
 def marks(mission: Mission, command: int) -> list[int]:

@@ -18,16 +18,22 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Protocol
 
-from .. import events
+from ..arming_checks import DISARMED
+from ..estimation.events import EKF_ORIGIN_SET
+from ..events import EVENT_RING
+from ..modes import MODE_CHANGED
 from ..navigation.command import give_none
 from ..navigation.state import (
     BY_LANDING,
+    COMMAND_ARRIVED,
+    COMMAND_COMPLETE,
     COMPLETE,
     CONDITION_NONE,
     DETOUR_REQUEST,
     DO_COMMAND,
     JUMPS,
     LANDING,
+    LEG_ENDING,
     LEG_REQUEST,
     LOITER_TIME,
     LOITER_UNLIMITED,
@@ -40,6 +46,7 @@ from ..navigation.state import (
     WAYPOINT,
     Nav,
 )
+from ..notes import CRITICAL, INFO, WARNING, CurrentChanged, ItemReached, Text
 from ..state import Vehicle
 from . import jumps, returning
 from .commands import Commands
@@ -55,7 +62,7 @@ from .item import (
     MissionItem,
 )
 from .mission import Mission
-from .notes import CRITICAL, INFO, WARNING, CurrentChanged, ItemReached, Note, Text
+from .notes import Note
 from .time_of_day import seconds_until
 
 LEGS = (WAYPOINT, LOITER_UNLIMITED, LOITER_TIME)
@@ -80,6 +87,15 @@ class Sequencer:
         self._holder = holder
         self.commands = commands
         self._boot_us = boot_us
+        self._acts: dict[int, Callable[[Vehicle, float, float], list[Note]]] = {
+            COMMAND_COMPLETE: self._command_complete,
+            COMMAND_ARRIVED: self._command_arrived,
+            LEG_ENDING: self._plan_leg,
+            MODE_CHANGED: self._mode_changed,
+            EKF_ORIGIN_SET: self._origin_set,
+            returning.RETURN_WANTED: lambda v, way, flies: self.go_back(v, int(way), flies != 0.0),
+            DISARMED: self._disarmed,
+        }
         self._publish(holder.v)
         holder.v.autopilot.modes.nav.mission_events = holder.v.autopilot.events.count
 
@@ -93,9 +109,9 @@ class Sequencer:
         v = self._holder.v
         ring, nav = v.autopilot.events, v.autopilot.modes.nav
         notes: list[Note] = []
-        nav.mission_events = max(nav.mission_events, ring.count - events.EVENT_RING)
+        nav.mission_events = max(nav.mission_events, ring.count - EVENT_RING)
         while nav.mission_events < ring.count:
-            k = nav.mission_events % events.EVENT_RING
+            k = nav.mission_events % EVENT_RING
             nav.mission_events += 1
             notes += self.on_event(v, int(ring.code[k]), float(ring.a[k]), float(ring.b[k]))
         return notes
@@ -211,8 +227,7 @@ class Sequencer:
         if not self.mission.present or not 0 <= seq < len(self.mission):
             return (False, notes)
         jumps.keep(nav, {})
-        in_auto = v.autopilot.modes.number == self.commands.auto
-        if nav.mission_state == RUNNING or (reset and in_auto):
+        if nav.mission_state == RUNNING or (reset and self._in_auto(v)):
             self._run_from(v, max(seq, 1), notes)
         else:
             nav.mission_state = STOPPED
@@ -244,35 +259,49 @@ class Sequencer:
 
     def on_event(self, v: Vehicle, code: int, a: float, b: float) -> list[Note]:
         """What an event of the core means for the mission."""
+        act = self._acts.get(code)
+        return [] if act is None else act(v, a, b)
+
+    # --- what follows from events
+
+    def _command_complete(self, v: Vehicle, what: float, number: float) -> list[Note]:
         nav = v.autopilot.modes.nav
-        running = nav.mission_state == RUNNING
-        if code == events.COMMAND_COMPLETE and running:
-            if a == DO_COMMAND:
-                return self._condition_met(v, int(b))
-            return self._complete(v) if int(b) == nav.command_count else []
-        if code == events.COMMAND_ARRIVED and running:
-            return self._arrived(v) if int(b) == nav.command_count else []
-        if code == events.LEG_ENDING and a == LEG_REQUEST:
-            self.commands.planner.serve(v.autopilot, v.time_us)
-        elif code == events.LEG_ENDING and a == DETOUR_REQUEST:
-            self.commands.planner.go_on(v.autopilot, v.time_us)
-        elif code == events.LEG_ENDING and a == SPEED_REQUEST:
-            self.commands.planner.change_speed(v.autopilot)
-        elif code == events.MODE_CHANGED:
-            in_auto = int(a) == self.commands.auto
-            if in_auto and (not running or nav.command_kind == NONE):
-                return self.start(v)
-            if running and not in_auto and int(a) != self.commands.auto_return:
-                return self.stop(v)
-        elif code == events.EKF_ORIGIN_SET:
-            if nav.mission_state == STOPPED and v.autopilot.modes.number == self.commands.auto:
-                return self.start(v)
-        elif code == events.RETURN_WANTED:
-            return self.go_back(v, int(a), b != 0.0)
-        elif code == events.DISARMED:
-            in_auto = v.autopilot.modes.number == self.commands.auto
-            return [] if in_auto and self.commands.goes_on_disarmed else self.reset(v)
+        if nav.mission_state != RUNNING:
+            return []
+        if what == DO_COMMAND:
+            return self._condition_met(v, int(number))
+        return self._complete(v) if int(number) == nav.command_count else []
+
+    def _command_arrived(self, v: Vehicle, what: float, count: float) -> list[Note]:
+        nav = v.autopilot.modes.nav
+        return self._arrived(v) if nav.mission_state == RUNNING and int(count) == nav.command_count else []
+
+    def _plan_leg(self, v: Vehicle, request: float, b: float) -> list[Note]:
+        planner = self.commands.planner
+        if request == LEG_REQUEST:
+            planner.serve(v.autopilot, v.time_us)
+        elif request == DETOUR_REQUEST:
+            planner.go_on(v.autopilot, v.time_us)
+        elif request == SPEED_REQUEST:
+            planner.change_speed(v.autopilot)
         return []
+
+    def _mode_changed(self, v: Vehicle, mode: float, reason: float) -> list[Note]:
+        nav, number = v.autopilot.modes.nav, int(mode)
+        running = nav.mission_state == RUNNING
+        if number == self.commands.auto:
+            return [] if running and nav.command_kind != NONE else self.start(v)
+        return self.stop(v) if running and number != self.commands.auto_return else []
+
+    def _origin_set(self, v: Vehicle, imu: float, b: float) -> list[Note]:
+        waits = v.autopilot.modes.nav.mission_state == STOPPED and self._in_auto(v)
+        return self.start(v) if waits else []
+
+    def _disarmed(self, v: Vehicle, method: float, b: float) -> list[Note]:
+        return [] if self._in_auto(v) and self.commands.goes_on_disarmed else self.reset(v)
+
+    def _in_auto(self, v: Vehicle) -> bool:
+        return v.autopilot.modes.number == self.commands.auto
 
     # --- inside
 

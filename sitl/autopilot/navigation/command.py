@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from ..events import COMMAND_ARRIVED, COMMAND_COMPLETE, Events, emit, emit_and_return
+from ..events import Events, emit, emit_and_return
 from .path import distance
 from .state import (
+    COMMAND_ARRIVED,
+    COMMAND_COMPLETE,
     CONDITION_DELAY,
     CONDITION_DISTANCE,
     CONDITION_NONE,

@@ -16,13 +16,13 @@ from ...core.elementary import atan2, hypot
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..control.shaping import Motion
-from ..events import LEG_ENDING, Events, emit_and_return
+from ..events import Events, emit_and_return
 from ..fence.checks import active
 from ..fence.state import AREAS, FenceState
 from ..params.avoidance import PathPlanning
 from ..params.fence import Fence
 from .profile import clear, evaluate, finished, remaining, step
-from .state import DETOUR_REQUEST, GO_ON, LEG_REQUEST, STRAIGHT, Detour, Leg, Nav
+from .state import DETOUR_REQUEST, GO_ON, LEG_ENDING, LEG_REQUEST, STRAIGHT, Detour, Leg, Nav
 
 DIJKSTRA = (2.0, 3.0)
 """OA_TYPE"""

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
+from ...core.geodesy import place_e7
 from ...core.sums import separation
 from ...core.vectors import Vec3
 from ..avoidance.shortest_path import find_path
-from ..events import NO_WAY, WAY_LAID, emit
+from ..events import Event, Row, emit
+from ..notes import CRITICAL
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .path import areas_of, set_place
@@ -21,6 +23,24 @@ from .state import DETOUR, ENDED, GO_ON, STRAIGHT, Leg
 A = TypeVar("A", bound=Autopilot)
 TOLD_US = 5_000_000
 """That there is no way is said no more often."""
+
+
+def _rows(v: Any, is_closed: bool) -> list[Row]:
+    """OADJ"""
+    nav, est = v.autopilot.modes.nav, v.autopilot.estimate
+    detour = nav.detour
+    goal = vector_at(detour.places, 0) if detour.left > 0 else nav.target
+    state = (
+        (3, 2, 0, 0) if is_closed else (2, 0, 1, min(detour.left + 2, 255))
+    )  # an error: no way; found: so many points
+    places = (place_e7(est.origin_lat, est.origin_lon, place.x, place.y) for place in (goal, nav.target))
+    return [("OADJ", (*state, *next(places), *next(places)))]
+
+
+NO_WAY = Event(60, CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
+"""There is no way around the areas of the fence."""
+WAY_LAID = Event(75, log=lambda v, a, b: _rows(v, False))
+"""The way around them has turns."""
 
 
 def end(leg: Leg) -> Vec3:

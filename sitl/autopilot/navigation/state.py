@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from ...core.records import Floats, Ints, Record, array
 from ...core.vectors import Vec2, Vec3
+from ..events import Event
 
 # Kinds of navigation command (``command_kind``)
 NONE = 0
@@ -32,6 +33,10 @@ CONDITION_NONE = 0
 CONDITION_DELAY = 1  # until condition_until_us
 CONDITION_DISTANCE = 2  # until the destination is nearer than condition_distance
 CONDITION_YAW = 3  # until auto_yaw (modes) has turned
+
+COMMAND_COMPLETE = Event(6)  # the command under way is done (b: its count), or a condition is met: the shell goes on
+LEG_ENDING = Event(7)  # the shell plans the following leg
+COMMAND_ARRIVED = Event(27)  # the navigation command under way is at its place, b: its count (nav.command_count)
 
 # What COMMAND_COMPLETE and LEG_ENDING events say in ``a``
 NAV_COMMAND = 0.0  # the navigation command

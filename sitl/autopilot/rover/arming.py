@@ -7,8 +7,9 @@ from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
 from .. import arming_checks, smart_rtl_path
 from ..arming_checks import BY_RUDDER, refuse
-from ..events import ARMED, DISARMED, Events, emit, emit_and_return
+from ..events import Events, emit, emit_and_return
 from ..mode_switch import rudder_command
+from ..notes import INFO
 from ..state import Arming
 from .arming_checks import TEXTS, check, method_checks
 from .control.motors import is_moving
@@ -18,6 +19,9 @@ from .modes.table import allows_arming_by_stick
 from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]
+
+ARMED = arming_checks.ARMED.saying(INFO, "Throttle armed")
+DISARMED = arming_checks.DISARMED.saying(INFO, "Throttle disarmed")
 
 
 @law

@@ -8,7 +8,8 @@ from .. import home
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH
 from ..mission.mission import Mission
-from ..mission.notes import INFO, NOTICE, Note, Text
+from ..mission.notes import Note
+from ..notes import INFO, NOTICE, Text
 from . import arming
 from .modes.auto import AUTO
 from .modes.set_mode import request

@@ -12,8 +12,9 @@ from ...core.elementary import hypot
 from ...core.kernels import law
 from ...core.vectors import Euler
 from ..arming_checks import BY_CRASH
-from ..events import CRASH_HOLD, emit
+from ..events import Event, emit, err
 from ..modes import REASON_CRASH_FAILSAFE
+from ..notes import EMERGENCY
 from ..state import Arming, Estimate
 from . import motor_test
 from .arming import set_disarmed
@@ -30,6 +31,8 @@ THROTTLE_MIN = 0.05
 MOTION_MIN = 0.08  # [m/s] and [rad/s]
 HOLD_AND_DISARM = 2.0
 """FS_CRASH_CHECK"""
+
+CRASH_HOLD = Event(24, EMERGENCY, "Crash: Going to HOLD", log=err(12, 1))  # crashed or blocked
 
 
 @law

@@ -6,12 +6,15 @@ FAILSAFE (which, 1 on or 0 off) tells the shell. The pilot's sticks count as cen
 
 from __future__ import annotations
 
+from typing import Any
+
 from ...core.kernels import law
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
 from ..estimation.state import Ekf
 from ..failsafe_checks import EKF, GCS, RADIO, VARIANCE, is_estimate_bad, report
 from ..modes import ACCEPTED, REASON_EKF_FAILSAFE, REASON_FAILSAFE
+from ..notes import CRITICAL, INFO, WARNING, Text
 from ..state import Estimate, Failsafe
 from . import motor_test
 from .arming import set_disarmed
@@ -53,6 +56,14 @@ _TEXTS = {
 def text(which: int, on: int) -> str | None:
     """Status text of a FAILSAFE event, None when there is none."""
     return _TEXTS.get((which, on != 0)) or failsafe_checks.text(which, on != 0)
+
+
+def _told(v: Any, which: float, on: float) -> list[Text]:
+    said, severity = text(int(which), int(on != 0.0)), WARNING if on != 0.0 else INFO
+    return [Text(CRITICAL if which in (EKF, VARIANCE) else severity, said)] if said else []
+
+
+FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_told)
 
 
 @law

@@ -11,6 +11,7 @@ from ..landing_target import estimator as landing_target
 from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
 from .control.update import init as init_control
 from .control.update import update as control
+from .events import EVENTS
 from .mission import COMMANDS
 from .modes.table import NAMES
 from .modes.update import init as init_modes
@@ -39,4 +40,4 @@ def power_on(v: Vehicle) -> None:
     init_modes(v)
 
 
-FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS)
+FIRMWARE = Firmware("rover", TABLE, NAMES, power_on, COMMANDS, AUX_FUNCTIONS, events=EVENTS)

@@ -9,11 +9,12 @@ from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import MissionItem
-from ..mission.notes import INFO, NOTICE, WARNING, Note, Text
+from ..mission.notes import Note
 from ..mission.place import point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.planner import end
+from ..notes import INFO, NOTICE, WARNING, Text
 from .modes import guided_setpoints, set_mode
 from .modes.auto import AUTO, LEGS
 from .navigation import waypoint

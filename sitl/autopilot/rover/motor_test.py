@@ -10,7 +10,7 @@ from __future__ import annotations
 from ...core.kernels import law
 from ...core.scalars import constrain
 from ..arming_checks import BY_MOTOR_TEST
-from ..events import MOTOR_TEST, Events, emit
+from ..events import Event, Events, emit
 from ..state import Arming
 from .arming import set_disarmed, try_arm
 from .control.motors import is_skid
@@ -20,6 +20,8 @@ from .state import Vehicle
 SECONDS_MAX = 30.0
 PULSE_MIN, PULSE_MAX = 800, 2200
 """[us]; ArduPilot takes shorter ones, too, which no servo understands."""
+
+MOTOR_TEST = Event(21)  # a: 1 begins, 0 has ended; b: motor
 
 # Answers of start()
 OK = 0

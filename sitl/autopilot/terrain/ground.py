@@ -8,13 +8,15 @@ from typing import NamedTuple
 
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
-from ..events import TERRAIN_LEFT, Events, emit_and_return
+from ..events import Event, Events, emit_and_return
 from .state import Terrain
 
 MISSING_US = 5_000_000
 """A height that is needed and missing for so long is a failsafe."""
 PAUSE_US = 200_000
 """One that was not missing for so long is not missing any more."""
+
+TERRAIN_LEFT = Event(71)  # it has left the square of the grid whose heights it knows
 
 
 class Ground(NamedTuple):

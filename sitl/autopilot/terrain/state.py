@@ -6,14 +6,17 @@
 from __future__ import annotations
 
 from ...core.records import Float32, Floats, Int32, Record, array
+from ..events import Event
+from ..notes import CRITICAL
 
 # What TERRAIN_DID says
 FAILSAFE, RTL_BEGINS_ANEW, RTL_WITHOUT = 1, 2, 3
-TEXTS = {
+_TEXTS = {
     FAILSAFE: "Failsafe: Terrain data missing",
     RTL_BEGINS_ANEW: "Restarting RTL - Terrain data missing",
     RTL_WITHOUT: "RTL: no terrain data, using alt-above-home",
 }
+TERRAIN_DID = Event(70, CRITICAL, _TEXTS)
 
 
 class Terrain(Record):

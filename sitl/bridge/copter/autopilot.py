@@ -3,25 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from ...autopilot import arming_checks, events, payload, radio, smart_rtl_path
-from ...autopilot.aux_switch import LOW
-from ...autopilot.copter import arming, failsafe, motor_test, parameter_checks, takeoff_check
+from ...autopilot import arming_checks, radio
+from ...autopilot.copter import arming, failsafe, motor_test, parameter_checks
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
     auto,
-    autotune,
     commands,
     ground,
     guided_setpoints,
     payload_place,
     set_mode,
-    simple,
-    systemid,
     table,
-    throw,
     zigzag,
 )
 from ...autopilot.copter.modes.acro import ACRO
@@ -31,36 +25,29 @@ from ...autopilot.copter.modes.guided import GUIDED, GUIDED_NOGPS
 from ...autopilot.copter.modes.rtl import RTL as RTL_MODE
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
 from ...autopilot.copter.navigation.planner import PLANNER
-from ...autopilot.mission import returning
-from ...autopilot.mission.notes import ParametersFound, Switched, Text
 from ...autopilot.navigation.state import RTL
-from ...autopilot.terrain.state import TEXTS as TERRAIN_TEXTS
+from ...autopilot.notes import CRITICAL, INFO, WARNING
 from ...core.elementary import cos, sin
 from ...core.scalars import constrain
 from ...core.vectors import Vec3
-from ..autopilot_api import LONGEST_US, Note, Vector
-from ..base_autopilot import BY_GROUND_STATION, CRITICAL, EMERGENCY, INFO, WARNING, BaseAutopilot
+from ..autopilot_api import LONGEST_US, Vector
+from ..base_autopilot import BY_GROUND_STATION, BaseAutopilot
 
 LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SPEED_DN": "speed_down"}
 """Parameters, and the speed of a mission (DO_CHANGE_SPEED) that holds instead."""
-_BLOCKED = {takeoff_check.NO_TELEMETRY: "waiting for ESC RPM", takeoff_check.OUT_OF_RANGE: "ESC RPM out of range"}
 SPEED_MODES = (auto.AUTO, GUIDED, GUIDED_NOGPS, RTL_MODE, SMART_RTL)
 """In which DO_CHANGE_SPEED is taken."""
-OPENS_GRIPPER = 4
-"""FLIGHT_OPTIONS: at a loss of thrust."""
 FIRST = ("Motors: ", "Interlock/E-Stop Conflict", "Motor Interlock Enabled")
 """Failed checks that are told alone: the others are not made then."""
 LEG_MODES = (auto.AUTO, RTL_MODE, SMART_RTL, zigzag.ZIGZAG)
 """In which a speed of legs acts as soon as it is set."""
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
-_SIMPLE = {simple.OFF: "SIMPLE mode off", simple.SIMPLE: "SIMPLE mode on", simple.SUPER_SIMPLE: "SUPERSIMPLE mode on"}
-_INSTEAD = {failsafe.DO_RTL: "Trying RTL Mode", failsafe.DO_LAND: "Using Land Mode"}
 
 
 class CopterAutopilot(BaseAutopilot):
     """The copter firmware's laws, called on the vehicle's record."""
 
-    _arming, _failsafe, _set_mode = arming, failsafe, set_mode
+    _arming, _set_mode = arming, set_mode
     _auto = auto.AUTO
     _block_order = table.GCS_BLOCK
     _checks = parameter_checks.CHECKS
@@ -75,43 +62,6 @@ class CopterAutopilot(BaseAutopilot):
         if motors not in (0, rotors):
             number = self._v.autopilot.params.FRAME.CLASS
             self._say(WARNING, [f"FRAME_CLASS {number:.0f} has {motors} motors, this vehicle {rotors} rotors"])
-
-    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
-        if code == events.MOTOR_TEST:
-            return [Text(INFO, "starting motor test" if a else "finished motor test")]
-        if code == events.TAKEOFF_BLOCKED:
-            return [Text(CRITICAL, f"Takeoff blocked: {_BLOCKED[int(a)]}")]
-        if code == events.THRUST_LOST and int(self._v.autopilot.params.FLIGHT_OPTIONS) & OPENS_GRIPPER:
-            return [Switched(payload.SWITCH_GRIPPER, LOW)]
-        if code == events.YAW_IMBALANCE:
-            return [Text(EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")]
-        if code == events.SIMPLE_CHANGED:
-            return [Text(INFO, _SIMPLE[int(a)])]
-        if code == events.PATH_LOST:
-            return [Text(WARNING, smart_rtl_path.lost_text(int(a)))]
-        if code == events.NO_WAY_BACK:
-            return [Text(WARNING, _INSTEAD[int(a)] if b else f"SmartRTL Unavailable, {_INSTEAD[int(a)]}")]
-        if code == events.TERRAIN_DID:
-            return [Text(CRITICAL, TERRAIN_TEXTS[int(a)])]
-        if code == events.PAYLOAD_PLACE_DID:
-            return [Text(*payload_place.text(int(a), b))]
-        if code == events.CIRCLE_BEGINS:
-            return [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")]
-        if code == events.RETURN_ACTIVE:
-            return [Text(INFO, returning.ACTIVE_TEXTS[int(a)])]
-        if code == events.THROW_STAGE:
-            return [Text(INFO, throw.TEXTS[int(a)])]
-        if code == events.AUTOTUNE_DID:
-            severity = autotune.SEVERITIES.get(int(a), INFO)
-            said = autotune.texts(int(a), int(b), self._v.autopilot.modes.autotune)
-            notes: list[Note] = [Text(severity, f"AutoTune: {text}") for text in said]
-            return [*notes, ParametersFound(autotune.parameters(int(b)))] if a == autotune.gains.SAVED else notes
-        if code == events.SYSTEM_ID_DID:
-            severity = WARNING if int(a) in systemid.REFUSALS else INFO
-            return [Text(severity, systemid.text(int(a), b, self._v.autopilot.params.ANGLE_MAX * 0.01))]
-        if code == events.ZIGZAG_DID:
-            return [Text(INFO, zigzag.text(int(a), int(b), int(self._v.autopilot.params.ZIGZ.LINE_NUM)))]
-        return super().texts_of(code, a, b)
 
     def _worded(self, texts: list[str]) -> list[str]:
         first = [text for text in texts if any(each in text for each in FIRST)]

@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ...autopilot import events, smart_rtl_path
 from ...autopilot.copter.control.altitude_start import is_active_d
 from ...autopilot.copter.control.position_start import is_active_ne
 from ...autopilot.copter.modes.auto import AUTO
@@ -15,7 +14,6 @@ from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ...vehicle.copter import QUADROTOR
 from ..profile import Profile, Targets
-from ..services.service import CRITICAL, EMERGENCY, INFO
 from ..services.setpoints import SetpointService
 from ..telemetry.motion import global_position
 from ..telemetry.shell import CAPABILITIES, TERMINATION, TERRAIN
@@ -68,14 +66,6 @@ PROFILE = Profile(
     },
     commands=COMMANDS,
     set_points=SetpointService,
-    texts={
-        events.ARMED: (INFO, "Arming motors"),
-        events.DISARMED: (INFO, "Disarming motors"),
-        events.HIT_GROUND: (INFO, "SIM Hit ground at {a:f} m/s"),
-        events.PATH_LOW: (INFO, smart_rtl_path.LOW_TEXT),
-        events.THRUST_LOST: (EMERGENCY, "Potential Thrust Loss ({a:.0f})"),
-        events.CRASH_DISARM: (CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0"),
-    },
     core=UNITS,
     autopilot=CopterAutopilot,
     targets=targets,

@@ -18,19 +18,9 @@ from ...core.kernels import law
 from ...core.records import Floats
 from ...core.vectors import Vec2, Vec3
 from ...vehicle.copter import Copter
+from ..telemetry.own import NavControllerOutput, PositionTargetGlobalInt
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
 from ..wire.message import Message
-
-
-class NavControllerOutput(Message, name="NAV_CONTROLLER_OUTPUT"):
-    nav_roll: float
-    nav_pitch: float
-    alt_error: float
-    xtrack_error: float
-    nav_bearing: int
-    target_bearing: int
-    wp_dist: int
-
 
 _FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
 _FOLLOW_A_TRACK = (*_FLY_TO_A_PLACE, LOITER, ZIGZAG)
@@ -120,14 +110,6 @@ def position_target_local(m: PositionTargetLocalNed, v: Copter) -> bool:
     m.type_mask = TARGET_MASKS[guided.submode]
     m.coordinate_frame = LOCAL_NED
     return True
-
-
-class PositionTargetGlobalInt(Message, name="POSITION_TARGET_GLOBAL_INT"):
-    time_boot_ms: int
-    lat_int: int
-    lon_int: int
-    alt: float
-    type_mask: int
 
 
 @law

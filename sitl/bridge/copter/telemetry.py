@@ -31,6 +31,7 @@ from ..telemetry.heartbeat import (
     fill_heartbeat,
 )
 from ..telemetry.motion import VfrHud
+from ..telemetry.own import ExtendedSysState, Wind
 from ..telemetry.status import (
     ALTITUDE,
     ATTITUDE,
@@ -124,11 +125,6 @@ def vfr_hud(m: VfrHud, v: Copter) -> bool:
     return motion.vfr_hud(m, v, v.autopilot.control.motors.throttle_out)
 
 
-class ExtendedSysState(Message, name="EXTENDED_SYS_STATE"):
-    landed_state: int
-    vtol_state: int
-
-
 ON_GROUND, IN_AIR, TAKING_OFF, LANDING = 1, 2, 3, 4
 MULTICOPTER = 3
 """MAV_VTOL_STATE_MC"""
@@ -216,12 +212,6 @@ def rpm(m: Rpm, v: Copter) -> bool:
     m.rpm1 = total / max(motors, 1)
     m.rpm2 = -1.0
     return v.autopilot.params.RPM1_TYPE == FROM_ESCS and motors > 0
-
-
-class Wind(Message, name="WIND"):
-    direction: float
-    speed: float
-    speed_z: float
 
 
 @law

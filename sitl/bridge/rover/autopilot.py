@@ -3,40 +3,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from ...autopilot import events, home
+from ...autopilot import home
 from ...autopilot.arming_checks import AHRS_TYPE, NEED_POSITION, TEXTS
-from ...autopilot.mission.notes import ItemReached, Text
-from ...autopilot.rover import arming, failsafe, motor_test, parameter_checks, texts
+from ...autopilot.notes import INFO
+from ...autopilot.rover import arming, motor_test, parameter_checks
 from ...autopilot.rover.control import servos
 from ...autopilot.rover.modes import guided_setpoints, set_mode, table
 from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
 from ...core.vectors import Vec2
-from ..autopilot_api import LONGEST_US, Note, Vector
-from ..base_autopilot import INFO, BaseAutopilot
-from ..dialect import message_by_id
+from ..autopilot_api import LONGEST_US, Vector
+from ..base_autopilot import BaseAutopilot
 
 
 class RoverAutopilot(BaseAutopilot):
     """The rover firmware's laws, called on the vehicle's record. Backward speeds are negative."""
 
-    _arming, _failsafe, _set_mode = arming, failsafe, set_mode
+    _arming, _set_mode = arming, set_mode
     _auto = AUTO
     _block_order = table.GCS_BLOCK
     _checks = parameter_checks.CHECKS
-
-    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
-        if code == events.GUIDED_REACHED:
-            return [ItemReached(0)]
-        if code == events.SETPOINT_IGNORED:
-            return [Text(INFO, f"Ignoring {message_by_id(int(a)).name}; set ACC_IGNORE in mask")]
-        shared = (events.ARMING_REFUSED, events.FOLLOW_OFF, events.FOLLOW_OFFSET, events.LANDING_TARGET_DID)
-        if code in (*shared, *events.FENCE_TEXTS):
-            return super().texts_of(code, a, b)
-        return [Text(severity, text) for severity, text in texts.texts(code, a, b)]
 
     # ------------------------------------------------------------------ outputs
 

@@ -53,7 +53,6 @@ PROFILE = Profile(
     },
     commands=COMMANDS,
     set_points=RoverSetpoints,
-    texts={},
     core=UNITS,
     autopilot=RoverAutopilot,
     silent=frozenset((83, 85, 136, 168, 11030, 11038)),

@@ -12,8 +12,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from ...autopilot.events import SETPOINT_IGNORED, emit
+from ...autopilot.events import emit
 from ...autopilot.rover.modes.guided_setpoints import (
+    SETPOINT_IGNORED,
     is_open,
     set_heading_and_speed,
     set_position,

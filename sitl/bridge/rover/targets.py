@@ -10,18 +10,11 @@ from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.kernels import law
 from ...vehicle.rover import Rover
+from ..telemetry.own import NavControllerOutput, PositionTargetGlobalInt
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
-from ..wire.message import Message
 
 NOT_FOR_PLACES = 0xFDF8
 """type_mask of a place alone, as ArduRover sends it."""
-
-
-class NavControllerOutput(Message, name="NAV_CONTROLLER_OUTPUT"):
-    xtrack_error: float
-    nav_bearing: int
-    target_bearing: int
-    wp_dist: int
 
 
 @law
@@ -42,14 +35,6 @@ def nav_controller_output(m: NavControllerOutput, v: Rover) -> bool:
     if to.kind == END_OF_PATH:
         m.xtrack_error = modes.nav.drive.crosstrack
     return True
-
-
-class PositionTargetGlobalInt(Message, name="POSITION_TARGET_GLOBAL_INT"):
-    time_boot_ms: int
-    lat_int: int
-    lon_int: int
-    alt: float
-    type_mask: int
 
 
 @law

@@ -28,6 +28,7 @@ from ..telemetry.heartbeat import (
     fill_heartbeat,
 )
 from ..telemetry.motion import VfrHud
+from ..telemetry.own import ExtendedSysState
 from ..telemetry.status import ATTITUDE, POSITION, RATE, YAW, MissionCurrent, SysStatus
 from ..telemetry.tuning import STEERING, VERTICAL, PidTuning, fill_tuning, next_loop
 from ..telemetry.units import DEG, boot_ms, int16
@@ -91,10 +92,6 @@ def mission_current(m: MissionCurrent, v: Rover) -> bool:
 def rc_channels(m: RcChannels, v: Rover) -> bool:
     """RC_CHANNELS: pulses in use [us], 0 where there is none; no channels are counted without receiver or override."""
     return channels.rc_channels(m, v, v.autopilot.params.RC_FS_TIMEOUT)
-
-
-class ExtendedSysState(Message, name="EXTENDED_SYS_STATE"):
-    pass
 
 
 @law

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from ...autopilot.events import LANDING_TARGET_DID, emit
+from ...autopilot.events import emit
 from ...autopilot.landing_target.measurement import take
-from ...autopilot.landing_target.state import LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
+from ...autopilot.landing_target.state import LANDING_TARGET_DID, LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
 from ...core.elementary import tan
 from ...core.kernels import law
 from ...core.scalars import PI, finite

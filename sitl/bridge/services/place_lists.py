@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...autopilot import rally
-from ...autopilot.events import FENCE_LOADED, RALLY_LOADED, emit
+from ...autopilot.events import emit
 from ...autopilot.fence import items as fence
 from ...autopilot.fence.state import CORNERS, POINTS
 from ...autopilot.mission.item import FENCE_RETURN_POINT, GLOBAL, RALLY_POINT, RELATIVE_FRAMES, MissionItem
@@ -55,7 +55,7 @@ def load_fence(vehicle: Any, items: tuple[MissionItem, ...], *, checked: bool = 
     if checked and not _on_card(vehicle) and fence.stored_bytes(items, shapes) > vehicle.firmware.fence_bytes:
         raise fence.FenceError("Fence exceeds storage size")
     fence.load(vehicle.v.autopilot.fence, shapes)
-    _note(vehicle.v, FENCE_LOADED, items)
+    _note(vehicle.v, fence.FENCE_LOADED, items)
 
 
 def count(items: tuple[MissionItem, ...]) -> int:
@@ -69,7 +69,7 @@ def count(items: tuple[MissionItem, ...]) -> int:
 def load_rally(vehicle: Any, items: tuple[MissionItem, ...]) -> None:
     """Put rally points into the record; RALLY_TOTAL says how many of them count."""
     rally.load(vehicle.v.autopilot.rally, [(i.x, i.y, int(i.z), i.frame not in _ABOVE_HOME) for i in items])
-    _note(vehicle.v, RALLY_LOADED, items)
+    _note(vehicle.v, rally.RALLY_LOADED, items)
 
 
 def _note(v: Any, code: int, items: tuple[MissionItem, ...]) -> None:

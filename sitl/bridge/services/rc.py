@@ -44,6 +44,8 @@ class RcChannelsOverride(Message, name="RC_CHANNELS_OVERRIDE"):
     chan16_raw: int
     chan17_raw: int
     chan18_raw: int
+    target_system: int
+    target_component: int
 
 
 class ManualControl(Message, name="MANUAL_CONTROL"):

@@ -42,6 +42,7 @@ SMALLEST_NORM = 1e-3
 class SetPositionTargetLocalNed(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
     """Position [m], velocity [m/s], acceleration [m/s^2] in a local frame, yaw [rad], yaw rate [rad/s]."""
 
+    target_system: int
     coordinate_frame: int
     type_mask: int
     x: float
@@ -78,6 +79,7 @@ class SetPositionTargetGlobalInt(Message, name="SET_POSITION_TARGET_GLOBAL_INT")
 class SetAttitudeTarget(Message, name="SET_ATTITUDE_TARGET"):
     """Attitude (body to NED), body rates [rad/s], thrust."""
 
+    target_system: int
     type_mask: int
     q: Floats
     body_roll_rate: float

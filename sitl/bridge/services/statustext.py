@@ -3,19 +3,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from ...autopilot import events as core
-from ...autopilot.estimation.external import BY_OTHERS, YAW_BY_OTHERS
-from ...autopilot.estimation.flow import BY_FLOW
-from ...autopilot.mission.notes import CurrentChanged, ItemReached, OutputItem, ParametersFound, Switched, Text
+from ...autopilot.arming_checks import ARMED, DISARMED
+from ...autopilot.events import EVENT_RING
+from ...autopilot.fence.checks import FENCE_BREACHED
+from ...autopilot.mission.notes import OutputItem
+from ...autopilot.modes import MODE_CHANGED
+from ...autopilot.notes import (
+    CRITICAL,
+    INFO,
+    ChecksFailed,
+    CurrentChanged,
+    ItemReached,
+    ParametersFound,
+    Switched,
+    Text,
+)
+from ...autopilot.terrain.ground import TERRAIN_LEFT
 from ..channel import Channel
 from ..dialect import message
 from ..wire.port import NEVER
 from .flight_state import FlightStateService
 from .home import HomeService
-from .service import CRITICAL, INFO, WARNING, Service
+from .service import Service
 from .terrain import TerrainService
 
 TEXT_BYTES = 50
@@ -64,31 +76,11 @@ class StatusTextService(Service):
 BOOT_TEXTS = ((0, "Barometer 1 calibration complete"), (2_450_000, "ArduPilot Ready"))
 """(simulated us after boot, text)"""
 
-TEXTS = {
-    core.EKF_INITIALISED: (INFO, "EKF3 IMU{a:.0f} initialised"),
-    core.EKF_TILT_ALIGNED: (INFO, "EKF3 IMU{a:.0f} tilt alignment complete"),
-    core.EKF_YAW_ALIGNED: (INFO, "EKF3 IMU{a:.0f} MAG{b:.0f} initial yaw alignment complete"),
-    core.EKF_YAW_ALIGNED_IN_FLIGHT: (INFO, "EKF3 IMU{a:.0f} MAG{b:.0f} in-flight yaw alignment complete"),
-    core.EKF_ORIGIN_SET: (INFO, "EKF3 IMU{a:.0f} origin set"),
-    core.EKF_USES_GPS: (INFO, "EKF3 IMU{a:.0f} is using GPS"),
-    core.EKF_STOPPED_GPS: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
-    core.EKF_STOPPED_AIDING: (WARNING, "EKF3 IMU{a:.0f} stopped aiding"),
-    core.EKF_RELATIVE: (INFO, "EKF3 IMU{a:.0f} started relative aiding"),
-    core.EKF_EMERGENCY_YAW: (WARNING, "EKF3 IMU{a:.0f} emergency yaw reset"),
-    core.EKF_COMPASS_CHANGED: (INFO, "EKF3 IMU{a:.0f} switching to compass {b:.0f}"),
-    core.EKF_LANE_SWITCHED: (CRITICAL, "EKF3 lane switch {a:.0f}"),
-    core.NO_WAY: (CRITICAL, "Dijkstra: could not find path"),
-    core.HIT_OBSTACLE: (INFO, "SIM Hit obstacle at {a:f} m/s"),
-}
-"""Event code -> (severity, text with the event's numbers a and b), of every firmware."""
-
 HEARTBEAT = message("HEARTBEAT").id
 MISSION_CURRENT = message("MISSION_CURRENT").id
 FENCE_STATUS = message("FENCE_STATUS").id
 REACHED = message("MISSION_ITEM_REACHED")
 E = "autopilot.events."
-SOURCES = {BY_FLOW: "fusing optical flow", BY_OTHERS: "is using external nav data", YAW_BY_OTHERS: "yaw aligned"}
-"""What a filter uses now (EKF_USES)."""
 
 
 class EventService(Service):
@@ -96,7 +88,14 @@ class EventService(Service):
 
     def __init__(self, bridge: Any) -> None:
         super().__init__(bridge)
-        self._texts = {**TEXTS, **bridge.profile.texts}
+        self._events = bridge.vehicle.firmware.events
+        self._acts: dict[int, Callable[[], None]] = {
+            ARMED: self._arming_changed,
+            DISARMED: self._arming_changed,
+            MODE_CHANGED: lambda: bridge.send_to_all(HEARTBEAT),
+            FENCE_BREACHED: lambda: bridge.send_to_all(FENCE_STATUS),
+            TERRAIN_LEFT: lambda: bridge.get(TerrainService).look_up(),
+        }
         self._count = bridge.reader.field(E + "count")
         self._seen = 0
         self._boot_text = 0
@@ -130,51 +129,30 @@ class EventService(Service):
         if count == self._seen:
             return
         ring = self.bridge.vehicle.v.autopilot.events
-        for k in range(max(self._seen, count - core.EVENT_RING), count):
-            at = k % core.EVENT_RING
+        for k in range(max(self._seen, count - EVENT_RING), count):
+            at = k % EVENT_RING
             self._tell(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
         self._seen = count
         self.bridge.get(HomeService).tell_changes()
 
     def _tell(self, code: int, a: float, b: float) -> None:
-        say = self.bridge.get(StatusTextService).say
-        if code in self._texts:
-            severity, text = self._texts[code]
-            say(severity, text.format(a=a, b=b))
-        if code == core.EKF_USES:
-            self._say_source(int(a), b)
-        if code == core.FENCE_BREACHED:
-            self.bridge.send_to_all(FENCE_STATUS)
-        if code == core.TERRAIN_LEFT:
-            self.bridge.get(TerrainService).look_up()
-        if code in (core.ARMED, core.DISARMED):
-            self.bridge.get(PreArmService).find_due()
-            for service in self.bridge.services.values():
-                service.arming_changed()
-        if code == core.EKF_INITIALISED:
-            say(INFO, "AHRS: EKF3 active")
-        elif code == core.EKF_ORIGIN_SET:
-            altitude = float(self.bridge.vehicle.v.autopilot.estimate.origin_alt)
-            say(INFO, f"Field Elevation Set: {altitude:.0f}m")
-        elif code == core.EKF_LANE_SWITCHED:
-            say(WARNING, f"EKF primary changed:{a:.0f}")
-        elif code == core.MODE_CHANGED:
-            self.bridge.send_to_all(HEARTBEAT)
-        else:
-            self.notes(self.bridge.autopilot.texts_of(code, a, b))
+        if code in self._acts:
+            self._acts[code]()
+        if code in self._events:
+            self.notes(self._events[code].notes(self.bridge.vehicle.v, a, b))
 
-    def _say_source(self, imu: int, source: float) -> None:
-        say, ekf = self.bridge.get(StatusTextService).say, self.bridge.vehicle.v.autopilot.ekf
-        say(INFO, f"EKF3 IMU{imu} {SOURCES[source]}")
-        if source == BY_OTHERS:
-            for name, unit, (north, east, down) in (("pos", "m", ekf.pos), ("vel", "m/s", ekf.vel)):
-                say(INFO, f"EKF3 IMU{imu} initial {name} NED = {north:.1f},{east:.1f},{down:.1f} ({unit})")
+    def _arming_changed(self) -> None:
+        for service in self.bridge.services.values():
+            service.arming_changed()
 
     def notes(self, notes: Sequence[Any]) -> None:
         """Texts and progress that the mission's sequencer or a law gave back."""
         for note in notes:
             if isinstance(note, Text):
                 self.bridge.get(StatusTextService).say(note.severity, note.text)
+            elif isinstance(note, ChecksFailed):
+                for text in self.bridge.autopilot.refusal_texts(note.failed):
+                    self.bridge.get(StatusTextService).say(CRITICAL, text)
             elif isinstance(note, ItemReached):
                 if note.is_sent:
                     self.bridge.broadcast(REACHED, REACHED.pack(note.seq))
@@ -205,6 +183,9 @@ class PreArmService(Service):
         if not self.bridge.autopilot.armed():
             self.bridge.autopilot.run_prearm_checks()
             self.bridge.say_pending()
+
+    def arming_changed(self) -> None:
+        self.find_due()
 
     def find_due(self) -> None:
         """It was armed, disarmed or checked: an armed vehicle is checked no more."""

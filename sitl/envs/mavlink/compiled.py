@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sitl.bridge.frame import HEADER_V2
+from sitl.bridge.services.rc import RcChannelsOverride
+from sitl.bridge.services.setpoints import SetAttitudeTarget, SetPositionTargetLocalNed
 from sitl.bridge.telemetry.heartbeat import Heartbeat
 from sitl.bridge.telemetry.motion import Attitude, LocalPositionNed
 from sitl.bridge.telemetry.ranging import DebugFloatArray
@@ -49,59 +51,13 @@ _HIT = np.frombuffer(HIT, np.uint8).astype(np.int64)
 _SCAN = np.frombuffer(SCAN_NAME, np.uint8).astype(np.int64)
 
 
-class Override(Message, name="RC_CHANNELS_OVERRIDE"):
-    """Pulses [us]."""
-
-    chan1_raw: int
-    chan2_raw: int
-    chan3_raw: int
-    chan4_raw: int
-    chan5_raw: int
-    chan6_raw: int
-    chan7_raw: int
-    chan8_raw: int
-    target_system: int
-    target_component: int
-
-
-class LocalTarget(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
-    """Position [m], velocity [m/s], acceleration [m/s^2], yaw [rad], yaw rate [rad/s]."""
-
-    target_system: int
-    coordinate_frame: int
-    type_mask: int
-    x: float
-    y: float
-    z: float
-    vx: float
-    vy: float
-    vz: float
-    afx: float
-    afy: float
-    afz: float
-    yaw: float
-    yaw_rate: float
-
-
-class AttitudeTarget(Message, name="SET_ATTITUDE_TARGET"):
-    """Attitude (body to NED), rates of the body [rad/s], thrust."""
-
-    target_system: int
-    type_mask: int
-    q: Floats
-    body_roll_rate: float
-    body_pitch_rate: float
-    body_yaw_rate: float
-    thrust: float
-
-
 class Statustext(Message, name="STATUSTEXT"):
     """A text."""
 
     text: Ints
 
 
-OVERRIDE, LOCAL, TARGET = Override.kind.id, LocalTarget.kind.id, AttitudeTarget.kind.id
+OVERRIDE, LOCAL, TARGET = RcChannelsOverride.kind.id, SetPositionTargetLocalNed.kind.id, SetAttitudeTarget.kind.id
 HEARTBEAT_, POSITION_, ATTITUDE_ = Heartbeat.kind.id, LocalPositionNed.kind.id, Attitude.kind.id
 SCAN_, TEXT_ = DebugFloatArray.kind.id, Statustext.kind.id
 
@@ -157,7 +113,7 @@ def robot_arrays(count: int, readings: int) -> RobotArrays:
 
 
 @law
-def override(m: Override, commands: Table, i: int, system: int) -> None:
+def override(m: RcChannelsOverride, commands: Table, i: int, system: int) -> None:
     """Eight pulses [us]; 0 releases a channel."""
     m.chan1_raw = round(commands[i, 0])
     m.chan2_raw = round(commands[i, 1])
@@ -172,7 +128,7 @@ def override(m: Override, commands: Table, i: int, system: int) -> None:
 
 
 @law
-def velocity(m: LocalTarget, commands: Table, i: int, system: int) -> None:
+def velocity(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int) -> None:
     """Velocities along the body's heading: forward, left, up [m/s]; turn rate [rad/s]."""
     m.target_system = system
     m.coordinate_frame = BODY_OFFSET_NED
@@ -184,7 +140,7 @@ def velocity(m: LocalTarget, commands: Table, i: int, system: int) -> None:
 
 
 @law
-def position(m: LocalTarget, commands: Table, i: int, system: int, origin: Vec3, mask: int) -> None:
+def position(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int, origin: Vec3, mask: int) -> None:
     """A place of the world [m], yaw [rad]; ``origin``: of the vehicle's local frame, NED in the world [m]."""
     north, east, down = to_ned(commands[i, 0], commands[i, 1], commands[i, 2])
     m.target_system = system
@@ -197,7 +153,7 @@ def position(m: LocalTarget, commands: Table, i: int, system: int, origin: Vec3,
 
 
 @law
-def acceleration(m: LocalTarget, commands: Table, i: int, system: int) -> None:
+def acceleration(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int) -> None:
     """Accelerations along the body's heading: forward, left, up [m/s^2]; turn rate [rad/s]."""
     m.target_system = system
     m.coordinate_frame = BODY_OFFSET_NED
@@ -209,7 +165,7 @@ def acceleration(m: LocalTarget, commands: Table, i: int, system: int) -> None:
 
 
 @law
-def rates(m: AttitudeTarget, commands: Table, i: int, system: int) -> None:
+def rates(m: SetAttitudeTarget, commands: Table, i: int, system: int) -> None:
     """Rates of the body: roll, pitch, turn [rad/s]; thrust 0 .. 1."""
     m.target_system = system
     m.type_mask = RATES_ONLY
@@ -221,7 +177,7 @@ def rates(m: AttitudeTarget, commands: Table, i: int, system: int) -> None:
 
 
 @law
-def attitude(m: AttitudeTarget, commands: Table, i: int, system: int, heading: float) -> None:
+def attitude(m: SetAttitudeTarget, commands: Table, i: int, system: int, heading: float) -> None:
     """Roll, pitch [rad], turn rate [rad/s], climb -1 .. 1; ``heading`` [rad] of the vehicle."""
     q = quat_from_euler(Euler(commands[i, 0], commands[i, 1], heading))
     m.target_system = system
@@ -235,7 +191,7 @@ def attitude(m: AttitudeTarget, commands: Table, i: int, system: int, heading: f
 
 
 @law
-def rover_attitude(m: AttitudeTarget, commands: Table, i: int, system: int) -> None:
+def rover_attitude(m: SetAttitudeTarget, commands: Table, i: int, system: int) -> None:
     """Turn rate [rad/s], throttle -1 .. 1."""
     m.target_system = system
     m.type_mask = TURN_AND_SPEED
@@ -247,19 +203,19 @@ def rover_attitude(m: AttitudeTarget, commands: Table, i: int, system: int) -> N
 def write_setpoint(sort: int, commands: Table, i: int, end: ClientEnd, origin: Vec3, payload: int) -> int:
     """Write row ``i`` of the set-points to a payload's address; returns the message's number."""
     if sort == RC:
-        override(record_at(Override, payload), commands, i, end.system)
+        override(record_at(RcChannelsOverride, payload), commands, i, end.system)
         return OVERRIDE
     if sort == VELOCITY:
-        velocity(record_at(LocalTarget, payload), commands, i, end.system)
+        velocity(record_at(SetPositionTargetLocalNed, payload), commands, i, end.system)
         return LOCAL
     if sort in (POSITION, ROVER_POSITION):
         mask = PLACE_ONLY if sort == POSITION else PLACE_ONLY | YAWS_IGNORED
-        position(record_at(LocalTarget, payload), commands, i, end.system, origin, mask)
+        position(record_at(SetPositionTargetLocalNed, payload), commands, i, end.system, origin, mask)
         return LOCAL
     if sort == ACCELERATION:
-        acceleration(record_at(LocalTarget, payload), commands, i, end.system)
+        acceleration(record_at(SetPositionTargetLocalNed, payload), commands, i, end.system)
         return LOCAL
-    m = record_at(AttitudeTarget, payload)
+    m = record_at(SetAttitudeTarget, payload)
     if sort in (ATTITUDE, THRUST):
         attitude(m, commands, i, end.system, end.euler.yaw)
         if sort == THRUST:

@@ -11,10 +11,10 @@ import math
 from typing import Any
 
 from sitl.bridge.dialect import MessageType
+from sitl.bridge.telemetry.own import ExtendedSysState, Wind
 from sitl.bridge.telemetry.ranging import RangeFinder
 from sitl.bridge.telemetry.sensors import MILLIG_PER_ACC, ScaledImu
 from sitl.bridge.telemetry.status import SysStatus
-from sitl.bridge.wire.message import Message
 from sitl.core.array_kernels import Line, Table
 from sitl.core.elementary import sincos
 from sitl.core.kernels import law
@@ -28,23 +28,10 @@ REPORTED = 10
 """Number of these."""
 
 
-class Wind(Message, name="WIND"):
-    """Where it comes from [deg], speed [m/s]."""
-
-    direction: float
-    speed: float
-
-
-class LandedState(Message, name="EXTENDED_SYS_STATE"):
-    """MAV_LANDED_STATE: 0 unknown, 1 on the ground, 2 in the air, 3 taking off, 4 landing."""
-
-    landed_state: int
-
-
 ON_GROUND = 1
 """MAV_LANDED_STATE_ON_GROUND"""
 IMU_, STATUS_, WIND_, RANGE_ = ScaledImu.kind.id, SysStatus.kind.id, Wind.kind.id, RangeFinder.kind.id
-LANDED_ = LandedState.kind.id
+LANDED_ = ExtendedSysState.kind.id
 _UNKNOWN = 65535
 """Voltage of SYS_STATUS when nothing measures it [mV]."""
 
@@ -81,7 +68,7 @@ def read_range(told: Line, m: RangeFinder) -> None:
 
 
 @law
-def read_landed(told: Line, m: LandedState) -> None:
+def read_landed(told: Line, m: ExtendedSysState) -> None:
     """EXTENDED_SYS_STATE."""
     told[LANDED] = float(m.landed_state)
 
@@ -98,7 +85,7 @@ def read_report(told: Line, number: int, payload: int) -> None:
     elif number == RANGE_:
         read_range(told, record_at(RangeFinder, payload))
     elif number == LANDED_:
-        read_landed(told, record_at(LandedState, payload))
+        read_landed(told, record_at(ExtendedSysState, payload))
 
 
 @law

@@ -13,15 +13,16 @@ import numpy.typing as npt
 
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
+from sitl.bridge.telemetry.own import ExtendedSysState
 from sitl.client.endpoint import ARMED as ARMED
 from sitl.client.endpoint import HEARTBEAT, TEXT, Inbox
 
-from .reports import LANDED, ON_GROUND, REPORTED, LandedState, note_report
+from .reports import LANDED, ON_GROUND, REPORTED, note_report
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
 ORIGIN, GLOBAL = message("GPS_GLOBAL_ORIGIN"), message("GLOBAL_POSITION_INT")
-LANDED_STATE, ESTIMATOR = LandedState.kind, message("ESTIMATOR_STATUS")
+LANDED_STATE, ESTIMATOR = ExtendedSysState.kind, message("ESTIMATOR_STATUS")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"

@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import firmwares
 from ..tlog import LogError
-from .formats import HEAD, TYPES, UNITS
+from .formats import FMT, FMT_NUMBER, HEAD, READ_DIVISORS, TYPES, UNITS
 from .reader import FAR_S, DataFlash
 
 Array = np.ndarray[Any, Any]
@@ -24,9 +24,7 @@ Progress = Callable[[int, int], None]
 """Called with the bytes that are read, and all there are."""
 
 _NUMPY = {letter: kind for letter, (kind, _, _) in TYPES.items()} | {"a": "(32,)<i2", "g": "<f2"}
-_DIVISORS = {"c": 1e2, "C": 1e2, "e": 1e2, "E": 1e2, "L": 1e7}
-_FMT = np.dtype([("Type", "u1"), ("Length", "u1"), ("Name", "S4"), ("Format", "S16"), ("Columns", "S64")])
-_FMT_KIND, _FMT_LENGTH = 128, 3 + _FMT.itemsize
+_FMT, _FMT_LENGTH = np.dtype(FMT.columns()), FMT.packer.size
 _HELP = ("FMTU", "UNIT", "MULT", "PARM", "MSG", "VER")
 """Read besides those that are asked for."""
 _INSTANCES = ("I", "C", "IMU", "Instance", "Id")
@@ -74,7 +72,7 @@ class Table:
         if column.dtype.kind == "U":
             return column
         values = column.astype(np.float64)
-        return values / _DIVISORS[letter] if letter in _DIVISORS else values
+        return values / READ_DIVISORS[letter] if letter in READ_DIVISORS else values
 
     @property
     def time(self) -> Array:
@@ -258,11 +256,9 @@ class _Formats:
     """The formats that are known so far, and the messages of a piece by them."""
 
     def __init__(self) -> None:
-        self.known: dict[int, _Format] = {
-            _FMT_KIND: _Format("FMT", dict(zip(("Type", "Length", "Name", "Format", "Columns"), "BBnNZ")))
-        }
+        self.known: dict[int, _Format] = {FMT_NUMBER: _Format("FMT", {field.label: field.kind for field in FMT.fields})}
         self._lengths = np.zeros(256, np.int64)
-        self._lengths[_FMT_KIND] = _FMT_LENGTH
+        self._lengths[FMT_NUMBER] = _FMT_LENGTH
 
     def split(self, piece: _Piece, is_last: bool, log: Columns, wanted: set[str] | None) -> Iterator[tuple[int, Array]]:
         """(Number of the message, its rows) for all that are in a piece; sets how much of the piece is used."""
@@ -271,7 +267,7 @@ class _Formats:
         marks[: max(len(data) - 2, 0)] = (data[:-2] == HEAD[0]) & (data[1:-1] == HEAD[1])
         heads = np.flatnonzero(marks)
         kinds = data[heads + 2]
-        self._learn(data, heads[kinds == _FMT_KIND], marks)
+        self._learn(data, heads[kinds == FMT_NUMBER], marks)
         lengths = self._lengths[kinds]
         ends = heads + lengths
         # A head of an unknown message is a mark that may follow another message, and no message itself.
@@ -299,7 +295,7 @@ class _Formats:
     def _learn(self, data: Array, heads: Array, marks: Array) -> None:
         heads = heads[heads + _FMT_LENGTH <= len(data)]
         heads = heads[marks[heads + _FMT_LENGTH] | (heads + _FMT_LENGTH > len(data) - 3)]
-        for row in _gather(data, heads + 3, _FMT):
+        for row in _gather(data, heads, _FMT):
             kind, length = int(row["Type"]), int(row["Length"])
             name, letters, labels = (row[f].decode("ascii", "replace") for f in ("Name", "Format", "Columns"))
             columns = labels.split(",") if labels else []

@@ -11,7 +11,7 @@ import numpy as np
 from ...autopilot.copter.modes.autotune import AUTOTUNE
 from .. import plot
 from ..kind import KindLogs
-from . import autotune, bits, board, common, derived, escs, surface, system_id
+from . import bits, board, common, derived, escs, surface
 from .derived import DEG
 from .formats import Field, Message
 from .samples import Array
@@ -248,7 +248,6 @@ LOGS = KindLogs(
     word="Copter",
     mav_types=(2, 3, 4, 13, 14, 15, 29),
     mode_names=tuple(_MODES.split()),
-    event_rows=lambda v, code, a: system_id.rows(v, code, a) + autotune.rows(v, code, a),
     saved=_saved,
     parameters=("RTL_ALT", "RTL_ALT_M", "PHLD_BRAKE_RATE"),
     panels=(plot.altitude, plot.attitude, plot.motors),

@@ -10,13 +10,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...autopilot.events import DISARMED, EVENT_RING
+from ...autopilot import rally
+from ...autopilot.arming_checks import DISARMED
+from ...autopilot.events import EVENT_RING
+from ...autopilot.fence import items as fence
 from ...autopilot.firmware import Firmware
 from ...autopilot.mission.mission import Mission
 from ...autopilot.modes import shown
 from ...autopilot.params.table import Values
 from ..kind import logs_of
-from . import bits, board, formats, places
+from . import bits, board, formats
 from .common import EVENT_MESSAGES
 from .events import EDGES, HEALTH, HOME, ORIGIN, RESOLVED, SILENCE_US, UNHEALTHY, EventEncoder
 from .plan import Plan
@@ -128,18 +131,17 @@ class LogEncoder:
 
     def read_events(self) -> None:
         """Add the events that the autopilot emitted since the last call."""
-        ring = self._vehicle.v.autopilot.events
+        v, events = self._vehicle.v, self._vehicle.firmware.events
+        ring = v.autopilot.events
         count = int(ring.count)
         for k in range(max(self._seen, count - EVENT_RING), count):
             at = k % EVENT_RING
-            event = (int(ring.code[at]), float(ring.a[at]), float(ring.b[at]), self._checks())
-            self.note(int(ring.time_us[at]), self.events.event, *event)
-            if event[0] == DISARMED:
-                self._saved(int(ring.time_us[at]))
-            rows = places.rows(self._vehicle.v, *event[:3])
-            rows += self._kind.event_rows(self._vehicle.v, *event[:2]) if self._kind.event_rows else []
+            code, time_us = int(ring.code[at]), int(ring.time_us[at])
+            rows = events[code].rows(v, float(ring.a[at]), float(ring.b[at])) if code in events else ()
             for name, numbers in rows:
-                self.note(int(ring.time_us[at]), partial(self.events.pack, name), *numbers)
+                self.note(time_us, partial(self.events.pack, name), *numbers)
+            if code == DISARMED:
+                self._saved(time_us)
         self._seen = count
 
     def skip_events_before(self, time_us: int) -> None:
@@ -214,7 +216,7 @@ class LogEncoder:
             pack.text(time_us, f"Airframe: {v.airframe.name}"),
             pack.pack("MODE", time_us, shown(modes), shown(modes), int(modes.reason)),
             pack.mission(time_us, v.mission.items),
-            *(pack.pack(name, time_us, *numbers) for name, numbers in places.fence(v.v) + places.rally(v.v)),
+            *(pack.pack(name, time_us, *numbers) for name, numbers in fence.rows(v.v) + rally.rows(v.v)),
         ]
         self._samples.turn(0)
         for kind, is_set, place in _PLACES:
@@ -274,6 +276,3 @@ class LogEncoder:
     def _place(self, row: int, kind: int, place: str, time_us: int) -> bytes:
         numbers = (float(self._samples.column(place + name)[row]) for name in ("lat", "lon", "alt"))
         return self.events.origin(time_us, kind, *numbers)
-
-    def _checks(self) -> int:
-        return int(self._vehicle.v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF

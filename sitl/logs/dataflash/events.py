@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Event messages of a log: modes, arming, errors, texts, parameters, the mission.
+"""Event messages of a log: texts, parameters, the mission, and what follows from changes of the record.
 
-Numbers of EV and ERR: https://ardupilot.org/copter/docs/logmessages.html#ev
+What the autopilot's events log, they say themselves (``sitl.autopilot.events``).
 """
 
 from __future__ import annotations
@@ -10,29 +10,12 @@ from collections.abc import Callable, Iterable, Sequence
 from struct import Struct
 from typing import Any, NamedTuple
 
-from ...autopilot import events as core
-from ...autopilot import failsafe_checks as failsafes
-from ...autopilot.fence.checks import AUTO_ON, BY_FLOOR, ON
-from ...autopilot.fence.state import AREAS, CIRCLE, MAX_ALT, MIN_ALT
 from ...autopilot.mission.item import MissionItem
 from .common import EVENT_MESSAGES
 from .formats import HEAD, TYPES
 
-EV_ARMED, EV_DISARMED, EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED, EV_LOST_GPS = 10, 11, 15, 17, 18, 19
+EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED = 15, 17, 18
 EV_SET_HOME, EV_NOT_LANDED, EV_ALT_RESET, EV_YAW_RESET = 25, 28, 60, 62
-EV_FENCE_ON, EV_FENCE_OFF = 41, 42
-_FENCES = {MAX_ALT: 76, CIRCLE: 78, MIN_ALT: 80, AREAS: 82}
-"""Fence -> EV number when it is switched on; off: the next."""
-_RADIO, _BATTERY, _GCS, _FENCE, _MODE, _CRASH, _EKF, _TERRAIN, _THRUST = 5, 6, 8, 9, 10, 12, 17, 23, 25
-_FAILSAFES = {
-    failsafes.RADIO: _RADIO,
-    failsafes.GCS: _GCS,
-    failsafes.BATTERY_LOW: _BATTERY,
-    failsafes.BATTERY_CRITICAL: _BATTERY,
-    failsafes.EKF: _EKF,
-    failsafes.TERRAIN: _TERRAIN,
-}
-"""Failsafe -> subsystem of ERR."""
 TEXT_BYTES = 64
 ORIGIN, HOME = 0, 1
 """Type of ORGN."""
@@ -91,42 +74,6 @@ class EventEncoder:
         """One message; texts as bytes."""
         pack, number = self._packers[name]
         return pack(*HEAD, number, time_us, *fields)
-
-    def event(self, time_us: int, code: int, a: float, b: float, checks: int) -> bytes:
-        """Messages for an event of the autopilot; empty for events that are not logged.
-
-        Args:
-            time_us: simulated time since boot [us].
-            code: number of the event.
-            a, b: its arguments.
-            checks: bits of ARMING_CHECK.
-        """
-        if code == core.MODE_CHANGED:
-            return self.pack("MODE", time_us, int(a) & 255, int(a) & 255, int(b) & 255)
-        if code == core.ARMED:
-            armed = self.pack("ARM", time_us, 1, checks & 0xFFFFFFFF, 0, int(a) & 255)
-            return armed + self.pack("EV", time_us, EV_ARMED)
-        if code == core.DISARMED:
-            disarmed = self.pack("ARM", time_us, 0, checks & 0xFFFFFFFF, 0, int(a) & 255)
-            return disarmed + self.pack("EV", time_us, EV_DISARMED)
-        if code == core.FAILSAFE and int(a) in _FAILSAFES:
-            return self.pack("ERR", time_us, _FAILSAFES[int(a)], int(b != 0.0))
-        if code == core.MODE_REFUSED:
-            return self.pack("ERR", time_us, _MODE, int(a) & 255)
-        if code in (core.CRASH_DISARM, core.CRASH_HOLD):
-            return self.pack("ERR", time_us, _CRASH, 1)
-        if code == core.THRUST_LOST:
-            return self.pack("ERR", time_us, _THRUST, 1)
-        if code in (core.FENCE_BREACHED, core.FENCE_CLEAR):
-            return self.pack("ERR", time_us, _FENCE, int(a))
-        if code == core.FENCE_SWITCHED:
-            on = int(b) in (AUTO_ON, BY_FLOOR, ON)
-            numbers = [EV_FENCE_ON if on else EV_FENCE_OFF]
-            numbers += [number if on else number + 1 for bit, number in _FENCES.items() if int(a) & bit]
-            return b"".join(self.pack("EV", time_us, number) for number in numbers)
-        if code == core.EKF_STOPPED_GPS:
-            return self.pack("EV", time_us, EV_LOST_GPS)
-        return b""
 
     def text(self, time_us: int, text: str) -> bytes:
         """MSG: a message for every 64 bytes, with the text's number (``ID``) and its own in the text (``Seq``)."""

@@ -38,6 +38,8 @@ TYPES = {
     "Q": ("<u8", "Q", 1.0),
 }
 """Letter -> (numpy's type, struct's code, stored number for one unit of the value)."""
+READ_DIVISORS = {letter: scale for letter, (_, _, scale) in TYPES.items() if scale != 1.0} | {"L": 1e7}
+"""Letter -> stored number for one unit, or degree, as readers take it."""
 
 UNITS = {
     "-": "", "?": "UNKNOWN", "A": "A", "a": "Ah", "d": "deg", "b": "B", "k": "deg/s", "D": "deglatitude",
@@ -80,7 +82,7 @@ class Message(NamedTuple):
 
     name: str
     fields: tuple[Field, ...]
-    """Without TimeUS, which every message but FMT has first."""
+    """Without TimeUS, which every message but FMT (``timed``) has first."""
     rate: float = 0.0
     """Rate [Hz]; 0: written on events."""
     bits: int = 0
@@ -93,11 +95,13 @@ class Message(NamedTuple):
     """Write it only while this is not zero."""
     ring: bool = False
     """Whether it holds the samples of ``autopilot.inertial_ring``, at their rate; ``@acc[0]`` is a path there."""
+    timed: bool = True
+    """Whether TimeUS comes before its fields."""
 
     @property
     def all_fields(self) -> tuple[Field, ...]:
         """The fields with TimeUS."""
-        return (Field("TimeUS", "Q", "s", "F", self.time), *self.fields)
+        return (Field("TimeUS", "Q", "s", "F", self.time), *self.fields) if self.timed else self.fields
 
     @property
     def format(self) -> str:
@@ -145,16 +149,18 @@ def check(message: Message) -> None:
 FMT_NUMBER, UNIT_NUMBER, MULT_NUMBER, FMTU_NUMBER = 128, 129, 130, 131
 FIRST_NUMBER = 32
 """Number of the first other message; FMT is 128 in every log, so that readers can start."""
-_FMT = struct.Struct("<2sBBB4s16s64s")
-_UNIT = struct.Struct("<2sBQb64s")
-_MULT = struct.Struct("<2sBQbd")
-_FMTU = struct.Struct("<2sBQB16s16s")
-_DESCRIBED = (
-    (FMT_NUMBER, _FMT, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns", "-b---", "-----"),
-    (UNIT_NUMBER, _UNIT, "UNIT", "QbZ", "TimeUS,Id,Label", "s--", "F--"),
-    (MULT_NUMBER, _MULT, "MULT", "Qbd", "TimeUS,Id,Mult", "s--", "F--"),
-    (FMTU_NUMBER, _FMTU, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds", "s---", "F---"),
+FMT = Message(
+    "FMT",
+    (Field("Type", "B"), Field("Length", "B", "b"), Field("Name", "n"), Field("Format", "N"), Field("Columns", "Z")),
+    timed=False,
 )
+_DESCRIBED = {
+    FMT_NUMBER: FMT,
+    UNIT_NUMBER: Message("UNIT", (Field("Id", "b"), Field("Label", "Z"))),
+    MULT_NUMBER: Message("MULT", (Field("Id", "b"), Field("Mult", "d"))),
+    FMTU_NUMBER: Message("FMTU", (Field("FmtType", "B"), Field("UnitIds", "N"), Field("MultIds", "N"))),
+}
+"""What describes the other messages."""
 
 
 def number_all(messages: Iterable[Message]) -> dict[str, int]:
@@ -163,22 +169,19 @@ def number_all(messages: Iterable[Message]) -> dict[str, int]:
     return dict(zip(dict.fromkeys(message.name for message in messages), free, strict=False))
 
 
-def _fmt(number: int, length: int, name: str, letters: str, labels: str) -> bytes:
-    return _FMT.pack(HEAD, FMT_NUMBER, number, length, name.encode(), letters.encode(), labels.encode())
-
-
 def head(messages: Iterable[Message], numbers: dict[str, int], time_us: int) -> bytes:
     """All FMT, UNIT, MULT and FMTU messages."""
-    messages = tuple({m.name: m for m in messages}.values())
-    parts = [_fmt(n, layout.size, name, letters, labels) for n, layout, name, letters, labels, _, _ in _DESCRIBED]
-    parts += [_fmt(numbers[m.name], m.packer.size, m.name, m.format, m.labels) for m in messages]
-    parts += [_UNIT.pack(HEAD, UNIT_NUMBER, time_us, ord(key), text.encode()) for key, text in UNITS.items()]
-    parts += [
-        _MULT.pack(HEAD, MULT_NUMBER, time_us, ord(key), np.float32(factor)) for key, factor in MULTIPLIERS.items()
-    ]
-    for number, _, _, _, _, units, multipliers in _DESCRIBED:
-        parts.append(_FMTU.pack(HEAD, FMTU_NUMBER, time_us, number, units.encode(), multipliers.encode()))
-    for m in messages:
-        ids = (m.units.encode(), m.multipliers.encode())
-        parts.append(_FMTU.pack(HEAD, FMTU_NUMBER, time_us, numbers[m.name], *ids))
-    return b"".join(parts)
+    described = _DESCRIBED | {numbers[m.name]: m for m in {m.name: m for m in messages}.values()}
+    packers = {number: message.packer for number, message in _DESCRIBED.items()}
+
+    def pack(number: int, *values: Any) -> bytes:
+        return packers[number].pack(*HEAD, number, *(v.encode() if isinstance(v, str) else v for v in values))
+
+    return b"".join(
+        (
+            *(pack(FMT_NUMBER, n, m.packer.size, m.name, m.format, m.labels) for n, m in described.items()),
+            *(pack(UNIT_NUMBER, time_us, ord(letter), text) for letter, text in UNITS.items()),
+            *(pack(MULT_NUMBER, time_us, ord(letter), np.float32(times)) for letter, times in MULTIPLIERS.items()),
+            *(pack(FMTU_NUMBER, time_us, n, m.units, m.multipliers) for n, m in described.items()),
+        )
+    )

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
 from ... import __version__
-from ...autopilot.events import ARMING_REFUSED, EVENT_RING
+from ...autopilot.arming_checks import ARMING_REFUSED
+from ...autopilot.events import EVENT_RING
 from ...autopilot.shell_parameters import rotates_logs
 from ...vehicle.sampler import LONGEST_US, NEVER, next_row_us
 from ..tlog import LogError

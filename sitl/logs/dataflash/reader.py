@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
 from ..tlog import LogError
-from .formats import HEAD, TYPES
+from .formats import FMT, FMT_NUMBER, HEAD, READ_DIVISORS, TYPES
 
 MOST_BYTES = 1 << 32
 """Of a log."""
@@ -23,11 +23,8 @@ FAR_S = 600.0
 """A message that is later than the one before by more than this is right only if the next one agrees [s]."""
 BACK_S = 2.0
 """Messages come in the order of their times, but for this [s]."""
-_FMT = 128
-_FMT_STRUCT = struct.Struct("<BB4s16s64s")
-_FMT_BYTES = 3 + _FMT_STRUCT.size
+_FMT_BYTES = FMT.packer.size
 _CODES = {letter: code for letter, (_, code, _) in TYPES.items()} | {"a": "64s", "g": "e"}
-_DIVISORS = {"c": 100.0, "C": 100.0, "e": 100.0, "E": 100.0, "L": 1e7}
 _TEXTS = "nNZ"
 _NO_TEXTS = "nNZa"
 _LONGEST_LINE = 4096
@@ -133,7 +130,7 @@ class DataFlash:
     def _scan(self, data: mmap.mmap, names: Collection[str]) -> Iterator[Row]:
         formats: dict[int, Format] = {}
         lengths = [0] * 256
-        lengths[_FMT] = _FMT_BYTES
+        lengths[FMT_NUMBER] = _FMT_BYTES
         at, size = 0, len(data)
         while at + 3 <= size:
             kind = data[at + 2]
@@ -143,8 +140,8 @@ class DataFlash:
                 continue
             if at + length > size:  # cut short
                 return
-            if kind == _FMT:
-                self._learn(data[at + 3 : at + _FMT_BYTES], formats, lengths)
+            if kind == FMT_NUMBER:
+                self._learn(data[at : at + _FMT_BYTES], formats, lengths)
             else:
                 found = formats[kind]
                 if found.name in names:
@@ -166,9 +163,9 @@ class DataFlash:
             at += 1
 
     def _learn(self, body: bytes, formats: dict[int, Format], lengths: list[int]) -> None:
-        kind, length, name, letters, labels = _FMT_STRUCT.unpack(body)
+        *_, kind, length, name, letters, labels = FMT.packer.unpack(body)
         found = _format(_text(name), _text(letters), _text(labels))
-        if kind != _FMT and found is not None and found.length == length:
+        if kind != FMT_NUMBER and found is not None and found.length == length:
             formats[kind], lengths[kind] = found, length
             self.names.add(found.name)
 
@@ -197,7 +194,7 @@ class DataFlash:
 
 def is_binary(start: bytes) -> bool:
     """Whether a file that begins so is a binary log."""
-    return HEAD + bytes([_FMT]) in start
+    return HEAD + bytes([FMT_NUMBER]) in start
 
 
 def is_text(start: bytes) -> bool:
@@ -217,8 +214,8 @@ def _format(name: str, letters: str, labels: str) -> Format | None:
 def _row(of: Format, body: bytes) -> Row:
     fields: dict[str, Any] = {}
     for (label, letter), value in zip(of.letters.items(), of.packed.unpack(body), strict=True):
-        if letter in _DIVISORS:
-            value /= _DIVISORS[letter]
+        if letter in READ_DIVISORS:
+            value /= READ_DIVISORS[letter]
         fields[label] = _text(value) if letter in _TEXTS else value
     return Row(of.name, _time(fields), fields, of.letters)
 

@@ -8,8 +8,8 @@ import math
 import pytest
 
 from sitl.autopilot.avoidance import bendy_ruler, objects
+from sitl.autopilot.avoidance.bendy_ruler import BENDY_RULER_LOOKED
 from sitl.autopilot.avoidance.state import OBJECTS
-from sitl.autopilot.events import BENDY_RULER_LOOKED
 from sitl.autopilot.fence.state import AREAS, STAY_OUT
 from sitl.autopilot.navigation.state import BENT, ENDED, STRAIGHT
 from sitl.autopilot.rover.state import Autopilot

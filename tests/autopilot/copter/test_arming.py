@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.arming_checks import BY_CRASH, BY_MAVLINK, BY_RUDDER
+from sitl.autopilot.arming_checks import ARMED, ARMING_REFUSED, BY_CRASH, BY_MAVLINK, BY_RUDDER, DISARMED
 from sitl.autopilot.copter import arming
 from sitl.autopilot.copter.modes.table import TITLES
-from sitl.autopilot.events import ARMED, ARMING_REFUSED, DISARMED
 from sitl.core.vectors import Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 

@@ -10,7 +10,9 @@ import pytest
 from sitl.autopilot import failsafe_checks, smart_rtl_path
 from sitl.autopilot.arming_checks import BY_RADIO_FAILSAFE
 from sitl.autopilot.copter import failsafe, pilot
-from sitl.autopilot.events import FAILSAFE, MODE_REFUSED, NO_WAY_BACK
+from sitl.autopilot.copter.failsafe_actions import NO_WAY_BACK
+from sitl.autopilot.failsafe_checks import FAILSAFE
+from sitl.autopilot.modes import MODE_REFUSED
 from sitl.autopilot.state import Failsafe
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 

@@ -9,8 +9,9 @@ import pytest
 
 from sitl.autopilot.copter import crash, landing
 from sitl.autopilot.copter.control.state import AttitudeState
+from sitl.autopilot.copter.crash import CRASH_DISARM
+from sitl.autopilot.copter.landing import LANDED
 from sitl.autopilot.copter.modes.state import LandingState
-from sitl.autopilot.events import CRASH_DISARM, LANDED
 from sitl.autopilot.state import Arming
 from sitl.core.vectors import Vec3
 from tests.autopilot.copter.steady_copter import codes, fly

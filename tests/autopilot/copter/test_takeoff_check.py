@@ -6,7 +6,8 @@ from __future__ import annotations
 import pytest
 
 from sitl.autopilot.copter import takeoff_check, thrust_loss
-from sitl.autopilot.events import TAKEOFF_BLOCKED, THRUST_LOST
+from sitl.autopilot.copter.takeoff_check import TAKEOFF_BLOCKED
+from sitl.autopilot.copter.thrust_loss import THRUST_LOST
 from tests.autopilot.copter.steady_copter import codes, fly, make
 
 

@@ -6,8 +6,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot import events
 from sitl.autopilot.estimation import status, update
+from sitl.autopilot.estimation.events import (
+    EKF_INITIALISED,
+    EKF_ORIGIN_SET,
+    EKF_TILT_ALIGNED,
+    EKF_USES_GPS,
+    EKF_YAW_ALIGNED,
+    EKF_YAW_ALIGNED_IN_FLIGHT,
+)
 from sitl.core.kernels import jit_disabled
 from sitl.core.records import first_difference
 from tests.autopilot.estimation import synthetic_flight as sf
@@ -97,17 +104,17 @@ def test_covariance_is_symmetric_and_positive(flown) -> None:
 def test_boot_takes_the_time_of_a_real_one(flown) -> None:
     """Seconds after boot in the recording of ArduPilot's SITL."""
     expected = {
-        events.EKF_INITIALISED: 4.44,
-        events.EKF_TILT_ALIGNED: 5.80,
-        events.EKF_YAW_ALIGNED: 5.88,
-        events.EKF_ORIGIN_SET: 20.0,
-        events.EKF_USES_GPS: 41.6,
+        EKF_INITIALISED: 4.44,
+        EKF_TILT_ALIGNED: 5.80,
+        EKF_YAW_ALIGNED: 5.88,
+        EKF_ORIGIN_SET: 20.0,
+        EKF_USES_GPS: 41.6,
     }
     for fleet, _ in flown:
         times = {code: t for t, code in sf.events(fleet)}
         for code, t in expected.items():
             assert abs(times[code] - t) < 0.5, (code, times[code])
-        assert TAKE_OFF < times[events.EKF_YAW_ALIGNED_IN_FLIGHT] < TAKE_OFF + 5
+        assert TAKE_OFF < times[EKF_YAW_ALIGNED_IN_FLIGHT] < TAKE_OFF + 5
 
 
 def test_status_after_the_flight(flown) -> None:

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sitl.autopilot import events
 from sitl.autopilot.estimation import status
+from sitl.autopilot.estimation.events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES_GPS
 from tests.autopilot.estimation import synthetic_flight as sf
 from tests.autopilot.estimation.synthetic_flight import TAKE_OFF
 
@@ -57,7 +57,7 @@ def test_loss_and_return_of_gps(truth, tick) -> None:
     assert not log[104.0][1] & status.CONST_POS_MODE and log[106.0][1] & status.CONST_POS_MODE
     assert log[114.0][0] == 0 and log[118.0][0] == 1
     codes = [code for _, code in sf.events(fleet)]
-    assert codes.count(events.EKF_STOPPED_GPS) == 1 and codes.count(events.EKF_USES_GPS) == 2
+    assert codes.count(EKF_STOPPED_GPS) == 1 and codes.count(EKF_USES_GPS) == 2
     e = fleet[0]["autopilot"]["estimate"]
     assert e["reset_ne_count"] == 3 and np.linalg.norm(e["reset_pos"][:2]) > 0.1
     k = int(96.0 / sf.DT)
@@ -96,7 +96,7 @@ def test_moving_at_power_on_delays_the_calibration(tick) -> None:
             sensors["gyro"][0] += 0.3 * np.sin(3.0 * _seconds(k))
 
     sf.play(sf.sense(sf.fly(15.0, 99.0), 99.0, 1), fleet, tick, spoil)
-    when = next(t for t, code in sf.events(fleet) if code == events.EKF_INITIALISED)
+    when = next(t for t, code in sf.events(fleet) if code == EKF_INITIALISED)
     assert 10.0 <= when < 10.5
 
 

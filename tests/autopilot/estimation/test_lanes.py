@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot import events
 from sitl.autopilot.estimation import compass, lanes
 from sitl.autopilot.estimation.alignment import RUN, TILT
+from sitl.autopilot.estimation.events import EKF_LANE_SWITCHED
 from sitl.core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER
 from sitl.core.memory import words_of
 from sitl.core.vectors import Quat, Vec3
@@ -77,7 +77,7 @@ def test_a_failed_filter_is_left_at_once_and_one_that_is_worse_after_some_steps(
     setattr(ap.second_lane.estimate, ratio, 0.9)
     lanes.compare(ap, ap.params.EK3)
     assert ap.ekf.imu == 0
-    assert codes(ap) == [events.EKF_LANE_SWITCHED] * 2
+    assert codes(ap) == [EKF_LANE_SWITCHED] * 2
 
 
 def test_the_compass_counts_when_it_is_asked_to(v: Any) -> None:

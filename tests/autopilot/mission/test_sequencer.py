@@ -13,19 +13,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sitl.autopilot import events
+from sitl.autopilot.arming_checks import DISARMED
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.copter.modes import auto_yaw
 from sitl.autopilot.copter.navigation import command as path_command
 from sitl.autopilot.copter.navigation import waypoint
 from sitl.autopilot.copter.parameters import TABLE
+from sitl.autopilot.events import emit
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission import jumps
 from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.notes import CurrentChanged, ItemReached, Text
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.mission.validate import check
+from sitl.autopilot.modes import MODE_CHANGED
 from sitl.autopilot.navigation import command, path
 from sitl.autopilot.navigation.state import (
     COMPLETE,
@@ -39,6 +40,7 @@ from sitl.autopilot.navigation.state import (
     WAYPOINT,
 )
 from sitl.autopilot.navigation.state import TAKEOFF as TAKE_OFF
+from sitl.autopilot.notes import CurrentChanged, ItemReached, Text
 from sitl.autopilot.rover.mission import COMMANDS as ROVER
 from sitl.core.vectors import Vec3
 from sitl.vehicle.copter import Copter
@@ -140,7 +142,7 @@ def test_disarming_starts_again() -> None:
     p = Vehicle(TAKEOFF, MissionItem(c.NAV_LAND)).start()
     assert p.complete() == 2
     assert p.nav.command_kind == LAND
-    events.emit(p.v.autopilot.events, 0, events.DISARMED, 13.0, 0.0)
+    emit(p.v.autopilot.events, 0, DISARMED, 13.0, 0.0)
     command.complete(p.v.autopilot.modes.nav, p.v.autopilot.events, 0)
     p.told.clear()
     p.told += p.sequencer.attend()
@@ -267,11 +269,11 @@ def test_leaving_and_resuming() -> None:
     """AUTO goes on where it was; MIS_RESTART starts again, unless an item was chosen meanwhile."""
     p = Vehicle(WP, WP._replace(x=LAT), WP, WP).start()
     assert p.complete() == 2
-    p.told += p.sequencer.on_event(p.v, events.MODE_CHANGED, 5.0, 0.0)
+    p.told += p.sequencer.on_event(p.v, MODE_CHANGED, 5.0, 0.0)
     assert p.nav.mission_state == STOPPED
     assert p.nav.command_kind == NONE
     p.told.clear()
-    p.told += p.sequencer.on_event(p.v, events.MODE_CHANGED, 3.0, 0.0)
+    p.told += p.sequencer.on_event(p.v, MODE_CHANGED, 3.0, 0.0)
     assert p.texts() == ["Mission: 2 WP"]
     p.v.autopilot.params.MIS_RESTART = 1
     p.sequencer.stop(p.v)
@@ -290,7 +292,7 @@ def test_leaving_keeps_the_new_modes_legs() -> None:
     waypoint.stop(ap.modes.nav)
     ap.modes.number, ap.modes.nav.speed_ne = 6, 4.0
     path.request_leg(ap.modes.nav, ap.events, 0, Vec3(0.0, 0.0, -15.0))
-    events.emit(ap.events, 0, events.MODE_CHANGED, 6.0, 0.0)
+    emit(ap.events, 0, MODE_CHANGED, 6.0, 0.0)
     p.sequencer.attend()
     assert p.nav.current.segments > 0
     assert p.nav.speed_ne == 4.0
@@ -451,11 +453,11 @@ def test_no_mission_breaks_it(listed: list[MissionItem], todo: list[str]) -> Non
         elif act == "wait":
             p.wait(3.0)
         elif act in ("leave", "start"):
-            p.sequencer.on_event(p.v, events.MODE_CHANGED, 5.0 if act == "leave" else 3.0, 0.0)
+            p.sequencer.on_event(p.v, MODE_CHANGED, 5.0 if act == "leave" else 3.0, 0.0)
         elif act == "set":
             p.sequencer.set_current(p.v, len(listed) // 2)
         elif act == "disarm":
-            p.sequencer.on_event(p.v, events.DISARMED, 0.0, 0.0)
+            p.sequencer.on_event(p.v, DISARMED, 0.0, 0.0)
         else:
             p.sequencer.change_speed(p.v, 0, 2.0)
         assert p.nav.mission_state in (STOPPED, RUNNING, COMPLETE)

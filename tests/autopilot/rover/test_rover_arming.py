@@ -7,7 +7,6 @@ import math
 
 import pytest
 
-from sitl.autopilot.events import MOTOR_TEST
 from sitl.autopilot.rover import arming, motor_test
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
@@ -15,6 +14,7 @@ from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.rover.motor_test import MOTOR_TEST
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from sitl.bridge.autopilot_api import Note, Vector
+from sitl.bridge.autopilot_api import Vector
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.core_link import CoreUnits
 from sitl.bridge.profile import Profile
@@ -43,9 +43,6 @@ class BoatAutopilot(BaseAutopilot):
 
     def set_mode(self, number: int) -> bool:
         return number == AHEAD
-
-    def texts_of(self, code: int, a: float, b: float) -> Sequence[Note]:
-        return []
 
     def set_servo(self, number: int, pulse: int) -> bool:
         return False
@@ -106,7 +103,6 @@ PROFILE = Profile(
     groups={6: ("POSITION", ("LOCAL_POSITION_NED",))},
     commands=_VEHICLE,
     set_points=SetpointService,
-    texts={},
     core=UNITS,
     autopilot=BoatAutopilot,
 )

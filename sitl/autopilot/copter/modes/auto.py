@@ -10,11 +10,12 @@ from __future__ import annotations
 from ....core.algebra import horizontal
 from ....core.kernels import law
 from ...arming_checks import BY_MISSION_EXIT
-from ...events import CIRCLE_BEGINS, MODE_CHANGED, Events, emit
-from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, REASON_AUTO_RTL_EXIT
+from ...events import Event, Events, emit
+from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, MODE_CHANGED, REASON_AUTO_RTL_EXIT
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, PAYLOAD_PLACE, RTL, TAKEOFF
+from ...notes import INFO, Text
 from ...state import Arming, Estimate
 from ..control.state import AttitudeState, Control
 from ..navigation import circle, command, waypoint
@@ -38,6 +39,9 @@ _NO_PILOT_YAW = 128
 # LAND: on the way to the place, then going down
 FLYING = 0
 DESCENDING = 1
+
+CIRCLE_BEGINS = Event(59, says=lambda v, a, b: [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")])
+"""The next circle of a mission's LOITER_TURNS; a: its number, b: how many"""
 
 
 @law

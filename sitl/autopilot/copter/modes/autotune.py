@@ -10,14 +10,16 @@ it tells, in ``autotune_rules``.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from ....core.algebra import horizontal, norm2, quat_from_euler, rotate
 from ....core.elementary import atan2, sincos
 from ....core.kernels import law
 from ....core.scalars import PI, constrain, wrap_pi
 from ....core.vectors import Euler, Vec3
-from ...mission.notes import CRITICAL, NOTICE
+from ...events import Row, ev
 from ...modes import ACCEPTED, INIT_FAILED
+from ...notes import CRITICAL, INFO, NOTICE, EventNote, ParametersFound, Text
 from .. import pilot
 from ..control import attitude
 from ..control.throttle_mix import lean_limit
@@ -50,8 +52,13 @@ _TEXTS = {
     gains.INCOMPLETE: "must be complete to test gains", gains.D_LIMIT: "Min Rate D limit reached",
 }  # fmt: skip
 _FAILURES = {rules.NO_ROOM: "Twitch Size", rules.NO_D: "Rate D Gain", rules.NO_P: "Rate P Gain"}
-SEVERITIES = {gains.COMPLETE: NOTICE, gains.SUCCESS: NOTICE, gains.FAILURE: CRITICAL}
+_SEVERITIES = {gains.COMPLETE: NOTICE, gains.SUCCESS: NOTICE, gains.FAILURE: CRITICAL}
 """Of texts; of the others it is INFO."""
+_LOGGED = {
+    gains.STARTED: 30, gains.STOPPED: 31, gains.SUCCESS: 33, gains.FAILURE: 34, gains.D_LIMIT: 35, gains.TRIES: 36,
+    gains.SAVED: 37,
+}  # fmt: skip
+"""Number of EV."""
 
 _PAUSE_US = 500_000  # from the sticks' release to the next twitch
 _LEVEL_US = 250_000
@@ -95,6 +102,30 @@ def parameters(axes: int) -> tuple[str, ...]:
             names += [f"ATC_RAT_{short}_{gain}" for gain in ("P", "I", own)]
             names += [f"ATC_ANG_{short}_P", f"ATC_ACCEL_{letter}_MAX"]
     return tuple(dict.fromkeys(names))
+
+
+def _told(v: Any, a: float, b: float) -> list[EventNote]:
+    did, number = int(a), int(b)
+    severity = _SEVERITIES.get(did, INFO)
+    said: list[EventNote] = [
+        Text(severity, f"AutoTune: {text}") for text in texts(did, number, v.autopilot.modes.autotune)
+    ]
+    return [*said, ParametersFound(parameters(number))] if did == gains.SAVED else said
+
+
+def _rows(v: Any, did: float, number: float) -> list[Row]:
+    """ATUN: what a twitch has measured, with the gains that follow from it; EV."""
+    if did != gains.MEASURED:
+        return [ev(_LOGGED[int(did)])] if did in _LOGGED else []
+    t = v.autopilot.modes.autotune
+    g = gains.found(t, t.axis)
+    least, most = (t.rate_min, t.rate_max) if t.step <= rules.RATE_P_UP else (t.angle_min, t.angle_max)
+    measured = (math.degrees(x) for x in (t.target, least, most))
+    numbers = (g.rate_p, rules.get_d(t, g), g.angle_p, math.degrees(100.0 * t.accel))
+    return [("ATUN", (t.axis, t.step, *measured, *numbers))]
+
+
+AUTOTUNE_DID = gains.AUTOTUNE_DID.saying(says=_told, log=_rows)
 
 
 @law

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...events import AUTOTUNE_DID, emit
+from ...events import Event, emit
 from ...params.gains import PidGains
 from ..parameters.control import Attitude
 from ..state import Vehicle
@@ -22,6 +22,8 @@ TRIED = 3  # the parameters hold those found
 RETURNED = 4  # the parameters hold those from before again
 FAILED = 5
 PAUSED = 6  # the mode was left before its end; the parameters hold those from before
+
+AUTOTUNE_DID = Event(63)  # a: what, b: a number of it; its words are in ``autotune``
 
 # What it tells (AUTOTUNE_DID)
 STARTED, STOPPED, PROGRESS, COMPLETE, SUCCESS, FAILURE, OVERRIDDEN, TRIES, SAVED, RESTORED, INCOMPLETE, D_LIMIT = range(

@@ -9,7 +9,8 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import follow as lead_motion
 from ...control.shaping import Motion, Motion2
-from ...events import FOLLOW_OFF, FOLLOW_OFFSET, emit
+from ...events import emit
+from ...follow import FOLLOW_OFF, FOLLOW_OFFSET
 from ...modes import ACCEPTED, INIT_FAILED
 from ...state import FollowState
 from ..control import altitude, position

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...events import DISARMED, emit_and_return
+from ... import arming_checks
+from ...events import emit_and_return
 from ...fence.checks import switch_on_disarming
+from ...notes import INFO
 from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start
 from ..control.state import Control, MotorsState
@@ -23,6 +25,8 @@ UNLIMITED = 2
 IS_SHUT_DOWN = 0
 IS_GROUND_IDLE = 1
 IS_UNLIMITED = 3
+
+DISARMED = arming_checks.DISARMED.saying(INFO, "Disarming motors")
 
 
 @law

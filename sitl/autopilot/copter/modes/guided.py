@@ -29,7 +29,7 @@ from ....core.scalars import constrain
 from ....core.vectors import Euler, Vec2, Vec3
 from ...arming_checks import BY_RUDDER
 from ...control.shaping import Motion, Motion2
-from ...events import GUIDED_TIMEOUT, Events, emit
+from ...events import Event, Events, emit
 from ...modes import ACCEPTED
 from ...state import Arming, Estimate
 from ...terrain.ground import lose_ground
@@ -45,6 +45,8 @@ from .state import GuidedState, Modes
 
 GUIDED = 4
 GUIDED_NOGPS = 20
+
+GUIDED_TIMEOUT = Event(9)
 
 # What it is doing (``modes.guided.submode``)
 TAKEOFF = 0

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ...control.shaping import Motion
-from ...events import COMMAND_ARRIVED, PAYLOAD_PLACE_DID, Events, emit, emit_and_return
-from ...navigation.state import NAV_COMMAND, Nav
+from ...events import Event, Events, emit, emit_and_return
+from ...navigation.state import COMMAND_ARRIVED, NAV_COMMAND, Nav
+from ...notes import INFO, WARNING
 from ...terrain.ground import by_range
 from ..control import altitude, altitude_start
 from ..navigation import waypoint
@@ -28,17 +29,16 @@ NO_GRIPPER, HOLDS, OPEN = range(3)
 
 # What it did (PAYLOAD_PLACE_DID)
 LANDED, ABORTED, BY_HAND, AT_LIMIT, NO_RANGE, PLACED, RELEASED = range(7)
-_INFO, _WARNING = 6, 4
-TEXTS = {
-    LANDED: (_INFO, "landed"),
-    ABORTED: (_INFO, "Abort: Gripper Open"),
-    BY_HAND: (_INFO, "Manual release"),
-    AT_LIMIT: (_WARNING, "Reached maximum descent"),
-    NO_RANGE: (_WARNING, "PLDP_RNG_MAX set and rangefinder not enabled"),
-    PLACED: (_INFO, "payload release thrust threshold: {:f}"),
-    RELEASED: (_INFO, "Releasing the gripper"),
+_TEXTS: dict[int, str | tuple[int, str]] = {
+    LANDED: "PayloadPlace: landed",
+    ABORTED: "PayloadPlace: Abort: Gripper Open",
+    BY_HAND: "PayloadPlace: Manual release",
+    AT_LIMIT: (WARNING, "PayloadPlace: Reached maximum descent"),
+    NO_RANGE: (WARNING, "PayloadPlace: PLDP_RNG_MAX set and rangefinder not enabled"),
+    PLACED: "PayloadPlace: payload release thrust threshold: {b:f}",
+    RELEASED: "PayloadPlace: Releasing the gripper",
 }
-"""MAV_SEVERITY and text."""
+PAYLOAD_PLACE_DID = Event(77, INFO, _TEXTS)
 
 STEADY = 0.95
 """Of the descent's speed: from then on its thrust counts."""
@@ -46,12 +46,6 @@ LEARNS_US, PLACED_US = 2_000_000, 500_000
 """So long the descent's thrust is learnt; so long the load has to stand."""
 ARRIVING = 0.1
 """Part of the climb's speed from which the way to a stop may be left out."""
-
-
-def text(did: int, number: float) -> tuple[int, str]:
-    """MAV_SEVERITY and status text of PAYLOAD_PLACE_DID (shell side)."""
-    severity, said = TEXTS[did]
-    return severity, f"PayloadPlace: {said.format(number)}"
 
 
 @law

@@ -7,10 +7,11 @@ from ....core.algebra import ZERO2, horizontal, with_down
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion, Motion2
-from ...events import LANDING_TARGET_DID, Events, emit
+from ...events import Events, emit
 from ...landing_target.estimator import distance, target_place
 from ...landing_target.state import (
     FOUND,
+    LANDING_TARGET_DID,
     LOST,
     OUT_OF_RANGE,
     SAID_FAILSAFE,

@@ -11,12 +11,12 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import rally
 from ...control.shaping import Motion
-from ...events import TERRAIN_DID, Events, emit
+from ...events import Events, emit
 from ...fence.state import MAX_ALT
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation import path
 from ...state import Estimate
-from ...terrain.state import RTL_WITHOUT
+from ...terrain.state import RTL_WITHOUT, TERRAIN_DID
 from .. import terrain
 from ..control import altitude, position, position_start
 from ..control.state import Control

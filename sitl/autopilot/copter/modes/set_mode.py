@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ....core.kernels import law
 from ... import modes as all_modes
-from ...events import MODE_CHANGED, MODE_REFUSED, RETURN_ACTIVE, RETURN_WANTED, emit, emit_and_return
+from ...events import emit, emit_and_return
 from ...fence.checks import begin_recovery, keeps_mode
+from ...mission.returning import RETURN_ACTIVE, RETURN_WANTED
 from ...modes import (
     ACCEPTED,
     GCS_BLOCKED,
     IN_FENCE_RECOVERY,
     INIT_FAILED,
     MISSING_TAKEOFF,
+    MODE_CHANGED,
     NEEDS_ALTITUDE,
     NO_LANDING,
     NO_PATH,
@@ -25,6 +29,7 @@ from ...modes import (
     shown,
 )
 from ...navigation.state import BEST, BY_LANDING, BY_PATH, LANDING, OUTWARD
+from ...notes import WARNING, Text
 from ...state import Arming, Estimate
 from ..control.motors import hover_throttle
 from ..parameters import Parameters
@@ -151,3 +156,10 @@ def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts (MAV_SEVERITY_WARNING) of a refused mode change; empty when it was accepted."""
     failed = f"Mode change to {TITLES.get(number)} failed: {_CAUSES.get(cause)}"
     return all_modes.refusal_texts(number, cause, failed)
+
+
+def _told(v: Any, number: float, cause: float) -> list[Text]:
+    return [Text(WARNING, text) for text in refusal_texts(int(number), int(cause))]
+
+
+MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_told)

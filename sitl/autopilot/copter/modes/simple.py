@@ -15,7 +15,8 @@ from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...aux_switch import has_function
-from ...events import SIMPLE_CHANGED, emit
+from ...events import Event, emit
+from ...notes import INFO
 from ..parameters import Parameters
 from ..state import Vehicle
 from .state import PilotState, SimpleState
@@ -23,6 +24,9 @@ from .state import PilotState, SimpleState
 OFF, SIMPLE, SUPER_SIMPLE = 0, 1, 2
 SIMPLE_FUNCTION, SUPER_SIMPLE_FUNCTION = 3, 13
 HOME_RADIUS = 10.0  # [m]
+
+_TEXTS = {OFF: "SIMPLE mode off", SIMPLE: "SIMPLE mode on", SUPER_SIMPLE: "SUPERSIMPLE mode on"}
+SIMPLE_CHANGED = Event(31, INFO, _TEXTS)
 
 
 @law

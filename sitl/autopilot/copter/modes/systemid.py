@@ -10,15 +10,16 @@ throttle [-1 .. 1]; 14 and 15 the position measured, to the right and forward [m
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ....core.algebra import turned
 from ....core.elementary import acos, cos, exp, log, sin
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
-from ...events import SYSTEM_ID_DID, SYSTEM_ID_SAMPLE, emit
+from ...events import Event, Row, emit
 from ...modes import ACCEPTED, INIT_FAILED
+from ...notes import INFO, WARNING, Text
 from .. import pilot
 from ..control import altitude, attitude, position, throttle_mix
 from ..control.state import DT
@@ -86,6 +87,27 @@ def text(did: int, number: float, lean_max: float) -> str:
         STARTED: f"Starting: axis={number:.0f}",
     }
     return REFUSALS[did] if did in REFUSALS else f"SystemID {endings[did]}"
+
+
+def _told(v: Any, did: float, number: float) -> list[Text]:
+    said = text(int(did), number, v.autopilot.params.ANGLE_MAX * 0.01)
+    return [Text(WARNING if int(did) in REFUSALS else INFO, said)]
+
+
+def _settings(v: Any, did: float, number: float) -> list[Row]:
+    p = v.autopilot.params.SID
+    chirp = (p.MAGNITUDE, p.F_START_HZ, p.F_STOP_HZ, p.T_FADE_IN, chirp_of(p).constant, p.T_REC, p.T_FADE_OUT)
+    return [("SIDS", (int(p.AXIS), *chirp))] if did == STARTED else []
+
+
+def _sample(v: Any, a: float, b: float) -> list[Row]:
+    state, rates, acc = v.autopilot.modes.systemid, v.autopilot.estimate.rates, v.sensors.acc
+    chirp = (state.time, state.value, state.frequency / (2.0 * math.pi))
+    return [("SIDD", (*chirp, *(math.degrees(x) for x in rates), *acc))]
+
+
+SYSTEM_ID_DID = Event(52, says=_told, log=_settings)  # a: what, b: a number of it
+SYSTEM_ID_SAMPLE = Event(53, log=_sample)
 
 
 @law

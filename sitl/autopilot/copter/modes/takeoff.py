@@ -10,7 +10,7 @@ from __future__ import annotations
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ...control.shaping import Motion
-from ...events import TAKEOFF_COMPLETE, emit
+from ...events import Event, emit
 from ...fence.checks import switch_after_takeoff
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
@@ -24,6 +24,8 @@ _LIFT_SPEED = 0.1
 """Part of the climb speed limit that shows that the vehicle has left the ground."""
 _DONE_SPEED = 0.1
 """Part of the climb speed limit below which, next to its end, the take-off is done."""
+
+TAKEOFF_COMPLETE = Event(5)
 
 
 @law

@@ -14,8 +14,9 @@ from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
-from ...events import THROW_STAGE, emit
+from ...events import Event, emit
 from ...modes import ACCEPTED, INIT_FAILED, REASON_THROW_COMPLETE, ask
+from ...notes import INFO
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
 from ..control.state import GRAVITY, Control
@@ -42,14 +43,14 @@ UPRIGHTING = 3
 TO_HEIGHT = 4
 STOPPING = 5
 
-TEXTS = {
+_TEXTS = {
     WAITING: "waiting for throw",
     SPOOLING_UP: "throw detected - spooling motors",
     UPRIGHTING: "throttle is unlimited - uprighting",
     TO_HEIGHT: "uprighted - controlling height",
     STOPPING: "height achieved - controlling position",
 }
-"""Status texts (MAV_SEVERITY_INFO) of THROW_STAGE."""
+THROW_STAGE = Event(33, INFO, _TEXTS)  # a: stage
 
 NEXT_MODES = (AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 """THROW_NEXTMODE: any other stays in THROW."""

@@ -7,10 +7,10 @@ from ....core.kernels import inlined, law, unit
 from ....core.records import Records
 from ... import battery, home, optical_flow, visual_odometry
 from ...avoidance import bendy_ruler, proximity
-from ...events import LEG_ENDING, emit_and_return
+from ...events import emit_and_return
 from ...modes import REASON_INITIALISED, take_asked
 from ...navigation.path import areas_of, watch_detour
-from ...navigation.state import DETOUR_REQUEST, GO_ON
+from ...navigation.state import DETOUR_REQUEST, GO_ON, LEG_ENDING
 from ...radio import RC_TICKS
 from ...state import Arming
 from ...terrain.ground import watch_square

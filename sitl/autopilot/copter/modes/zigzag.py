@@ -9,13 +9,15 @@ ZIGZ_DIRECTION, to the other line, sideways again, for ZIGZ_LINE_NUM lines.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from ....core.algebra import direction, dot2, norm2, with_down
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
-from ...events import ZIGZAG_DID, emit
+from ...events import Event, emit
 from ...navigation.path import request_leg
+from ...notes import INFO, Text
 from ..control import altitude, attitude, position, position_start
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -50,6 +52,13 @@ def text(did: int, line: int, lines: int) -> str:
     if did >= GOES_SIDEWAYS:
         return f"ZIGZAG: moving to {('forward', 'right', 'backward', 'left')[did - GOES_SIDEWAYS]}"
     return f"ZIGZAG: moving to {'AB'[did - GOES_TO]}" + (f" (line {line}/{lines})" if 0 < line <= lines else "")
+
+
+def _told(v: Any, did: float, line: float) -> list[Text]:
+    return [Text(INFO, text(int(did), int(line), int(v.autopilot.params.ZIGZ.LINE_NUM)))]
+
+
+ZIGZAG_DID = Event(34, says=_told)  # a: what, b: line of the sweep, 0 none
 
 
 @law

@@ -16,8 +16,9 @@ from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
 from ...control.shaping import Motion2
-from ...events import CIRCLE_ADAPTED, Events, emit
+from ...events import Event, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED
+from ...notes import WARNING
 from ...state import Estimate
 from ..control import position, speed
 from ..control.state import DT, PositionState
@@ -37,6 +38,12 @@ SLOWER = 0.8
 
 # What CIRCLE_ADAPTED says
 SPEED_LIMITED, RADIUS_ENLARGED, FELL_BEHIND = 0, 1, 2
+_TEXTS = {
+    SPEED_LIMITED: "Circle: max speed is {b:4.1f}",
+    RADIUS_ENLARGED: "Circle: radius increased to TURN_RADIUS ({b:4.1f})",
+    FELL_BEHIND: "Circle: cannot keep up, slowing to {b:.1f}m/s",
+}
+CIRCLE_ADAPTED = Event(26, WARNING, _TEXTS)  # b: the value now
 
 
 class Circuit(NamedTuple):

@@ -10,8 +10,8 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...avoidance import limit
 from ...avoidance.velocity import braking
-from ...events import LEG_ENDING, emit_and_return
-from ...navigation.state import SPEED_REQUEST
+from ...events import emit_and_return
+from ...navigation.state import LEG_ENDING, SPEED_REQUEST
 from ...state import Estimate
 from .. import pilot
 from ..control import motors, speed, steering

@@ -8,7 +8,8 @@ from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.vectors import Vec2
 from ... import follow as lead_motion
-from ...events import FOLLOW_OFF, FOLLOW_OFFSET, emit
+from ...events import emit
+from ...follow import FOLLOW_OFF, FOLLOW_OFFSET
 from ...modes import ACCEPTED, INIT_FAILED
 from .. import pilot
 from ..control import speed

@@ -10,8 +10,9 @@ from __future__ import annotations
 from ....core.algebra import norm2
 from ....core.kernels import law
 from ....core.vectors import Vec2
-from ...events import GUIDED_REACHED, GUIDED_TIMEOUT, Events, emit
+from ...events import Event, Events, emit
 from ...modes import ACCEPTED
+from ...notes import WARNING, ItemReached
 from .. import pilot
 from ..control import motors, speed
 from ..navigation import waypoint
@@ -26,6 +27,9 @@ STOP, POSITION, HEADING_AND_SPEED, TURN_RATE_AND_SPEED, STEERING_AND_THROTTLE = 
 """What it is doing (``modes.guided.submode``)."""
 TIMEOUT_US = 3_000_000
 """Velocity, heading, turn-rate and throttle set-points are good for so long (ArduRover's)."""
+
+GUIDED_TIMEOUT = Event(9, WARNING, "target not received last 3secs, stopping")
+GUIDED_REACHED = Event(23, says=lambda v, a, b: [ItemReached(0)])  # the position target
 
 
 @law

@@ -6,9 +6,10 @@ from __future__ import annotations
 from ....core.algebra import horizontal, with_down
 from ....core.kernels import law
 from ... import rally
-from ...events import DESTINATION_REACHED, emit
+from ...events import Event, emit
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation.path import request_leg
+from ...notes import INFO
 from ..control import speed
 from ..heights import HEIGHTS
 from ..navigation import waypoint
@@ -17,6 +18,8 @@ from . import drive
 from .mode import RoverMode, end_of_path
 
 RTL = 11
+
+DESTINATION_REACHED = Event(22, INFO, "Reached destination")  # end of a way home; a: mode
 
 
 @law

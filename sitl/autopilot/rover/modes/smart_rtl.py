@@ -12,7 +12,7 @@ from ....core.algebra import with_down
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import smart_rtl_path
-from ...events import DESTINATION_REACHED, Events, emit
+from ...events import Events, emit
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation.path import request_leg, request_legs
 from ...state import PathState
@@ -21,6 +21,7 @@ from ..navigation import waypoint
 from ..navigation.state import RoverNav
 from ..state import Vehicle
 from . import drive, rtl
+from .rtl import DESTINATION_REACHED
 
 SMART_RTL = 12
 

@@ -10,12 +10,12 @@ from ....core.vectors import Vec3
 from ... import aux_switch, battery, home, optical_flow, smart_rtl_path, visual_odometry
 from ...arming_checks import BY_RUDDER
 from ...avoidance import bendy_ruler, limit, proximity
-from ...events import LEG_ENDING, Events, emit_and_return
+from ...events import Events, emit_and_return
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
 from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
 from ...navigation.path import areas_of, watch_detour
-from ...navigation.state import DETOUR_REQUEST, GO_ON
+from ...navigation.state import DETOUR_REQUEST, GO_ON, LEG_ENDING
 from ...params.system import SmartRtl
 from ...state import Estimate, HomeState
 from .. import crash, failsafe, fence, motor_test, pilot

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.copter.modes import auto_yaw, commands, guided, guided_setpoints
 from sitl.autopilot.copter.modes.commands import LARGEST, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE
-from sitl.autopilot.copter.modes.guided import ACCEL, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
+from sitl.autopilot.copter.modes.guided import ACCEL, GUIDED_TIMEOUT, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
 from sitl.autopilot.copter.modes.guided_setpoints import NO_YAW, YawSetpoint
-from sitl.autopilot.events import GUIDED_TIMEOUT
 from sitl.core.algebra import euler_of
 from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, make, snapshot, turn_to, wait

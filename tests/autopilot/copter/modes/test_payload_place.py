@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.copter.modes import payload_place as law
-from sitl.autopilot.events import COMMAND_ARRIVED, PAYLOAD_PLACE_DID
+from sitl.autopilot.copter.modes.payload_place import PAYLOAD_PLACE_DID
+from sitl.autopilot.navigation.state import COMMAND_ARRIVED
 from tests.autopilot.copter.steady_copter import codes, wait
 
 

@@ -9,14 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sitl.autopilot.arming_checks import DISARMED
 from sitl.autopilot.copter.modes import descent, land, rtl, set_mode
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters.flight import Rtl
-from sitl.autopilot.events import DISARMED, LEG_ENDING
 from sitl.autopilot.modes import REASON_GCS
+from sitl.autopilot.navigation.state import LEG_ENDING
 from tests.autopilot.copter.steady_copter import codes, wait
 
 

@@ -31,11 +31,13 @@ from sitl.autopilot.copter.modes.table import NAMES
 from sitl.autopilot.copter.modes.throw import THROW
 from sitl.autopilot.copter.modes.turtle import TURTLE
 from sitl.autopilot.copter.modes.zigzag import ZIGZAG
-from sitl.autopilot.events import FOLLOW_OFF, MODE_CHANGED, MODE_REFUSED
+from sitl.autopilot.follow import FOLLOW_OFF
 from sitl.autopilot.modes import (
     ACCEPTED,
     INIT_FAILED,
     MISSING_TAKEOFF,
+    MODE_CHANGED,
+    MODE_REFUSED,
     NEEDS_ALTITUDE,
     NO_SUCH_MODE,
     REASON_GCS,

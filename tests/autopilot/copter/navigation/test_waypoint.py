@@ -19,10 +19,10 @@ from sitl.autopilot.mission.item import (
     home_item,
 )
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.notes import ItemReached
 from sitl.autopilot.navigation import path as paths
 from sitl.autopilot.navigation.leg import LegError, Limits, plan
 from sitl.autopilot.navigation.planner import end
+from sitl.autopilot.notes import ItemReached
 from sitl.core.geodesy import add_offset
 from sitl.core.vectors import Vec3
 from tests.autopilot.copter.navigation.pointmass import DT, ORIGIN, PointMass

@@ -11,11 +11,12 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from sitl.autopilot import events
-from sitl.autopilot.mission.notes import Text
+from sitl.autopilot.events import EVENT_RING
+from sitl.autopilot.notes import ChecksFailed, Text
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.control import update as control
 from sitl.autopilot.rover.control.state import DT, PERIOD_US
+from sitl.autopilot.rover.events import EVENTS
 from sitl.autopilot.rover.firmware import power_on
 from sitl.autopilot.rover.modes import guided_setpoints
 from sitl.autopilot.rover.modes import update as modes
@@ -154,19 +155,24 @@ class Rover:
         ring = self.ap.events
         found = []
         for k in range(self.heard, int(ring.count)):
-            at = k % events.EVENT_RING
+            at = k % EVENT_RING
             found.append((int(ring.code[at]), float(ring.a[at]), float(ring.b[at])))
         self.heard = int(ring.count)
         return found
 
     def texts(self) -> list[str]:
         """What was said since the last call."""
-        pilot = RoverAutopilot.__new__(
-            RoverAutopilot
-        )  # it has no shell: what it says of an event takes the record only
+        pilot = RoverAutopilot.__new__(RoverAutopilot)  # it has no shell: why it is not armed takes the record only
         pilot._v = self.v
         pilot._vehicle = SimpleNamespace(parameters={"AHRS_GPS_USE": 1.0})  # type: ignore[assignment]
-        return [note.text for event in self.events() for note in pilot.texts_of(*event) if isinstance(note, Text)]
+        said: list[str] = []
+        for code, a, b in self.events():
+            for note in EVENTS[code].notes(self.v, a, b):
+                if isinstance(note, Text):
+                    said.append(note.text)
+                elif isinstance(note, ChecksFailed):
+                    said += pilot.refusal_texts(note.failed)
+        return said
 
 
 def set_velocity(v: Any, north: float, east: float) -> int:

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot.events import COMMAND_COMPLETE, MODE_CHANGED
+from sitl.autopilot.modes import MODE_CHANGED
 from sitl.autopilot.navigation import state as kinds
+from sitl.autopilot.navigation.state import COMMAND_COMPLETE
 from sitl.autopilot.rover.modes import auto, guided_setpoints
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.auto import AUTO

@@ -7,9 +7,8 @@ import math
 
 import pytest
 
-from sitl.autopilot.events import GUIDED_REACHED, GUIDED_TIMEOUT
 from sitl.autopilot.rover.modes import guided_setpoints
-from sitl.autopilot.rover.modes.guided import GUIDED, STOP
+from sitl.autopilot.rover.modes.guided import GUIDED, GUIDED_REACHED, GUIDED_TIMEOUT, STOP
 from sitl.autopilot.rover.modes.guided_setpoints import NOT_FINITE, NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.set_mode import change_speed, request

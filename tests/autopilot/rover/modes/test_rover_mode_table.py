@@ -5,13 +5,21 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot import events
-from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, NO_MISSION, NO_SUCH_MODE, REQUIRES_POSITION
-from sitl.autopilot.rover import failsafe, texts
+from sitl.autopilot.arming_checks import ARMED, DISARMED
+from sitl.autopilot.aux_switch import AUX_SWITCH
+from sitl.autopilot.failsafe_checks import FAILSAFE
+from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MODE_REFUSED, NO_MISSION, NO_SUCH_MODE, REQUIRES_POSITION
+from sitl.autopilot.rover import failsafe
+from sitl.autopilot.rover.crash import CRASH_HOLD
+from sitl.autopilot.rover.events import EVENTS
 from sitl.autopilot.rover.modes import set_mode, table
 from sitl.autopilot.rover.modes.acro import ACRO
+from sitl.autopilot.rover.modes.circle import CIRCLE_ADAPTED
+from sitl.autopilot.rover.modes.guided import GUIDED_TIMEOUT
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.manual import MANUAL
+from sitl.autopilot.rover.modes.rtl import DESTINATION_REACHED
+from sitl.autopilot.smart_rtl_path import PATH_LOST
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
@@ -47,30 +55,30 @@ def test_initial_mode_is_one_that_can_be_entered_at_power_on(wanted: int, got: i
 @pytest.mark.parametrize(
     ("code", "a", "b", "said"),
     [
-        (events.ARMED, 1, 0, [(6, "Throttle armed")]),
-        (events.DISARMED, 1, 0, [(6, "Throttle disarmed")]),
-        (events.GUIDED_TIMEOUT, 3, 0, [(4, "target not received last 3secs, stopping")]),
-        (events.DESTINATION_REACHED, 11, 0, [(6, "Reached destination")]),
-        (events.MODE_REFUSED, 99, NO_SUCH_MODE, [(4, "No such mode 99")]),
-        (events.MODE_REFUSED, 11, INIT_FAILED, [(4, "Flight mode change failed")]),
+        (ARMED, 1, 0, [(6, "Throttle armed")]),
+        (DISARMED, 1, 0, [(6, "Throttle disarmed")]),
+        (GUIDED_TIMEOUT, 3, 0, [(4, "target not received last 3secs, stopping")]),
+        (DESTINATION_REACHED, 11, 0, [(6, "Reached destination")]),
+        (MODE_REFUSED, 99, NO_SUCH_MODE, [(4, "No such mode 99")]),
+        (MODE_REFUSED, 11, INIT_FAILED, [(4, "Flight mode change failed")]),
         (
-            events.MODE_REFUSED,
+            MODE_REFUSED,
             10,
             NO_MISSION,
             [(5, "No Mission. Can't set AUTO."), (4, "Flight mode change failed")],
         ),
-        (events.CRASH_HOLD, 0, 0, [(0, "Crash: Going to HOLD")]),
-        (events.FAILSAFE, 1, 1, [(4, "Radio Failsafe")]),
-        (events.FAILSAFE, 1, 0, [(6, "Radio Failsafe Cleared")]),
-        (events.FAILSAFE, failsafe.CONTINUES, 1, [(4, "Failsafe - Continuing Auto Mode")]),
-        (events.FAILSAFE, 5, 1, [(2, "EKF failsafe")]),
-        (events.CIRCLE_ADAPTED, 1, 2.0, [(4, "Circle: radius increased to TURN_RADIUS ( 2.0)")]),
-        (events.PATH_LOST, 1, 0, [(4, "SmartRTL deactivated: buffer full")]),
-        (events.LANDED, 0, 0, []),
+        (CRASH_HOLD, 0, 0, [(0, "Crash: Going to HOLD")]),
+        (FAILSAFE, 1, 1, [(4, "Radio Failsafe")]),
+        (FAILSAFE, 1, 0, [(6, "Radio Failsafe Cleared")]),
+        (FAILSAFE, failsafe.CONTINUES, 1, [(4, "Failsafe - Continuing Auto Mode")]),
+        (FAILSAFE, 5, 1, [(2, "EKF failsafe")]),
+        (CIRCLE_ADAPTED, 1, 2.0, [(4, "Circle: radius increased to TURN_RADIUS ( 2.0)")]),
+        (PATH_LOST, 1, 0, [(4, "SmartRTL deactivated: buffer full")]),
+        (AUX_SWITCH, 7, 1, []),
     ],
 )
 def test_what_is_said(code: int, a: float, b: float, said: list[tuple[int, str]]) -> None:
-    assert texts.texts(code, a, b) == said
+    assert [(note.severity, note.text) for note in EVENTS[code].notes(None, a, b)] == said
 
 
 @pytest.mark.parametrize("number", [*table.NAMES, 2, 99])

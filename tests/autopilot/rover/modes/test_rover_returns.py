@@ -7,9 +7,8 @@ import math
 
 import pytest
 
-from sitl.autopilot.events import CIRCLE_ADAPTED
 from sitl.autopilot.rover.modes import circle
-from sitl.autopilot.rover.modes.circle import CIRCLE
+from sitl.autopilot.rover.modes.circle import CIRCLE, CIRCLE_ADAPTED
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.loiter import LOITER
 from sitl.autopilot.rover.modes.rtl import RTL

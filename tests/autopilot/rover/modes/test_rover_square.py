@@ -10,8 +10,8 @@ import pytest
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.notes import ItemReached, Text
 from sitl.autopilot.mission.sequencer import Sequencer
+from sitl.autopilot.notes import ItemReached, Text
 from sitl.autopilot.rover.mission import COMMANDS
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.set_mode import request

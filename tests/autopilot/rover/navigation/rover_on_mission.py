@@ -7,8 +7,8 @@ from typing import Any
 
 from sitl.autopilot.mission.item import RELATIVE, MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.notes import ItemReached, Text
 from sitl.autopilot.mission.sequencer import Sequencer
+from sitl.autopilot.notes import ItemReached, Text
 from sitl.autopilot.rover.mission import COMMANDS
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.set_mode import request

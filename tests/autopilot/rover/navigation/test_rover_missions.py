@@ -8,13 +8,14 @@ import math
 import numpy as np
 import pytest
 
-from sitl.autopilot import events
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
+from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
+from sitl.autopilot.events import emit
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.notes import ItemReached, Text
 from sitl.autopilot.mission.validate import UNSUPPORTED, check
+from sitl.autopilot.notes import ItemReached, Text
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
 from sitl.autopilot.rover.modes import guided_setpoints
@@ -184,7 +185,7 @@ def test_without_an_origin_it_waits() -> None:
     p.run(1.0)
     assert p.said() == []
     p.ap.estimate.origin_set = 1
-    events.emit(p.ap.events, p.v.time_us, events.EKF_ORIGIN_SET, 0.0, 0.0)
+    emit(p.ap.events, p.v.time_us, EKF_ORIGIN_SET, 0.0, 0.0)
     p.run(0.1)
     assert p.said() == ["Mission: 1 WP"]
     assert p.ap.modes.nav.target[0] == pytest.approx(15.0, abs=0.1)

@@ -10,9 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.events import LEG_ENDING
 from sitl.autopilot.navigation import path
-from sitl.autopilot.navigation.state import SPEED_REQUEST
+from sitl.autopilot.navigation.state import LEG_ENDING, SPEED_REQUEST
 from sitl.autopilot.rover.control import forward_speed
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.hold import HOLD

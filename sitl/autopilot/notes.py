@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the autopilot tells the outside besides telemetry: the bridge turns each into a message, or acts on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+EMERGENCY, CRITICAL, WARNING, NOTICE, INFO = 0, 2, 4, 5, 6
+"""MAV_SEVERITY"""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """STATUSTEXT."""
+
+    severity: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class ItemReached:
+    """MISSION_ITEM_REACHED."""
+
+    seq: int
+    is_sent: bool = True
+    """False: only logs have it."""
+
+
+@dataclass(frozen=True, slots=True)
+class CurrentChanged:
+    """MISSION_CURRENT."""
+
+    seq: int
+
+
+@dataclass(frozen=True, slots=True)
+class Switched:
+    """A switch of something that is fitted to the vehicle was moved (``payload.SWITCH_*``)."""
+
+    function: int
+    position: int
+
+
+@dataclass(frozen=True, slots=True)
+class ParametersFound:
+    """The firmware has changed these parameters for good: clients are told, and they are kept."""
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChecksFailed:
+    """Arming was refused; clients are told why."""
+
+    failed: int
+    """Bits of the failed checks (``arming_checks``)."""
+
+
+EventNote = Text | ItemReached | Switched | ParametersFound | ChecksFailed
+"""What follows from an event of the core."""
