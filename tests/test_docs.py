@@ -211,7 +211,7 @@ def run_in(folder: Path, program: str, given: str = "", **environment: str) -> N
     own["PYTHONPATH"] = os.pathsep.join((str(folder), str(ROOT)))
     ran = subprocess.run(
         [sys.executable, "-c", program], cwd=folder, env=own | environment, input=given, capture_output=True,
-        text=True, timeout=900,
+        text=True, timeout=3600,
     )  # fmt: skip
     assert ran.returncode == 0, ran.stderr[-3000:]
 
