@@ -178,7 +178,7 @@ KEPT = {
 def stored(item: MissionItem) -> MissionItem:
     """A valid item of a mission as it is kept and read back.
 
-    Keeping that again changes nothing but, as in ArduPilot, the last centimetre of a few heights (327.36 m to 327.35 m).
+    Keeping that again changes nothing but, as in ArduPilot, the last centimetre of a few heights (327.36 to 327.35 m).
     """
     kept = KEPT.get(item.command, Kept())
     p1, p2, p3, p4 = (
