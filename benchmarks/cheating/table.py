@@ -65,7 +65,8 @@ class Game:
         try:
             self.stage = Stage(self.env, preset)
             self.env.reset(seed=seed)
-            self._start = self.env.unwrapped.snapshot()
+            self._robots: Any = self.env.unwrapped
+            self._start = self._robots.snapshot()
         except BaseException:
             self.close()
             raise
@@ -77,7 +78,7 @@ class Game:
             begin: makes the policy.
         """
         env, episodes = self.env, self.env.num_envs
-        seen = env.unwrapped.restore(self._start)
+        seen = self._robots.restore(self._start)
         policy = begin(self.stage)
         returns, steps = np.zeros(episodes), np.zeros(episodes, np.int64)
         runs, success, early = np.ones(episodes, np.bool_), np.zeros(episodes, np.bool_), np.zeros(episodes, np.bool_)
@@ -91,7 +92,7 @@ class Game:
             early[over] = terminated[over] & ~infos["is_success"][over]
             runs &= ~over
             for index in np.flatnonzero(ended).tolist():  # it flies on, and nobody looks
-                env.unwrapped.restore_one(index, self._start[index])
+                self._robots.restore_one(index, self._start[index])
         return Played(returns, success, early, steps)
 
     def close(self) -> None:
