@@ -3,11 +3,14 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# Processes of pytest, each with about 1.5 GB: one more than two processors, for many tests wait for programs of clients, or for time.
+WORKERS ?= 3
+QUICK := tests/autopilot tests/bridge/wire tests/client
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 # Tests start hundreds of processes: without bytecode each of them would compile all sources again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test lint docs wheels bench clean
+.PHONY: demo test test-quick lint docs wheels bench clean
 
 demo: $(VENV)/demo.stamp
 	$(BIN)/sitl demo copter
@@ -15,7 +18,12 @@ demo: $(VENV)/demo.stamp
 # The core is compiled first, on all processors: test processes would wait for each other's parts of it. Slow tests come last (tests/conftest.py).
 test: $(VENV)/dev.stamp
 	$(BIN)/sitl cache build
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n $(WORKERS)
+
+# The autopilot's laws, bytes on the wire and the client, in less than a minute.
+test-quick: $(VENV)/dev.stamp
+	$(BIN)/sitl cache build
+	$(BIN)/python -m pytest -n 2 -m "not slow" $(QUICK)
 
 lint: $(VENV)/dev.stamp
 	$(BIN)/ruff check .

@@ -3,12 +3,19 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from hypothesis import HealthCheck, settings
 
 from sitl.simulation import Core, load_core
 
 pytest_plugins = ["pytester"]
+
+# A test has one processor: threads of Torch and of linear algebra that wait for each other on one that is taken use up
+# to twenty times the time of what they compute. Torch is loaded later, and workers and children begin with this.
+for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")
 
 # How long an example takes is the machine's business: a busy one must not fail a test.
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])

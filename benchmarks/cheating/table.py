@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import closing
 from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
+from gymnasium.vector import AutoresetMode
 
 from sitl.envs.ids import FIRST, NEW
 
@@ -44,36 +46,58 @@ class Played(NamedTuple):
         return Played(self.returns[rows], self.is_success[rows], self.early[rows], self.steps[rows])
 
 
-def play(name: str, begin: Callable[[Stage], Policy], episodes: int, seed: int = SEED, **options: Any) -> Played:
-    """Play an id, episode k with the seed ``seed`` + k.
+class Game:
+    """Many robots of an id, at the begin of the same episodes for each policy.
+
+    They are started once: every policy plays from a snapshot, which repeats bit for bit.
 
     Args:
         name: of ``NEW`` or ``FIRST``.
-        begin: makes the policy.
         episodes: how many.
-        seed: of the first.
+        seed: of the first; episode k has ``seed`` + k.
         options: of the environment.
     """
-    preset = (NEW | FIRST)[name].preset.removesuffix("-v1")
-    given = {**options_of(preset), **options}
-    env: Any = gym.make_vec(name, num_envs=episodes, vectorization_mode="vector_entry_point", **given)
-    try:
-        stage = Stage(env, preset)
-        seen, _ = env.reset(seed=seed)
-        policy = begin(stage)
+
+    def __init__(self, name: str, episodes: int, seed: int = SEED, **options: Any) -> None:
+        preset = (NEW | FIRST)[name].preset.removesuffix("-v1")
+        given = {**options_of(preset), **options, "autoreset_mode": AutoresetMode.DISABLED}
+        self.env: Any = gym.make_vec(name, num_envs=episodes, vectorization_mode="vector_entry_point", **given)
+        try:
+            self.stage = Stage(self.env, preset)
+            self.env.reset(seed=seed)
+            self._robots: Any = self.env.unwrapped
+            self._start = self._robots.snapshot()
+        except BaseException:
+            self.close()
+            raise
+
+    def play(self, begin: Callable[[Stage], Policy]) -> Played:
+        """Play all episodes with a policy.
+
+        Args:
+            begin: makes the policy.
+        """
+        env, episodes = self.env, self.env.num_envs
+        seen = self._robots.restore(self._start)
+        policy = begin(self.stage)
         returns, steps = np.zeros(episodes), np.zeros(episodes, np.int64)
         runs, success, early = np.ones(episodes, np.bool_), np.zeros(episodes, np.bool_), np.zeros(episodes, np.bool_)
         while runs.any():
             seen, rewards, terminated, truncated, infos = env.step(policy(seen))
             returns[runs] += rewards[runs]
             steps[runs] += 1
-            over = runs & (terminated | truncated)
+            ended = terminated | truncated
+            over = runs & ended
             success[over] = infos["is_success"][over]
             early[over] = terminated[over] & ~infos["is_success"][over]
             runs &= ~over
+            for index in np.flatnonzero(ended).tolist():  # it flies on, and nobody looks
+                self._robots.restore_one(index, self._start[index])
         return Played(returns, success, early, steps)
-    finally:
-        env.close()
+
+    def close(self) -> None:
+        """Close the environment."""
+        self.env.close()
 
 
 class Row(NamedTuple):
@@ -126,15 +150,16 @@ class Row(NamedTuple):
 
 def row(name: str, episodes: int) -> Row:
     """Play everything on an id."""
-    env: Any = gym.make_vec(name, num_envs=1, vectorization_mode="vector_entry_point")
-    preset = NEW[name].preset.removesuffix("-v1")
-    cheats, task = cheats_of(Stage(env, preset)), env.unwrapped.task
-    env.close()
-    played = {cheat: play(name, begin, episodes) for cheat, begin in cheats.items()}
-    played[CIRCLE] = played[CIRCLE].failed()
-    if not SEEN.intersection(cls.__name__ for cls in type(task).__mro__):
-        played[HIDE] = play(name, baseline, episodes, faults=WRONG, sensors="gps").failed()
-    return Row(name, play(name, baseline, episodes), play(name, nothing, episodes), played)
+    with closing(Game(name, episodes)) as game:
+        stage = game.stage
+        played = {cheat: game.play(begin) for cheat, begin in cheats_of(stage).items()}
+        played[CIRCLE] = played[CIRCLE].failed()
+        honest = game.play(baseline), game.play(nothing)
+        hides = not SEEN.intersection(cls.__name__ for cls in type(stage.task).__mro__)
+    if hides:
+        with closing(Game(name, episodes, faults=WRONG, sensors="gps")) as game:
+            played[HIDE] = game.play(baseline).failed()
+    return Row(name, *honest, played)
 
 
 def line(found: Row) -> str:

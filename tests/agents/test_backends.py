@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -23,6 +22,7 @@ from sitl.core import ray_cluster as instances
 from sitl.errors import MissingExtra, OptionError
 from tests.agents import ray_works
 from tests.agents.small_runs import CIRCUIT2, new, result
+from tests.ports import free_port
 
 REASON = "Ray is not installed: pip install 'gym-sitl[ray]'"
 on_ray = partial(each, backend="ray")
@@ -190,9 +190,7 @@ def test_backends_that_cannot_be_are_refused(monkeypatch):
 
 
 def test_addresses_where_no_cluster_is_are_refused_at_once():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        port = listener.getsockname()[1]
+    port = free_port()
     for address, message in ((f"127.0.0.1:{port}", "no Ray cluster answers"), ("there", "must be HOST:PORT")):
         with pytest.raises(OptionError, match=message):
             instances._knock(*instances._host_and_port(address), address)

@@ -119,6 +119,7 @@ def test_positions_that_are_all_the_same_fail() -> None:
     assert user.axes("INS_ACCOFFS") == [0.0, 0.0, 0.0]
 
 
+@pytest.mark.slow
 def test_compasses_by_turning() -> None:
     user = User(**IRON)
     user.command("DO_START_MAG_CAL", 0)

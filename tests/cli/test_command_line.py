@@ -23,7 +23,7 @@ from sitl.logs import flight, plot
 from sitl.simulation import Core
 from sitl.vehicle.kinds import KINDS
 from tests.cli.command import environment, sitl
-from tests.envs.lockstep_vehicle import free_port
+from tests.ports import free_port
 
 RUN = ("run", "copter", "--out", "none", "--tcp", "0", "--speedup", "max")
 
@@ -42,7 +42,7 @@ def test_a_run_says_where_it_listens_and_writes_a_log(core: Core, tmp_path: Path
 
 
 def test_an_out_that_listens_says_so(core: Core, tmp_path: Path) -> None:
-    stream, datagram = free_port(socket.SOCK_STREAM), free_port()
+    stream, datagram = free_port(), free_port()
     outs = ("--out", f"tcp:{stream}", "--out", f"udpin:{datagram}", "--out", "udp:127.0.0.1:9")
     result = sitl("run", "copter", "--tcp", "0", *outs, "--speedup", "max", "--duration", "1", folder=tmp_path)
     assert result.returncode == 0, result.stderr

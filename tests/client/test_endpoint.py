@@ -6,7 +6,6 @@ from __future__ import annotations
 import contextlib
 import math
 import random
-import socket
 import subprocess
 import sys
 import warnings
@@ -23,6 +22,7 @@ from sitl.client import Client, InProcess, LinkLostError, WaitTimeoutError
 from sitl.client.endpoint import Endpoint
 from sitl.errors import OptionError
 from sitl.simulation import Core
+from tests.ports import free_port
 
 
 @pytest.mark.parametrize(("name", "field", "value", "allowed"), [
@@ -134,9 +134,7 @@ def test_addresses_are_checked() -> None:
     for text, part in (("udp:127.0.0.1", "port"), ("tcp:5760", "host")):
         with pytest.raises(OptionError, match=f"connection '{text}': the {part} is missing"):
             Client(text)
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     with pytest.raises(LinkLostError, match="refused"):
         Client(f"tcp:127.0.0.1:{port}")
 

@@ -21,6 +21,7 @@ from sitl.client.connection import Connection, Remote
 from sitl.client.endpoint import Endpoint, Inbox
 from sitl.client.proof import BY_NAME, PARAMETER_NAME
 from sitl.envs.mavlink.telemetry import StepTelemetry
+from tests.ports import free_port
 
 REQUEST, ACCEPTED, FAILED = 512, 0, 4
 VERSION, TRUTH = message("AUTOPILOT_VERSION").id, message("SIMSTATE").id
@@ -320,9 +321,7 @@ def test_a_listener_speaks_to_the_sender_of_the_vehicles_heartbeat_and_hears_no_
         for each in (station, vehicle, late):
             each.bind(("127.0.0.1", 0))
             each.settimeout(2.0)
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
+        port = free_port()
         stream = ByteSocket(f"udp:127.0.0.1:{port}")
         link = Remote(stream, None, 2.0)
         to = ("127.0.0.1", port)
@@ -345,9 +344,7 @@ def test_a_listener_speaks_to_the_sender_of_the_vehicles_heartbeat_and_hears_no_
 def test_the_vehicle_that_is_named_is_waited_for(wanted: int) -> None:
     with contextlib.ExitStack() as stack:
         vehicles = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(2)]
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
+        port = free_port()
         stream = ByteSocket(f"udp:127.0.0.1:{port}")
         stack.callback(stream.close)
         link = Remote(stream, None, 2.0)

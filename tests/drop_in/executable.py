@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
+
+from tests.ports import free_port
 
 ROOT = Path(__file__).parents[2]
 
@@ -32,23 +33,8 @@ class Running(NamedTuple):
 
 
 def free_base() -> int:
-    """A TCP port that is free, as are those 2 and 3 above it."""
-    while True:
-        with ExitStack() as stack:
-            try:
-                first = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
-                base = int(first.getsockname()[1])
-                for step in (2, 3):
-                    stack.enter_context(socket.create_server(("127.0.0.1", base + step)))
-            except (OSError, OverflowError):
-                continue
-            return base
-
-
-def free_udp_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """A port for SERIAL0 whose neighbours for SERIAL1 and SERIAL2 are free, too."""
+    return free_port(2, 3)
 
 
 def command(program: str) -> list[str]:
@@ -64,7 +50,7 @@ def environment() -> dict[str, str]:
 @contextmanager
 def running(folder: Path, *words: str, program: str = "arducopter") -> Iterator[Running]:
     """The executable, started in ``folder``, until the block is left; it has waited for its first client."""
-    base, sticks = free_base(), free_udp_port()
+    base, sticks = free_base(), free_port()
     ports = ("--base-port", str(base), "--rc-in-port", str(sticks))
     process = subprocess.Popen(
         [*command(program), *ports, *words], cwd=folder, env=environment(), text=True,

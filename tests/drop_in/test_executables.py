@@ -15,7 +15,8 @@ import pytest
 from sitl.client import Client
 from sitl.drop_in.storage import Storage
 from sitl.simulation import Core
-from tests.drop_in.executable import command, environment, free_base, free_udp_port, running
+from tests.drop_in.executable import command, environment, free_base, running
+from tests.ports import free_port
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*clock cannot be held")]
 FAST = ("--speedup", "20")
@@ -110,7 +111,7 @@ def test_a_serial_port_speaks_first_where_it_is_told_to(core: Core, tmp_path: Pa
             f"--serial1=tcpclient:127.0.0.1:{station.getsockname()[1]}",
             "--serial2=none", "--serial5=uart:/dev/ttyS9",
         ]  # fmt: skip
-        words = [*command("ardurover"), "--base-port", str(free_base()), "--rc-in-port", str(free_udp_port())]
+        words = [*command("ardurover"), "--base-port", str(free_base()), "--rc-in-port", str(free_port())]
         with subprocess.Popen(
             [*words, *devices], cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, text=True
         ) as process:
@@ -125,7 +126,7 @@ def test_a_serial_port_speaks_first_where_it_is_told_to(core: Core, tmp_path: Pa
 
 
 def test_it_ends_when_its_parent_does(core: Core, tmp_path: Path) -> None:
-    ports = ["--base-port", str(free_base()), "--rc-in-port", str(free_udp_port())]
+    ports = ["--base-port", str(free_base()), "--rc-in-port", str(free_port())]
     parent = (
         "import subprocess, sys\n"
         f"child = subprocess.Popen({[*command('arducopter'), *ports]!r}, stdout=subprocess.PIPE, text=True)\n"
@@ -149,7 +150,7 @@ def test_it_ends_when_its_parent_does(core: Core, tmp_path: Path) -> None:
     ],
 )
 def test_a_bad_option_is_told(core: Core, tmp_path: Path, words: tuple[str, ...], says: str) -> None:
-    ports = ("--base-port", str(free_base()), "--rc-in-port", str(free_udp_port()))
+    ports = ("--base-port", str(free_base()), "--rc-in-port", str(free_port()))
     done = subprocess.run(
         [*command("arducopter"), *ports, *words], cwd=tmp_path, env=environment(), capture_output=True, text=True
     )

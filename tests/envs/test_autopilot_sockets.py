@@ -25,6 +25,7 @@ from sitl.envs.robots import autopilot
 from sitl.envs.robots.in_process import InProcessVehicles
 from sitl.errors import LinkLostError
 from tests.envs import lockstep_vehicle
+from tests.ports import free_port
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"
 
@@ -43,7 +44,7 @@ def compare(here, there, steps):
 
 
 def test_a_rover_by_udp_in_lockstep_is_the_one_in_process(tmp_path):
-    port = lockstep_vehicle.free_port()
+    port = free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):
         here = gym.make(ROVER, observation="scan+pose")
@@ -88,7 +89,7 @@ class Lossy:
 
 def test_lost_datagrams_change_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr("sitl.client.connection._REPEAT_S", 0.05)
-    port = lockstep_vehicle.free_port()
+    port = free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):
         here = gym.make(ROVER, observation="scan+pose")
@@ -160,14 +161,14 @@ def test_an_episode_is_recorded_logged_and_replayed_byte_for_byte(tmp_path):
 
 
 def test_nobody_there_is_said_at_once():
-    env = gym.make(ROVER, connection=f"udp:127.0.0.1:{lockstep_vehicle.free_port()}", patience=0.6)
+    env = gym.make(ROVER, connection=f"udp:127.0.0.1:{free_port()}", patience=0.6)
     with pytest.raises(LinkLostError, match=r"no vehicle answers within 0\.6 s"):
         env.reset()
 
 
 def test_a_vehicle_that_does_not_answer_is_not_waited_for_for_ever():
     """One that talks, and says nothing to what it is asked."""
-    port = lockstep_vehicle.free_port()
+    port = free_port()
     stop = threading.Event()
 
     def talk():

@@ -18,6 +18,8 @@ from sitl.envs import ids
 
 NAVIGATE = "sitl/Navigate-v0"
 IDS = [*ids.PAPER, *ids.FIRST, *ids.NEW, NAVIGATE, "sitl/Navigate-v1"]
+OTHERS = [name for name in IDS if name not in ids.NEW]
+"""``test_places_tasks.py`` plays those of ``NEW`` again, alone and in vectors, for longer."""
 STEPS = 4
 pytestmark = pytest.mark.filterwarnings("ignore:.*Box.*(infinity|bound|symmetric|normalized)", "ignore:.*render")
 
@@ -37,8 +39,9 @@ def played(env, seed, actions):
     return [env.reset(seed=seed), *(env.step(action) for action in actions)]
 
 
-@pytest.fixture(params=IDS)
+@pytest.fixture(params=IDS, scope="module")
 def env(request):
+    """One for all tests of an id: its vehicles have booted once with a seed."""
     found = gym.make(request.param)
     yield found
     found.close()
@@ -62,6 +65,7 @@ def test_stable_baselines3s_checker_takes_it(env):
     checker.check_env(env, warn=False)  # as gymnasium.make gives it: its wrappers, too
 
 
+@pytest.mark.parametrize("env", OTHERS, indirect=True)
 def test_it_repeats_bit_for_bit_and_pickles_in_the_middle(env):
     actions = actions_of(env)
     first = played(env, 3, actions)
@@ -72,6 +76,7 @@ def test_it_repeats_bit_for_bit_and_pickles_in_the_middle(env):
     other.close()
 
 
+@pytest.mark.parametrize("env", OTHERS, indirect=True)
 def test_a_vector_gives_what_single_ones_give(env):
     vector = gym.make_vec(env.unwrapped.spec.id, num_envs=2)
     rows = [actions_of(env, seed) for seed in (1, 2)]

@@ -17,6 +17,7 @@ from sitl.errors import NotReadyError
 from tests.envs import lockstep_vehicle
 from tests.envs.test_autopilot_sockets import Lossy
 from tests.envs.vector_equality import same
+from tests.ports import free_port
 
 TOLD = ["acceleration", "battery", "wind", "range_finder"]
 COPTER = "sitl/CopterForest-v0"
@@ -82,7 +83,7 @@ def test_one_vehicle_with_a_link_of_its_own_tells_the_same(monkeypatch):
 
 def test_by_udp_in_lockstep_with_lost_datagrams_it_is_the_same(tmp_path, monkeypatch):
     monkeypatch.setattr("sitl.client.connection._REPEAT_S", 0.05)
-    port = lockstep_vehicle.free_port()
+    port = free_port()
     options = ("--lockstep", "--out", f"udp:127.0.0.1:{port}")
     with lockstep_vehicle.vehicle(tmp_path, "rover", "maze_erlerover", *options):
         here = gym.make("sitl/Navigate-v1", **ROVER, boots=1)  # the vehicle over there has booted with seed 0

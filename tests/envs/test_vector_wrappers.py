@@ -24,6 +24,7 @@ CASES = [
     ("FilterObservation", {"filter_keys": ["velocity"]}, "dict"), ("FlattenObservation", {}, "dict"),
     ("RecordEpisodeStatistics", {}, "dict"), ("GrayscaleObservation", {}, "camera"),
 ]  # fmt: skip
+SMALL = {"num_envs": 2, "max_episode_steps": 4, "boots": 1}
 OBSERVATIONS = {"box": {}, "dict": {"observation": "goal+velocity"}, "camera": {"observation": "camera"}}
 
 
@@ -51,7 +52,7 @@ def without_wall_time(part):
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
 @pytest.mark.parametrize(("name", "given", "seen"), CASES)
 def test_wrappers_take_our_vectors_as_gymnasiums(name, given, seen, mode):
-    wrapper, options = getattr(wrappers, name), {"num_envs": 2, "max_episode_steps": 4, **OBSERVATIONS[seen]}
+    wrapper, options = getattr(wrappers, name), {**SMALL, **OBSERVATIONS[seen]}
     ours = gym.make_vec(HOVER, autoreset_mode=mode, **options)
     theirs = gym.make_vec(HOVER, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options)
     assert same(played(ours, wrapper, given), played(theirs, wrapper, given))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,11 +34,38 @@ class Item(NamedTuple):
     frame: int = c.RELATIVE_INT
 
 
-def _is_finite(value: Any) -> bool:
-    """Whether all numbers are, within nested records, too."""
-    if value.dtype.names:
-        return all(_is_finite(value[name]) for name in value.dtype.names)
-    return value.dtype.kind != "f" or bool(np.isfinite(value).all())
+@cache
+def _floats(dtype: np.dtype[Any]) -> dict[str, np.ndarray]:
+    """Type of number -> where a record has such numbers, within nested records, too, counted in their size."""
+    found: dict[str, list[int]] = {}
+
+    def look(at: np.dtype[Any], offset: int) -> None:
+        if at.subdtype is not None:
+            item, shape = at.subdtype
+            for k in range(math.prod(shape)):
+                look(item, offset + k * item.itemsize)
+        elif at.names:
+            for name in at.names:
+                look(at.fields[name][0], offset + at.fields[name][1])
+        elif at.kind == "f":
+            assert offset % at.itemsize == 0
+            found.setdefault(at.str, []).append(offset // at.itemsize)
+
+    look(dtype, 0)
+    return {code: np.array(places) for code, places in found.items()}
+
+
+def is_finite(value: Any) -> bool:
+    """Whether all numbers are, of a record, an array or a row of records, within nested records, too."""
+    if not value.dtype.names:
+        return value.dtype.kind != "f" or bool(np.isfinite(value).all())
+    if value.ndim:
+        return all(map(is_finite, value))
+    memory = value.tobytes()
+    return all(
+        np.isfinite(np.frombuffer(memory, code, len(memory) // np.dtype(code).itemsize)[places]).all()
+        for code, places in _floats(value.dtype).items()
+    )
 
 
 class Witness(Pilot):
@@ -89,9 +117,8 @@ class Witness(Pilot):
         found = [] if np.isfinite(self.track[-1]).all() else ["truth"]
         for name in names:
             record = self.simulation.fleet["autopilot"][name][0]
-            for field in record.dtype.names:
-                if not _is_finite(record[field]):
-                    found.append(f"{name}.{field}")
+            if not is_finite(record):
+                found += [f"{name}.{field}" for field in record.dtype.names if not is_finite(record[field])]
         return found
 
     # ------------------------------------------------------------------ commands

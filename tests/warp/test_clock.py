@@ -2,7 +2,7 @@
 """Plain Python programs on a warped clock: every way to wait takes the simulated time it should.
 
 Waits may end late on a busy machine, never early; so lower bounds are tight and hold at every try, upper
-bounds are wide and may be missed twice.
+bounds are wide and may be missed many times.
 """
 
 import json
@@ -102,9 +102,11 @@ print(json.dumps([time.monotonic() - start]))
 
 def test_whole_run_agrees_with_the_simulator():
     def check() -> None:
-        code = "import time; [time.sleep(0.1) for _ in range(100)]"
-        _, simulated = run([sys.executable, "-c", code], SPEEDUP)
-        assert 10.0 <= simulated <= 13.0
+        code = "import time; t = time.monotonic(); [time.sleep(0.1) for _ in range(100)]; print(time.monotonic() - t)"
+        said, simulated = run([sys.executable, "-c", code], SPEEDUP)
+        lasted = float(said)
+        assert 10.0 <= lasted <= simulated
+        assert lasted <= 13.0 and simulated <= 20.0  # with the start of Python and its end
 
     patiently(check)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,11 @@ class Table:
         for p in self.with_effect:
             params[p.name] = stored(p, p.default)
 
+    @cached_property
+    def fixed(self) -> dict[str, float]:
+        """Defaults of those without effect, as the firmware keeps them: their values, until they are set."""
+        return {p.name: stored(p, p.default) for p in self.parameters if not p.has_effect}
+
     def listed(self, values: Values) -> tuple[Parameter, ...]:
         """Those in the list that clients get: groups that are switched off (BATT2_ while BATT2_MONITOR is 0) are not.
 
@@ -123,10 +129,9 @@ class Values:
 
     def __getitem__(self, name: str) -> float:
         value = self.kept.get(name)
-        if value is not None:
-            return value
-        parameter = self.table[name]
-        return float(self._record[name]) if parameter.has_effect else stored(parameter, parameter.default)
+        if value is None:
+            value = self.table.fixed.get(name)
+        return float(self._record[self.table[name].name]) if value is None else value
 
     def __setitem__(self, name: str, value: float) -> None:
         """Set one, as the firmware keeps it."""

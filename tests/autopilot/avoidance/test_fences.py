@@ -29,6 +29,7 @@ AREAS = fence(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.floats(0.0, 2.0 * math.pi), st.floats(0.5, 8.0), st.sampled_from([STOP, SLIDE]))
 def test_no_fence_is_crossed(course: float, speed: float, how: Braking) -> None:

@@ -134,6 +134,7 @@ FAULT = st.tuples(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(FAULT, min_size=1, max_size=6))
 @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 def test_whatever_the_sensors_say_the_estimate_is_finite(tick, faults) -> None:

@@ -3,7 +3,6 @@
 
 import asyncio
 import math
-import socket
 import sys
 from contextlib import aclosing
 
@@ -15,6 +14,8 @@ except ImportError:
     import mavsdk
     from mavsdk.mission_raw import MissionItem
     from mavsdk.offboard import OffboardError, VelocityNedYaw
+
+from tests.ports import free_port
 
 
 class Failed(Exception):
@@ -33,10 +34,7 @@ async def until(what, stream, condition, seconds=30.0):
 
 
 async def main() -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    drone = mavsdk.System(port=port)
+    drone = mavsdk.System(port=free_port())
     await drone.connect(system_address=sys.argv[1])
     action, telemetry, offboard, mission = drone.action, drone.telemetry, drone.offboard, drone.mission_raw
     await until("connected", drone.core.connection_state(), lambda s: s.is_connected)

@@ -3,7 +3,6 @@
 
 import asyncio
 import math
-import socket
 import sys
 from contextlib import aclosing
 
@@ -17,6 +16,8 @@ except ImportError:
     from mavsdk.action import ActionError
     from mavsdk.mission_raw import MissionItem
     from mavsdk.offboard import PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
+
+from tests.ports import free_port
 
 NORTH_10_M = 9e-5
 
@@ -37,10 +38,7 @@ async def until(what, stream, condition, seconds=30.0):
 
 
 async def main() -> None:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    rover = mavsdk.System(port=port)
+    rover = mavsdk.System(port=free_port())
     await rover.connect(system_address=sys.argv[1])
     action, telemetry, offboard, mission = rover.action, rover.telemetry, rover.offboard, rover.mission_raw
     await until("connected", rover.core.connection_state(), lambda s: s.is_connected)
