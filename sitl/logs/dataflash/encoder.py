@@ -137,6 +137,7 @@ class LogEncoder:
         for k in range(max(self._seen, count - EVENT_RING), count):
             at = k % EVENT_RING
             code, time_us = int(ring.code[at]), int(ring.time_us[at])
+            self._last_us = max(self._last_us, time_us)  # also of what is not logged: nothing after it is earlier
             rows = events[code].rows(v, float(ring.a[at]), float(ring.b[at])) if code in events else ()
             for name, numbers in rows:
                 self.note(time_us, partial(self.events.pack, name), *numbers)

@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 from pymavlink import DFReader
 
+from sitl.autopilot.estimation.events import EKF_STOPPED_GPS
+from sitl.autopilot.events import emit
+from sitl.autopilot.terrain.ground import TERRAIN_LEFT
 from sitl.logs.dataflash import formats
 from sitl.logs.dataflash.common import EVENT_MESSAGES
-from sitl.logs.dataflash.encoder import EVERY_BIT
+from sitl.logs.dataflash.encoder import EVERY_BIT, LogEncoder
 from sitl.logs.dataflash.formats import Field, Message
 from sitl.logs.kind import logs_of
 from sitl.logs.tlog import LogError
@@ -288,3 +291,14 @@ def test_two_filters_are_logged_while_there_are_two(tmp_path: Path) -> None:
     first, second = log["XKF2"][-2:]
     assert pytest.approx((0.0, 0.5), abs=0.15) == (first.AZ, second.AZ), "each learns the bias of its own sensor"
     assert {m.PI for m in log["XKF4"]} == {0} and {m.MI for m in log["XKFS"]} == {0}
+
+
+def test_what_is_logged_behind_a_silent_event_is_no_earlier() -> None:
+    simulation = Simulation("erle_copter", estimator="truth")
+    encoder = LogEncoder(simulation, 0, 0, "test")
+    encoder.begin(0)
+    emit(simulation.v.autopilot.events, 2000, TERRAIN_LEFT, 0.0, 0.0)
+    emit(simulation.v.autopilot.events, 1000, EKF_STOPPED_GPS, 0.0, 0.0)
+    encoder.read_events()
+    ((_, time_us, data),) = encoder._notes
+    assert time_us == 2000 and data == encoder.events.pack("EV", 2000, 19)

@@ -10,6 +10,7 @@ import pytest
 from sitl.autopilot.copter.modes import payload_place as law
 from sitl.autopilot.copter.modes.payload_place import PAYLOAD_PLACE_DID
 from sitl.autopilot.navigation.state import COMMAND_ARRIVED
+from sitl.autopilot.notes import Text
 from tests.autopilot.copter.steady_copter import codes, wait
 
 
@@ -164,5 +165,6 @@ def test_a_landed_vehicle_lets_go(placing: Any) -> None:
 
 
 def test_texts() -> None:
-    assert law.text(law.PLACED, 0.45) == (6, "PayloadPlace: payload release thrust threshold: 0.450000")
-    assert law.text(law.AT_LIMIT, 0.0) == (4, "PayloadPlace: Reached maximum descent")
+    notes = PAYLOAD_PLACE_DID.notes
+    assert notes(None, law.PLACED, 0.45) == [Text(6, "PayloadPlace: payload release thrust threshold: 0.450000")]
+    assert notes(None, law.AT_LIMIT, 0.0) == [Text(4, "PayloadPlace: Reached maximum descent")]
