@@ -71,7 +71,7 @@ def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> N
     with socket.create_connection(("127.0.0.1", port), timeout=60) as client:
         assert client.recv(1)[0] in (0xFD, 0xFE), "the first byte is a MAVLink frame's"
         run.send_signal(number)
-    out, err = run.communicate(timeout=120)
+        out, err = run.communicate(timeout=120)  # a client that left first, with bytes unread, would be told of
     assert (run.returncode, err) == (0, ""), out
     flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
 
