@@ -25,6 +25,8 @@ CUSTOM_MODE_ENABLED = 1
 """MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
 INTERVAL_US = 100_000
 """Of position, attitude and scan after ``prepare``."""
+_LEAST_US = 20_000
+"""An interval that a vehicle may lengthen to twice of it, whatever is asked for [us]."""
 ALIGN_US = 6_000_000
 """An episode begins at a whole multiple of it since boot, so that messages fall due at the ends of all usual steps."""
 _SECOND, _TENTH = 1_000_000, 100_000
@@ -65,8 +67,8 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     """Ask for position, attitude, scan and what else is wanted at an interval.
 
     A vehicle that knows nothing of whole scans (a real one) is asked for OBSTACLE_DISTANCE: centimetres, 72 sectors.
-    One whose clock does not go exactly as far as it is told to may send at longer intervals, up to twice as long: an
-    ArduPilot with 50 loops a second sends a message each 25 ms, and not each 20 ms.
+    One whose clock does not go exactly as far as it is told to may send at longer intervals, up to twice as long or
+    40 ms: an ArduPilot with 50 loops a second sends a message each 25 ms, and not each 20 ms.
 
     Raises:
         NotReadyError: the vehicle does not send one of them so often.
@@ -75,9 +77,11 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink and telemetry.scans_used else ()
     if link.simulation is not None:
         link.simulation.bridge.is_stepped = True
-    intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
+    intervals = [interval_us] if link.is_exact else _longer_ones(interval_us)
     for kind in (POSITION, ATTITUDE, *scan, *telemetry.wanted):
-        if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):
+        taken = next((us for us in intervals if link.command("SET_MESSAGE_INTERVAL", kind.id, us) == ACCEPTED), None)
+        if taken is not None:
+            intervals = intervals[intervals.index(taken) :]  # its loop is the same for the others
             continue
         result = None
         if kind is SCAN:
@@ -88,6 +92,12 @@ def set_intervals(link: Connection, interval_us: int) -> None:
             raise NotReadyError(
                 f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms{why}"
             )
+
+
+def _longer_ones(interval_us: int) -> list[int]:
+    """An interval, and those that do for a vehicle which cannot send so often [us]."""
+    base = max(interval_us, _LEAST_US)
+    return sorted({interval_us, *(base * k // 4 for k in (4, 5, 6, 8))})
 
 
 def request_again(link: Connection) -> None:
