@@ -143,9 +143,11 @@ class ByteSocket:
             LinkLostError: the connection is closed.
         """
         parts: list[tuple[bytes, tuple[str, int] | None]] = []
-        while self.wait(0.0):
+        while not self._stream or self.wait(0.0):  # a socket for datagrams does not block
             try:
                 data, address = self._socket.recvfrom(1 << 16)
+            except BlockingIOError:
+                break
             except OSError:
                 if self._stream:
                     data, address = b"", None

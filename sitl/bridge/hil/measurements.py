@@ -148,7 +148,7 @@ class Measurements:
     def __init__(self, fleet: np.ndarray[Any, Any], index: int, v: Any, sender: Sender | None = None) -> None:
         reader = RecordReader(fleet, index)
         self.sender = sender or Sender(*PHYSICS)
-        self._imu = sensor.SensorWriter(reader)
+        self.imu = sensor.SensorWriter(reader)
         self._gps = GpsWriter(reader, v.physics.airframe)
         sources: list[Source] = [
             _Plain(GPS_KIND, self._gps),
@@ -160,7 +160,9 @@ class Measurements:
         ]
         if hasattr(v.physics, "ground"):
             sources.append(_Plain(truth.HITS_KIND, truth.HitWriter(reader, "physics.ground", truth.GROUND)))
-        self._read = reader.fields(*(mark for source in sources for mark in source.marks))
+        self.marks = tuple(mark for source in sources for mark in source.marks)
+        """Fields of the record that change when there is more to tell than HIL_SENSOR."""
+        self._read = reader.fields(*self.marks)
         self._slots: list[tuple[slice, Source]] = []
         at = 0
         for source in sources:
@@ -175,22 +177,22 @@ class Measurements:
 
     @is_foreign.setter
     def is_foreign(self, value: bool) -> None:
-        self._gps.is_quiet = self._imu.is_dithered = value
+        self._gps.is_quiet = self.imu.is_dithered = value
 
     def everything(self) -> bytes:
         """All that is known now, as new: for an autopilot that has just come."""
         self._seen = self._read()
         frames = [self._frames(source) for _, source in self._slots]
-        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self._imu.payload(True))
+        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self.imu.payload(True))
 
     def tick(self) -> bytes:
         """What is new since the last call."""
         marks = self._read()
         if marks == self._seen:
-            return self.sender.frame(sensor.SENSOR_KIND, self._imu.payload())
+            return self.sender.frame(sensor.SENSOR_KIND, self.imu.payload())
         seen, self._seen = self._seen, marks
         frames = [self._frames(source) for place, source in self._slots if marks[place] != seen[place]]
-        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self._imu.payload())
+        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self.imu.payload())
 
     def _frames(self, source: Source) -> bytes:
         return b"".join([self.sender.frame(kind, payload) for kind, payload in source.messages()])
