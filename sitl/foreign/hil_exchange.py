@@ -20,7 +20,6 @@ from ..bridge.wire.port import PAYLOAD_BYTES
 from ..bridge.wire.tables import PAYLOAD_MAX
 from ..core.array_kernels import Kernel
 from ..core.border import Actuators, Sensors
-from ..core.constants import TICK_US
 from ..core.kernels import law
 from ..core.memory import bytes_at, call_unit, ints_at, record_at
 from ..core.records import Floats, Ints, Record, array
@@ -84,6 +83,9 @@ class HilState(Message, name="HIL_STATE_QUATERNION"):
     xacc: int
     yacc: int
     zacc: int
+
+
+HIL_SENSOR, HIL_STATE_QUATERNION, ANSWER = HilSensor.kind.id, HilState.kind.id, HilControls.kind.id
 
 
 class HilExchange(Record):
@@ -208,9 +210,6 @@ def write_truth(x: HilExchange, at: int, time_us: int) -> int:
     return seal(bytes_at(at, FRAME_MAX), 2, HIL_STATE_QUATERNION, sender)
 
 
-HIL_SENSOR, HIL_STATE_QUATERNION, ANSWER = HilSensor.kind.id, HilState.kind.id, HilControls.kind.id
-
-
 @law
 def tell(x: HilExchange) -> int:
     """Write a tick that has nothing else to tell, the truth before it where that is due; gives the length."""
@@ -272,10 +271,4 @@ def converse(exchange: int) -> int:
     return IS_DONE
 
 
-@law
-def tell_now(exchange: int) -> int:
-    """``tell`` of the ``HilExchange`` at an address."""
-    return tell(record_at(HilExchange, exchange))
-
-
-conversed, told = Kernel(converse, lets_others_run=True), Kernel(tell_now)
+conversed = Kernel(converse, lets_others_run=True)

@@ -37,7 +37,9 @@ def test_short_and_shortened_options() -> None:
     assert parse(["--instance", "1", "--base-port", "6000", "--rc-in-port", "7000"]).base_port == 6000
     assert parse(["--base-port", "6000", "--instance", "1"]).base_port == 6000
     assert parse(["--instance", "1", "--base-port", "5760"]).base_port == 5760
-    assert parse(["--base-port", "5760", "--instance", "1"]).base_port == 5770  # as the real one: it has its usual number
+    assert (
+        parse(["--base-port", "5760", "--instance", "1"]).base_port == 5770
+    )  # as the real one: it has its usual number
     assert parse(["--instance", "1", "--rc-in-port", "7000"]).sticks_port == 7000
     assert parse(["--inst", "3"]).base_port == 5790
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from sitl.errors import OptionError
+from sitl.client.connection import RealTime
+from sitl.errors import LinkLostError, OptionError
 from sitl.missions.manoeuvres import __main__ as manoeuvres
 from sitl.missions.manoeuvres import executable, table
 from sitl.missions.manoeuvres.table import Row
@@ -120,7 +121,7 @@ def test_the_port_of_an_instance_is_the_one_that_its_executable_is_told(monkeypa
     monkeypatch.setattr(executable.subprocess, "Popen", Process)
     monkeypatch.setattr(executable, "_connected", connected)
     for instance in (0, 3):
-        with pytest.raises(LinkLostError), executable.started(tmp_path, "copter", HOME, 1, {}, instance):
+        with pytest.raises(LinkLostError), executable.started(tmp_path, "copter", manoeuvres.HOME, 1, {}, instance):
             pass
     assert reached == [int(words[words.index("--base-port") + 1]) for words in said] == [5760, 5790]
     assert [words[2] for words in said] == ["-I0", "-I3"]

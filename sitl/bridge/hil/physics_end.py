@@ -121,7 +121,9 @@ class PhysicsEnd:
     @property
     def is_steady(self) -> bool:
         """Whether a PX4 answers each tick, and nothing but the next answer is waited for."""
-        return self._is_foreign and self.clock.is_steady and not (self.is_starting or self._sticks or self._splitter.rest)
+        return (
+            self._is_foreign and self.clock.is_steady and not (self.is_starting or self._sticks or self._splitter.rest)
+        )
 
     @property
     def truth_due(self) -> tuple[int, int]:

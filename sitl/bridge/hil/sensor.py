@@ -71,9 +71,7 @@ class SensorWriter:
             altitude = pressure_altitude(pressure)
             updated |= BARO_UPDATED
         self.told = mag, baro, altitude
-        return SENSOR_KIND.pack(
-            t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, altitude, temperature, updated, 0
-        )
+        return SENSOR_KIND.pack(t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, altitude, temperature, updated, 0)
 
 
 class SensorReader:

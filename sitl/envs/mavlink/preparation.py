@@ -11,10 +11,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from sitl.client.commands import command_number
 from sitl.client.connection import TRIES, Connection
 from sitl.client.endpoint import ACCEPTED
 from sitl.core.sums import lengths
-from sitl.errors import NotASimulatorError, NotReadyError
+from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
 from .reports import LANDED
 from .telemetry import ATTITUDE, GLOBAL, LANDED_STATE, ORIGIN, POSITION, SCAN, SECTORS
@@ -23,6 +24,7 @@ FORCE = 21196
 """Second parameter of arming: even in the air."""
 CUSTOM_MODE_ENABLED = 1
 """MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
+_REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 INTERVAL_US = 100_000
 """Of position, attitude and scan after ``prepare``."""
 _LEAST_US = 20_000
@@ -46,6 +48,7 @@ def reboot(link: Connection) -> None:
 
     Raises:
         NotReadyError: it refuses.
+        LinkLostError: it does not come back.
     """
     link.command("COMPONENT_ARM_DISARM", arm=0, force=FORCE)
     name = {"target_system": link.inbox.system, "target_component": 1, "param_id": LEARNED.encode()}
@@ -56,10 +59,18 @@ def reboot(link: Connection) -> None:
         link.inbox.was_rebooted = True
     elif link.inbox.learned is not None:
         link.endpoint.send("PARAM_SET", param_value=link.inbox.learned, param_type=_REAL_4, **name)
-    result = link.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
+    link.inbox.acks.pop(_REBOOT, None)
+    try:
+        result = link.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
+        if result == ACCEPTED:
+            link.pause(0 if link.is_exact else 2 * _SECOND)
+    except LinkLostError:  # an ArduPilot's simulator closes its TCP port; its last word may be the answer
+        answer = link.inbox.acks.get(_REBOOT)
+        if answer is None or not link.reopen():
+            raise
+        result = int(answer.result)
     if result != ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses to reboot (MAV_RESULT {result}), so it cannot be reset")
-    link.pause(0 if link.is_exact else 2 * _SECOND)
     link.inbox.forget()
 
 
