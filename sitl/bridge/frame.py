@@ -69,7 +69,8 @@ class Splitter:
     """
 
     def __init__(self) -> None:
-        self._rest = b""
+        self.rest = b""
+        """The beginning of a frame that is not whole yet."""
         self.bad_checksums = 0
 
     def feed(self, data: bytes) -> list[Frame]:
@@ -78,7 +79,7 @@ class Splitter:
 
     def cut(self, data: bytes) -> list[tuple[Any, ...]]:
         """The same as plain tuples, with the fields of a ``Frame``: quicker."""
-        buffer = self._rest + data if self._rest else bytes(data)
+        buffer = self.rest + data if self.rest else bytes(data)
         frames: list[tuple[Any, ...]] = []
         at, end = 0, len(buffer)
         while at < end:
@@ -113,7 +114,7 @@ class Splitter:
             payload = buffer[start : start + min(size, kind.size)]
             frames.append((kind, payload, sequence, system, component, version, buffer[at:after]))
             at = after
-        self._rest = buffer[at:]
+        self.rest = buffer[at:]
         return frames
 
     @staticmethod

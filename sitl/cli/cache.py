@@ -28,6 +28,7 @@ KERNEL_MODULES = (
     "sitl.agents.ways",
     "sitl.core.elementary_kernels",
     "sitl.foreign.exchange",
+    "sitl.foreign.hil_exchange",
     "sitl.envs.actions",
     "sitl.envs.costs",
     "sitl.envs.free_ways",

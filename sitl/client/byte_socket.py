@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import select
 import socket
+import time
 from typing import Protocol
 
 from ..errors import LinkLostError, OptionError
@@ -17,6 +18,8 @@ FORMS = (
 )
 KINDS = ("udp", "udpin", "udpout", "tcp")
 _BUFFER = 1 << 21
+_AGAIN_S = 0.1
+"""Between two tries to connect again [s]."""
 
 
 class ByteStream(Protocol):
@@ -73,26 +76,49 @@ class ByteSocket:
         self.peer: tuple[str, int] | None = None
         """Where datagrams go to: the first that was heard, until ``settle``."""
         self._is_settled = False
-        address = (host, int(port))
+        self._address, self._kind = (host, int(port)), kind
+        self._open()
+        self._unsent: list[bytes] = []
+
+    def _open(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM if self._stream else socket.SOCK_DGRAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
         try:
             if self._stream:
                 self._socket.settimeout(5.0)
-                self._socket.connect(address)
+                self._socket.connect(self._address)
                 from ..bridge.links.tcp import refuse_echo  # here: only TCP needs it
 
                 refuse_echo(self._socket)
                 self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            elif kind == "udpout":
-                self.peer = (socket.gethostbyname(host), int(port))
+            elif self._kind == "udpout":
+                self.peer = (socket.gethostbyname(self._address[0]), self._address[1])
             else:
-                self._socket.bind(address)
+                self._socket.bind(self._address)
         except OSError as error:
             self._socket.close()
-            raise LinkLostError(f"connection {text}: {error.strerror or error}") from None
+            raise LinkLostError(f"connection {self.name}: {error.strerror or error}") from None
         self._socket.setblocking(self._stream)
-        self._unsent: list[bytes] = []
+
+    def reopen(self, seconds: float) -> bool:
+        """Connect again over TCP, trying so long [s of wall time]; False: this is another kind of connection.
+
+        Raises:
+            LinkLostError: nobody listens there.
+        """
+        if not self._stream:
+            return False
+        end = time.monotonic() + seconds
+        self.close()
+        while True:
+            try:
+                self._open()
+            except LinkLostError:
+                if time.monotonic() >= end:
+                    raise
+                time.sleep(_AGAIN_S)
+            else:
+                return True
 
     def send(self, data: bytes) -> None:
         """Keep a frame for ``flush``."""
@@ -143,9 +169,11 @@ class ByteSocket:
             LinkLostError: the connection is closed.
         """
         parts: list[tuple[bytes, tuple[str, int] | None]] = []
-        while self.wait(0.0):
+        while not self._stream or self.wait(0.0):  # a socket for datagrams does not block
             try:
                 data, address = self._socket.recvfrom(1 << 16)
+            except BlockingIOError:
+                break
             except OSError:
                 if self._stream:
                     data, address = b"", None

@@ -119,6 +119,15 @@ class Connection:
         """The same for a vehicle whose clock may not be known yet."""
         self.run(us)
 
+    def reopen(self) -> bool:
+        """Connect again to a vehicle that has closed the connection to boot, and listen until it is heard; False: this
+        kind of connection cannot.
+
+        Raises:
+            LinkLostError: it is not there any more.
+        """
+        return False
+
     def listen(self, us: int) -> None:
         """Send what is kept and take in what comes within this wall time [us]. In process, nobody is waited for."""
         self.run(0)
@@ -299,6 +308,19 @@ class Remote(Connection):
                 self.stream.write(data)
                 sent = now
             self.stream.wait(_REPEAT_S)
+
+    def reopen(self) -> bool:
+        """See ``Connection``: over TCP."""
+        stream, end = self.stream, time.monotonic() + self.patience
+        while isinstance(stream, ByteSocket) and stream.reopen(max(end - time.monotonic(), 0.0)):
+            try:
+                self.find()
+            except LinkLostError:  # one that is still about to close takes connections, too
+                if time.monotonic() >= end:
+                    raise
+            else:
+                return True
+        return False
 
     def find(self) -> None:
         """Listen until a HEARTBEAT of an autopilot says where the vehicle is; ask for one meanwhile.

@@ -44,7 +44,7 @@ HELP = """options (those of ArduPilot's simulator):
   -O, --home LAT,LON,ALT,HEADING
                          start (degrees, degrees, metres, degrees)
   -s, --speedup K        simulated seconds a second (0: as fast as it goes)
-  -I, --instance N       adds 10 N to all ports
+  -I, --instance N       adds 10 N to all ports that no option gives
   --defaults FILE,...    parameters that stand unless a client has set others
   --serial0 DEVICE ... --serial9 DEVICE
                          tcp:PORT[:wait], tcpclient:HOST:PORT, udpclient:HOST:PORT, udp:HOST:PORT or none; a PORT
@@ -118,7 +118,6 @@ def parse(words: Sequence[str]) -> CommandLine:
             devices[int(name[6:])] = value
         elif name.startswith("uart"):
             devices[_UARTS[name[4:]]] = value
-    step = PORTS_AN_INSTANCE * whole(given, "instance", 0, 5000)
     without = [f"--{name}" for name in given if name in (*_NO_EFFECT, *_NO_EFFECT_WITH_VALUE)]
     return CommandLine(
         help="help" in given,
@@ -128,14 +127,22 @@ def parse(words: Sequence[str]) -> CommandLine:
         speedup=number(given, "speedup") if "speedup" in given else None,
         defaults=tuple(defaults),
         devices=devices,
-        base_port=whole(given, "base-port", BASE_PORT) + step,
-        sticks_port=whole(given, "rc-in-port", STICKS_PORT + step),
-        physics=(given.get("sim-address", "127.0.0.1"), whole(given, "sim-port-out", PHYSICS_PORT + step)),
+        base_port=_port(given, "base-port", BASE_PORT),
+        sticks_port=_port(given, "rc-in-port", STICKS_PORT),
+        physics=(given.get("sim-address", "127.0.0.1"), _port(given, "sim-port-out", PHYSICS_PORT)),
         sysid=whole(given, "sysid", 1, 255) if "sysid" in given else None,
         address=given.get("listen", "127.0.0.1"),
         link_faults=LinkFaults.of_texts(link),
         without_effect=tuple(without),
     )
+
+
+def _port(given: dict[str, str], name: str, usual: int) -> int:
+    """A port; ``--instance`` moves only one that still has its usual number when it is read, as ArduPilot's does."""
+    step = PORTS_AN_INSTANCE * whole(given, "instance", 0, 5000)
+    port, names = whole(given, name, usual), list(given)
+    is_own = name in given and (port != usual or "instance" not in given or names.index(name) > names.index("instance"))
+    return port if is_own else port + step
 
 
 def home(text: str) -> Home:

@@ -12,8 +12,10 @@ from collections.abc import Callable
 from ..bridge.hil.physics_end import PhysicsEnd
 from ..core.constants import TICK_US
 from ..errors import OptionError
+from ..plants.json_link import wait_in_kernel
 from ..plants.local import LocalPlant
 from ..plants.physics_server import SimulatedPlant
+from .hil_ticks import HilTicks
 
 WAIT_S = 0.2
 _READ = 1 << 16
@@ -57,6 +59,7 @@ class HilHost:
     def attach(self, plant: LocalPlant) -> None:
         """Serve another plant from now on."""
         self.plant, self.end = plant, PhysicsEnd(SimulatedPlant(plant))
+        self._ticks = HilTicks(plant, self.end)
 
     @property
     def address(self) -> tuple[str, int]:
@@ -89,7 +92,7 @@ class HilHost:
             return self._is_due
         try:
             self._received = self._connection.recv(_READ)
-        except TimeoutError:
+        except (TimeoutError, BlockingIOError):
             return False
         except OSError:
             self._received = b""
@@ -103,13 +106,16 @@ class HilHost:
         except OSError:
             return
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        connection.settimeout(WAIT_S)
+        wait_in_kernel(connection, WAIT_S)
         self._connection = connection
         self.end.greet()
         self.boots += 1
 
     def step(self, until_us: int | None = None, answers: int = 1) -> None:
-        """Process the answer and step; or step without one, where that is due."""
+        """Process the answer and step; or step without one, where that is due.
+
+        With more ``answers`` it may wait for those that follow, and step for each of them up to the same time.
+        """
         if self._connection is None:
             return
         data, self._received = self._received, b""
@@ -126,6 +132,8 @@ class HilHost:
         if out:
             try:
                 self._connection.sendall(out)
+                if answers > 1 and until_us is not None and self._ticks.is_quick:
+                    self._received = self._ticks.go_on(self._connection, until_us, answers - 1)
             except OSError:
                 self._drop()
 

@@ -103,12 +103,12 @@ def start(
         home: where it stands.
         instance: number that gives its ports, and its MAV_SYS_ID less one.
         speedup: times the wall clock, by which it lengthens its time-outs.
-        params: under PX4's names, over those of ``parameters``.
+        params: under PX4's names, over those that suit the airframe (``model_of``, ``px4_airframe.receiver``).
         folder: see ``AutopilotProcess``.
         link: UDP ports of its only MAVLink: its own, and the one that it speaks to; None: those of its instance.
     """
     model, own = model_of(airframe)
-    values = {**own, **(params or {})}
+    values = {**px4_airframe.receiver(airframe), **own, **(params or {})}
     environment = {
         "PX4_SIM_MODEL": model,
         "PX4_SIMULATOR": SIMULATOR,

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from ..core.constants import GRAVITY, TICK_HZ
 from ..core.sums import products
-from ..vehicles import CopterAirframe
+from ..vehicles import Airframe, CopterAirframe
 from ..vehicles.figures.copter import THRUST_MOMENTUM
 
 AIR_DENSITY = 1.225
@@ -23,6 +23,9 @@ RATE_CROSSOVER, YAW_CROSSOVER = 25.0, 6.0
 """Where rate loops of roll and pitch, and of yaw, cross over [rad/s]. PX4 low-passes the yaw torque at 2 Hz."""
 FILTERS_S = 0.005
 """Delay of gyro filters and loop, for which D makes up together with the rotors' lag [s]."""
+LEAST_NOISE, MOST_NOISE = 0.1, 0.5
+"""Of EKF2_GPS_P_NOISE, the least error of a fix that its filter believes in: ArduPilot's value with RTK, and PX4's own
+[m]."""
 _NEAR_ZERO = 1e-3
 
 
@@ -71,6 +74,21 @@ def accelerations(airframe: CopterAirframe, rotor: Thrust) -> tuple[float, float
     both = max(scale(xs), scale(ys)) or 1.0
     ixx, iyy, izz = (float(x) for x in airframe.value("inertia"))
     return rotor.most / (both * ixx), rotor.most / (both * iyy), len(xs) * rotor.most * rotor.arm / izz
+
+
+def receiver(airframe: Airframe) -> dict[str, float]:
+    """Parameters that fit PX4 to what the receiver of an airframe is like: how late its fixes are, and how good.
+
+    Its height is not taken from a range-finder, as ArduPilot's with EK3_RNG_USE_HGT -1: by default PX4 does so below
+    1 m/s, and with each change learns another bias of the receiver's height. In a hover that is corrected all the time
+    its height went off by 0.7 m in 20 s.
+    """
+    error = math.hypot(float(airframe.value("gps_noise_horizontal")), float(airframe.value("gps_drift_horizontal")))
+    return {
+        "EKF2_RNG_CTRL": 0,
+        "SENS_GPS0_DELAY": round(1000.0 * float(airframe.value("gps_delay"))),
+        "EKF2_GPS_P_NOISE": min(max(error, LEAST_NOISE), MOST_NOISE),
+    }
 
 
 def parameters(airframe: CopterAirframe) -> dict[str, float]:

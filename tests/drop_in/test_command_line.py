@@ -34,7 +34,12 @@ def test_short_and_shortened_options() -> None:
     line = parse(["-w", "-M", "rover", "-O-35.363261,149.16523,584,353", "-s5", "-I", "2", "--uartA", "tcp:7", "-u"])
     assert (line.wipe, line.model, line.home, line.speedup, line.base_port) == (True, "rover", HOME, 5.0, 5780)
     assert line.devices[0] == "tcp:7" and line.without_effect == ()
-    assert parse(["--instance", "1", "--base-port", "6000", "--rc-in-port", "7000"]).base_port == 6010
+    assert parse(["--instance", "1", "--base-port", "6000", "--rc-in-port", "7000"]).base_port == 6000
+    assert parse(["--base-port", "6000", "--instance", "1"]).base_port == 6000
+    assert parse(["--instance", "1", "--base-port", "5760"]).base_port == 5760
+    assert (
+        parse(["--base-port", "5760", "--instance", "1"]).base_port == 5770
+    )  # as the real one: it has its usual number
     assert parse(["--instance", "1", "--rc-in-port", "7000"]).sticks_port == 7000
     assert parse(["--inst", "3"]).base_port == 5790
 

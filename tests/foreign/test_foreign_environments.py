@@ -77,6 +77,7 @@ def test_a_copter_of_another_maker_flies_the_office(program, request):
     assert robot.pose[0, 2] == pytest.approx(1.0, abs=0.3)
     assert np.hypot(*(robot.pose[0, :2] - before[:2])) > 0.2
     assert np.allclose(np.diff(times)[1:], np.diff(times)[1], atol=1e-6)
+    assert robot._states[0].interval_us == 5_000  # so old telemetry may be
     env.close()
 
 
@@ -197,7 +198,10 @@ class Refusing(Connection):
 def test_a_vehicle_that_cannot_send_so_often_is_asked_for_less():
     link = Refusing(is_exact=False)
     set_intervals(link, 20_000)
-    assert link.asked == [(32, 20_000), (32, 25_000), (30, 20_000), (30, 25_000)]
+    assert link.asked == [(32, 20_000), (32, 25_000), (30, 25_000)]
+    link.asked.clear()
+    set_intervals(link, 5_000)
+    assert link.asked == [(32, 5_000), (32, 20_000), (32, 25_000), (30, 25_000)]
     for slow in (Refusing(is_exact=True), Refusing(is_exact=False, least_us=41_000)):
         with pytest.raises(NotReadyError, match="does not send LOCAL_POSITION_NED every 20 ms"):
             set_intervals(slow, 20_000)

@@ -18,6 +18,7 @@ from sitl.errors import OptionError
 from sitl.foreign import ardupilot, px4, px4_airframe
 from sitl.foreign.choice import Choice, choose
 from sitl.foreign.process import HOST, AutopilotEndedError, AutopilotProcess, free_tcp_run
+from sitl.vehicles.receivers import equipped
 
 
 def test_ardupilots_command_line():
@@ -58,6 +59,13 @@ def test_px4s_parameters_are_the_airframes():
         assert values[f"PWM_MAIN_FUNC{k + 1}"] == 101 + k
     assert model == "none_iris" and values["MPC_THR_HOVER"] == pytest.approx(1.14 * 9.80665 / 24.013, rel=1e-3)
     assert values["THR_MDL_FAC"] == 1.0  # over the range of its speed thrust goes with the square
+
+
+@pytest.mark.parametrize("sensors, delay, noise", [("gps", 120, 0.412), ("rtk", 120, 0.1), ("mocap", 50, 0.1)])
+def test_px4s_filter_is_told_of_the_receiver(sensors, delay, noise):
+    found = px4_airframe.receiver(equipped(vehicles.load("erle_copter"), sensors))
+    assert (found["SENS_GPS0_DELAY"], found["EKF2_RNG_CTRL"]) == (delay, 0)
+    assert found["EKF2_GPS_P_NOISE"] == pytest.approx(noise, abs=1e-3)
 
 
 @pytest.mark.parametrize("frame", ["erle_copter", "ardupilot_quad", "ardupilot_hexa", "ardupilot_octa_quad"])

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from sitl.errors import OptionError
+from sitl.client.connection import RealTime
+from sitl.errors import LinkLostError, OptionError
 from sitl.missions.manoeuvres import __main__ as manoeuvres
 from sitl.missions.manoeuvres import executable, table
 from sitl.missions.manoeuvres.table import Row
@@ -97,6 +98,33 @@ def test_what_is_not_there_is_named(tmp_path: Path) -> None:
         manoeuvres.chosen("rover", ["loiter"])
     with pytest.raises(table.KeptFiguresError, match="no figures of a plane are kept"):
         table.kept("plane")
+
+
+def test_the_port_of_an_instance_is_the_one_that_its_executable_is_told(monkeypatch, tmp_path: Path) -> None:
+    """ArduPilot's --instance does not move a --base-port."""
+    said: list[list[str]] = []
+    reached: list[int] = []
+
+    class Process:
+        def __init__(self, words: list[str], **_: object) -> None:
+            said.append(words)
+
+        def kill(self) -> None:
+            return
+
+        wait = kill
+
+    def connected(process: Process, port: int) -> RealTime:
+        reached.append(port)
+        raise LinkLostError("enough")
+
+    monkeypatch.setattr(executable.subprocess, "Popen", Process)
+    monkeypatch.setattr(executable, "_connected", connected)
+    for instance in (0, 3):
+        with pytest.raises(LinkLostError), executable.started(tmp_path, "copter", manoeuvres.HOME, 1, {}, instance):
+            pass
+    assert reached == [int(words[words.index("--base-port") + 1]) for words in said] == [5760, 5790]
+    assert [words[2] for words in said] == ["-I0", "-I3"]
 
 
 @pytest.mark.slow

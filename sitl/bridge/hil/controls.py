@@ -162,6 +162,22 @@ class ForeignClock:
         """Whether so many ticks in a row have had no answer that time has to stand."""
         return self._in_vain >= (SILENT_ARMED if self._is_armed else SILENT)
 
+    @property
+    def is_steady(self) -> bool:
+        """Whether each tick is answered at once, and has been for a while."""
+        return self.holds and self._period == 1 and self._alike >= ALIKE and self._longest_s == LONGEST_WAIT_S
+
+    @property
+    def began_us(self) -> int:
+        """Our time at which its clock was 0, as its answers have it [us]."""
+        return self._first_us + self._lag_us
+
+    def was_answered(self, ticks: int, now_us: int, is_armed: bool) -> None:
+        """So many ticks were answered at once, and the last answer has led to the tick of this time [us]."""
+        self._is_armed, self._in_vain, self._since = is_armed, 0, 0
+        self._alike, self._answers = self._alike + ticks, self._answers + ticks
+        self._answered_us = now_us - TICK_US - self.began_us
+
     def is_starting(self, now_us: int) -> bool:
         """Whether its modules may still be starting at this time [us]."""
         return not self._is_in_step or now_us - self._in_step_us < START_US

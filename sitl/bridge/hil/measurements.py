@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,18 +26,26 @@ _MOST_FIX = 8
 
 
 class GpsWriter:
-    """From a record to payloads."""
+    """From a record to payloads.
+
+    Args:
+        reader: of the record.
+        airframe: its record, with the figures of its receiver.
+    """
 
     marks = (S + "count", S + "fix")
     """Fields whose change means that there is something new."""
 
-    def __init__(self, reader: RecordReader) -> None:
+    def __init__(self, reader: RecordReader, airframe: Any) -> None:
         names = ("count", "time_us", "fix", "lat", "lon", "alt", "eph", "epv", "vel", "satellites")
         self._read = reader.fields(*(S + name for name in names))
+        self._usual, self._accuracy = as_dop(airframe), as_accuracy(airframe)
         self._had_fix = False
         self.is_quiet = False
         """Whether nothing is said before there is a position: PX4 takes the one that comes without a fix for true, and
-        when it jumps to the first fix its checks of drift hold it on the ground for half a minute."""
+        when it jumps to the first fix its checks of drift hold it on the ground for half a minute. It also takes eph
+        and epv, in MAVLink DOP, for standard deviations [cm], by which its filter weighs fixes: of a receiver with RTK
+        they would be 60 and 90 cm."""
 
     def payloads(self) -> list[bytes]:
         """The last fix; nothing before the first."""
@@ -46,7 +55,28 @@ class GpsWriter:
         self._had_fix = self._had_fix or fix >= _POSITION
         course = uint16(atan2(ve, vn) * DEG * 100.0 % 36000.0)
         speeds = uint16(hypot(vn, ve)), int16(vn), int16(ve), int16(vd), course
+        if self.is_quiet and (eph, epv) == self._usual:
+            eph, epv = self._accuracy
         return [GPS_KIND.pack(t, lat, lon, alt, uint16(eph), uint16(epv), *speeds, fix & 0xFF, satellites & 0xFF, 0, 0)]
+
+
+class _Told(NamedTuple):
+    """How sure a receiver is of a fix."""
+
+    eph: int
+    epv: int
+
+
+def as_dop(airframe: Any) -> _Told:
+    """What a receiver tells while nothing disturbs it: DOP [0.01]."""
+    return _Told(math.floor(100.0 * airframe.gps_hdop + 0.5), math.floor(100.0 * airframe.gps_vdop + 0.5))
+
+
+def as_accuracy(airframe: Any) -> _Told:
+    """The same as standard deviations [cm], horizontally of each axis."""
+    wide = hypot(airframe.gps_noise_horizontal, airframe.gps_drift_horizontal)
+    high = hypot(airframe.gps_noise_vertical, airframe.gps_drift_vertical)
+    return _Told(max(uint16(100.0 * wide), 1), max(uint16(100.0 * high), 1))
 
 
 class GpsReader:
@@ -118,8 +148,8 @@ class Measurements:
     def __init__(self, fleet: np.ndarray[Any, Any], index: int, v: Any, sender: Sender | None = None) -> None:
         reader = RecordReader(fleet, index)
         self.sender = sender or Sender(*PHYSICS)
-        self._imu = sensor.SensorWriter(reader)
-        self._gps = GpsWriter(reader)
+        self.imu = sensor.SensorWriter(reader)
+        self._gps = GpsWriter(reader, v.physics.airframe)
         sources: list[Source] = [
             _Plain(GPS_KIND, self._gps),
             _Plain(sensor.BATTERY_KIND, sensor.BatteryWriter(reader)),
@@ -130,7 +160,9 @@ class Measurements:
         ]
         if hasattr(v.physics, "ground"):
             sources.append(_Plain(truth.HITS_KIND, truth.HitWriter(reader, "physics.ground", truth.GROUND)))
-        self._read = reader.fields(*(mark for source in sources for mark in source.marks))
+        self.marks = tuple(mark for source in sources for mark in source.marks)
+        """Fields of the record that change when there is more to tell than HIL_SENSOR."""
+        self._read = reader.fields(*self.marks)
         self._slots: list[tuple[slice, Source]] = []
         at = 0
         for source in sources:
@@ -145,22 +177,22 @@ class Measurements:
 
     @is_foreign.setter
     def is_foreign(self, value: bool) -> None:
-        self._gps.is_quiet = self._imu.is_dithered = value
+        self._gps.is_quiet = self.imu.is_dithered = value
 
     def everything(self) -> bytes:
         """All that is known now, as new: for an autopilot that has just come."""
         self._seen = self._read()
         frames = [self._frames(source) for _, source in self._slots]
-        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self._imu.payload(True))
+        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self.imu.payload(True))
 
     def tick(self) -> bytes:
         """What is new since the last call."""
         marks = self._read()
         if marks == self._seen:
-            return self.sender.frame(sensor.SENSOR_KIND, self._imu.payload())
+            return self.sender.frame(sensor.SENSOR_KIND, self.imu.payload())
         seen, self._seen = self._seen, marks
         frames = [self._frames(source) for place, source in self._slots if marks[place] != seen[place]]
-        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self._imu.payload())
+        return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self.imu.payload())
 
     def _frames(self, source: Source) -> bytes:
         return b"".join([self.sender.frame(kind, payload) for kind, payload in source.messages()])

@@ -73,7 +73,8 @@ class PhysicsEnd:
         self._simulated, self._type = simulated, vehicle_type
         self._v = simulated.v
         self._actuate = controls.actuators_writer(simulated.fleet, simulated.index)
-        self._range = controls.rotor_range(simulated.v.physics.airframe)
+        self.range = controls.rotor_range(simulated.v.physics.airframe)
+        """Controls of rotors that stand and that turn fastest."""
         self.measurements = Measurements(simulated.fleet, simulated.index, simulated.v)
         self._frame = self.measurements.sender.frame
         self._tick = self.measurements.everything()
@@ -93,7 +94,7 @@ class PhysicsEnd:
         """Another autopilot, or the same one again, is connected: nothing is known of it."""
         self._splitter = Splitter()
         self._is_foreign = self._is_stranger = self._complained = False
-        self._clock = ForeignClock(hasattr(self._v.physics.airframe, "control_full"))
+        self.clock = ForeignClock(hasattr(self._v.physics.airframe, "control_full"))
         self._truth_every_us, self._truth_due_us = 0, 0
 
     @property
@@ -104,23 +105,45 @@ class PhysicsEnd:
     @property
     def freewheels(self) -> bool:
         """Whether physics has to go on by itself at the pace of the wall clock."""
-        return self._is_foreign and not self._clock.holds
+        return self._is_foreign and not self.clock.holds
 
     @property
     def wait_s(self) -> float | None:
         """Wall time that the present tick waits for an answer [s]; None: until it comes."""
-        return self._clock.wait_s if self._is_foreign and self._clock.holds and not self._clock.is_silent else None
+        return self.clock.wait_s if self._is_foreign and self.clock.holds and not self.clock.is_silent else None
 
     @property
     def is_starting(self) -> bool:
         """Whether an autopilot that is not ours may still be starting: in wall time, which simulated time must not
         outrun."""
-        return self._is_foreign and self._clock.is_starting(self._now)
+        return self._is_foreign and self.clock.is_starting(self._now)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether a PX4 answers each tick, and nothing but the next answer is waited for."""
+        return (
+            self._is_foreign and self.clock.is_steady and not (self.is_starting or self._sticks or self._splitter.rest)
+        )
+
+    @property
+    def truth_due(self) -> tuple[int, int]:
+        """(Interval at which the truth is told, when it is due next) [us]; an interval of 0: never."""
+        return self._truth_every_us, self._truth_due_us
+
+    def go_on_with(self, ticks: int, is_armed: bool, truth_due_us: int, is_last_untold: bool) -> bytes:
+        """So many ticks were answered elsewhere; gives what the last of them has to tell, unless it was told."""
+        told = ticks - is_last_untold
+        self._complained = False
+        self._now += told * TICK_US
+        self.ticks += told
+        self._truth_due_us = truth_due_us
+        self.clock.was_answered(ticks, self._now + is_last_untold * TICK_US, is_armed)
+        return self._tell() if is_last_untold else b""
 
     @property
     def unanswered(self) -> int:
         """Ticks that an autopilot which is not ours has not answered in time."""
-        return self._clock.unanswered
+        return self.clock.unanswered
 
     def move_sticks(self, pulses: Sequence[int]) -> None:
         """A frame of a receiver on this side, up to twelve channels [us], for the next tick."""
@@ -129,12 +152,12 @@ class PhysicsEnd:
     def go_on(self) -> bytes:
         """One tick without an answer."""
         if not self.freewheels:
-            if not self._clock.unanswered:
+            if not self.clock.unanswered:
                 self.notes.append(
                     f"the autopilot has not answered the tick at {1e-6 * self._now:.4f} s in "
-                    f"{1e3 * self._clock.wait_s:.0f} ms: time goes on without it, and this is not said again"
+                    f"{1e3 * self.clock.wait_s:.0f} ms: time goes on without it, and this is not said again"
                 )
-            self._clock.gave_up()
+            self.clock.gave_up()
         return self._step()
 
     def feed(self, data: bytes) -> bytes:
@@ -179,8 +202,8 @@ class PhysicsEnd:
         """Controls: one tick further if they answer the present one."""
         self._complained = False
         if self._is_foreign:
-            self._actuate(controls.stretch(given, *self._range))
-            return self._step() if self._clock.asks_for_step(given, self._now) else b""
+            self._actuate(controls.stretch(given, *self.range))
+            return self._step() if self.clock.asks_for_step(given, self._now) else b""
         if given.time_us == self._now:
             self._actuate(given)
             return self._step()
@@ -191,9 +214,13 @@ class PhysicsEnd:
 
     def _step(self) -> bytes:
         self._simulated.tick()
+        return self._tell()
+
+    def _tell(self) -> bytes:
+        """What the next tick, which is done, has to tell."""
         self._now += TICK_US
         self.ticks += 1
-        self._clock.sent(self._now)
+        self.clock.sent(self._now)
         self._tick = self.measurements.tick()
         if self._sticks:
             kind, payload = sticks.frame_for(self._is_foreign, self._now, self._sticks)

@@ -56,10 +56,11 @@ class Sender:
     """Makes the frames of one end, counted."""
 
     def __init__(self, system: int, component: int) -> None:
-        self._system, self._component = system, component
-        self._sequence = 255
+        self.system, self.component = system, component
+        self.sequence = 255
+        """Of the last frame."""
 
     def frame(self, kind: MessageType, payload: bytes) -> bytes:
         """A MAVLink 2 frame."""
-        self._sequence = self._sequence + 1 & 255
-        return encode_v2(kind, payload, self._sequence, self._system, self._component)
+        self.sequence = self.sequence + 1 & 255
+        return encode_v2(kind, payload, self.sequence, self.system, self.component)

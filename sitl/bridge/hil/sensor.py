@@ -21,6 +21,7 @@ import numpy as np
 
 from ...core.constants import TICK_US
 from ...core.elementary import pow
+from ...core.kernels import law
 from ...core.record_reader import RecordReader, locate
 from ..dialect import message
 from .protocol import BARO_UPDATED, IMU_UPDATED, LATEST_US, MAG_UPDATED, RefusedError, culprit, within
@@ -31,13 +32,16 @@ COUNTS = 56
 """Of the samples of magnetometer and barometer: bytes behind ``sensors.time_us``."""
 _SENSOR_LIMITS = (*(5e3,) * 3, *(500.0,) * 3, *(100.0,) * 3, 2e3, 2e3, 1e5, 300.0)
 """Sizes beyond which a sensor's value is absurd [m/s^2, rad/s, gauss, hPa, hPa, m, degC]."""
-_DITHER_MAG, _DITHER_BARO = 1e-5, 1e-3
+DITHER_MAG, DITHER_BARO = 1e-5, 1e-3
 """What every second sample shows more [gauss], [hPa]: little of the earth's field, a centimetre."""
 
+Told = tuple[int, int, float]
+"""Samples of magnetometer and barometer that were told last, and the height by the latter [m]."""
 Values = tuple[Any, ...]
 """Fields in wire order."""
 
 
+@law
 def pressure_altitude(pressure: float) -> float:
     """Height [m] in the standard atmosphere of a static pressure [hPa]."""
     return float(44330.77 * (1.0 - pow(max(pressure, 0.0) / 1013.25, 0.1902632)))
@@ -49,8 +53,7 @@ class SensorWriter:
     def __init__(self, reader: RecordReader) -> None:
         names = ("time_us", "acc", "gyro", "mag", "abs_pressure", "temperature", "mag_count", "baro_count")
         self._read = reader.fields(*(SENSOR_S + name for name in names))
-        self._mag = self._baro = 0
-        self._altitude = 0.0
+        self.told: Told = (0, 0, 0.0)
         self.is_dithered = False
         """PX4 holds a sensor that shows the same 100 times for failed: one without noise then changes by a little."""
 
@@ -58,19 +61,17 @@ class SensorWriter:
         """The samples of this tick; ``is_all``: all count as new."""
         t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, temperature, mag, baro = self._read()
         updated = IMU_UPDATED
+        mag_before, baro_before, altitude = self.told
         if self.is_dithered:
-            mx += _DITHER_MAG * (mag & 1)
-            pressure += _DITHER_BARO * (baro & 1)
-        if mag != self._mag or is_all:
-            self._mag = mag
+            mx += DITHER_MAG * (mag & 1)
+            pressure += DITHER_BARO * (baro & 1)
+        if mag != mag_before or is_all:
             updated |= MAG_UPDATED
-        if baro != self._baro or is_all:
-            self._baro = baro
-            self._altitude = pressure_altitude(pressure)
+        if baro != baro_before or is_all:
+            altitude = pressure_altitude(pressure)
             updated |= BARO_UPDATED
-        return SENSOR_KIND.pack(
-            t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, self._altitude, temperature, updated, 0
-        )
+        self.told = mag, baro, altitude
+        return SENSOR_KIND.pack(t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, altitude, temperature, updated, 0)
 
 
 class SensorReader:

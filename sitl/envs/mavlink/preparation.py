@@ -11,10 +11,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from sitl.client.commands import command_number
 from sitl.client.connection import TRIES, Connection
 from sitl.client.endpoint import ACCEPTED
 from sitl.core.sums import lengths
-from sitl.errors import NotASimulatorError, NotReadyError
+from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
 from .reports import LANDED
 from .telemetry import ATTITUDE, GLOBAL, LANDED_STATE, ORIGIN, POSITION, SCAN, SECTORS
@@ -23,8 +24,11 @@ FORCE = 21196
 """Second parameter of arming: even in the air."""
 CUSTOM_MODE_ENABLED = 1
 """MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
+_REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 INTERVAL_US = 100_000
 """Of position, attitude and scan after ``prepare``."""
+_LEAST_US = 20_000
+"""An interval that a vehicle may lengthen to twice of it, whatever is asked for [us]."""
 ALIGN_US = 6_000_000
 """An episode begins at a whole multiple of it since boot, so that messages fall due at the ends of all usual steps."""
 _SECOND, _TENTH = 1_000_000, 100_000
@@ -44,6 +48,7 @@ def reboot(link: Connection) -> None:
 
     Raises:
         NotReadyError: it refuses.
+        LinkLostError: it does not come back.
     """
     link.command("COMPONENT_ARM_DISARM", arm=0, force=FORCE)
     name = {"target_system": link.inbox.system, "target_component": 1, "param_id": LEARNED.encode()}
@@ -54,10 +59,18 @@ def reboot(link: Connection) -> None:
         link.inbox.was_rebooted = True
     elif link.inbox.learned is not None:
         link.endpoint.send("PARAM_SET", param_value=link.inbox.learned, param_type=_REAL_4, **name)
-    result = link.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
+    link.inbox.acks.pop(_REBOOT, None)
+    try:
+        result = link.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
+        if result == ACCEPTED:
+            link.pause(0 if link.is_exact else 2 * _SECOND)
+    except LinkLostError:  # an ArduPilot's simulator closes its TCP port; its last word may be the answer
+        answer = link.inbox.acks.get(_REBOOT)
+        if answer is None or not link.reopen():
+            raise
+        result = int(answer.result)
     if result != ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses to reboot (MAV_RESULT {result}), so it cannot be reset")
-    link.pause(0 if link.is_exact else 2 * _SECOND)
     link.inbox.forget()
 
 
@@ -65,8 +78,8 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     """Ask for position, attitude, scan and what else is wanted at an interval.
 
     A vehicle that knows nothing of whole scans (a real one) is asked for OBSTACLE_DISTANCE: centimetres, 72 sectors.
-    One whose clock does not go exactly as far as it is told to may send at longer intervals, up to twice as long: an
-    ArduPilot with 50 loops a second sends a message each 25 ms, and not each 20 ms.
+    One whose clock does not go exactly as far as it is told to may send at longer intervals, up to twice as long or
+    40 ms: an ArduPilot with 50 loops a second sends a message each 25 ms, and not each 20 ms.
 
     Raises:
         NotReadyError: the vehicle does not send one of them so often.
@@ -75,9 +88,11 @@ def set_intervals(link: Connection, interval_us: int) -> None:
     scan = (telemetry.scan_kind,) if telemetry.scans_by_mavlink and telemetry.scans_used else ()
     if link.simulation is not None:
         link.simulation.bridge.is_stepped = True
-    intervals = [interval_us] if link.is_exact else [interval_us * k // 4 for k in (4, 5, 6, 8)]
+    intervals = [interval_us] if link.is_exact else _longer_ones(interval_us)
     for kind in (POSITION, ATTITUDE, *scan, *telemetry.wanted):
-        if any(link.command("SET_MESSAGE_INTERVAL", kind.id, each) == ACCEPTED for each in intervals):
+        taken = next((us for us in intervals if link.command("SET_MESSAGE_INTERVAL", kind.id, us) == ACCEPTED), None)
+        if taken is not None:
+            intervals = intervals[intervals.index(taken) :]  # its loop is the same for the others
             continue
         result = None
         if kind is SCAN:
@@ -88,6 +103,12 @@ def set_intervals(link: Connection, interval_us: int) -> None:
             raise NotReadyError(
                 f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms{why}"
             )
+
+
+def _longer_ones(interval_us: int) -> list[int]:
+    """An interval, and those that do for a vehicle which cannot send so often [us]."""
+    base = max(interval_us, _LEAST_US)
+    return sorted({interval_us, *(base * k // 4 for k in (4, 5, 6, 8))})
 
 
 def request_again(link: Connection) -> None:

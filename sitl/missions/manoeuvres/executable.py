@@ -81,6 +81,7 @@ def started(
     Raises:
         LinkLostError: it does not listen.
     """
+    port += 10 * instance  # said outright: then ArduPilot's --instance does not move it
     with nullcontext(str(own)) if own is not None else TemporaryDirectory(prefix="manoeuvres-") as folder:
         defaults = Path(folder) / "defaults.parm"
         defaults.write_text(
@@ -93,7 +94,7 @@ def started(
         with open(os.devnull, "wb") as nowhere:
             process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=nowhere, stderr=nowhere)
         try:
-            connection = _connected(process, port + 10 * instance)
+            connection = _connected(process, port)
             try:
                 yield connection
             finally:

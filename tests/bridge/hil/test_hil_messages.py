@@ -20,6 +20,7 @@ from sitl.core.records import first_difference
 from sitl.physics.carried import Carried
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import apply, load
+from sitl.vehicles.receivers import equipped
 from tests.bridge.hil.hil_bench import Vehicle
 
 single = st.floats(-90.0, 90.0, width=32)
@@ -100,13 +101,29 @@ def test_gps(lat: int, lon: int, alt: int, velocity: list[int], fix: int) -> Non
         assert other.v.sensors["gps_" + name] == s["gps_" + name], name
 
 
+def test_px4_is_told_how_far_off_a_receiver_is_and_ours_its_dilution() -> None:
+    """PX4 takes eph and epv of HIL_GPS for standard deviations [cm]."""
+    source = Vehicle()
+    apply(equipped(load("erle_copter"), "rtk"), source.v)
+    s, writer = source.v.sensors, measurements.GpsWriter(reader(source), source.v.physics.airframe)
+    told = []
+    for is_px4, eph, epv in ((False, 60, 90), (True, 60, 90), (True, 350, 410), (True, 9999, 9999)):
+        s.gps_count, s.gps_fix, s.gps_eph, s.gps_epv, writer.is_quiet = 1, 3, eph, epv, is_px4
+        fields = measurements.GPS_KIND.decode(writer.payloads()[0])
+        told.append((fields.eph, fields.epv))
+    assert told == [(60, 90), (1, 1), (350, 410), (9999, 9999)]  # 0.8 cm and 1.5 cm; jammed; without a fix
+    gps = measurements.as_accuracy(Vehicle().v.physics.airframe)
+    assert gps == (41, 72)
+
+
 def test_the_same_fix_again_is_not_a_new_one() -> None:
     source, other = Vehicle(), Vehicle()
+    airframe = source.v.physics.airframe
     source.v.sensors.gps_count, source.v.sensors.gps_time_us, source.v.sensors.gps_fix = 1, 200_000, 3
-    (payload,), taker = measurements.GpsWriter(reader(source)).payloads(), measurements.GpsReader(other.v)
+    (payload,), taker = measurements.GpsWriter(reader(source), airframe).payloads(), measurements.GpsReader(other.v)
     taker.write(taker.read(payload))
     source.v.sensors.gps_fix = 0  # the receiver is switched off
-    taker.write(taker.read(measurements.GpsWriter(reader(source)).payloads()[0]))
+    taker.write(taker.read(measurements.GpsWriter(reader(source), airframe).payloads()[0]))
     assert other.v.sensors.gps_count == 1 and other.v.sensors.gps_fix == 0
 
 

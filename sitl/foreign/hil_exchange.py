@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an exchange of the HIL link takes on each tick, as laws: an answer of PX4, a tick, HIL_SENSOR and the truth.
+
+``converse`` makes many exchanges in one call, system calls included, on Linux and native physics. It leaves to Python
+(``hil_host``) whatever is not the answer to the present tick, and ticks with more to tell than these two messages.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ..bridge.hil.controls import OUTPUTS
+from ..bridge.hil.protocol import ARMED, BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDATED
+from ..bridge.hil.sensor import DITHER_BARO, DITHER_MAG, pressure_altitude
+from ..bridge.telemetry.units import uint16
+from ..bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
+from ..bridge.wire.message import Message
+from ..bridge.wire.port import PAYLOAD_BYTES
+from ..bridge.wire.tables import PAYLOAD_MAX
+from ..core.array_kernels import Kernel
+from ..core.border import Actuators, Sensors
+from ..core.kernels import law
+from ..core.memory import bytes_at, call_unit, ints_at, record_at
+from ..core.records import Floats, Ints, Record, array
+from ..core.system_call import call_system
+from ..physics.carried import carried
+from ..physics.native.records import Body, Obstacles, Place
+
+ROOM = 2048
+"""Bytes that are read at once."""
+MARKS = 16
+"""As many fields of a record may say that there is something else to tell."""
+GREATEST = 10.0
+"""No control is that large."""
+HEADER = 10
+"""Bytes of a frame before its payload."""
+NO_SIGNAL = 0x4000
+"""MSG_NOSIGNAL: that the other end has gone is found when it is read from."""
+IS_DONE, IS_NEWS, IS_SILENT, IS_ODD = range(4)
+"""How ``converse`` ends: at the time, or after the ticks, that are allowed; a tick is done that has more to tell, or
+that a sensor of a world has to measure in; no answer came; what came is Python's to judge."""
+
+
+class HilControls(Message, name="HIL_ACTUATOR_CONTROLS"):
+    time_usec: int
+    flags: int
+    controls: Floats
+    mode: int
+
+
+class HilSensor(Message, name="HIL_SENSOR"):
+    time_usec: int
+    xacc: float
+    yacc: float
+    zacc: float
+    xgyro: float
+    ygyro: float
+    zgyro: float
+    xmag: float
+    ymag: float
+    zmag: float
+    abs_pressure: float
+    pressure_alt: float
+    temperature: float
+    fields_updated: int
+
+
+class HilState(Message, name="HIL_STATE_QUATERNION"):
+    time_usec: int
+    attitude_quaternion: Floats
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
+    lat: int
+    lon: int
+    alt: int
+    vx: int
+    vy: int
+    vz: int
+    ind_airspeed: int
+    true_airspeed: int
+    xacc: int
+    yacc: int
+    zacc: int
+
+
+HIL_SENSOR, HIL_STATE_QUATERNION, ANSWER = HilSensor.kind.id, HilState.kind.id, HilControls.kind.id
+
+
+class HilExchange(Record):
+    """An exchange with one PX4, and where all that it needs is."""
+
+    # the vehicle's record
+    records: int  # addresses
+    vehicles: int
+    index: int
+    clock: int
+    actuators: int
+    sensors: int
+    body: int
+    place: int
+    obstacles: int
+    lowest: float  # controls of rotors that stand and that turn fastest
+    highest: float
+    marks: int  # fields that say that there is something else to tell
+    mark_at: Ints = array(MARKS, stored="i8")  # their addresses
+    mark_size: Ints = array(MARKS, stored="i8")
+    seen: int  # address of what they were, 8 bytes each
+    # units, functions and memory
+    step: int  # addresses
+    list_near: int
+    ranging: int
+    measure_us: int  # when a sensor of a world measures next
+    receive: int  # addresses of recv, send
+    send: int
+    socket: int
+    inbox: int  # ROOM bytes
+    received: int  # of them
+    given: int  # address of an answer's payload
+    outbox: int  # of two frames
+    # the link
+    began_us: int  # our time when the autopilot's clock was 0
+    sequence: int  # of the last frame that was sent
+    system: int
+    component: int
+    mag: int  # samples that were told last
+    baro: int
+    altitude: float
+    truth_every_us: int  # 0: nobody wants it
+    truth_due_us: int
+    until_us: int
+    answers: int  # that may still be taken
+    taken: int
+    is_armed: bool
+
+
+class _Physics(NamedTuple):
+    body: Body
+    place: Place
+
+
+class _Vehicle(NamedTuple):
+    """What ``carried`` looks at of a vehicle."""
+
+    physics: _Physics
+
+
+@law
+def has_news(x: HilExchange) -> bool:
+    """Whether a field has changed that says so."""
+    found, seen = False, bytes_at(x.seen, 8 * MARKS)
+    for n in range(x.marks):
+        size = x.mark_size[n]
+        now = bytes_at(x.mark_at[n], size)
+        for k in range(size):
+            if now[k] != seen[8 * n + k]:
+                seen[8 * n + k] = now[k]
+                found = True
+    return found
+
+
+@law
+def write_sensor(x: HilExchange, at: int, time_us: int) -> int:
+    """Write HIL_SENSOR as ``bridge.hil.sensor`` does; gives the length of the frame."""
+    payload = bytes_at(at + HEADER, PAYLOAD_MAX)
+    for k in range(PAYLOAD_MAX):
+        payload[k] = 0
+    m, s = record_at(HilSensor, at + HEADER), record_at(Sensors, x.sensors)
+    acc, gyro, mag = s.acc, s.gyro, s.mag
+    m.time_usec = time_us
+    m.xacc, m.yacc, m.zacc = acc.x, acc.y, acc.z
+    m.xgyro, m.ygyro, m.zgyro = gyro.x, gyro.y, gyro.z
+    m.xmag, m.ymag, m.zmag = float(mag.x) + DITHER_MAG * (s.mag_count & 1), mag.y, mag.z
+    pressure = float(s.abs_pressure) + DITHER_BARO * (s.baro_count & 1)
+    updated = IMU_UPDATED
+    if s.mag_count != x.mag:
+        x.mag = s.mag_count
+        updated |= MAG_UPDATED
+    if s.baro_count != x.baro:
+        x.baro = s.baro_count
+        x.altitude = pressure_altitude(pressure)
+        updated |= BARO_UPDATED
+    m.abs_pressure, m.pressure_alt, m.temperature, m.fields_updated = pressure, x.altitude, s.temperature, updated
+    x.sequence = (x.sequence + 1) & 0xFF
+    sender = Sender(x.sequence, x.system, x.component)
+    return seal(bytes_at(at, FRAME_MAX), 2, HIL_SENSOR, sender)
+
+
+@law
+def write_truth(x: HilExchange, at: int, time_us: int) -> int:
+    """Write HIL_STATE_QUATERNION as ``bridge.hil.truth`` does; gives the length of the frame."""
+    payload = bytes_at(at + HEADER, PAYLOAD_MAX)
+    for k in range(PAYLOAD_MAX):
+        payload[k] = 0
+    m = record_at(HilState, at + HEADER)
+    truth = carried(_Vehicle(_Physics(record_at(Body, x.body), record_at(Place, x.place))))  # type: ignore[arg-type]
+    north, east, down = truth.velocity
+    speed = uint16(math.sqrt(north * north + east * east + down * down))
+    m.time_usec = time_us
+    for k in range(4):
+        m.attitude_quaternion[k] = truth.attitude[k]
+    m.rollspeed, m.pitchspeed, m.yawspeed = truth.rates
+    m.lat, m.lon, m.alt = truth.lat, truth.lon, truth.alt
+    m.vx, m.vy, m.vz = truth.velocity
+    m.ind_airspeed = m.true_airspeed = speed
+    m.xacc, m.yacc, m.zacc = truth.acceleration
+    x.sequence = (x.sequence + 1) & 0xFF
+    sender = Sender(x.sequence, x.system, x.component)
+    return seal(bytes_at(at, FRAME_MAX), 2, HIL_STATE_QUATERNION, sender)
+
+
+@law
+def tell(x: HilExchange) -> int:
+    """Write a tick that has nothing else to tell, the truth before it where that is due; gives the length."""
+    now_us, size = ints_at(x.clock, 1)[0], 0
+    is_due = x.truth_every_us > 0 and x.truth_due_us <= now_us
+    if is_due:  # it is counted behind, as Python does
+        x.truth_due_us = now_us + x.truth_every_us
+        x.sequence = (x.sequence + 1) & 0xFF
+        size = write_truth(x, x.outbox, now_us)
+        x.sequence = (x.sequence - 2) & 0xFF
+    size += write_sensor(x, x.outbox + size, now_us)
+    if is_due:
+        x.sequence = (x.sequence + 1) & 0xFF
+    return size
+
+
+@law
+def judge(x: HilExchange) -> bool:
+    """Whether what was received is the answer to the present tick and nothing else; it is in the record then."""
+    data = bytes_at(x.inbox, ROOM)
+    frame = find(data, 0, x.received)
+    if frame.end != x.received or frame.start != 0 or frame.number != ANSWER:
+        return False
+    copy_payload(data, frame.payload, frame.payload_size, bytes_at(x.given, PAYLOAD_BYTES))
+    given, actuators = record_at(HilControls, x.given), record_at(Actuators, x.actuators)
+    if given.time_usec + x.began_us != ints_at(x.clock, 1)[0] or given.flags & LOCKSTEP == 0:
+        return False
+    for k in range(OUTPUTS):
+        if not abs(given.controls[k]) < GREATEST:
+            return False
+    span = x.highest - x.lowest
+    for k in range(OUTPUTS):
+        actuators.controls[k] = x.lowest + span * given.controls[k]
+    x.is_armed = given.mode & ARMED != 0
+    actuators.armed = x.is_armed
+    return True
+
+
+@law
+def converse(exchange: int) -> int:
+    """Take answers, and step, with the ``HilExchange`` at an address."""
+    x = record_at(HilExchange, exchange)
+    clock, obstacles = ints_at(x.clock, 1), record_at(Obstacles, x.obstacles)
+    x.taken = 0
+    while x.answers > 0 and clock[0] < x.until_us:
+        x.received = max(call_system(x.receive, x.socket, x.inbox, ROOM, 0, 0), 0)
+        if x.received == 0:
+            return IS_SILENT
+        if not judge(x):
+            return IS_ODD
+        if obstacles.wanted:
+            call_unit(x.list_near, x.records, x.vehicles, x.index, x.ranging, 0, 0)
+        call_unit(x.step, x.records, x.vehicles, x.index, 0, 0, 0)
+        x.taken += 1
+        x.answers -= 1
+        if x.measure_us <= clock[0] or has_news(x):
+            return IS_NEWS
+        call_system(x.send, x.socket, x.outbox, tell(x), NO_SIGNAL, 0)
+    return IS_DONE
+
+
+conversed = Kernel(converse, lets_others_run=True)
