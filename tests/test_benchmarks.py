@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import cameras
+from benchmarks import cameras, identification
 from benchmarks import envs as benchmark
 from sitl import envs
 from sitl.simulation import Core, load_core
@@ -59,3 +59,16 @@ def test_another_checkout_is_measured_beside_this_one(monkeypatch, capsys):
     benchmark.main()
     rows = re.findall(r"^Gazebo\w+-v0, (\w+) +([\d.]+) +([\d.]+) +([\d.]+)$", capsys.readouterr().out, re.MULTILINE)
     assert [row[0] for row in rows] == ["single", "16"] and all(float(row[3]) > 0.0 for row in rows)
+
+
+def test_intervals_of_identification_are_counted():
+    nan = float("nan")
+    results = [
+        {"hover_output": row} for row in ((0.5, 0.51, 0.49, 0.53), (0.5, 0.52, 0.51, 0.53), (0.5, nan, nan, nan))
+    ]
+    assert list(identification.rows("quad", results)) == ["| hover_output | quad | 0.5 | 2 of 3 | 1 | 3.0 % | 3.0 % |"]
+    turned = [{"wind_from": (1.0, 359.0, 355.0, 363.0)}]
+    assert list(identification.rows("quad", turned)) == ["| wind_from | quad | 1 | 1 of 1 | 1 | 2 | 4 |"]
+    assert identification.seeds("3..5") == (3, 4, 5) and identification.seeds("3,7") == (3, 7)
+    heavy = identification.airframe_of("erle_copter, 10 mm tail-heavy")
+    assert heavy.rotors[0].x == 0.141 + 0.01

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..errors import SitlError
 from ..logs.dataflash.columns import Columns, Progress, Table
-from .signals import Span, increasing
+from .expected import Conditions
+from .signals import Span, increasing, within
 
 Array = np.ndarray[Any, Any]
 
@@ -24,7 +25,8 @@ _SETTLES_S = 3.0
 _LOW_M = 2.0
 """Nearer to the ground than this the rotors' air comes back [m]."""
 _NAMES = (
-    "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
+    "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
+    "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
 )  # fmt: skip
 
 
@@ -167,10 +169,39 @@ class FlightLog:
 
     def inside(self, time: Array) -> Array:
         """Which times are within ``spans``."""
-        found = np.zeros(len(time), bool)
-        for span in self.spans:
-            found |= (time >= span.begin) & (time <= span.end)
-        return found
+        return within(time, self.spans)
+
+    @property
+    def at_rest(self) -> list[Span]:
+        """When it stood disarmed, with motors off, as far as the log has it (LOG_DISARMED)."""
+        begin = float(self.columns["IMU"].time[0]) if self.has("IMU") else 0.0
+        ends = [begin - _SETTLES_S, *(span.end for span in self.armed)]
+        starts = [*(span.begin for span in self.armed), self._end + _SETTLES_S]
+        spans = [Span(a + _SETTLES_S, b - _SETTLES_S) for a, b in zip(ends, starts)]
+        return [span for span in spans if span.length > 2.0 * _SETTLES_S]
+
+    @property
+    def altitude(self) -> float:
+        """Median over the flight above sea level [m]; 0 when no receiver says it."""
+        if not self.has("GPS"):
+            return 0.0
+        table = self.stream("GPS", 0)
+        heights = table["Alt"][(table["Status"] >= 3) & self.inside(table.time)]
+        return float(np.median(heights)) if len(heights) else 0.0
+
+    @property
+    def conditions(self) -> Conditions:
+        """Voltage, lift and altitude in the air."""
+        voltage, lift = np.nan, 1.0
+        if self.has("BAT"):
+            battery = self.stream("BAT", 0)
+            volts = battery["Volt"][self.inside(battery.time)]
+            voltage = float(volts.mean()) if len(volts) and volts.min() > 0.0 else np.nan
+        if self.has("MOTB"):
+            motors = self.stream("MOTB")
+            lifts = motors["LiftMax"][self.inside(motors.time)]
+            lift = float(lifts.mean()) if len(lifts) and lifts.min() > 0.0 else 1.0
+        return Conditions(voltage, lift, self.altitude)
 
 
 def _spans_of(time: Array, inside: Array) -> list[Span]:

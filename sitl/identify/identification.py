@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from .. import vehicles
@@ -15,8 +15,10 @@ from ..logs.dataflash.columns import Progress
 from ..physics.native.atmosphere import density
 from ..vehicles import CopterAirframe
 from .copter import figures
+from .expected import exponent, slope_of
 from .figure import Figure
 from .flight import FlightLog, IdentifyError
+from .model import Model, outflow
 
 _BASES = {
     (1, 0): "ardupilot_quad",
@@ -28,6 +30,8 @@ _BASES = {
     (5, 0): "ardupilot_y6",
 }
 """FRAME_CLASS, FRAME_TYPE -> the shipped airframe with these rotors."""
+_CELL = 4.2
+"""Voltage of a full cell."""
 _KEPT = ("ATC_", "FRAME_", "INS_ACCEL_FILTER", "INS_GYRO_FILTER", "MOT_", "PSC_", "WPNAV_", "WP_", "ANGLE_MAX")
 """Parameters of the log that the airframe takes over, as far as the firmware has them."""
 
@@ -64,6 +68,9 @@ class Identification:
         Raises:
             IdentifyError: there is no shipped airframe with such rotors, or the hover output was not found.
         """
+        return self._model().airframe
+
+    def _model(self) -> Model:
         first = self.logs[0]
         pair = (int(first.parameter("FRAME_CLASS", default=0)), int(first.parameter("FRAME_TYPE", default=0)))
         if pair not in _BASES:
@@ -72,30 +79,48 @@ class Identification:
                 f"log {str(first.path)!r}: FRAME_CLASS/FRAME_TYPE {pair[0]}/{pair[1]} is none of {known}, of which "
                 "there are airframes to begin with"
             )
-        if not self["hover_output"].is_observed:
-            raise IdentifyError(f"no airframe without {self['hover_output']}")
+        hover = self["hover_output"]
+        if not hover.is_observed:
+            raise IdentifyError(f"no airframe without {hover}")
         base = vehicles.load(_BASES[pair])
         assert isinstance(base, CopterAirframe)
-        mass = self.mass or float(base.value("mass"))
-        heavier = mass / float(base.value("mass"))
         low, high = first.parameter("MOT_SPIN_MIN", default=0.15), first.parameter("MOT_SPIN_MAX", default=0.95)
-        expo, count = float(base.value("thrust_expo")), len(base.rotors)
-        command = (self["hover_output"].value - low) / (high - low)
+        command = (hover.value - low) / (high - low)
         if not 0.0 < command < 1.0:
-            raise IdentifyError(f"no airframe with {self['hover_output']}: outside MOT_SPIN_MIN .. MAX {low} .. {high}")
-        altitude = 0.0
-        if first.has("GPS"):
-            fixes = first.columns["GPS"]
-            altitude = float(fixes["Alt"][fixes["Status"] >= 3][-1]) if (fixes["Status"] >= 3).any() else 0.0
-        flow = 0.5 * density(altitude) * float(base.value("outflow_area")) * count
-        speed = math.sqrt(mass * GRAVITY / (flow * command * (1.0 - expo + expo * command)))
+            raise IdentifyError(f"no airframe with {hover}: outside MOT_SPIN_MIN .. MAX {low} .. {high}")
+        mass = self.mass or float(base.value("mass"))
+        model = Model(self._scaled(base, mass, command, (low, high)), first.parameters, first.conditions, self._figure)
+        model.notes["outflow_speed_max"] = f"identified, by {hover}"
+        for name, source in (
+            ("thrust_expo", "thrust_expo"),
+            ("power_by_thrust", "hover_current"),
+            ("battery_resistance", "battery_resistance"),
+        ):
+            if self[source].is_observed and float(model.airframe.value(name)) > 0.0:
+                model.notes[name] = f"identified, by {self[source]}"
+        return model
+
+    def _scaled(self, base: CopterAirframe, mass: float, command: float, spin: tuple[float, float]) -> CopterAirframe:
+        """The base with this mass, which hovers at this command, and the log's parameters."""
+        first = self.logs[0]
+        heavier = mass / float(base.value("mass"))
+        expo, battery = float(base.value("thrust_expo")), self._battery()
+        if self["thrust_expo"].is_observed:
+            expo = self["thrust_expo"].value
+            if "battery_capacity" in battery:  # its sag is in the figure, and in the model besides
+                sag = self["battery_resistance"].value * self["hover_current"].value / self["hover_voltage"].value
+                expo = exponent(slope_of(expo, command) * (1.0 + 2.0 * sag), command)
+        expo = min(max(expo, 0.0), 1.0)
+        base = replace(base, figures={**base.figures, **battery})
+        speed = outflow(base, mass, command, expo, density(first.altitude))
         changes: dict[str, float | tuple[float, ...]] = {
             "mass": mass,
             "inertia": tuple(heavier * x for x in base.value("inertia")),
             "drag_area": tuple(heavier * x for x in base.value("drag_area")),
             "momentum_drag": float(base.value("momentum_drag")) * math.sqrt(heavier),
-            "control_min": low,
-            "control_max": high,
+            "control_min": spin[0],
+            "control_max": spin[1],
+            "thrust_expo": expo,
             "outflow_speed_max": speed,
             "power_by_thrust": float(base.value("power_by_thrust")),
         }
@@ -104,32 +129,33 @@ class Identification:
             changes["outflow_speed_max"] = speed * float(base.value("battery_voltage_full")) / voltage.value
         if voltage.is_observed and current.is_observed:
             changes["power_by_thrust"] = voltage.value * current.value / (mass * GRAVITY)
-        if self["battery_resistance"].is_observed:
-            changes["battery_resistance"] = self["battery_resistance"].value
-        firmware_names = first.parameters
-        parameters = {
-            **base.parameters,
-            **{name: value for name, value in firmware_names.items() if name.startswith(_KEPT)},
-        }
-        parameters = _known(parameters)
+        kept = {name: value for name, value in first.parameters.items() if name.startswith(_KEPT)}
         return CopterAirframe(
             name="identified",
             description=f"identified from {', '.join(log.path.name for log in self.logs)}",
             rotors=base.rotors,
             figures={**base.figures, **changes},
-            parameters=parameters,
+            parameters=_known({**base.parameters, **kept}),
         )
+
+    def _battery(self) -> dict[str, float]:
+        """A battery that sags, where the log's did; its capacity is BATT_CAPACITY."""
+        voltage, resistance = self["hover_voltage"], self["battery_resistance"]
+        if not voltage.is_observed:
+            return {}
+        found = {"battery_voltage_full": _CELL * math.ceil(voltage.value / _CELL)}
+        capacity = 1e-3 * self.logs[0].parameter("BATT_CAPACITY", default=0.0)
+        if resistance.is_observed and self["hover_current"].is_observed and capacity > 0.0:
+            found |= {"battery_resistance": resistance.value, "battery_capacity": capacity}
+        return found
+
+    def _figure(self, name: str) -> Figure:
+        return self[name]
 
     def to_toml(self) -> str:
         """The airframe's file, with logs, firmware and intervals as comments."""
-        notes = {}
-        for figure, source in (
-            ("outflow_speed_max", "hover_output"),
-            ("power_by_thrust", "hover_current"),
-            ("battery_resistance", "battery_resistance"),
-        ):
-            if self[source].is_observed:
-                notes[figure] = f"identified, by {self[source]}"
+        model = self._model()
+        notes = model.notes
         notes["mass"] = "as given" if self.mass else "not given: logs tell ratios only, all forces are by this mass"
         head = [f"Identified from {log.path.name}: {log.columns.firmware}, {log.seconds:.0f} s" for log in self.logs]
         head += [
@@ -139,10 +165,10 @@ class Identification:
             "Figures without the word 'identified' are those of the airframe that",
         ]
         head += [
-            "this one began with, by the logs' FRAME_CLASS and FRAME_TYPE, inertia and drag scaled to the mass;",
+            "this one began with, by the logs' FRAME_CLASS and FRAME_TYPE, as far as forces go scaled to the mass;",
             "parameters are those of the log.",
         ]
-        return vehicles.to_toml(self.airframe(), head=head, notes=notes)
+        return vehicles.to_toml(model.airframe, head=head, notes=notes)
 
     def write(self, path: str | Path) -> None:
         """Write the file that ``--frame`` takes."""

@@ -11,14 +11,20 @@ from ..errors import OptionError
 
 ADVICE = """\
 1. LOG_BITMASK: add 1 (fast attitude), so that RATE is logged fast enough. Log on the ground, too: LOG_DISARMED 1.
-2. Set BATT_MONITOR for voltage and current. Choose a day with little wind, and 80 m of free space to each side.
-3. The mission, from the least risk to the most: hover for 40 s; climb and sink; legs at rising speeds with sharp turns.
+2. Set BATT_MONITOR for voltage and current; WP_YAW_BEHAVIOR 0, so that the vehicle flies sideways and backwards, too;
+   WPNAV_ACCEL 400 and WPNAV_JERK 10 (WP_ACC 4, WP_JERK 10 in newer versions) for sharp turns. Choose a day with little
+   wind, and 80 m of free space to each side. Let it stand for half a minute before arming.
+3. The mission, from the least risk to the most: hover for 30 s; turns; climb and sink; legs at rising speeds with
+   sharp turns.
    It lies around --home; look at it in your ground station before you fly it.
 4. Be ready to take over in LOITER."""
 _M = 1.0 / 111319.5
 """Degrees of latitude a metre."""
 _LEGS = ((40, 0), (40, 40), (0, 40), (0, 0), (40, 40), (0, 40), (40, 0), (0, 0))
-_TAKEOFF, _WAYPOINT, _SPEED, _HOME = 22, 16, 178, 20
+_SHORT = ((6, 0), (6, 6), (0, 6), (0, 0))
+_TAKEOFF, _WAYPOINT, _SPEED, _HOME, _TURN = 22, 16, 178, 20, 115
+_TURNS = ((90, 1), (180, -1), (90, 1), (60, -1), (120, 1), (60, -1))
+"""Angle [deg] and direction of turns at a place."""
 
 
 def items(latitude: float, longitude: float) -> list[tuple[float, ...]]:
@@ -29,15 +35,21 @@ def items(latitude: float, longitude: float) -> list[tuple[float, ...]]:
         lon = longitude + east * _M / math.cos(math.radians(latitude))
         found.append((_WAYPOINT, hold, 0, 0, 0, latitude + north * _M, lon, up))
 
-    found.append((_TAKEOFF, 0, 0, 0, 0, 0, 0, 10))
-    go(0, 0, 10, 40)
-    for up in (20, 12, 24, 12):
+    found.append((_TAKEOFF, 0, 0, 0, 0, 0, 0, 15))
+    go(0, 0, 15, 30)
+    for angle, side in _TURNS:
+        go(0, 0, 15, 5)
+        found.append((_TURN, angle, 0, side, 1, 0, 0, 0))
+    for up in (25, 17, 29, 15):
         go(0, 0, up, 2)
-    for speed in (3.0, 6.0, 9.0):
+    for speed in (5.0, 9.0):
         found.append((_SPEED, 1, speed, 0, 0, 0, 0, 0))
         for north, east in _LEGS:
             go(north, east, 15)
-    go(0, 0, 10, 20)
+    for k in range(12):
+        north, east = _SHORT[k % 4]
+        go(north, east, 15)
+    go(0, 0, 15, 10)
     found.append((_HOME, 0, 0, 0, 0, 0, 0, 0))
     return found
 

@@ -1,100 +1,277 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Angular acceleration by the rate controllers' output, by two-stage least squares.
+"""Angular acceleration by the rate controllers' output, lag and dead time of the motors, and rotational damping.
 
-Output and rate are logged more slowly than they change, so that both have errors, and in a closed loop these errors
-are in each other. What the pilot or the mission asked for (RATE.RDes) moves the vehicle and has no part in them: it is
-the instrument. All signals pass the same filter.
+About each axis
+
+    p' + damping p = effectiveness u(t - dead_time), through the motors' first-order lag
+
+with p the rate and u the output of RATE. What is logged of p went through the low-pass of INS_GYRO_FILTER: u is sent
+through the same one. Effectiveness changes with the thrust and with the air that comes through the rotors: terms of u
+by both are besides, so that the figure is that of a hover. Air that pushes the rotors aside turns the vehicle, too: the
+specific force is a term; and about yaw a rotor that speeds up, by a term of u'.
+
+In a closed loop disturbances are in u, too, and output and rate are logged more slowly than they change. So instruments
+stand in. For lag and dead time, which all axes share, those are the wanted angles (ATT.DesRoll ...) at several delays.
+Gusts are in these, too, through the position controller; so effectiveness and damping are found with the angles that
+the path alone asks for (PSCN.DAN, PSCE.DAE), where it is logged.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import signal
 
+from ..core.constants import GRAVITY
 from .figure import NORMAL_95, Figure, Sought
 from .flight import FlightLog
-from .regression import Instrumented, instrumented
+from .moments import WEAK, Block, JointFit, fit
+from .motion import motion
+from .outputs import resolution, saturated
+from .signals import means, spectrum, within
 
 Array = np.ndarray[Any, Any]
 
-BAND_HZ = (0.5, 5.0)
+BAND_HZ = (0.5, 8.0)
 _LEAST_HZ = 20.0
+_MOST_HZ = 100.0
+"""Faster logs are averaged to this rate."""
 _LEAST_S = 20.0
-_DELAYS_S = np.arange(-0.01, 0.07, 0.01)
-_LAGS_S = (0.0, 0.04, 0.08, 0.14, 0.22, 0.32)
-_WEAK = 10.0
-_LEAST_EXPLAINED = 0.75
-"""Below, values of logs with known truth are up to 25 % low."""
-SYSTEMATIC = 0.12
-"""Half of the interval that is added for what the model leaves out (lags of motors and filters, aliasing), relative:
-on logs with known truth, values are 2 to 8 % low."""
+_EDGE_S = 2.0
+"""Of each stretch, which filters need to settle."""
+_LAGS_S = (0.0, 0.04, 0.08, 0.12, 0.18, 0.26, 0.36)
+_SLOW_HZ = 1.0
+"""Thrust and flow below this are taken as conditions."""
+_LEAST_QUANTA = 0.15
+"""With less, pulses of whole microseconds hold back part of the output: values were up to 10 % low."""
+_MOST_RELATIVE = 0.2
+_MOST_LAG_S = 0.015
+"""A wider half interval of a lag is as good as none."""
+SYSTEMATIC = {"roll": 0.02, "pitch": 0.02, "yaw": 0.035}
+"""Relative half of the interval that is added for what the model leaves out: chosen on logs with known truth, as are
+the others below."""
+DAMPING, DAMPING_SHARE = 0.15, 0.1
+_MOST_DAMPING = 1.0
+SPIN_UP_SHARE = 0.08
+TIMING_S = 0.004
+"""Lag and dead time are told apart no better."""
+
+AXES = (("roll", "R", "Roll"), ("pitch", "P", "Pitch"), ("yaw", "Y", "Yaw"))
+LAG = Sought("motor_lag", "s", "time constant of motors and their controllers")
+DEAD = Sought("dead_time", "s", "from a logged output to the beginning of its effect")
+SPIN_UP = Sought("yaw_spin_up", "s", "yaw torque of a changing output by that of the output itself")
 
 
-def effectiveness(logs: Sequence[FlightLog], axis: str, letter: str) -> Figure:
-    """Angular acceleration by a unit of the rate controller's output about an axis [rad/s^2]."""
-    sought = Sought(
-        f"{axis}_effectiveness", "rad/s^2", f"angular acceleration by a unit of {axis} output (RATE.{letter}Out)"
+def _effectiveness(axis: str) -> Sought:
+    letter = axis[0].upper()
+    return Sought(
+        f"{axis}_effectiveness",
+        "rad/s^2",
+        f"angular acceleration by a unit of {axis} output (RATE.{letter}Out) in a hover",
     )
-    if axis == "yaw":
-        return sought.hidden("the torque of rotors that speed up is not told apart from that of their drag yet")
-    usable = [log for log in logs if log.has("RATE") and log.stream("RATE").rate >= _LEAST_HZ]
+
+
+def _damping(axis: str) -> Sought:
+    return Sought(f"{axis}_damping", "1/s", f"angular deceleration by {axis} rate")
+
+
+def _all() -> list[Sought]:
+    return [
+        *(_effectiveness(axis) for axis, *_ in AXES),
+        *(_damping(axis) for axis, *_ in AXES),
+        SPIN_UP,
+        LAG,
+        DEAD,
+    ]
+
+
+class _Stretch(NamedTuple):
+    """One span of a log on even times, in the frequency domain."""
+
+    s: Array
+    """2 pi i f."""
+    band: Array
+    gyro: Array
+    """Low-pass of the rates."""
+    keep: Array
+    """Which samples count."""
+    rate: Array
+    outputs: tuple[Array, ...]
+    """The output, and its products with the conditions."""
+    aside: Array
+    """Specific force that comes with the air's push on the rotors [m/s^2]."""
+    wanted: Array
+    """The attitude controller's angle."""
+    path: Array
+    """The angle that the path alone asks for, where it is logged."""
+    conditions: Array
+
+
+def rates(logs: Sequence[FlightLog]) -> list[Figure]:
+    """All that RATE tells."""
+    usable = [log for log in logs if log.has("RATE", "ATT", "IMU", "XKF1") and log.stream("RATE").rate >= _LEAST_HZ]
     if not usable:
-        rates = [log.stream("RATE").rate for log in logs if log.has("RATE")]
-        had = f"RATE is logged at {max(rates):.0f} Hz" if rates else "there is no RATE"
-        return sought.hidden(f"{had}; {_LEAST_HZ:.0f} Hz are needed (LOG_BITMASK: fast attitude)")
-    best: Instrumented | None = None
-    seconds = 0.0
-    for delay in _DELAYS_S:
-        rows = [part for log in usable for part in _parts(log, letter, float(delay))]
-        seconds = sum(len(part[0]) / rate for *part, rate in rows)
+        had = [log.stream("RATE").rate for log in logs if log.has("RATE")]
+        text = f"RATE is logged at {max(had):.0f} Hz" if had else "there is no RATE"
+        reason = f"{text}; {_LEAST_HZ:.0f} Hz are needed (LOG_BITMASK: fast attitude)"
+        return [sought.hidden(reason) for sought in _all()]
+    rate = min(min(round(log.stream("RATE").rate) for log in usable), _MOST_HZ)
+    lags: list[Block] = []
+    blocks: dict[str, Block] = {}
+    weak: dict[str, str] = {}
+    seconds, quantum = 0.0, max(resolution(log) for log in usable)
+    for axis, letter, angle in AXES:
+        stretches = [part for log in usable for part in _stretches(log, letter, angle, rate)]
+        seconds = sum(int(part.keep.sum()) for part in stretches) / rate
         if seconds < _LEAST_S:
-            return sought.hidden(f"{seconds:.0f} s in the air with RATE; {_LEAST_S:.0f} s are needed")
-        x, y, z = (np.concatenate([row[k] for row in rows]) for k in range(3))
-        groups = np.concatenate([np.full(len(row[0]), k) for k, row in enumerate(rows)])
-        found = instrumented(y, x, z, groups, int(2.0 * rows[0][3]), 1)
-        if best is None or found.objective < best.objective:
-            best = found
-    assert best is not None
-    value, error = float(best.value[0]), float(np.sqrt(best.covariance[0, 0]))
-    explained = 1.0 - float(best.residual @ best.residual) / float(y @ y)
-    if explained < _LEAST_EXPLAINED:
-        share = f"{100.0 * max(explained, 0.0):.0f} % of the angular acceleration follow the output"
-        return sought.hidden(
-            f"{share}, {100.0 * _LEAST_EXPLAINED:.0f} % are needed: there is much turbulence or vibration"
-        )
-    if best.strength < _WEAK or value <= 0.0 or NORMAL_95 * error > 0.25 * value:
-        return sought.hidden(f"the {axis} rate was moved too little (F {best.strength:.0f}): fly doublets, or SYSTEMID")
-    half = float(np.hypot(NORMAL_95 * error, SYSTEMATIC * value))
-    return sought.between(
-        value, value - half, value + half, f"{seconds:.0f} s of RATE, {BAND_HZ[0]} to {BAND_HZ[1]} Hz"
-    )
+            reason = f"{seconds:.0f} s in the air with RATE and free outputs; {_LEAST_S:.0f} s are needed"
+            return [sought.hidden(reason) for sought in _all()]
+        first, block = (_block(stretches, axis == "yaw", rate, by_path) for by_path in (False, True))
+        if block.moved(1) < _LEAST_QUANTA * quantum or block.strength(1) < WEAK:
+            block = first  # the pilot flies, and the path asks for nothing
+        moved, strength = block.moved(1), block.strength(1)
+        if moved < _LEAST_QUANTA * quantum:
+            weak[axis] = (
+                f"what was asked for moves the {axis} output by {moved:.1e} (RMS), less than {_LEAST_QUANTA:g} of a "
+                f"microsecond of the motors' pulses, {quantum:.1e}: fly sharper turns, doublets, or SYSTEMID"
+            )
+        elif strength < WEAK:
+            weak[axis] = f"the {axis} rate was moved too little (F {strength:.0f}): fly doublets, or SYSTEMID"
+        else:
+            lags.append(first)
+            blocks[axis] = block
+    if not blocks:
+        return [sought.hidden("; ".join(weak.values())) for sought in _all()]
+    found = fit(lags, np.array([0.02, 0.005]), np.array([0.01, 0.005]))
+    shared = np.maximum(found.shared, 0.0)
+    found = fit(list(blocks.values()), shared, np.array([0.01, 0.005]), found)
+    data = f"{seconds:.0f} s of RATE, ATT, {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz"
+    return _figures(found, list(blocks), weak, data)
 
 
-def _parts(log: FlightLog, letter: str, delay: float) -> list[tuple[Array, Array, Array, float]]:
-    """(Regressors, angular acceleration, instruments, rate) of each span."""
-    table = log.stream("RATE")
-    rate = min(round(table.rate), 100)
-    output = table[f"{letter}Out"]
-    turned = np.radians(np.stack([table[letter], table[f"{letter}Des"]], -1))
-    band = signal.butter(2, BAND_HZ, "band", fs=rate, output="sos")
+def _figures(found: JointFit, axes: list[str], weak: dict[str, str], data: str) -> list[Figure]:
+    result: dict[str, Figure] = {}
+    for axis, *_ in AXES:
+        sought, damping = _effectiveness(axis), _damping(axis)
+        if axis in weak:
+            result[sought.name], result[damping.name] = sought.hidden(weak[axis]), damping.hidden(weak[axis])
+            if axis == "yaw":
+                result[SPIN_UP.name] = SPIN_UP.hidden(weak[axis])
+            continue
+        k = axes.index(axis)
+        value, error = found.values[k], found.errors[k]
+        half = float(np.hypot(NORMAL_95 * error[1], SYSTEMATIC[axis] * value[1]))
+        if value[1] <= 0.0 or half > _MOST_RELATIVE * value[1]:
+            reason = f"the {axis} rate was moved too little, or there is much turbulence: {value[1]:.3g} +- {half:.2g}"
+            result[sought.name] = sought.hidden(reason)
+        else:
+            result[sought.name] = sought.between(value[1], value[1] - half, value[1] + half, data)
+        half = float(np.linalg.norm([NORMAL_95 * error[0], DAMPING, DAMPING_SHARE * value[0]]))
+        if half > _MOST_DAMPING:
+            result[damping.name] = damping.hidden(f"too uncertain: {value[0]:.2f} +- {half:.2f} 1/s")
+        else:
+            result[damping.name] = damping.between(value[0], value[0] - half, value[0] + half, data)
+        if axis == "yaw":
+            ratio = value[-1] / value[1]
+            half = float(np.hypot(NORMAL_95 * error[-1] / value[1], SPIN_UP_SHARE * ratio))
+            hidden = result[sought.name].reason or (f"{ratio:.3f} +- {half:.3f} s" if half > 0.1 else "")
+            if hidden:
+                result[SPIN_UP.name] = SPIN_UP.hidden(hidden)
+            else:
+                result[SPIN_UP.name] = SPIN_UP.between(ratio, ratio - half, ratio + half, data)
+    for sought, value, error in zip((LAG, DEAD), found.shared, found.shared_errors):
+        half = float(np.hypot(NORMAL_95 * error, TIMING_S))
+        if half > _MOST_LAG_S:
+            reason = (
+                f"too uncertain: {1e3 * value:.0f} +- {1e3 * half:.0f} ms; fast movements tell it (SYSTEMID, doublets)"
+            )
+            result[sought.name] = sought.hidden(reason)
+        else:
+            high = max(value + half, 1e-4)
+            result[sought.name] = sought.between(max(value, 0.0), max(value - half, 0.0), high, data)
+    return [result[sought.name] for sought in _all()]
+
+
+def _stretches(log: FlightLog, letter: str, angle: str, rate: float) -> list[_Stretch]:
+    table, attitude, imu = log.stream("RATE"), log.stream("ATT"), log.stream("IMU", 0)
+    cutoff = 2.0 * np.pi * log.parameter("INS_GYRO_FILTER", default=20.0)
+    busy = saturated(log)
     found = []
     for span in log.spans:
-        time = np.arange(span.begin, span.end, 1.0 / rate)
-        if len(time) < 8 * rate:
+        edges = np.arange(span.begin, span.end, 1.0 / rate)
+        if len(edges) < (2.0 * _EDGE_S + 4.0) * rate:
             continue
-        columns = [np.interp(time - delay, table.time, output)]
-        columns += [np.interp(time, table.time, column) for column in turned.T]
-        u, y, wanted = signal.sosfiltfilt(band, np.stack(columns, -1), axis=0).T
-        keep = slice(2 * rate, -2 * rate)
-        z = np.stack([np.roll(wanted, round(lag * rate)) for lag in _LAGS_S], -1)
-        x = np.stack([_smooth(u), _smooth(y)], -1)
-        found.append((x[keep], (np.gradient(y, 1.0 / rate))[keep], z[keep], float(rate)))
+        columns = np.stack([table[f"{letter}Out"], np.radians(table[letter])], -1)
+        u, p = means(table.time, columns, edges).T
+        wanted = means(attitude.time, np.unwrap(np.radians(attitude[f"Des{angle}"])), edges)
+        path = _path(log, angle, edges, wanted)
+        n = len(u)
+        s = 2j * np.pi * np.fft.rfftfreq(n, 1.0 / rate)
+        slow = 1.0 / (1.0 + (s.imag / (2.0 * np.pi * _SLOW_HZ)) ** 4)
+
+        def smooth(x: Array, slow: Array = slow, n: int = n) -> Array:
+            return np.fft.irfft(slow * np.fft.rfft(x), n)
+
+        thrust = smooth(-means(imu.time, imu["AccZ"], edges) / GRAVITY - 1.0)
+        moved = motion(log, edges)
+        through = smooth(moved.along_body(moved.velocity)[:, 2])
+        conditions = np.stack([thrust, through], -1)
+        f = s.imag / (2.0 * np.pi)
+        low, high = (f / BAND_HZ[0]) ** 4, (f / BAND_HZ[1]) ** 8
+        band = low / (1.0 + low) / (1.0 + high)
+        gyro = np.ones_like(s) if cutoff <= 0.0 else 1.0 / (1.0 + np.sqrt(2.0) * s / cutoff + (s / cutoff) ** 2)
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        keep = (middle > span.begin + _EDGE_S) & (middle < span.end - _EDGE_S) & ~within(middle, busy)
+        outputs = (spectrum(u), *(spectrum(u * column) for column in conditions.T))
+        aside = means(imu.time, imu["AccX" if letter == "P" else "AccY"], edges)
+        found.append(
+            _Stretch(
+                s, band, gyro, keep, spectrum(p), outputs, spectrum(aside), spectrum(wanted), spectrum(path), conditions
+            )
+        )
     return found
 
 
-def _smooth(x: Array) -> Array:
-    """Mean over the two steps that a central difference spans (Simpson)."""
-    return np.concatenate([x[:1], (x[:-2] + 4.0 * x[1:-1] + x[2:]) / 6.0, x[-1:]])
+def _path(log: FlightLog, angle: str, edges: Array, otherwise: Array) -> Array:
+    """The angle [rad] that the path's own acceleration asks for: gusts have no part in it."""
+    if angle == "Yaw" or not log.has("PSCN", "PSCE"):
+        return otherwise
+    north, east = (
+        means(table.time, table[f"DA{axis}"], edges)
+        for axis, table in ((axis, log.stream(f"PSC{axis}")) for axis in "NE")
+    )
+    yaw = motion(log, edges).yaw
+    forward, right = np.cos(yaw) * north + np.sin(yaw) * east, np.cos(yaw) * east - np.sin(yaw) * north
+    return (right if angle == "Roll" else -forward) / GRAVITY
+
+
+def _block(stretches: list[_Stretch], spins_up: bool, rate: float, by_path: bool) -> Block:
+    """Moments of an axis: angular acceleration, then -rate, output by conditions, and the output's change."""
+    instruments = []
+    for part in stretches:
+        n = len(part.keep)
+        z = np.fft.irfft(part.s * (part.path if by_path else part.wanted) * part.band, n)
+        z = np.stack([np.roll(z, round(lag * rate)) for lag in _LAGS_S], -1)
+        by = np.concatenate([z, *(z[:, 1:5] * c[:, None] for c in part.conditions.T)], -1)
+        if not spins_up:
+            by = np.column_stack([by, np.fft.irfft(part.band * part.gyro * part.aside, n)])
+        instruments.append(by[part.keep])
+
+    def columns(shared: Array) -> tuple[Array, Array]:
+        lag, dead = shared
+        left, right = [], []
+        for part in stretches:
+            n, keep = len(part.keep), part.keep
+            motor = part.band * part.gyro * np.exp(-part.s * dead) / (1.0 + part.s * lag)
+            left.append(np.fft.irfft(part.s * part.band * part.rate, n)[keep])
+            row = [-np.fft.irfft(part.band * part.rate, n), *(np.fft.irfft(motor * u, n) for u in part.outputs)]
+            if spins_up:
+                row.append(np.fft.irfft(part.s * motor * part.outputs[0], n))
+            else:
+                row.append(np.fft.irfft(part.band * part.gyro * part.aside, n))
+            right.append(np.stack(row, -1)[keep])
+        return np.concatenate(left), np.vstack(right)
+
+    groups = np.concatenate([np.full(int(part.keep.sum()), k) for k, part in enumerate(stretches)])
+    return Block(columns, np.vstack(instruments), groups, int(2.0 * rate))

@@ -3,8 +3,7 @@
 
 Residuals of a flight are not independent: gusts last for seconds, and models leave things out. The covariance is that
 of Newey and West (1987); because it is itself an estimate, intervals widen with its share of the series as Kiefer and
-Vogelsang (2005, "fixed-b", Bartlett kernel) say. Where regressors have errors of their own, instruments stand in
-(two-stage least squares): signals that move the vehicle and have no part in those errors, as what the pilot asked for.
+Vogelsang (2005, "fixed-b", Bartlett kernel) say.
 """
 
 from __future__ import annotations
@@ -89,40 +88,3 @@ def _slopes(function: Callable[[Array], Array], at: Array, scale: Array | None) 
         back[k] -= step
         columns.append((function(there) - function(back)) / (2.0 * step))
     return np.stack(columns, -1)
-
-
-class Instrumented(NamedTuple):
-    """A two-stage estimate."""
-
-    value: Array
-    covariance: Array
-    residual: Array
-    objective: float
-    """Size of what instruments still explain of the residuals: small when the model is right."""
-    strength: float
-    """Least F statistic of the first stage over the regressors that have errors: below 10 instruments are weak."""
-
-
-def instrumented(y: Array, x: Array, z: Array, groups: Array, lag: int, extra: int = 0) -> Instrumented:
-    """y = x b by two-stage least squares with instruments z.
-
-    Args:
-        y: (n,). x: (n, k). z: (n, m), m >= k.
-        groups, lag: as of ``least_squares``.
-        extra: parameters besides that were found from the same data.
-    """
-    q, _ = np.linalg.qr(z)
-    fitted = q @ (q.T @ x)
-    value = np.linalg.lstsq(fitted, y, rcond=None)[0]
-    residual = y - x @ value
-    bread = np.linalg.pinv(fitted.T @ fitted)
-    covariance = bread @ long_run(fitted * residual[:, None], groups, lag) @ bread
-    covariance = covariance * widening(len(y), x.shape[1] + extra, lag)
-    seen = q.T @ residual
-    strengths = []
-    for k in range(x.shape[1]):
-        rest = x[:, k] - fitted[:, k]
-        moved = fitted[:, k] - fitted[:, k].mean()
-        noise = float(rest @ rest) / max(len(y) - z.shape[1], 1)
-        strengths.append(float(moved @ moved) / z.shape[1] / max(noise, 1e-300) if moved.any() else np.inf)
-    return Instrumented(value, covariance, residual, float(seen @ seen), min(strengths))

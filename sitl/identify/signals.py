@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,3 +49,16 @@ def increasing(time: Array) -> Array:
         return np.zeros(0, bool)
     before = np.concatenate([[-np.inf], np.maximum.accumulate(time)[:-1]])
     return time > before
+
+
+def within(time: Array, spans: Sequence[Span]) -> Array:
+    """Which times are in one of these spans."""
+    found = np.zeros(len(time), bool)
+    for span in spans:
+        found |= (time >= span.begin) & (time <= span.end)
+    return found
+
+
+def spectrum(x: Array) -> Array:
+    """Of a stretch, after the straight line between its ends is taken away."""
+    return np.fft.rfft(x - np.linspace(x[0], x[-1], len(x)))

@@ -3,56 +3,104 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from sitl import Simulation, cli, vehicles
 from sitl.client import Client
 from sitl.identify import IdentifyError, identify
+from sitl.identify.expected import Copter
 from sitl.logs.dataflash.log import attach
 from sitl.missions import files
+
+_SETTINGS = {"LOG_BITMASK": 180223, "LOG_DISARMED": 1, "WPNAV_ACCEL": 400, "WPNAV_JERK": 10, "WP_YAW_BEHAVIOR": 0}
 
 
 @pytest.fixture(scope="session")
 def flown(tmp_path_factory):
-    """A hover and a few legs of ArduPilot's quad."""
+    """Rest, a hover, turns and short fast legs of the Erle-Copter."""
     path = tmp_path_factory.mktemp("identify") / "flight.bin"
-    simulation = Simulation("ardupilot_quad", seed=1, params={"LOG_BITMASK": 180223})
+    simulation = Simulation("erle_copter", seed=1, params=_SETTINGS)
     attach(simulation, path)
     vehicle = Client(simulation)
     vehicle.wait_ready()
+    vehicle.delay(25)
     vehicle.take_off(8)
-    vehicle.delay(30)
-    for north, east in ((15, 0), (15, 15), (0, 0)):
-        vehicle.goto(north, east, altitude=8)
+    vehicle.delay(20)
+    places = [(k % 4 in (1, 2), k % 4 in (2, 3)) for k in range(12)]
+    items = [vehicle.item("NAV_WAYPOINT", 0, 0), vehicle.item("NAV_TAKEOFF", altitude=8)]
+    for side in (1, -1, 1):
+        items.append(vehicle.item("NAV_WAYPOINT", 0, 0, altitude=8, hold=4))
+        items.append(vehicle.item("CONDITION_YAW", param1=90, param3=side, param4=1))
+    items += [vehicle.item("NAV_WAYPOINT", 0, 0, altitude=up) for up in (12, 8)]
+    items += [vehicle.item("NAV_WAYPOINT", 15 * north, 15 * east, altitude=8) for north, east in places]
+    vehicle.upload(items)
+    vehicle.start_mission()
+    vehicle.delay(90)
     simulation.close()
     return path
 
 
-def test_figures_contain_the_truth_and_others_say_why_not(flown) -> None:
-    found = identify(flown)
-    hover = found["hover_output"]
-    assert hover.low < 0.5909 < hover.high and hover.relative < 0.02
-    for axis in ("roll", "pitch"):
-        figure = found[f"{axis}_effectiveness"]
-        assert figure.low < 304.3 < figure.high, str(figure)
-    assert "did not change" in found["battery_resistance"].reason  # an ideal source
+@pytest.fixture(scope="session")
+def found(flown):
+    return identify(flown)
+
+
+def test_figures_contain_the_truth_and_others_say_why_not(found) -> None:
+    log, airframe = found.logs[0], vehicles.load("erle_copter")
+    known = Copter(airframe, log.parameters, log.conditions).figures()
+    known |= {name: float(airframe.value(name)) for name in ("baro_noise", "gyro_noise_density")}
+    for name in ("hover_output", "yaw_effectiveness", "drag_mcoef", "gyro_noise_density", "baro_noise"):
+        figure = found[name]
+        assert figure.low < known[name] < figure.high, f"{figure}, truth {known[name]}"
+    for name in ("roll_effectiveness", "pitch_effectiveness"):
+        assert found[name].value == pytest.approx(known[name], rel=0.05) and found[name].relative < 0.05, str(
+            found[name]
+        )
+    assert found["motor_lag"].low < known["motor_lag"] < found["motor_lag"].high
+    assert found["motor_lag"].low > 0.0
     assert all(figure.is_observed or figure.reason for figure in found.figures)
-    assert "yaw_effectiveness: not observable in this log: " in found.table()
+    assert "battery_capacity: not observable in this log: " in found.table()
 
 
-def test_the_airframe_flies_at_the_same_output(flown, tmp_path, capsys) -> None:
+def test_the_airframe_answers_as_the_vehicle_did(found, tmp_path, flown, capsys) -> None:
     out = tmp_path / "mine.toml"
     assert cli.main(["identify", str(flown), "--mass", "2.0", "--out", str(out)]) == 0
-    assert "hover_output: 0.59" in capsys.readouterr().out
-    mine, known = vehicles.load(str(out)), vehicles.load("ardupilot_quad")
+    assert "hover_output: 0.57" in capsys.readouterr().out
+    mine, log = vehicles.load(str(out)), found.logs[0]
     assert mine.value("mass") == 2.0
-    # A third less mass with the same ratio of thrust: outflow^2 by mass stays.
-    ratio = mine.value("outflow_speed_max") ** 2 / mine.value("mass")
-    assert ratio == pytest.approx(known.value("outflow_speed_max") ** 2 / 3.0, rel=0.02)
-    assert "identified, by hover_output: 0.59" in out.read_text()
+    answers = Copter(mine, log.parameters, log.conditions).figures()
+    for name in ("hover_output", "roll_effectiveness", "pitch_effectiveness", "yaw_effectiveness", "drag_mcoef"):
+        assert answers[name] == pytest.approx(found[name].value, rel=0.01), name
+    assert mine.value("time_constant_up") == pytest.approx(found["motor_lag"].value)
+    assert mine.value("baro_noise") == found["baro_noise"].value
+    text = out.read_text()
+    assert "identified, by hover_output: 0.57" in text and "identified, by roll_effectiveness" in text
 
 
-def test_rates_that_are_too_low_are_said(flown, tmp_path, monkeypatch) -> None:
+def test_a_log_that_ends_in_the_air_still_tells(flown, tmp_path) -> None:
+    data = flown.read_bytes()
+    path = tmp_path / "cut.bin"
+    path.write_bytes(data[: int(0.7 * len(data))])
+    part = identify(path)
+    assert part["hover_output"].is_observed
+    assert part.logs[0].seconds < 0.8 * identify(flown).logs[0].seconds
+
+
+def test_pulses_that_hardly_move_are_said(flown, monkeypatch) -> None:
+    monkeypatch.setattr("sitl.identify.rates.resolution", lambda log: 1.0)
+    reason = identify(flown)["roll_effectiveness"].reason
+    assert "less than 0.15 of a microsecond of the motors' pulses" in reason
+
+
+def test_a_log_of_no_rest_tells_no_noise(flown, monkeypatch) -> None:
+    monkeypatch.setattr("sitl.identify.flight.FlightLog.at_rest", property(lambda log: []))
+    figure = identify(flown)["gyro_noise_density"]
+    assert math.isnan(figure.value) and "LOG_DISARMED 1" in figure.reason
+
+
+def test_rates_that_are_too_low_are_said(flown, monkeypatch) -> None:
     monkeypatch.setattr("sitl.identify.rates._LEAST_HZ", 60.0)
     assert "RATE is logged at 50 Hz; 60 Hz are needed" in identify(flown)["roll_effectiveness"].reason
 

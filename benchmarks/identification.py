@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How right ``sitl identify`` is: logs of our own copters, whose figures are known, on seeds that it never saw.
+
+    python -m benchmarks.identification                          # 5 seeds of each airframe: 3 minutes
+    python -m benchmarks.identification --seeds 101..125 --airframes erle_copter
+    python -m benchmarks.identification --keep logs --details    # the logs stay; a line for each figure of each log
+
+Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts.
+For each figure and airframe the table has the truth, in how many logs it was observed, in how many of these the
+interval holds the truth, the median error, and the median half of the interval.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import random
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from sitl import Simulation, vehicles
+from sitl.client import Client
+from sitl.errors import SitlError
+from sitl.identify import Identification, identify
+from sitl.identify.drag import SPEED
+from sitl.identify.expected import Copter
+from sitl.identify.plan import write
+from sitl.logs.dataflash.log import attach
+from sitl.missions import files
+from sitl.vehicles import CopterAirframe
+
+AIRFRAMES = ("ardupilot_quad", "ardupilot_hexa_x", "erle_copter", "erle_copter, 10 mm tail-heavy")
+_HEAVY_M = 0.01
+_FAST_ATTITUDE = 1
+_NOISES = (
+    "gyro_noise_density",
+    "acc_noise_density",
+    "baro_noise",
+    "mag_noise",
+    "gps_noise_horizontal",
+    "gps_noise_vertical",
+    "gps_velocity_noise_vertical",
+)
+_TURBULENCE = 0.15
+"""Gusts [m/s] by wind."""
+
+
+def airframe_of(name: str) -> CopterAirframe:
+    """A shipped airframe; with a battery that sags where the shipped one has an ideal source."""
+    shipped, _, changed = name.partition(",")
+    found = vehicles.load(shipped)
+    assert isinstance(found, CopterAirframe)
+    if not found.value("battery_capacity"):
+        found = replace(found, figures={**found.figures, "battery_capacity": 5.0})
+    if changed:
+        found = replace(found, rotors=tuple(rotor._replace(x=rotor.x + _HEAVY_M) for rotor in found.rotors))
+    return found
+
+
+def fly(name: str, seed: int, path: Path) -> dict[str, float]:
+    """Fly the plan; the wind that blew."""
+    path.unlink(missing_ok=True)
+    draw = random.Random(seed)
+    wind, bearing = draw.uniform(0.0, 6.0), draw.uniform(0.0, 360.0)
+    settings = {
+        "SIM_WIND_SPD": wind,
+        "SIM_WIND_DIR": bearing,
+        "SIM_WIND_TURB": _TURBULENCE * wind,
+        "SIM_WIND_T": 1,
+        "LOG_DISARMED": 1,
+        "WP_YAW_BEHAVIOR": 0,
+        "WPNAV_ACCEL": 400,
+        "WPNAV_JERK": 10,
+    }
+    simulation = Simulation(airframe_of(name), seed=seed, params=settings)
+    try:
+        attach(simulation, path)
+        vehicle = Client(simulation)
+        vehicle.params["LOG_BITMASK"] = int(vehicle.params["LOG_BITMASK"]) | _FAST_ATTITUDE
+        vehicle.wait_ready()
+        vehicle.delay(30)
+        vehicle.take_off(5)
+        plan = path.with_suffix(".waypoints")
+        latitude, longitude, _ = vehicle.home()
+        write(plan, (1e-7 * latitude, 1e-7 * longitude))
+        vehicle.upload(files.load(plan).mission)
+        vehicle.start_mission()
+        vehicle.wait_disarmed(timeout=900)
+    finally:
+        simulation.close()
+    return {"wind_speed": wind, "wind_from": bearing}
+
+
+def truth(name: str, found: Identification, wind: dict[str, float]) -> dict[str, float]:
+    """What the figures of this flight were: those of the airframe, at the log's mean voltage and altitude."""
+    airframe, log = airframe_of(name), found.logs[0]
+    value = lambda figure: float(airframe.value(figure))  # noqa: E731
+    copter = Copter(airframe, log.parameters, log.conditions)
+    known = {**copter.figures(), **wind}
+    if found["hover_voltage"].is_observed:
+        hovering = log.conditions._replace(voltage=found["hover_voltage"].value)
+        known["hover_output"] = Copter(airframe, log.parameters, hovering).figures()["hover_output"]
+    for axis, letter in (("along", "x"), ("across", "y")):
+        quadratic = 0.5 * copter.density / known[f"drag_bcoef_{letter}"]
+        known[f"drag_{axis}"] = known["drag_mcoef"] * SPEED + quadratic * SPEED * SPEED
+    known["battery_resistance"] = value("battery_resistance")
+    known["balance_forward"] = (-_HEAVY_M if "," in name else 0.0) / max(
+        math.hypot(rotor.x - _HEAVY_M * ("," in name), rotor.y) for rotor in airframe.rotors
+    )
+    known["balance_right"] = 0.0
+    known["dead_time"] = (
+        0.0025  # a tick of 2.5 ms: half of it each until the output acts and until the rate is measured
+    )
+    for figure in _NOISES:
+        if value(figure) > 0.0:
+            known[figure] = value(figure)
+    return known
+
+
+def seeds(text: str) -> tuple[int, ...]:
+    """Of "101..105" or "3,7"."""
+    first, _, last = text.partition("..")
+    return tuple(range(int(first), int(last) + 1)) if last else tuple(map(int, text.split(",")))
+
+
+Result = tuple[float, float, float, float]
+"""Truth, estimate, ends of the interval; not a number where it was not observed."""
+
+
+def judge(name: str, seed: int, folder: Path) -> dict[str, Result]:
+    """Fly and identify one log."""
+    path = folder / f"{name.replace(', ', '-').replace(' ', '-')}-{seed}.bin"
+    winds = fly(name, seed, path)
+    found = identify(path)
+    known = truth(name, found, winds)
+    return {
+        figure.name: (known[figure.name], figure.value, figure.low, figure.high)
+        for figure in found.figures
+        if math.isfinite(known.get(figure.name, math.nan))
+    }
+
+
+def rows(name: str, results: list[dict[str, Result]]) -> Iterator[str]:
+    """Lines of the table."""
+    for figure in results[0]:
+        all_of = np.array([result[figure] for result in results if figure in result])
+        seen = all_of[np.isfinite(all_of[:, 1])]
+        true = np.median(all_of[:, 0])
+        if not len(seen):
+            yield f"| {figure} | {name} | {true:.4g} | 0 of {len(all_of)} | | | |"
+            continue
+        miss, half = seen[:, 1] - seen[:, 0], 0.5 * (seen[:, 3] - seen[:, 2])
+        if figure == "wind_from":
+            miss = (miss + 180.0) % 360.0 - 180.0
+        held = int((abs(miss) <= _reach(seen, miss)).sum())
+        if figure in _ABSOLUTE:
+            size = [f"{np.median(abs(x)):.2g}" for x in (miss, half)]
+        else:
+            size = [f"{100.0 * np.median(abs(x / seen[:, 0])):.1f} %" for x in (miss, half)]
+        yield f"| {figure} | {name} | {true:.4g} | {len(seen)} of {len(all_of)} | {held} | {size[0]} | {size[1]} |"
+
+
+_ABSOLUTE = ("balance_forward", "balance_right", "motor_lag", "dead_time", "wind_from", "wind_speed", "thrust_expo") + (
+    "roll_damping", "pitch_damping", "yaw_damping",
+)  # fmt: skip
+"""Figures that may be 0: their errors are in their own unit."""
+
+
+def _reach(seen: np.ndarray, miss: np.ndarray) -> np.ndarray:
+    """How far the interval reaches on the side where the truth is."""
+    return np.where(miss > 0.0, seen[:, 1] - seen[:, 2], seen[:, 3] - seen[:, 1]) + 1e-12
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Fly, identify, print the table."""
+    parser = argparse.ArgumentParser(prog="benchmarks.identification", description=__doc__.partition("\n")[0])
+    parser.add_argument("--airframes", nargs="+", default=list(AIRFRAMES), metavar="NAME")
+    parser.add_argument("--seeds", type=seeds, default=seeds("101..105"), metavar="A..B", help="or 3,7")
+    parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the logs there")
+    parser.add_argument("--details", action="store_true", help="a line for each figure of each log")
+    options = parser.parse_args(argv)
+    lines: list[str] = []
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = options.keep or Path(temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in options.airframes:
+            results = []
+            for seed in tqdm(options.seeds, name, leave=False, disable=None):
+                try:
+                    results.append(judge(name, seed, folder))
+                except SitlError as error:
+                    print(f"{name}, seed {seed}: {error}")
+                    continue
+                if options.details:
+                    for figure, (true, value, low, high) in results[-1].items():
+                        mark = "" if not math.isfinite(value) or low <= true <= high else "  <- not in it"
+                        print(f"{name} {seed} {figure}: {value:.5g} ({low:.5g} .. {high:.5g}), truth {true:.5g}{mark}")
+            if results:
+                lines += rows(name, results)
+    print(
+        "| figure | airframe | truth | observed in | interval holds the truth | median error | median half interval |"
+    )
+    print("|---|---|---|---|---|---|---|")
+    print("\n".join(lines))
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

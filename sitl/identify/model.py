@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The airframe that figures make of a shipped one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from ..core.constants import GRAVITY
+from ..vehicles import CopterAirframe
+from .expected import Conditions, Copter
+from .figure import Figure
+
+_NOISES = (
+    "gyro_noise_density",
+    "acc_noise_density",
+    "baro_noise",
+    "mag_noise",
+    "gps_noise_horizontal",
+    "gps_noise_vertical",
+    "gps_velocity_noise_vertical",
+)
+"""Figures of logs that are figures of airframes."""
+
+
+class Model:
+    """A shipped airframe that takes over one figure after the other.
+
+    Args:
+        base: with the mass, drag and inertia scaled to it.
+        parameters: of the log's firmware.
+        conditions: of the log.
+        found: a figure of the log by its name.
+    """
+
+    def __init__(
+        self,
+        base: CopterAirframe,
+        parameters: Mapping[str, float],
+        conditions: Conditions,
+        found: Callable[[str], Figure],
+    ) -> None:
+        self.airframe = base
+        self.notes: dict[str, str] = {}
+        """Figure of the airframe -> what it follows from."""
+        self._parameters, self._conditions, self._found = parameters, conditions, found
+        self._drag()
+        self._motors()
+        self._inertia()
+        self._yaw()
+        self._balance()
+        for name in _NOISES:
+            if (figure := found(name)).is_observed:
+                self._set(figure, **{name: figure.value})
+
+    def _set(self, source: Figure, **values: Any) -> None:
+        self.airframe = replace(self.airframe, figures={**self.airframe.figures, **values})
+        self.notes |= dict.fromkeys(values, f"identified, by {source}")
+
+    def _value(self, name: str) -> float:
+        return float(self.airframe.value(name))
+
+    def _expected(self) -> dict[str, float]:
+        return self._copter().figures()
+
+    def _copter(self) -> Copter:
+        return Copter(self.airframe, self._parameters, self._conditions)
+
+    def _drag(self) -> None:
+        if (figure := self._found("drag_mcoef")).is_observed:
+            scale = figure.value / self._expected()["drag_mcoef"]
+            self._set(figure, momentum_drag=scale * self._value("momentum_drag"))
+        area, mass = list(self.airframe.value("drag_area")), self._value("mass")
+        for k, axis in enumerate("xy"):
+            if (figure := self._found(f"drag_bcoef_{axis}")).is_observed:
+                area[k] = mass / figure.value
+                self._set(figure, drag_area=tuple(area))
+
+    def _motors(self) -> None:
+        if (lag := self._found("motor_lag")).is_observed and lag.low > 0.0:
+            self._set(lag, time_constant_up=lag.value, time_constant_down=lag.value)
+
+    def _inertia(self) -> None:
+        """Angular acceleration by output: inertia, since places and thrust of the motors are given."""
+        moments, expected = list(self.airframe.value("inertia")), self._expected()
+        factors = []
+        for k, axis in enumerate(("roll", "pitch")):
+            if (figure := self._found(f"{axis}_effectiveness")).is_observed:
+                factors.append(expected[figure.name] / figure.value)
+                moments[k] *= factors[-1]
+        if factors:
+            moments[2] *= sum(factors) / len(factors)
+            self._set(self._found("roll_effectiveness"), inertia=tuple(moments))
+        left = [
+            self._found(f"{axis}_damping").value - self._expected()[f"{axis}_damping"] for axis in ("roll", "pitch")
+        ]
+        if factors and all(map(math.isfinite, left)):
+            damping = max(self._value("angular_damping") + sum(left) / len(left), 0.0)
+            self._set(self._found("roll_damping"), angular_damping=damping)
+
+    def _yaw(self) -> None:
+        if not (figure := self._found("yaw_effectiveness")).is_observed:
+            return
+        lever = self._value("yaw_lever") * figure.value / self._expected()[figure.name]
+        self._set(figure, yaw_lever=lever)
+        spin_up = self._found("yaw_spin_up")
+        if spin_up.is_observed and spin_up.low > 0.0 and self._value("time_constant_up") > 0.0:
+            copter, at = self._copter(), self._copter().hover
+            commands = [copter.command(copter.output(at + step)) for step in (-1e-3, 1e-3)]
+            moments = [copter.moment(at + step) for step in (-1e-3, 1e-3)]
+            slope = (moments[1] - moments[0]) / (commands[1] - commands[0])
+            self._set(spin_up, rotor_inertia=spin_up.value * slope)
+
+    def _balance(self) -> None:
+        rotors = self.airframe.rotors
+        reach = max(math.hypot(rotor.x, rotor.y) for rotor in rotors)
+        for name, axis in (("balance_forward", "x"), ("balance_right", "y")):
+            figure = self._found(name)
+            if figure.is_observed and (figure.low > 0.0 or figure.high < 0.0):
+                moved = -figure.value * reach
+                rotors = tuple(rotor._replace(**{axis: getattr(rotor, axis) + moved}) for rotor in rotors)
+        self.airframe = replace(self.airframe, rotors=rotors)
+
+
+def outflow(base: CopterAirframe, mass: float, command: float, expo: float, air_density: float) -> float:
+    """Outflow speed at command 1 with which a command carries the weight [m/s]."""
+    flow = 0.5 * air_density * float(base.value("outflow_area")) * len(base.rotors)
+    return math.sqrt(mass * GRAVITY / (flow * command * (1.0 - expo + expo * command)))
