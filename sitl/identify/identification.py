@@ -7,6 +7,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from .. import vehicles
 from ..core.constants import GRAVITY
@@ -32,6 +35,8 @@ _BASES = {
 """FRAME_CLASS, FRAME_TYPE -> the shipped airframe with these rotors."""
 _CELL = 4.2
 """Voltage of a full cell."""
+_OVERCHARGE = 0.02
+"""Part of a cell by which a full battery may seem to have one more: chargers and voltmeters err."""
 _KEPT = ("ATC_", "FRAME_", "INS_ACCEL_FILTER", "INS_GYRO_FILTER", "MOT_", "PSC_", "WPNAV_", "WP_", "ANGLE_MAX")
 """Parameters of the log that the airframe takes over, as far as the firmware has them."""
 
@@ -63,12 +68,36 @@ class Identification:
 
     def airframe(self) -> CopterAirframe:
         """A shipped airframe with the rotors of the log's FRAME_CLASS and FRAME_TYPE, changed as far as figures were
-        found.
+        found, with intervals of what follows from them.
 
         Raises:
             IdentifyError: there is no shipped airframe with such rotors, or the hover output was not found.
         """
-        return self._model().airframe
+        return self._with_intervals(self._model().airframe)
+
+    def _with_intervals(self, airframe: CopterAirframe) -> CopterAirframe:
+        """How far off the airframe's figures may be: those of the logs are moved to the ends of their intervals one at
+        a time, and what that does to a figure of the airframe is added up in squares, as of independent errors."""
+        squares: dict[str, list[Any]] = {}
+        for k, figure in enumerate(self.figures):
+            if not figure.is_observed or figure.name == "hover_voltage":  # which also tells the number of cells
+                continue
+            for end in {figure.low, figure.high}:
+                moved = [*self.figures[:k], replace(figure, value=end), *self.figures[k + 1 :]]
+                other = replace(self, figures=tuple(moved))._model().airframe
+                for name, value in other.figures.items():
+                    change = np.subtract(value, airframe.value(name))
+                    if np.any(change):
+                        below, above = squares.setdefault(name, [np.zeros_like(change), np.zeros_like(change)])
+                        below += np.minimum(change, 0.0) ** 2
+                        above += np.maximum(change, 0.0) ** 2
+        limits = {figure.name: (figure.low, figure.high) for figure in airframe.known}
+        intervals = {}
+        for name, (below, above) in squares.items():
+            value = np.asarray(airframe.value(name), float)
+            ends = np.clip((value - np.sqrt(below), value + np.sqrt(above)), *limits[name])
+            intervals[name] = tuple(tuple(end.tolist()) if end.ndim else float(end) for end in ends)
+        return replace(airframe, intervals=intervals)
 
     def _model(self) -> Model:
         first = self.logs[0]
@@ -143,7 +172,7 @@ class Identification:
         voltage, resistance = self["hover_voltage"], self["battery_resistance"]
         if not voltage.is_observed:
             return {}
-        found = {"battery_voltage_full": _CELL * math.ceil(voltage.value / _CELL)}
+        found = {"battery_voltage_full": _CELL * math.ceil(voltage.value / _CELL - _OVERCHARGE)}
         capacity = 1e-3 * self.logs[0].parameter("BATT_CAPACITY", default=0.0)
         if resistance.is_observed and self["hover_current"].is_observed and capacity > 0.0:
             found |= {"battery_resistance": resistance.value, "battery_capacity": capacity}
@@ -168,7 +197,7 @@ class Identification:
             "this one began with, by the logs' FRAME_CLASS and FRAME_TYPE, as far as forces go scaled to the mass;",
             "parameters are those of the log.",
         ]
-        return vehicles.to_toml(model.airframe, head=head, notes=notes)
+        return vehicles.to_toml(self._with_intervals(model.airframe), head=head, notes=notes)
 
     def write(self, path: str | Path) -> None:
         """Write the file that ``--frame`` takes."""
@@ -176,10 +205,11 @@ class Identification:
 
 
 def _known(parameters: dict[str, float]) -> dict[str, float]:
-    """Those that our copter's firmware has and takes."""
+    """Those that our copter's firmware has, takes and heeds, and that are not its defaults."""
     from ..autopilot.copter.parameters import TABLE
 
-    return {name: v for name, v in parameters.items() if name in TABLE and TABLE[name].refusal(v) is None}
+    known = {name: value for name, value in parameters.items() if name in TABLE and TABLE[name].has_effect}
+    return {name: v for name, v in known.items() if v != TABLE[name].default and TABLE[name].refusal(v) is None}
 
 
 def identify(

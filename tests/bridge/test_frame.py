@@ -109,7 +109,7 @@ def test_random_bytes_never_raise(noise: bytes, cuts: list[int]) -> None:
         splitter.feed(noise[at : at + cut])
         at += cut
     splitter.feed(noise[at:])
-    assert len(splitter._rest) < 300
+    assert len(splitter.rest) < 300
 
 
 @settings(max_examples=200, deadline=None)

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from sitl import Simulation, cli, vehicles
 from sitl.client import Client
+from sitl.core.constants import GRAVITY
 from sitl.identify import IdentifyError, identify
 from sitl.identify.expected import Copter
 from sitl.logs.dataflash.log import attach
@@ -127,3 +129,24 @@ def test_the_plan_is_a_mission(tmp_path, capsys) -> None:
     assert len(mission) > 25
     assert cli.main(["identify", "--plan", str(path)]) == 2
     assert "--home None is not LAT,LON" in capsys.readouterr().err
+
+
+def test_the_airframe_says_how_far_off_its_figures_may_be(found, tmp_path) -> None:
+    airframe = found.airframe()
+    low, high = airframe.intervals["power_by_thrust"]
+    watts = [found["hover_voltage"].value * end for end in (found["hover_current"].low, found["hover_current"].high)]
+    weight = airframe.value("mass") * GRAVITY
+    assert (low, high) == pytest.approx([watt / weight for watt in watts], rel=1e-9), "it follows from one figure alone"
+    hover, (slow, fast) = found["hover_output"], airframe.intervals["outflow_speed_max"]
+    moved = [found_at(found, "hover_output", end) for end in (hover.high, hover.low)]
+    assert slow <= moved[0] < airframe.value("outflow_speed_max") < moved[1] <= fast, "expo adds to it"
+    for least, most in zip(*airframe.intervals["inertia"]):
+        assert 0.0 < least < most
+    found.write(tmp_path / "mine.toml")
+    assert vehicles.load(str(tmp_path / "mine.toml")).intervals == airframe.intervals
+
+
+def found_at(found, name: str, value: float) -> float:
+    """Outflow speed of the airframe where a figure of the log has another value."""
+    figures = tuple(replace(one, value=value) if one.name == name else one for one in found.figures)
+    return float(replace(found, figures=figures).airframe().value("outflow_speed_max"))

@@ -23,7 +23,8 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
     """Sentences, the model's first; none: they agree as far as these figures tell."""
     of_whole, of_segments, of_model = ({one.quantity.name: one for one in part} for part in (whole, segments, model))
     found: list[str] = []
-    throttle = (of_segments or of_whole).get("throttle") or of_whole.get("throttle")
+    leans_alike = not any(_is_bad(of_segments[name]) for name in ("roll", "pitch") if name in of_segments)
+    throttle = (leans_alike and of_segments.get("throttle")) or of_whole.get("throttle")  # who leans more needs more
     if throttle is not None and "motors" in of_whole:
         logged = float(throttle.logged.mean())
         flown = float(throttle.flown.mean())

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What figures of agreement say of model and autopilot."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sitl.missions.twin.agreement import Agreement
+from sitl.missions.twin.judge import findings
+from sitl.missions.twin.streams import COPTER
+
+
+def agreement(name: str, mean: tuple[float, float], vaf: float = 100.0) -> Agreement:
+    """Of a quantity whose logged and flown means are these."""
+    quantity = next(one for one in COPTER if one.name == name)
+    logged, flown = (np.full((10, 1), value) for value in mean)
+    return Agreement(quantity, np.arange(10.0), logged, flown, 10.0, 5.0, 0.0, 5.0, 0.0, vaf)
+
+
+@pytest.mark.parametrize(("vaf", "told"), [(95.0, True), (20.0, False)])
+def test_throttle_of_segments_tells_of_thrust_where_the_copter_leans_as_the_logs(vaf: float, told: bool) -> None:
+    whole = [agreement("throttle", (37.4, 37.5)), agreement("motors", (37.4, 37.5))]
+    segments = [agreement("throttle", (37.4, 40.4)), agreement("roll", (0.0, 0.0), vaf), agreement("pitch", (0.0, 0.0))]
+    found = findings(whole, segments, [])
+    assert any("the thrust over weight of the airframe is less" in text for text in found) == told
