@@ -131,7 +131,7 @@ def test_step_time_that_is_no_whole_number_of_ticks_is_refused(step_time):
 @pytest.mark.parametrize(
     ("option", "value", "message"),
     [
-        ("randomise", "none", r"randomise = 'none'; it must map figures to \(low, high\), or be None"),
+        ("randomise", "none", r"randomise = 'none'; it must map figures to \(low, high\), or be 'identified' or None"),
         ("randomise", 1.5, r"randomise = 1.5; it must map"),
         ("setpoint", ["rc"], r"setpoint \['rc'\] is not known; it is one of"),
         ("action", {"ahead": 1}, r"action 'ahead' = 1; it must be 2 finite numbers"),
