@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import closing
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import gymnasium as gym
 import numpy as np
@@ -65,7 +65,7 @@ class Game:
         try:
             self.stage = Stage(self.env, preset)
             self.env.reset(seed=seed)
-            self._robots: Any = self.env.unwrapped
+            self._robots = cast(Any, self.env.unwrapped)
             self._start = self._robots.snapshot()
         except BaseException:
             self.close()

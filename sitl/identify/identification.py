@@ -86,16 +86,16 @@ class Identification:
                 moved = [*self.figures[:k], replace(figure, value=end), *self.figures[k + 1 :]]
                 other = replace(self, figures=tuple(moved))._model().airframe
                 for name, value in other.figures.items():
-                    change = np.subtract(value, airframe.value(name))
+                    change: Any = np.subtract(value, airframe.value(name))
                     if np.any(change):
                         below, above = squares.setdefault(name, [np.zeros_like(change), np.zeros_like(change)])
                         below += np.minimum(change, 0.0) ** 2
                         above += np.maximum(change, 0.0) ** 2
         limits = {figure.name: (figure.low, figure.high) for figure in airframe.known}
-        intervals = {}
+        intervals: dict[str, Any] = {}
         for name, (below, above) in squares.items():
-            value = np.asarray(airframe.value(name), float)
-            ends = np.clip((value - np.sqrt(below), value + np.sqrt(above)), *limits[name])
+            middle = np.asarray(airframe.value(name), float)
+            ends = np.clip((middle - np.sqrt(below), middle + np.sqrt(above)), *limits[name])
             intervals[name] = tuple(tuple(end.tolist()) if end.ndim else float(end) for end in ends)
         return replace(airframe, intervals=intervals)
 
