@@ -13,6 +13,7 @@ import math
 from typing import NamedTuple
 
 from ..core.constants import GRAVITY, TICK_HZ
+from ..core.elementary import hypot
 from ..core.sums import products
 from ..vehicles import Airframe, CopterAirframe
 from ..vehicles.figures.copter import THRUST_MOMENTUM
@@ -83,7 +84,7 @@ def receiver(airframe: Airframe) -> dict[str, float]:
     1 m/s, and with each change learns another bias of the receiver's height. In a hover that is corrected all the time
     its height went off by 0.7 m in 20 s.
     """
-    error = math.hypot(float(airframe.value("gps_noise_horizontal")), float(airframe.value("gps_drift_horizontal")))
+    error = hypot(float(airframe.value("gps_noise_horizontal")), float(airframe.value("gps_drift_horizontal")))
     return {
         "EKF2_RNG_CTRL": 0,
         "SENS_GPS0_DELAY": round(1000.0 * float(airframe.value("gps_delay"))),
