@@ -22,9 +22,13 @@ settings.register_profile("any machine", deadline=None, suppress_health_check=[H
 settings.load_profile("any machine")
 
 
+LONGEST = ("test_the_site_builds_without_warnings", "test_the_examples_that_compile_a_core_do_what_they_say")
+"""They take minutes: at the end one worker would be at them while the others have nothing left."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Slow tests come last: what fails is seen early."""
-    items.sort(key=lambda item: item.get_closest_marker("slow") is not None)
+    """Slow tests come last: what fails is seen early. The longest of them come first."""
+    items.sort(key=lambda item: (item.get_closest_marker("slow") is not None, item.name not in LONGEST))
 
 
 @pytest.fixture(scope="session")
