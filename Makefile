@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 # Processes of pytest, each with about 1.5 GB: one more than two processors, for many tests wait for programs of clients, or for time.
-WORKERS ?= 3
+WORKERS ?= 2
 QUICK := tests/autopilot tests/bridge/wire tests/client
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 # Tests start hundreds of processes: without bytecode each of them would compile all sources again.

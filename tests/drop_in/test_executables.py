@@ -32,7 +32,7 @@ def test_it_waits_for_its_first_client_and_serves_three_ports(core: Core, tmp_pa
     ):
         for client in (first, second, third):
             client.wait_ready()
-        assert first.heading == pytest.approx(90.0, abs=2.0)
+        assert first.heading == pytest.approx(90.0, abs=4.5)  # as a real one, 20 s after its boot (docs/vehicles.md)
         digits = bytes(first.message("AUTOPILOT_VERSION").flight_custom_version).decode()
         assert len(digits) == 8 and int(digits, 16) > 0
 

@@ -46,7 +46,8 @@ lat, lon = round(home.latitude_deg * 1e7), round(home.longitude_deg * 1e7)
 items = [MissionItem(k, 3, 16, int(k == 0), 1, 0.0, 0.0, 0.0, 0.0, lat + 100 * k, lon, 10.0, 0) for k in range(12)]
 insist("mission upload", mission.upload_mission, items)
 got = insist("mission download", mission.download_mission)
-check("the same", [i.x for i in got[1:]] == [i.x for i in items[1:]])
+places, wanted = [i.x - lat for i in got[1:]], [i.x - lat for i in items[1:]]
+check(f"the same: {places}", places == wanted)
 
 ftp = Ftp(session.system)
 listed = insist("FTP list", ftp.list_directory, "@SYS").entries
