@@ -3,7 +3,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# Processes of pytest, each with about 1.5 GB: one more than two processors, for many tests wait for programs of clients, or for time.
+# Processes of pytest, each with about 1.5 GB: WORKERS=3 uses two processors better, for many tests wait for programs or for time.
 WORKERS ?= 2
 QUICK := tests/autopilot tests/bridge/wire tests/client
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
