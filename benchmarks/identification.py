@@ -29,6 +29,7 @@ from sitl.errors import SitlError
 from sitl.identify import Identification, identify
 from sitl.identify.drag import SPEED
 from sitl.identify.expected import Copter
+from sitl.identify.model import NOISES
 from sitl.identify.plan import write
 from sitl.logs.dataflash.log import attach
 from sitl.missions import files
@@ -37,15 +38,6 @@ from sitl.vehicles import CopterAirframe
 AIRFRAMES = ("ardupilot_quad", "ardupilot_hexa_x", "erle_copter", "erle_copter, 10 mm tail-heavy")
 _HEAVY_M = 0.01
 _FAST_ATTITUDE = 1
-_NOISES = (
-    "gyro_noise_density",
-    "acc_noise_density",
-    "baro_noise",
-    "mag_noise",
-    "gps_noise_horizontal",
-    "gps_noise_vertical",
-    "gps_velocity_noise_vertical",
-)
 _TURBULENCE = 0.15
 """Gusts [m/s] by wind."""
 
@@ -116,7 +108,7 @@ def truth(name: str, found: Identification, wind: dict[str, float]) -> dict[str,
     known["dead_time"] = (
         0.0025  # a tick of 2.5 ms: half of it each until the output acts and until the rate is measured
     )
-    for figure in _NOISES:
+    for figure in NOISES:
         if value(figure) > 0.0:
             known[figure] = value(figure)
     return known

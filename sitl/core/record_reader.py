@@ -56,6 +56,12 @@ def place_of(dtype: np.dtype[Any], path: str) -> int:
     return offset
 
 
+def addresses(fleet: np.ndarray[Any, Any], index: int, *paths: str) -> tuple[int, ...]:
+    """Addresses in memory of records or fields of vehicle ``index`` of a fleet, which must stay where it is."""
+    at = fleet.ctypes.data + index * fleet.dtype.itemsize
+    return tuple(at + place_of(fleet.dtype, path) for path in paths)
+
+
 class RecordReader:
     """Reads fields of vehicle ``index`` of ``fleet``; arrays come element by element.
 

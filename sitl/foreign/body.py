@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..core.kernels import jit_disabled
-from ..core.record_reader import place_of
+from ..core.record_reader import addresses
 from ..core.system_call import function_address
 from ..physics.native.ranging import NEVER, list_near
 from ..plants.local import LocalPlant
@@ -58,12 +58,12 @@ class BodyLines(Sequence[bytes]):
         self._memory = Exchange.fleet(1)
         self._address: int = self._memory.ctypes.data
         self.exchange = x = Exchange.of(self._memory, 0)
-        fleet, at = vehicle.fleet, vehicle.fleet.ctypes.data + vehicle.index * vehicle.fleet.dtype.itemsize
+        fleet = vehicle.fleet
         x.records, x.vehicles, x.index = fleet.ctypes.data, len(fleet), vehicle.index
-        x.clock, x.body, x.actuators, x.sensors, x.wind, x.obstacles = (
-            at + place_of(fleet.dtype, path)
-            for path in ("time_us", "physics.body", "actuators", "sensors", "physics.wind", "physics.obstacles")
-        )
+        x.clock, x.body, x.actuators, x.sensors, x.wind, x.obstacles = addresses(
+            fleet, vehicle.index,
+            "time_us", "physics.body", "actuators", "sensors", "physics.wind", "physics.obstacles",
+        )  # fmt: skip
         x.is_reversible = vehicle.kind.has_reversible_outputs
         x.range_max = float(vehicle.airframe.value("rangefinder_max"))
         x.measure_us, x.until_us = NEVER, _FAR_US

@@ -14,7 +14,7 @@ from ..bridge.hil.physics_end import PhysicsEnd
 from ..bridge.wire.frames import FRAME_MAX
 from ..bridge.wire.port import PAYLOAD_BYTES
 from ..core.kernels import jit_disabled
-from ..core.record_reader import locate, place_of
+from ..core.record_reader import addresses, locate
 from ..core.system_call import function_address
 from ..physics.native.ranging import NEVER, list_near
 from ..plants.local import LocalPlant
@@ -50,13 +50,14 @@ class HilTicks:
         self._memory = HilExchange.fleet(1)
         self._address: int = self._memory.ctypes.data
         self.exchange = x = HilExchange.of(self._memory, 0)
-        fleet, at = vehicle.fleet, vehicle.fleet.ctypes.data + vehicle.index * vehicle.fleet.dtype.itemsize
+        fleet = vehicle.fleet
         x.records, x.vehicles, x.index = fleet.ctypes.data, len(fleet), vehicle.index
-        x.clock, x.actuators, x.sensors, x.body, x.place, x.obstacles = (
-            at + place_of(fleet.dtype, path)
-            for path in ("time_us", "actuators", "sensors", "physics.body", "physics.place", "physics.obstacles")
-        )
+        x.clock, x.actuators, x.sensors, x.body, x.place, x.obstacles = addresses(
+            fleet, vehicle.index,
+            "time_us", "actuators", "sensors", "physics.body", "physics.place", "physics.obstacles",
+        )  # fmt: skip
         x.lowest, x.highest = end.range
+        at = fleet.ctypes.data + vehicle.index * fleet.dtype.itemsize
         marks = [locate(fleet.dtype, path) for path in end.measurements.marks]
         x.marks = len(marks)
         for n, (offset, code, _) in enumerate(marks):

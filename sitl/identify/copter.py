@@ -14,14 +14,12 @@ from .figure import NORMAL_95, Figure, Sought
 from .flight import FlightLog
 from .hover import hover
 from .rates import rates
-from .regression import least_squares
+from .regression import GUSTS_S, least_squares
 from .sensors import sensors
 from .thrust import thrust_expo
 
 Array = np.ndarray[Any, Any]
 
-_GUSTS_S = 8.0
-"""Residuals are correlated for so long."""
 _SHAPE = 0.03
 """Relative half of the interval of the resistance: the rest voltage is no cubic."""
 _MOST_RELATIVE = 0.3
@@ -74,7 +72,7 @@ def resistance(logs: Sequence[FlightLog]) -> Figure:
     if np.std(x[:, 0]) < 0.02 * abs(float(np.mean(x[:, 0]))) or np.std(y) == 0.0:
         return RESISTANCE.hidden("the current or the voltage did not change")
     start = np.linalg.lstsq(x, y, rcond=None)[0]
-    fit = least_squares(lambda p: y - x @ p, start, np.concatenate(groups), int(10 * _GUSTS_S))
+    fit = least_squares(lambda p: y - x @ p, start, np.concatenate(groups), int(10 * GUSTS_S))
     value = float(fit.value[0])
     error = float(np.hypot(fit.error[0], _SHAPE * value / NORMAL_95))
     if value <= 0.0 or NORMAL_95 * error > _MOST_RELATIVE * value:
@@ -96,5 +94,5 @@ def vibration(logs: Sequence[FlightLog]) -> Figure:
     axis = int(np.argmax(rows.mean(0)))
     groups = np.concatenate([np.full(len(part), k) for k, part in enumerate(parts)])
     values = rows[:, axis]
-    fit = least_squares(lambda p: values - p[0], np.array([float(values.mean())]), groups, int(10 * _GUSTS_S))
+    fit = least_squares(lambda p: values - p[0], np.array([float(values.mean())]), groups, int(10 * GUSTS_S))
     return VIBRATION.found(fit.value[0], fit.error[0], f"{len(rows)} rows of VIBE in the air, axis {'XYZ'[axis]}")

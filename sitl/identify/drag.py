@@ -18,7 +18,7 @@ from ..physics.native.atmosphere import density
 from .figure import NORMAL_95, Figure, Sought
 from .flight import FlightLog
 from .motion import Motion, motion
-from .regression import Fit, least_squares
+from .regression import GUSTS_S, Fit, least_squares
 from .signals import means
 
 Array = np.ndarray[Any, Any]
@@ -36,7 +36,6 @@ WIND = Sought("wind_speed", "m/s", "wind at the heights that were flown most")
 FROM = Sought("wind_from", "deg", "direction that it comes from")
 
 _WINDOW_S = 0.5
-_GUSTS_S = 8.0
 _LAYER_M = 3.0
 _LEAST_S = 30.0
 _LEAST_SPREAD = 1.5
@@ -127,7 +126,7 @@ def _fit(rows: _Rows) -> Fit:
     start = np.concatenate([[0.2, 0.005, 0.005, 0.0, 0.0], np.zeros(2 * len(names))])
     after = int(rows.groups.max()) + 1
     groups = np.concatenate([rows.groups, rows.groups + after, [2 * after, 2 * after + 1]])
-    return least_squares(residuals, start, groups, int(_GUSTS_S / _WINDOW_S))
+    return least_squares(residuals, start, groups, int(GUSTS_S / _WINDOW_S))
 
 
 def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Figure]:

@@ -12,14 +12,12 @@ from ..core.constants import GRAVITY
 from .figure import NORMAL_95, Figure, Sought
 from .flight import FlightLog
 from .outputs import controls
-from .regression import Fit, least_squares
+from .regression import GUSTS_S, Fit, least_squares
 from .signals import means
 
 Array = np.ndarray[Any, Any]
 
 _WINDOW_S = 0.5
-_GUSTS_S = 8.0
-"""Residuals are correlated for so long."""
 _SLOW, _LEVEL = 1.0, 0.3
 """What counts as a hover: speed over the ground, climb or descent [m/s]."""
 _LEAST_S = 10.0
@@ -111,5 +109,5 @@ def hovers(log: FlightLog) -> list[Hover]:
 
 def mean(values: Array, groups: Array) -> Fit:
     """Of windows, robust, with an error that counts how long gusts last."""
-    lag = int(_GUSTS_S / _WINDOW_S)
+    lag = int(GUSTS_S / _WINDOW_S)
     return least_squares(lambda p: values - p[0], np.array([float(np.median(values))]), groups, lag)

@@ -13,7 +13,7 @@ from ..vehicles import CopterAirframe
 from .expected import Conditions, Copter
 from .figure import Figure
 
-_NOISES = (
+NOISES = (
     "gyro_noise_density",
     "acc_noise_density",
     "baro_noise",
@@ -51,7 +51,7 @@ class Model:
         self._inertia()
         self._yaw()
         self._balance()
-        for name in _NOISES:
+        for name in NOISES:
             if (figure := found(name)).is_observed:
                 self._set(figure, **{name: figure.value})
 

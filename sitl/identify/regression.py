@@ -18,6 +18,9 @@ from .figure import NORMAL_95
 
 Array = np.ndarray[Any, Any]
 
+GUSTS_S = 8.0
+"""Residuals of flights are correlated for so long."""
+
 
 class Fit(NamedTuple):
     """An estimate."""
