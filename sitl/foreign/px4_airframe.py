@@ -27,6 +27,8 @@ FILTERS_S = 0.005
 LEAST_NOISE, MOST_NOISE = 0.1, 0.5
 """Of EKF2_GPS_P_NOISE, the least error of a fix that its filter believes in: ArduPilot's value with RTK, and PX4's own
 [m]."""
+HEIGHT_ERROR = 0.1
+"""Of a receiver whose height is good enough without a range-finder [m]."""
 _NEAR_ZERO = 1e-3
 
 
@@ -80,13 +82,17 @@ def accelerations(airframe: CopterAirframe, rotor: Thrust) -> tuple[float, float
 def receiver(airframe: Airframe) -> dict[str, float]:
     """Parameters that fit PX4 to what the receiver of an airframe is like: how late its fixes are, and how good.
 
-    Its height is not taken from a range-finder, as ArduPilot's with EK3_RNG_USE_HGT -1: by default PX4 does so below
-    1 m/s, and with each change learns another bias of the receiver's height. In a hover that is corrected all the time
-    its height went off by 0.7 m in 20 s.
+    With a good receiver (RTK, motion capture) its height is not taken from a range-finder, as ArduPilot's with
+    EK3_RNG_USE_HGT -1: by default PX4 does so below 1 m/s, and with each change learns another bias of the receiver's
+    height. In a hover that is corrected all the time its height went off by 0.7 m in 20 s. With another receiver that
+    default stays: without the range-finder the height is 0.6 m off after a take-off.
     """
-    error = hypot(float(airframe.value("gps_noise_horizontal")), float(airframe.value("gps_drift_horizontal")))
+    error, height_error = (
+        hypot(float(airframe.value(f"gps_noise_{axis}")), float(airframe.value(f"gps_drift_{axis}")))
+        for axis in ("horizontal", "vertical")
+    )
     return {
-        "EKF2_RNG_CTRL": 0,
+        **({"EKF2_RNG_CTRL": 0.0} if height_error < HEIGHT_ERROR else {}),
         "SENS_GPS0_DELAY": round(1000.0 * float(airframe.value("gps_delay"))),
         "EKF2_GPS_P_NOISE": min(max(error, LEAST_NOISE), MOST_NOISE),
     }
