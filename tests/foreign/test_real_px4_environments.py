@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Environments and policies on a real PX4: SITL_PX4 names its program, ``build/px4_sitl_default/bin/px4``."""
+"""Environments and policies on a real PX4: SITL_PX4 names the folder of its program, as in test_real_px4.py."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from sitl.envs.mavlink.px4 import ALTCTL, HOLD, MODES, OFFBOARD, POSCTL
 from sitl.envs.mavlink.telemetry import StepTelemetry
 from tests.foreign.test_foreign_runs import command, line_with
 
-PROGRAM = os.environ.get("SITL_PX4", "")
+PROGRAM = str(Path(os.environ.get("SITL_PX4", "")) / "px4")
 X, Y, Z, YAW, FORWARD, LEFT, UP, TURN, ROLL, PITCH, ROLL_RATE = range(11)
 TEN_DEGREES = math.radians(10.0)
 
