@@ -150,10 +150,9 @@ def waited(link: Remote, done, seconds: float = 60.0) -> bool:
 
 
 def test_a_policy_takes_it_over_in_hold_flies_and_hands_it_over_to_be_landed(tmp_path):
-    words = "--autopilot", f"px4:{PROGRAM}", "--speedup", "1", "--log-dir", str(tmp_path)
+    words = "--autopilot", f"px4:{PROGRAM}", "--speedup", "1", "--out", "none", "--tcp", "0", "--log-dir", str(tmp_path)
     with command("run", "copter", *words, cwd=tmp_path) as process:
-        address = line_with(process.stdout, "MAVLink of the autopilot").split("udp ")[1].split(",")[0]
-        address = f"udp:{address}"
+        address = line_with(process.stdout, "MAVLink on tcp:").rpartition(" ")[2]
         link = pilot(address)
         assert waited(link, lambda: link.inbox.mode == HOLD and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED)
         assert link.command("NAV_TAKEOFF", altitude=590.0) == ACCEPTED
