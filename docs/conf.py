@@ -76,18 +76,13 @@ def prepare(app: Any, name: str, source: list[str]) -> None:
     def without_folder(link: re.Match[str]) -> str:
         return link[1] if (ROOT / "docs" / name).parent.joinpath(link[2]).is_dir() else link[0]
 
+    firmware = name.removeprefix("parameters-")
+    if firmware in KINDS and firmware != name:
+        source[0] = docs.page(firmware, KINDS[firmware].firmware.table)
     source[0] = re.sub(r"\[([^\]]+)\]\((\.\./[^)#]+)\)", without_folder, source[0])
     source[0] = make_scenes.embed(name, source[0])
     if name == "envs/index":
         source[0] += "\n```{toctree}\n:hidden:\n:glob:\n\n*\n```\n"
-
-
-def make_parameter_pages(app: Any) -> None:
-    """Write parameters-KIND.md from the tables of the firmware: the repository does not keep them."""
-    for name, kind in KINDS.items():
-        page, text = ROOT / "docs" / f"parameters-{name}.md", docs.page(name, kind.firmware.table)
-        if not page.exists() or page.read_text(encoding="utf-8") != text:
-            page.write_text(text, encoding="utf-8")
 
 
 def fly_scenes(app: Any) -> None:
@@ -98,6 +93,5 @@ def fly_scenes(app: Any) -> None:
 
 def setup(app: Any) -> None:
     """Called by Sphinx."""
-    app.connect("builder-inited", make_parameter_pages)
     app.connect("builder-inited", fly_scenes)
     app.connect("source-read", prepare)

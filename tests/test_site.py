@@ -97,6 +97,7 @@ def test_the_site_builds_without_warnings(tmp_path: Path) -> None:
     SITL_SITE names the folder of a site that ``make docs`` has just built so.
     """
     site = Path(os.environ.get("SITL_SITE") or tmp_path / "site")
+    pages_before = {*(ROOT / "docs").rglob("*.md")}
     if not os.environ.get("SITL_SITE"):
         ran = subprocess.run(
             [sys.executable, "-m", "sphinx", "-b", "html", "-d", tmp_path / "trees", "-n", "-W", "--keep-going", "-q",
@@ -104,6 +105,8 @@ def test_the_site_builds_without_warnings(tmp_path: Path) -> None:
             capture_output=True, text=True, timeout=900, env=os.environ | {"PYTHONPATH": str(ROOT)},
         )  # fmt: skip
         assert ran.returncode == 0, ran.stderr[-3000:]
+    assert {*(ROOT / "docs").rglob("*.md")} == pages_before, "a page beside the repository's: it would go into a wheel"
+    assert "<td>WPNAV_SPEED" in re.sub(r"<p>|</p>", "", (site / "parameters-copter.html").read_text(encoding="utf-8"))
     pages = ("index", "tutorials/first-flight", "guides/index", "reference/python", "parameters-copter")
     for page in (*pages, "explanation/index", "search"):
         assert (site / f"{page}.html").exists(), page
