@@ -7,9 +7,9 @@ from collections.abc import Callable
 from hashlib import sha1
 from typing import TYPE_CHECKING
 
-from ... import __version__
 from ...autopilot import relays
 from ...core.records import as_bytes
+from ...version import __version__
 from .. import metadata
 from ..dialect import message
 from .high_latency import high_latency
