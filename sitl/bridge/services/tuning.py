@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.border import RC_INPUTS
+from ..host import Host
 from ..wire.port import NEVER
 from .service import Service
 
@@ -34,7 +35,7 @@ TUNED: dict[int, tuple[str, ...]] = {
 class TuningService(Service):
     """The knobs."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._values = bridge.vehicle.parameters
         self._speed: float | None = None
