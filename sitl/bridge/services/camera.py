@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from sitl.core.constants import NEVER
 from sitl.core.elementary import hypot
 
 from ...autopilot import camera, relays
@@ -18,7 +19,6 @@ from ...autopilot.mission.item import MissionItem
 from ..channel import Channel
 from ..dialect import message
 from ..telemetry.motion import global_position
-from ..wire.port import NEVER
 from .liveness import HeartbeatService
 from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED, Handler, Sender, Service
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..wire.port import NEVER
+from ...core.constants import NEVER
 from .service import CRITICAL, Service
 from .statustext import StatusTextService
 

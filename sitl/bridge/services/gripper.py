@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
-from ..wire.port import NEVER
+from ...core.constants import NEVER
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from ..wire.port import NEVER
 from .service import Handler, Sender, Service
 from .terrain import TerrainService
 

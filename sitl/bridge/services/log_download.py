@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from ..wire.port import NEVER
 from .service import Handler, Sender, Service
 
 ENTRY, DATA = message("LOG_ENTRY"), message("LOG_DATA")

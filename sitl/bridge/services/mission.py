@@ -14,9 +14,9 @@ from ...autopilot.fence.items import FenceError
 from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, STORED, MissionItem
 from ...autopilot.mission.storage import stored_home
 from ...autopilot.mission.validate import MAX_ITEMS
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from ..wire.port import NEVER
 from . import place_lists
 from .mission_upload import (
     ACCEPTED,

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol, cast
 
-from ..wire.port import NEVER
+from ...core.constants import NEVER
 from .service import ACCEPTED, FAILED, Service
 
 LONGEST_S = 600.0

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, Protocol, cast
 from ...autopilot import payload, relays
 from ...autopilot.aux_switch import HIGH, LOW
 from ...autopilot.mission.item import MissionItem
-from ..wire.port import NEVER
+from ...core.constants import NEVER
 from .outputs import OFF, ON, OutputService
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO

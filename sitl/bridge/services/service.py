@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
+from ...core.constants import NEVER
 from ..channel import Channel
-from ..wire.port import NEVER
 
 if TYPE_CHECKING:
     from ..bridge import Bridge

@@ -22,9 +22,9 @@ from ...autopilot.notes import (
     Text,
 )
 from ...autopilot.terrain.ground import TERRAIN_LEFT
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from ..wire.port import NEVER
 from .flight_state import FlightStateService
 from .home import HomeService
 from .service import Service

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.border import RC_INPUTS
-from ..wire.port import NEVER
+from ...core.constants import NEVER
 from .service import Service
 
 EVERY_US = 300_000
