@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..autopilot.mission.item import DO_AUX_FUNCTION, MissionItem
+from ..core.constants import NEVER
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -44,7 +45,7 @@ from .telemetry.builder import shell_messages
 from .wire import streams
 from .wire.fleet import Slot
 from .wire.link import REGULAR
-from .wire.port import NEVER, Port
+from .wire.port import Port
 
 _HEARTBEAT, _SETUP_SIGNING = message("HEARTBEAT").id, message("SETUP_SIGNING").id
 EPOCH_US = 1_767_225_600_000_000

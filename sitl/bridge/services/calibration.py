@@ -18,13 +18,12 @@ from ...autopilot.calibration_fit import fit_accelerometer
 from ...autopilot.estimation.alignment import CALIBRATE, initialise
 from ...autopilot.estimation.strapdown import tilt_from_acc
 from ...autopilot.sensor_calibration import ACCELS_DONE, corrected_acc, mounted
-from ...core.constants import GRAVITY
+from ...core.constants import GRAVITY, NEVER
 from ...core.vectors import Vec3
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 from .parameters import ParameterService
 from .service import ACCEPTED, CRITICAL, FAILED, INFO, TEMPORARILY_REJECTED, Handler, Service
 from .statustext import StatusTextService

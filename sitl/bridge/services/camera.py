@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from sitl.core.constants import NEVER
 from sitl.core.elementary import hypot
 
 from ...autopilot import camera, relays
@@ -20,7 +21,6 @@ from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from ..telemetry.motion import global_position
-from ..wire.port import NEVER
 from .liveness import HeartbeatService
 from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED, Handler, Service
 

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+from ...core.constants import NEVER
 from ..host import Host
-from ..wire.port import NEVER
 from .service import CRITICAL, Service
 from .statustext import StatusTextService
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from ...autopilot.params.parameter import stored
 from ...autopilot.shell_parameters import FAILURES
+from ...core.constants import NEVER
 from ...errors import OptionError
 from ...vehicle.acting import ARMED
 from ...vehicle.equipment import Equipment
@@ -15,7 +16,6 @@ from ...vehicle.fault_history import Acted, FaultHistory, Key, changes_nothing
 from ...vehicle.faults import TYPES, UNITS, Failure, known
 from ...vehicle.ordered_faults import ONE_SHOT, Ordered, OrderedFaults, Repair
 from ..host import Host
-from ..wire.port import NEVER
 from .parameters import ParameterService
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
 

@@ -11,12 +11,12 @@ import struct
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from ..metadata import file_crc
-from ..wire.port import NEVER
 from . import files
 from .client_files import ClientFiles
 from .service import Handler, Service

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
+from ...core.constants import NEVER
 from ..host import Host
-from ..wire.port import NEVER
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 from .service import Handler, Service
 from .terrain import TerrainService
 

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 from .service import Handler, Service
 
 ENTRY, DATA = message("LOG_ENTRY"), message("LOG_DATA")

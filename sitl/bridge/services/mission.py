@@ -14,11 +14,11 @@ from ...autopilot.fence.items import FenceError
 from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, STORED, MissionItem
 from ...autopilot.mission.storage import stored_home
 from ...autopilot.mission.validate import MAX_ITEMS
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 from . import place_lists
 from .mission_upload import (
     ACCEPTED,

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol, cast
 
+from ...core.constants import NEVER
 from ..host import Host
-from ..wire.port import NEVER
 from .service import ACCEPTED, FAILED, Service
 
 LONGEST_S = 600.0

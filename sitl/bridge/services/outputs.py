@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 from ...autopilot import relays
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
+from ...core.constants import NEVER
 from ..autopilot_api import LONGEST_US
 from ..host import Host
-from ..wire.port import NEVER
 from .service import WARNING, Service
 from .statustext import StatusTextService
 

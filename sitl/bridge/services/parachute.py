@@ -14,8 +14,8 @@ from typing import Any, NamedTuple, Protocol, cast
 from ...autopilot import payload, relays
 from ...autopilot.aux_switch import HIGH, LOW
 from ...autopilot.mission.item import MissionItem
+from ...core.constants import NEVER
 from ..host import Host
-from ..wire.port import NEVER
 from .outputs import OFF, ON, OutputService
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO

@@ -19,11 +19,11 @@ from typing import Any
 
 from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter, stored
 from ...autopilot.params.renamed import Alias, alias
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 from .service import INFO, WARNING, Handler, Service
 from .statustext import StatusTextService
 

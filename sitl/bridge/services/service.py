@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 
 Handler = Callable[[Channel, Any, Sender], None]
 """``handler(channel, message, sender)``; the message is a named tuple with MAVLink's field names."""

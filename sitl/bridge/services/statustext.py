@@ -22,10 +22,10 @@ from ...autopilot.notes import (
     Text,
 )
 from ...autopilot.terrain.ground import TERRAIN_LEFT
+from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
-from ..wire.port import NEVER
 from .flight_state import FlightStateService
 from .home import HomeService
 from .service import Service

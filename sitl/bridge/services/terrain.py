@@ -14,12 +14,12 @@ from ...autopilot.fence.state import POINTS
 from ...autopilot.mission.item import COMMANDS, MissionItem
 from ...autopilot.terrain import grid
 from ...autopilot.terrain.grid import NOTHING, PARTS, Block, Blocks, Part
+from ...core.constants import NEVER
 from ...core.geodesy import add_offset, offset_ne
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from ..wire.port import NEVER
 from ..wire.streams import interval_of
 from .service import Handler, Service
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.border import RC_INPUTS
+from ...core.constants import NEVER
 from ..host import Host
-from ..wire.port import NEVER
 from .service import Service
 
 EVERY_US = 300_000
