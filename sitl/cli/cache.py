@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..core import code_cache
 from ..core import compile as compiler
 from ..core.array_kernels import KERNELS, build_kernels, is_shipped, missing_kernels
+from ..core.numba_tuning import summary
 from ..core.shipped.build import Piece, build, pieces
 from ..core.shipped.library import library
 from ..core.shipped.targets import TARGETS, usable
@@ -100,10 +101,12 @@ def cache(options: argparse.Namespace) -> int:
         ]
         shipped = library()
         from_package = None if shipped is None else str(shipped.file)
-        print_json({"folder": str(code_cache.cache_folder()), "library": from_package, "units": rows})
+        folder = str(code_cache.cache_folder())
+        print_json({"folder": folder, "library": from_package, "compiler": summary(), "units": rows})
     else:
         print(code_cache.cache_folder())
         print(shipped_library())
+        print(summary())
         for kind, unit, state in units():
             print(f"  {state:8}  {kind}: {unit}")
     return 0

@@ -30,7 +30,7 @@ from ..code_cache import ENTRY
 from ..compile import ENTRY_OPTIONS, entry_of, make_jitable, symbol, unit_identity
 from ..kernels import UNITS, Unit
 from ..numba_tuning import COMMON, quick, trust_laws
-from ..worker import KERNELS_PATH
+from ..order import KERNELS_PATH
 from .library import PYTHON, SLOT, TABLE, call_symbol, kernel_symbol, own_symbol
 from .objects import Objects
 from .python_calls import entry_for_python
