@@ -24,6 +24,9 @@ _SETTLES_S = 3.0
 """After take-off and before landing [s]."""
 _LOW_M = 2.0
 """Nearer to the ground than this the rotors' air comes back [m]."""
+_DRIVES = 0.1
+"""A rover that never drove faster stood [m/s]."""
+_KINDS = ("copter", "rover")
 _NAMES = (
     "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
     "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
@@ -50,8 +53,8 @@ class FlightLog:
         self.columns = Columns(path, _NAMES, progress)
         self.path = Path(path)
         self.kind = self.columns.kind
-        if self.kind != "copter":
-            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; only copters are identified as yet")
+        if self.kind not in _KINDS:
+            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; {' and '.join(_KINDS)}s are identified")
         self.parameters = self.columns.parameters
         if not self.parameters:
             raise IdentifyError(
@@ -59,12 +62,12 @@ class FlightLog:
                 "it begins in the middle, or its start is damaged"
             )
         self.armed = self._armed()
-        self.spans = self._flying()
+        self.spans = self._flying() if self.kind == "copter" else self._driving()
         """When it moved by itself, without failsafe."""
         if not self.spans:
+            where = f"in the air, {_LOW_M:g} m over the ground" if self.kind == "copter" else f"armed and driving (XKF1 over {_DRIVES:g} m/s)"
             raise IdentifyError(
-                f"log {str(path)!r}: the vehicle was never in the air for {4 * _SETTLES_S:.0f} s, {_LOW_M:g} m over "
-                "the ground and without failsafe"
+                f"log {str(path)!r}: the vehicle was never {where} for {4 * _SETTLES_S:.0f} s without failsafe"
             )
 
     @property
@@ -138,6 +141,19 @@ class FlightLog:
         spans = _without(spans, self._failsafes())
         spans = _without(spans, self._near_ground(found))
         return [span for span in spans if span.length > 2.0 * _SETTLES_S]
+
+    def _driving(self) -> list[Span]:
+        """Armed, without failsafe: a rover that stands tells that its outputs do not move it."""
+        spans = _without(self.armed, self._failsafes())
+        return [span for span in spans if span.length > 2.0 * _SETTLES_S and self._fastest(span) > _DRIVES]
+
+    def _fastest(self, span: Span) -> float:
+        """Greatest speed over the ground in a span [m/s]."""
+        if not self.has("XKF1"):
+            return 0.0
+        table = self.estimate()
+        table = table.where(within(table.time, [span]))
+        return float(np.hypot(table["VN"], table["VE"]).max()) if len(table) else 0.0
 
     def _near_ground(self, flights: list[Span]) -> list[Span]:
         """When it was near the height at which it took off; all of it when the log has no heights."""
