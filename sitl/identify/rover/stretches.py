@@ -62,6 +62,10 @@ class Series:
         return found
 
 
+_MEASURED = ("speed", "aside", "yaw_rate", "accel", "voltage", "current")
+_NOTHING = Series(np.zeros(0), np.zeros(0, int), np.zeros(0), np.zeros(0, int))
+
+
 @dataclass(frozen=True)
 class Stretches:
     """Of logs that all steer alike.
@@ -73,6 +77,7 @@ class Stretches:
         speed: forward [m/s], yaw_rate [rad/s], accel [m/s^2]: what was measured.
         start_speed, start_yaw_rate: at the beginning of each stretch.
         aside: velocity to the right [m/s], as ``speed``.
+        voltage, current: of the battery [V], [A]; empty when no log has them.
     """
 
     begin: Array
@@ -82,6 +87,8 @@ class Stretches:
     yaw_rate: Series
     accel: Series
     aside: Series
+    voltage: Series
+    current: Series
     start_speed: Array
     start_yaw_rate: Array
     skids: bool
@@ -129,10 +136,10 @@ class Stretches:
 
 def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
     """Of these logs; a text says what they lack."""
-    columns: dict[str, list[list[Array]]] = {name: [] for name in ("speed", "aside", "yaw_rate", "accel")}
+    columns: dict[str, list[list[Array]]] = {name: [] for name in _MEASURED}
     begins, places, pairs, starts = [], [], [], []
     skids = is_skid(logs[0])
-    rate = cutoff = accel_cutoff = 0.0
+    cutoff = accel_cutoff = 0.0
     count = 0
     for number, log in enumerate(logs):
         pair = outputs(log)
@@ -150,17 +157,19 @@ def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
         if "gym-sitl" not in log.columns.firmware:  # ours logs what no filter was over
             cutoff = log.parameter("INS_GYRO_FILTER", default=4.0)
             accel_cutoff = log.parameter("INS_ACCEL_FILTER", default=10.0)
+        measured = {
+            "speed": moved[:2],
+            "aside": (moved[0], moved[2]),
+            "yaw_rate": (imu.time, imu["GyrZ"]),
+            "accel": (imu.time, imu["AccX"]),
+            **_battery(log),
+        }
         for span in log.spans:
             for begin in np.arange(span.begin, span.end - LENGTH_S, LENGTH_S):
                 piece = Span(float(begin), float(begin) + LENGTH_S)
                 if not all(_is_whole(time, piece) for time in (imu.time, moved[0], pair[0].time)):
                     continue
-                for name, time, value in (
-                    ("speed", moved[0], moved[1]),
-                    ("aside", moved[0], moved[2]),
-                    ("yaw_rate", imu.time, imu["GyrZ"]),
-                    ("accel", imu.time, imu["AccX"]),
-                ):
+                for name, (time, value) in measured.items():
                     inside = (time >= begin + SETTLES_S) & (time < piece.end)
                     # A sample is that of its ticks' end, an acceleration the mean over them.
                     place = (time[inside] - begin) / STEP_S - (0.5 if name == "accel" else 1.0)
@@ -171,12 +180,10 @@ def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
                 begins.append(float(begin))
                 places.append(number)
                 count += 1
-        rate = imu.rate
     if not count:
         return f"no {LENGTH_S:.0f} s in one piece with RCOU, IMU, ATT and XKF1"
-    del rate
     series = {
-        name: Series(*(np.concatenate(column) for column in zip(*rows)), cutoff=0.0)  # type: ignore[arg-type]
+        name: Series(*(np.concatenate(column) for column in zip(*rows))) if rows else _NOTHING
         for name, rows in columns.items()
     }
     first, second = np.array(starts).T
@@ -188,6 +195,8 @@ def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
         yaw_rate=replace(series["yaw_rate"], cutoff=cutoff),
         accel=replace(series["accel"], cutoff=accel_cutoff),
         aside=series["aside"],
+        voltage=series["voltage"],
+        current=series["current"],
         start_speed=first,
         start_yaw_rate=second,
         skids=skids,
@@ -200,6 +209,16 @@ def _body_velocity(log: FlightLog) -> tuple[Array, Array, Array]:
     yaw = np.interp(table.time, attitude.time, np.unwrap(np.radians(attitude["Yaw"])))
     north, east = table["VN"], table["VE"]
     return table.time, np.cos(yaw) * north + np.sin(yaw) * east, np.cos(yaw) * east - np.sin(yaw) * north
+
+
+def _battery(log: FlightLog) -> dict[str, tuple[Array, Array]]:
+    """Times, voltage and current, where a battery monitor has both."""
+    if not log.has("BAT"):
+        return {}
+    table = log.stream("BAT", 0)
+    if not len(table) or table["Volt"].min() <= 0.0 or table["Curr"].max() <= 0.0:
+        return {}
+    return {name: (table.time, table[field]) for name, field in (("voltage", "Volt"), ("current", "Curr"))}
 
 
 def _is_whole(time: Array, span: Span) -> bool:
