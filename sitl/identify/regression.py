@@ -77,6 +77,8 @@ def least_squares(
         slopes: of the residuals by the parameters (n, k), where not all need be worked out one by one.
     """
     ways: Any = {"x_scale": scale if scale is not None else 1.0, "bounds": limits, "jac": slopes or "2-point"}
+    if slopes is not None:  # each evaluation is long
+        ways["ftol"] = 1e-6
     first = optimize.least_squares(residuals, start, **ways)
     spread = 1.4826 * float(np.median(np.abs(first.fun - np.median(first.fun)))) or 1.0
     found = optimize.least_squares(residuals, first.x, loss="huber", f_scale=3.0 * spread, **ways)

@@ -18,7 +18,6 @@ from ...physics.native.rover.prepare import prepare
 from ...physics.native.rover.state import Physics
 from ...physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, move
 from ...physics.native.tick import TICK_S
-from ...vehicles import RoverAirframe
 from ...vehicles.figures.rover import STEERING_SKID
 
 Array = np.ndarray[Any, Any]
@@ -71,21 +70,21 @@ class Courses(NamedTuple):
     """What the battery gives [W]."""
 
 
-def drive(airframe: RoverAirframe, first: Array, second: Array, speed: Array, yaw_rate: Array) -> Courses:
+def drive(figures: Array, first: Array, second: Array, speed: Array, yaw_rate: Array) -> Courses:
     """Courses of an airframe.
 
     Args:
-        airframe: its figures.
+        figures: record of the airframe (``Airframe.record``).
         first, second: outputs -1 .. 1 (cars, samples), ``STEP_S`` apart.
         speed, yaw_rate: at the beginning (cars,) [m/s], [rad/s]; wheels and servos are as if they had been there.
     """
     count, samples = first.shape
     cars = np.zeros(count, Physics.dtype)
     one = Physics.of(cars, 0)
-    cars["airframe"] = airframe.record()
+    cars["airframe"] = figures
     prepare(one.airframe, one.derived)
     cars["derived"] = cars["derived"][0]
-    skids = airframe.value("steering_model") == STEERING_SKID
+    skids = figures["steering_model"] == STEERING_SKID
     across = 0.5 / one.derived.inverse_track * yaw_rate if skids else np.zeros(count)
     wheels, body = cars["wheels"], cars["body"]
     wheels["speed"][:, 0], wheels["speed"][:, 1] = speed + across, speed - across

@@ -174,8 +174,8 @@ class DriveFit:
             loss="huber",
             f_scale=_OUTLIER,
             x_scale=self._scale(q),
-            max_nfev=12,
-            ftol=1e-5,
+            max_nfev=10,
+            ftol=1e-4,
         )
         self._set_onsets(found.x)
         return np.asarray(found.x[: len(self.names)])

@@ -84,8 +84,8 @@ class Model:
             "turning_diameter": 2.0 / full,
         }
 
-    def courses(self, data: Stretches, base: RoverAirframe) -> Courses:
-        """What it does under a log's outputs."""
+    def courses(self, data: Stretches, base: Array) -> Courses:
+        """What it does under a log's outputs; all other figures are those of the record ``base``."""
         first, second = data.inputs()
         if self.skids:
             first, second = (1.0 + self.value("differ")) * first, (1.0 - self.value("differ")) * second
@@ -96,12 +96,14 @@ class Model:
         second = np.where(second < 0.0, aft, forth) * second
         if self.skids:
             first = np.where(first < 0.0, aft, forth) * first
-        airframe = replace(base, figures={**base.figures, **self.figures()})
-        return drive(airframe, first, second, data.start_speed, data.start_yaw_rate)
+        record = base.copy()
+        for name, value in self.figures().items():
+            record[name] = value
+        return drive(record, first, second, data.start_speed, data.start_yaw_rate)
 
 
-def base_of(skids: bool) -> RoverAirframe:
-    """The airframe of all models: outputs -1 .. 1, one kilogram whose work is its power, tyres that do not slip."""
+def base_of(skids: bool) -> Array:
+    """The record of the airframe of all models: outputs -1 .. 1, one kilogram whose work is its power, tyres that do not slip."""
     found = vehicles.load(BASES[skids])
     assert isinstance(found, RoverAirframe)
     changes = {
@@ -113,4 +115,4 @@ def base_of(skids: bool) -> RoverAirframe:
         "driven_load": 1.0,
         "rear_axle": 0.0,
     }
-    return replace(found, figures={**found.figures, **changes}, parameters={})
+    return replace(found, figures={**found.figures, **changes}).record()

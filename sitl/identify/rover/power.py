@@ -7,25 +7,25 @@ logs have the force by the mass, so that the figure is the mass by the efficienc
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..figure import NORMAL_95, Figure, Sought
 from ..regression import GUSTS_S, least_squares
 from .fit import DriveFit
-
-Array = np.ndarray[Any, Any]
+from .model import Array
 
 LOAD = Sought("mass_by_efficiency", "kg", "battery's power by the motors' work of each kilogram")
 FULL = Sought("power_full", "W", "drawn at full throttle whatever the load")
 ELECTRONICS = Sought("avionics_current", "A", "drawn by all that is no motor")
 _SOUGHT = (LOAD, FULL, ELECTRONICS)
-_SHARE = 0.03
+_SHARE = 0.05
 """Relative half of the interval for what the model leaves out."""
 _OF_ALL = 0.01
 """Half of the interval by the greatest power: a figure below it is as good as none."""
 _MOST_RELATIVE = 0.3
+_STANDS = 0.01
+"""Speed below which a vehicle without throttle stands [m/s]."""
+_LEAST = 20
 
 
 def power(found: DriveFit) -> list[Figure]:
@@ -36,17 +36,19 @@ def power(found: DriveFit) -> list[Figure]:
     first, second = data.inputs()
     throttle = 0.5 * (abs(first) + abs(second)) if data.skids else abs(second)
     volts = data.voltage.value
-    columns = np.stack([data.voltage.of(found.courses.work), data.voltage.of(throttle), volts], -1)
-    given = volts * data.current.value
+    columns = np.stack([data.voltage.of(found.courses.work), data.voltage.of(throttle)], -1)
+    standing = (abs(data.voltage.of(found.courses.speed)) < _STANDS) & (data.voltage.of(throttle) == 0.0)
+    electronics = _electronics(data.current.value[standing])
+    given = volts * (data.current.value - (electronics.value if electronics.is_observed else 0.0))
     size = np.maximum(np.percentile(abs(columns), 99.0, 0), 1e-9)
     x = columns / size
     if np.std(given) < 0.01 * np.mean(given):
-        return [sought.hidden("the current did not change") for sought in _SOUGHT]
+        return [*(sought.hidden("the current did not change") for sought in (LOAD, FULL)), electronics]
     start = np.linalg.lstsq(x, given, rcond=None)[0]
     fit = least_squares(lambda p: given - x @ p, start, data.voltage.group, int(10 * GUSTS_S))
     most = float(np.percentile(given, 99.0))
     figures = []
-    for sought, value, error, scale in zip(_SOUGHT, fit.value, fit.error, size):
+    for sought, value, error, scale in zip((LOAD, FULL), fit.value, fit.error, size):
         half = float(np.linalg.norm([NORMAL_95 * error, _SHARE * value, _OF_ALL * most]))
         if value < half:
             figures.append(sought.hidden(f"too little to tell: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}"))
@@ -55,4 +57,15 @@ def power(found: DriveFit) -> list[Figure]:
         else:
             ends = (value - half) / scale, (value + half) / scale
             figures.append(sought.between(value / scale, *ends, f"{len(given)} rows of BAT"))
-    return figures
+    return [*figures, electronics]
+
+
+def _electronics(current: Array) -> Figure:
+    """Of rows of a vehicle that stands with its motors off."""
+    if len(current) < _LEAST:
+        return ELECTRONICS.hidden(f"it stood for {len(current)} rows of BAT without throttle; {_LEAST} are needed")
+    value, error = float(current.mean()), float(current.std() / np.sqrt(len(current) / 10.0))
+    half = float(np.hypot(NORMAL_95 * error, 0.01 * value))
+    if value <= 0.0 or half > _MOST_RELATIVE * value:
+        return ELECTRONICS.hidden(f"too uncertain: {value:.3g} +- {half:.2g} A")
+    return ELECTRONICS.between(value, value - half, value + half, f"{len(current)} rows of BAT, standing")
