@@ -230,12 +230,12 @@ def _grip(fit: DriveFit) -> Figure:
 
 
 def _axle(fit: DriveFit) -> Figure:
-    """Velocity to the right by yaw rate, besides a heading that is off."""
+    """Velocity to the right by yaw rate, besides a heading that is off, and one that is late or early."""
     data = fit.data
     turn, along, aside = data.aside.of(fit.courses.yaw_rate), data.aside.of(fit.courses.speed), data.aside.value
     if float(turn.std()) < 0.05:
         return AXLE.hidden(f"it turned too little: the yaw rate spread by {turn.std():.3f} rad/s")
-    x = np.stack([turn, along, np.ones_like(turn)], -1)
+    x = np.stack([turn, along, turn * along, np.ones_like(turn)], -1)
     start = np.linalg.lstsq(x, aside, rcond=None)[0]
     found = least_squares(lambda p: aside - x @ p, start, data.aside.group, int(10 * GUSTS_S))
     return _made(AXLE, fit, float(found.value[0]), float(found.error[0]))

@@ -47,9 +47,12 @@ def power(found: DriveFit) -> list[Figure]:
     start = np.linalg.lstsq(x, given, rcond=None)[0]
     fit = least_squares(lambda p: given - x @ p, start, data.voltage.group, int(10 * GUSTS_S))
     most = float(np.percentile(given, 99.0))
+    rolling, unsure = found.of(lambda model: model.rolling_resistance)  # what most of the work may be done against
+    of_load = NORMAL_95 * unsure / rolling if rolling > 0.0 else 0.0
     figures = []
     for sought, value, error, scale in zip((LOAD, FULL), fit.value, fit.error, size):
-        half = float(np.linalg.norm([NORMAL_95 * error, _SHARE * value, _OF_ALL * most]))
+        share = float(np.hypot(_SHARE, of_load)) if sought is LOAD else _SHARE
+        half = float(np.linalg.norm([NORMAL_95 * error, share * value, _OF_ALL * most]))
         if value < half:
             figures.append(sought.hidden(f"too little to tell: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}"))
         elif half > _MOST_RELATIVE * value:
