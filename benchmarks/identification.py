@@ -5,8 +5,8 @@
     python -m benchmarks.identification --seeds 101..125 --airframes erle_copter
     python -m benchmarks.identification --keep logs --details    # the logs stay; a line for each figure of each log
 
-Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts; of
-a rover, a drive of its mission and by the sticks as ``--plan`` says.
+Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts;
+of a rover, a drive of its mission and by the sticks as ``--plan`` says.
 For each figure and airframe the table has the truth, in how many logs it was observed, in how many of these the
 interval holds the truth, the median error, and the median half of the interval.
 """
@@ -30,9 +30,9 @@ from sitl.errors import SitlError
 from sitl.identify import Identification, identify
 from sitl.identify.drag import SPEED
 from sitl.identify.expected import Copter
-from sitl.identify.shared import NOISES
 from sitl.identify.plan import write
 from sitl.identify.rover.expected import expected
+from sitl.identify.shared import NOISES
 from sitl.logs.dataflash.log import attach
 from sitl.missions import files
 from sitl.vehicles import Airframe, CopterAirframe, RoverAirframe

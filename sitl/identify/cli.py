@@ -24,7 +24,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
     parser.add_argument("--vehicle", choices=("copter", "rover"), default="copter", help="that drives --plan (copter)")
     parser.add_argument(
-        "--speed", type=float, metavar="M/S", help="of the fastest legs of a rover's --plan (1.5), whose size follows from it"
+        "--speed",
+        type=float,
+        metavar="M/S",
+        help="of the fastest legs of a rover's --plan (1.5), whose size follows from it",
     )
     parser.set_defaults(function=run)
 

@@ -78,7 +78,10 @@ def _scaled(
     """The base with this mass, which hovers at this command, and the log's parameters."""
     first = logs[0]
     heavier = mass / float(base.value("mass"))
-    expo, cells = float(base.value("thrust_expo")), battery(first, found("hover_voltage"), found("battery_resistance"), found("hover_current").is_observed)
+    expo, cells = (
+        float(base.value("thrust_expo")),
+        battery(first, found("hover_voltage"), found("battery_resistance"), found("hover_current").is_observed),
+    )
     if found("thrust_expo").is_observed:
         expo = found("thrust_expo").value
         if "battery_capacity" in cells:  # its sag is in the figure, and in the model besides

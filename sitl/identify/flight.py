@@ -65,7 +65,11 @@ class FlightLog:
         self.spans = self._flying() if self.kind == "copter" else self._driving()
         """When it moved by itself, without failsafe."""
         if not self.spans:
-            where = f"in the air, {_LOW_M:g} m over the ground" if self.kind == "copter" else f"armed and driving (XKF1 over {_DRIVES:g} m/s)"
+            where = (
+                f"in the air, {_LOW_M:g} m over the ground"
+                if self.kind == "copter"
+                else f"armed and driving (XKF1 over {_DRIVES:g} m/s)"
+            )
             raise IdentifyError(
                 f"log {str(path)!r}: the vehicle was never {where} for {4 * _SETTLES_S:.0f} s without failsafe"
             )

@@ -112,9 +112,13 @@ class Identification:
             "Figures without the word 'identified' are those of the airframe that",
         ]
         if self.kind == "copter":
-            head += ["this one began with, by the logs' FRAME_CLASS and FRAME_TYPE, as far as forces go scaled to the mass;"]
+            head += [
+                "this one began with, by the logs' FRAME_CLASS and FRAME_TYPE, as far as forces go scaled to the mass;"
+            ]
         else:
-            head += ["this one began with, by the logs' SERVOn_FUNCTION, as far as lengths and forces go scaled to its size;"]
+            head += [
+                "this one began with, by the logs' SERVOn_FUNCTION, as far as lengths and forces go scaled to its size;"
+            ]
         head += ["parameters are those of the log."]
         return vehicles.to_toml(self._with_intervals(model), head=head, notes=notes)
 
@@ -144,6 +148,8 @@ def identify(
     found = [FlightLog(path, progress) for path in paths]
     kinds = {log.kind for log in found}
     if len(kinds) > 1:
-        raise IdentifyError(f"logs of {' and '.join(f'a {kind}' for kind in sorted(kinds))}: they must be of one vehicle")
+        raise IdentifyError(
+            f"logs of {' and '.join(f'a {kind}' for kind in sorted(kinds))}: they must be of one vehicle"
+        )
     of_kind = figures if found[0].kind == "copter" else rover_figures
     return Identification(tuple(found), tuple(of_kind(found)), mass)

@@ -20,14 +20,14 @@ _ADVICE_COPTER = """\
 4. Be ready to take over in LOITER."""
 _ADVICE_ROVER = """\
 1. LOG_BITMASK: throttle, steering, IMU, RC and battery (65535, which is the default). Log on the ground, too:
-   LOG_DISARMED 1. Set BATT_MONITOR for voltage and current. Free, level ground of {room:.0f} m to each side. Let it stand for
-   half a minute before arming.
+   LOG_DISARMED 1. Set BATT_MONITOR for voltage and current. Free, level ground of {room:.0f} m to each side.
+   Let it stand for half a minute before arming.
 2. The mission: legs at rising speeds, a slalom, legs in reverse. It lies around --home; look at it in your ground
    station before you drive it.
 3. Then by the sticks in MANUAL, as far as the ground allows: throttle 30, 60 and 100 % for five seconds each and 0 for
    three, forward, then backward; full throttle forward and at once full backward.
-4. At a quarter, then at half of the throttle, then backward at a quarter: steering 25, 50 and 100 % to each side, moved at
-   once and held for three seconds."""
+4. At a quarter, then at half of the throttle, then backward at a quarter: steering 25, 50 and 100 % to each side,
+   moved at once and held for three seconds."""
 ADVICE = {"copter": _ADVICE_COPTER, "rover": _ADVICE_ROVER}
 """What to set and to do, besides the mission."""
 _M = 1.0 / 111319.5

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
 
+from ..autopilot.params.table import Table
 from .figure import Figure
 from .flight import FlightLog
 
@@ -44,7 +44,7 @@ def battery(log: FlightLog, voltage: Figure, resistance: Figure, has_current: bo
     return found
 
 
-def kept(parameters: Mapping[str, float], beginnings: tuple[str, ...], table: Mapping[str, Any]) -> dict[str, float]:
+def kept(parameters: Mapping[str, float], beginnings: tuple[str, ...], table: Table) -> dict[str, float]:
     """Parameters with these beginnings that our firmware has, takes and heeds, and that are not its defaults."""
     known = {name: value for name, value in parameters.items() if name.startswith(beginnings)}
     known = {name: value for name, value in known.items() if name in table and table[name].has_effect}

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -33,7 +33,9 @@ RADIUS = Sought("turning_radius", "m", "of the driven axle's path at full steeri
 GAIN = Sought("steering_gain", "1/m", "curvature by steering output, about straight on")
 TRIM = Sought("steering_trim", "", "steering output (-1 .. 1) at which it drives straight on")
 SERVO = Sought("steering_time", "s", "of the steering servo from straight on to full")
-TRACK = Sought("turning_track", "m", "difference of the sides' speeds by yaw rate: the track, and more since wheels scrub")
+TRACK = Sought(
+    "turning_track", "m", "difference of the sides' speeds by yaw rate: the track, and more since wheels scrub"
+)
 PIVOT = Sought("pivot_rate", "rad/s", "yaw rate on the spot at full outputs")
 DIFFER = Sought("side_difference", "", "part by which left motors are faster than the mean of both sides")
 GRIP = Sought("grip", "", "greatest force of the tyres by weight")
@@ -52,11 +54,19 @@ _FLOORS = {"speed_lag": 0.01, "rolling_resistance": 0.001, "steering_trim": 0.00
            "side_difference": 0.002, "rear_axle": 0.01}  # fmt: skip
 """The same in the figure's unit."""
 _MOST_RELATIVE = 0.3
-_MOST = {"rolling_resistance": 0.004, "steering_trim": 0.03, "side_difference": 0.03, "steering_time": 0.05, "rear_axle": 0.1}
+_MOST = {
+    "rolling_resistance": 0.004,
+    "steering_trim": 0.03,
+    "side_difference": 0.03,
+    "steering_time": 0.05,
+    "rear_axle": 0.1,
+}
 """Greatest half of an interval in the figure's unit, where the value may be 0."""
 _LEAST_S = 20.0
 _BACKWARD_S = 5.0
 _FULL = 0.8
+_LATE_S, _ALIKE = 0.01, 10
+"""The heading may be so late (assumed), by residuals of which so many in a row are alike."""
 _TURNED = 0.1
 """Steering outputs that spread by less tell no turning."""
 
@@ -111,7 +121,7 @@ def _drive(fit: DriveFit) -> list[Figure]:
     data = fit.data
     back_s = float((data.speed.value < -0.2 * abs(data.speed.value).max()).mean()) * data.seconds
     forward_s = float((data.speed.value > 0.2 * abs(data.speed.value).max()).mean()) * data.seconds
-    outputs = [fit_throttle for fit_throttle in _throttle(data)]
+    outputs = _throttle(data)
     most, least = max(float(x.max()) for x in outputs), min(float(x.min()) for x in outputs)
     return [
         *_both(fit, (FORWARD, TOP), "speed", forward_s, most, "forward"),
@@ -136,7 +146,10 @@ def _both(
         return [one.hidden(f"it drove {way} for {seconds:.0f} s; {_BACKWARD_S:.0f} s are needed") for one in sought]
     free = _made(sought[0], fit, *fit.interval(name))
     if most < _FULL:
-        return [free, sought[1].hidden(f"throttle {way} reached {100.0 * most:.0f} %; {100.0 * _FULL:.0f} % are needed")]
+        return [
+            free,
+            sought[1].hidden(f"throttle {way} reached {100.0 * most:.0f} %; {100.0 * _FULL:.0f} % are needed"),
+        ]
     return [free, _made(sought[1], fit, *fit.of(lambda model: model.value(name) - model.value("loss")))]
 
 
@@ -237,7 +250,13 @@ def _axle(fit: DriveFit) -> Figure:
         return AXLE.hidden(f"it turned too little: the yaw rate spread by {turn.std():.3f} rad/s")
     x = np.stack([turn, along, turn * along, np.ones_like(turn)], -1)
     start = np.linalg.lstsq(x, aside, rcond=None)[0]
-    found = least_squares(lambda p: aside - x @ p, start, data.aside.group, int(10 * GUSTS_S))
+    weight = float(np.std(aside - x @ start)) * math.sqrt(_ALIKE) / _LATE_S
+
+    def residuals(p: Array) -> Array:
+        return np.append(aside - x @ p, weight * p[2])
+
+    groups = np.append(data.aside.group, data.aside.group.max() + 1)
+    found = least_squares(residuals, start, groups, int(10 * GUSTS_S))
     return _made(AXLE, fit, float(found.value[0]), float(found.error[0]))
 
 

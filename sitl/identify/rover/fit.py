@@ -8,6 +8,7 @@ log's vehicle ran into it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import product
 
@@ -78,12 +79,13 @@ class DriveFit:
     def of(self, function: Callable[[Model], float]) -> tuple[float, float]:
         """A number that follows from a model, and its standard error."""
         p = self.fit.value
-        value, slope = function(self._model(p)), np.zeros(len(p))
+        value: float = function(self._model(p))
+        slope = np.zeros(len(p))
         for k, step in enumerate(1e-4 * self._scale(p)[: len(self.names)]):
             there = p.copy()
             there[k] += step
             slope[k] = (function(self._model(there)) - value) / step
-        return value, float(np.sqrt(max(slope @ self.fit.covariance @ slope, 0.0)))
+        return value, math.sqrt(max(float(slope @ self.fit.covariance @ slope), 0.0))
 
     # ------------------------------------------------------------------ parameters: figures, then onsets
 
@@ -137,7 +139,7 @@ class DriveFit:
         return np.concatenate(self._parts(p))
 
     def _slopes(self, p: Array) -> Array:
-        """Of the residuals by figures, and by onsets: those of every second step at once, since each acts for a while."""
+        """Of the residuals by figures, and by onsets: of every second step at once, since each acts for a while."""
         at = self._residuals(p)
         found = np.zeros((len(at), len(p)))
         _, high = self._limits()
@@ -196,10 +198,10 @@ class DriveFit:
         turn, r = data.yaw_rate.of(first - second if data.skids else first), data.yaw_rate.value
         if data.skids:
             track = top * float(turn @ turn) / max(float(turn @ r), 1e-6)
-            steerings = [(factor * min(max(track, 0.05), 9.0), 0.0) for factor in (1.0, 1.4)]
+            steerings: list[tuple[float, ...]] = [(factor * min(max(track, 0.05), 9.0), 0.0) for factor in (1.0, 1.4)]
         else:
-            times = [1e4 * series.stretch + series.place for series in (data.yaw_rate, data.speed)]
-            x = np.interp(*times, v) * turn
+            at, known = (1e4 * series.stretch + series.place for series in (data.yaw_rate, data.speed))
+            x = np.interp(at, known, v) * turn
             bend = min(max(float(x @ r) / max(float(x @ x), 1e-9), 1e-3), 40.0)
             steerings = [(factor * bend, shape, 0.0) for factor in (1.0, 1.3) for shape in (0.4, -0.4)]
         trials = [

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-
 from typing import Any
 
 import numpy as np
@@ -103,10 +102,10 @@ class Model:
 
 
 def base_of(skids: bool) -> Array:
-    """The record of the airframe of all models: outputs -1 .. 1, one kilogram whose work is its power, tyres that do not slip."""
+    """The record of the airframe of all models: outputs -1 .. 1, one kilogram, whose work is its power."""
     found = vehicles.load(BASES[skids])
     assert isinstance(found, RoverAirframe)
-    changes = {
+    changes: dict[str, float | tuple[float, ...]] = {
         "mass": 1.0,
         "inertia": (1e-4, 1e-4, 1e-4),
         "control_full": 1.0,

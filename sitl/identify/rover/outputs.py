@@ -99,8 +99,11 @@ def _share(log: FlightLog, channel: int | None, table: Any) -> Array:
     """Pulses as -1 .. 1 of what the firmware makes them of (SERVOn_MIN, _TRIM, _MAX, _REVERSED); none is 0."""
     pulse, name = table[f"C{channel}"], f"SERVO{channel}"
     low, middle, high = (
-        log.parameter(f"{name}_{end}", default=width) for end, width in (("MIN", 1100.0), ("TRIM", 1500.0), ("MAX", 1900.0))
+        log.parameter(f"{name}_{end}", default=width)
+        for end, width in (("MIN", 1100.0), ("TRIM", 1500.0), ("MAX", 1900.0))
     )
-    share = np.where(pulse >= middle, (pulse - middle) / max(high - middle, 1.0), (pulse - middle) / max(middle - low, 1.0))
+    share = np.where(
+        pulse >= middle, (pulse - middle) / max(high - middle, 1.0), (pulse - middle) / max(middle - low, 1.0)
+    )
     share[pulse == 0.0] = 0.0
     return np.clip(-share if log.parameter(f"{name}_REVERSED", default=0.0) else share, -1.0, 1.0)

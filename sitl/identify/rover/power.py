@@ -32,7 +32,9 @@ def power(found: DriveFit) -> list[Figure]:
     """The three parts of the battery's power."""
     data = found.data
     if not len(data.voltage.value):
-        return [sought.hidden("no BAT, or no battery monitor (BATT_MONITOR) of voltage and current") for sought in _SOUGHT]
+        return [
+            sought.hidden("no BAT, or no battery monitor (BATT_MONITOR) of voltage and current") for sought in _SOUGHT
+        ]
     first, second = data.inputs()
     throttle = 0.5 * (abs(first) + abs(second)) if data.skids else abs(second)
     volts = data.voltage.value
@@ -54,7 +56,9 @@ def power(found: DriveFit) -> list[Figure]:
         share = float(np.hypot(_SHARE, of_load)) if sought is LOAD else _SHARE
         half = float(np.linalg.norm([NORMAL_95 * error, share * value, _OF_ALL * most]))
         if value < half:
-            figures.append(sought.hidden(f"too little to tell: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}"))
+            figures.append(
+                sought.hidden(f"too little to tell: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}")
+            )
         elif half > _MOST_RELATIVE * value:
             figures.append(sought.hidden(f"too uncertain: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}"))
         else:

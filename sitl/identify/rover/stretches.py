@@ -182,10 +182,7 @@ def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
                 count += 1
     if not count:
         return f"no {LENGTH_S:.0f} s in one piece with RCOU, IMU, ATT and XKF1"
-    series = {
-        name: Series(*(np.concatenate(column) for column in zip(*rows))) if rows else _NOTHING
-        for name, rows in columns.items()
-    }
+    series = {name: _series(rows) if rows else _NOTHING for name, rows in columns.items()}
     first, second = np.array(starts).T
     return Stretches(
         begin=np.array(begins),
@@ -209,6 +206,11 @@ def _body_velocity(log: FlightLog) -> tuple[Array, Array, Array]:
     yaw = np.interp(table.time, attitude.time, np.unwrap(np.radians(attitude["Yaw"])))
     north, east = table["VN"], table["VE"]
     return table.time, np.cos(yaw) * north + np.sin(yaw) * east, np.cos(yaw) * east - np.sin(yaw) * north
+
+
+def _series(rows: list[list[Array]]) -> Series:
+    value, stretch, place, group = (np.concatenate(column) for column in zip(*rows))
+    return Series(value, stretch, place, group)
 
 
 def _battery(log: FlightLog) -> dict[str, tuple[Array, Array]]:
