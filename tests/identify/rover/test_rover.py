@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from sitl import Simulation, cli, vehicles
+from sitl.agents.rehearsal.airframe_plan import airframe_plan
 from sitl.client import Client
 from sitl.identify import IdentifyError, identify
 from sitl.identify.plan import rover_items
@@ -78,6 +79,8 @@ def test_the_airframe_is_a_file_that_drives(found, tmp_path) -> None:
     assert (low, high) == pytest.approx((found["speed_by_throttle"].low, found["speed_by_throttle"].high))
     assert set(mine.intervals) <= set(mine.figures) and "contact_radius" not in mine.intervals
     assert "identified, by steering_gain" in out.read_text()
+    names = [change.name for change in airframe_plan(out).changes]
+    assert "least speed_max" in names and "drawn within the intervals" in names
     simulation = Simulation(str(out), seed=1)
     Client(simulation).wait_ready()
     simulation.close()
