@@ -18,29 +18,31 @@ from ..signals import within
 from .courses import STEP_S
 from .fit import DriveFit
 from .model import Array, Model
-from .power import ELECTRONICS, FULL, LOAD, power
-from .stretches import Stretches, stretches
-
-FORWARD = Sought("speed_by_throttle", "m/s", "forward speed that full throttle stands for, without load")
-BACKWARD = Sought("speed_by_throttle_back", "m/s", "the same backwards")
-TOP = Sought("top_speed", "m/s", "speed at full throttle")
-TOP_BACK = Sought("top_speed_back", "m/s", "the same backwards")
-LAG = Sought("speed_lag", "s", "time constant of the speed after the throttle")
-ROLLING = Sought("rolling_resistance", "", "resisting force by weight")
-MOTORS = Sought("drive_accel", "m/s^2", "strongest acceleration that the motors give")
-BRAKE = Sought("brake_accel", "m/s^2", "strongest deceleration")
-RADIUS = Sought("turning_radius", "m", "of the driven axle's path at full steering")
-GAIN = Sought("steering_gain", "1/m", "curvature by steering output, about straight on")
-TRIM = Sought("steering_trim", "", "steering output (-1 .. 1) at which it drives straight on")
-SERVO = Sought("steering_time", "s", "of the steering servo from straight on to full")
-TRACK = Sought(
-    "turning_track", "m", "difference of the sides' speeds by yaw rate: the track, and more since wheels scrub"
+from .power import power
+from .sought import (
+    AXLE,
+    BACKWARD,
+    BRAKE,
+    DIFFER,
+    ELECTRONICS,
+    FORWARD,
+    FULL,
+    GAIN,
+    GRIP,
+    LAG,
+    LOAD,
+    MOTORS,
+    PIVOT,
+    RADIUS,
+    ROLLING,
+    SERVO,
+    TOP,
+    TOP_BACK,
+    TRACK,
+    TRIM,
+    VOLTAGE,
 )
-PIVOT = Sought("pivot_rate", "rad/s", "yaw rate on the spot at full outputs")
-DIFFER = Sought("side_difference", "", "part by which left motors are faster than the mean of both sides")
-GRIP = Sought("grip", "", "greatest force of the tyres by weight")
-AXLE = Sought("rear_axle", "m", "from the axle that does not steer forward to the autopilot")
-VOLTAGE = Sought("battery_voltage", "V", "highest voltage of the battery at rest")
+from .stretches import Stretches, stretches
 
 _SHARES = {
     "speed_by_throttle": 0.02, "speed_by_throttle_back": 0.02, "top_speed": 0.02, "top_speed_back": 0.02,
@@ -67,6 +69,7 @@ _BACKWARD_S = 5.0
 _FULL = 0.8
 _LATE_S, _ALIKE = 0.01, 10
 """The heading may be so late (assumed), by residuals of which so many in a row are alike."""
+_MOST_GRIP = 3.0
 _TURNED = 0.1
 """Steering outputs that spread by less tell no turning."""
 
@@ -237,6 +240,8 @@ def _skid(fit: DriveFit) -> list[Figure]:
 def _grip(fit: DriveFit) -> Figure:
     if "slip" in fit.names:
         value, error = fit.interval("slip")
+        if value * _MOST_GRIP < 1.0:
+            return GRIP.hidden(f"{1.0 / value:.1f} is more than tyres hold: something else held the yaw rate back")
         return _made(GRIP, fit, 1.0 / value, error / value**2)
     most = float(np.percentile(np.hypot(fit.courses.speed * fit.courses.yaw_rate, _accelerations(fit)), 99.9))
     return GRIP.hidden(f"the limit was not reached: tyres held {most:.1f} m/s^2, {most / GRAVITY:.2f} of the weight")

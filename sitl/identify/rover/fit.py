@@ -19,12 +19,10 @@ from ...core.constants import GRAVITY
 from ..regression import GUSTS_S, Fit, least_squares
 from .courses import STEP_S, Courses
 from .model import CAR, DRIVE, LEAST, LIMITS, MOST, SKID, Array, Model, base_of
-from .outputs import Output
-from .stretches import Series, Stretches
+from .steps import Step, steps_of
+from .stretches import Stretches
 
 _ONSETS = np.linspace(0.05, 0.95, 10)
-_ANSWERS_S = 2.0
-"""After a step, in which its onset changes the vehicle's answer."""
 _SHIFT = 0.1
 """Of an onset, by which its slope is found."""
 _GAIN = 0.002
@@ -51,7 +49,7 @@ class DriveFit:
         self.sizes = np.array([max(float(np.std(series.value)), 1e-6) for series in data.measured()])
         # What steers a skidding vehicle, both motors, happens at once.
         self._together = ((0, 1),) if data.skids else ((0,), (1,))
-        self._steps = [_Step(data, log, channels, k) for log, channels, k in _steps(data, self._together)]
+        self._steps = [Step(data, log, channels, k) for log, channels, k in steps_of(data, self._together)]
         self._onsets = np.full(len(self._steps), 0.5)
         p = self._search(self._start())
         self._reweigh(p)
@@ -253,47 +251,3 @@ class DriveFit:
                 turn = float(np.percentile(abs(np.diff(courses.yaw_rate)), 99.9)) / STEP_S
                 most = max(most, 0.5 * self._model(p).value("track") * turn)
         return [share * most for share in _SHARES if most > 1e-3]
-
-
-class _Step:
-    """A step of a log's outputs.
-
-    Args:
-        data: in which it is.
-        log, channels: of which.
-        place: number of the step of each channel.
-    """
-
-    def __init__(self, data: Stretches, log: int, channels: tuple[int, ...], places: tuple[int, ...]) -> None:
-        self.log, self.places = log, tuple(zip(channels, places))
-        begin = float(data.outputs[log][channels[0]].steps.begin[places[0]])
-        self.rows: list[slice] = []
-        """Residuals that it changes."""
-        before = 0
-        for series in data.measured():
-            time = _times(data, series)
-            own = np.flatnonzero(series.group == log)
-            a, b = np.searchsorted(time[own], (begin, begin + _ANSWERS_S))
-            self.rows.append(slice(before + own[0] + int(a), before + own[0] + int(b)))
-            before += len(time)
-
-
-def _times(data: Stretches, series: Series) -> Array:
-    return data.begin[series.stretch] + STEP_S * (series.place + 1.0)
-
-
-def _steps(
-    data: Stretches, together: tuple[tuple[int, ...], ...]
-) -> list[tuple[int, tuple[int, ...], tuple[int, ...]]]:
-    """(Log, channels, number of the step of each channel) in the order of time; on both channels at once are one."""
-    found = []
-    for log, pair in enumerate(data.outputs):
-        mine: dict[tuple[float, int], list[tuple[int, int]]] = {}
-        for number, channels in enumerate(together):
-            for channel in channels:
-                steps: Output = pair[channel]
-                for k, begin in enumerate(steps.steps.begin.tolist()):
-                    mine.setdefault((begin, number), []).append((channel, k))
-        for _, members in sorted(mine.items()):
-            found.append((log, tuple(c for c, _ in members), tuple(k for _, k in members)))
-    return found

@@ -9,14 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..figure import NORMAL_95, Figure, Sought
+from ..figure import NORMAL_95, Figure
 from ..regression import GUSTS_S, least_squares
 from .fit import DriveFit
 from .model import Array
+from .sought import ELECTRONICS, FULL, LOAD
 
-LOAD = Sought("mass_by_efficiency", "kg", "battery's power by the motors' work of each kilogram")
-FULL = Sought("power_full", "W", "drawn at full throttle whatever the load")
-ELECTRONICS = Sought("avionics_current", "A", "drawn by all that is no motor")
 _SOUGHT = (LOAD, FULL, ELECTRONICS)
 _SHARE = 0.05
 """Relative half of the interval for what the model leaves out."""
@@ -50,7 +48,7 @@ def power(found: DriveFit) -> list[Figure]:
     fit = least_squares(lambda p: given - x @ p, start, data.voltage.group, int(10 * GUSTS_S))
     most = float(np.percentile(given, 99.0))
     rolling, unsure = found.of(lambda model: model.rolling_resistance)  # what most of the work may be done against
-    of_load = NORMAL_95 * unsure / rolling if rolling > 0.0 else 0.0
+    of_load = min(NORMAL_95 * unsure / max(rolling, 1e-9), 1.0)
     figures = []
     for sought, value, error, scale in zip((LOAD, FULL), fit.value, fit.error, size):
         share = float(np.hypot(_SHARE, of_load)) if sought is LOAD else _SHARE

@@ -35,7 +35,7 @@ class Series:
         stretch: of each sample (n,).
         place: in samples of the course, with what is between (n,).
         group: log of each sample, of which a constant is taken off.
-        filters: log -> cut-off of the low-pass that is behind what was measured [Hz]; 0: none.
+        cutoff: of the low-pass that is behind what was measured [Hz]; 0: none.
     """
 
     value: Array
@@ -75,9 +75,10 @@ class Stretches:
         log: of which it is.
         outputs: of each log, two.
         speed: forward [m/s], yaw_rate [rad/s], accel [m/s^2]: what was measured.
-        start_speed, start_yaw_rate: at the beginning of each stretch.
         aside: velocity to the right [m/s], as ``speed``.
         voltage, current: of the battery [V], [A]; empty when no log has them.
+        start_speed, start_yaw_rate: at the beginning of each stretch (stretches,).
+        skids: whether it steers by its left and right motors.
     """
 
     begin: Array
