@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from ..core.border import BAROS_DIFFER, Sensors
+from ..core.constants import TICK_US
 from ..core.kernels import law
 from ..core.records import Floats, Ints, Record, array
 
 SILENCE_US, FROZEN_US = 500_000, 2_000_000
 """A barometer is healthy while its last sample is no older, and its pressure or temperature has changed in this time:
 one that freezes in the air is not found out, as with ArduPilot, since its temperature goes on changing."""
-_TICK_US = 2_500
 
 
 class Barometers(Record):
@@ -46,7 +46,7 @@ def is_healthy(baros: Barometers, k: int, now_us: int) -> bool:
 @law
 def choose(baros: Barometers, sensors: Sensors, wanted: float, now_us: int) -> None:
     """Each tick in which the barometers differ; ``wanted``: BARO_PRIMARY."""
-    if now_us - baros.looked_us > _TICK_US:  # until now they did not
+    if now_us - baros.looked_us > TICK_US:  # until now they did not
         for k in range(2):
             baros.heard_us[k] = now_us
             baros.changed_us[k] = now_us

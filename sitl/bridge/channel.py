@@ -12,12 +12,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.constants import NEVER
 from .dialect import MessageType, message_by_id
 from .frame import Frame, encode_v1, encode_v2
 from .links.faulty_way import FaultyWay, Ways, WayState
 from .links.link import Peer
 from .wire.frames import COMPONENT
-from .wire.port import IN_BYTES, INCOMING, NEVER, OUT, STATE, Port
+from .wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .wire.spool import FRAMES, Spool
 
 _FIRST = 4

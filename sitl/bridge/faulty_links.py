@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+from ..core.constants import NEVER
 from .channel import Channel
 from .links.faults import TO_CLIENT, TO_VEHICLE, LinkFaults
 from .links.faulty_way import NONE, FaultyWay, Ways
 from .links.link import Link
-from .wire.port import NEVER
 
 
 class FaultyLinks:

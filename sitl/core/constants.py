@@ -12,3 +12,6 @@ TICK_S = 0.0025
 """The same [s]."""
 TICK_HZ = 400
 """Ticks a second [Hz]."""
+
+NEVER = 1 << 62
+"""A time that does not come [us]."""

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ..core.constants import NEVER
 from ..core.kernels import jit_disabled
 from ..core.record_reader import addresses
 from ..core.system_call import function_address
-from ..physics.native.ranging import NEVER, list_near
+from ..physics.native.ranging import list_near
 from ..plants.local import LocalPlant
 from ..vehicle.core_entry import unit_address
 from .exchange import (

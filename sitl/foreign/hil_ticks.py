@@ -13,10 +13,11 @@ import numpy as np
 from ..bridge.hil.physics_end import PhysicsEnd
 from ..bridge.wire.frames import FRAME_MAX
 from ..bridge.wire.port import PAYLOAD_BYTES
+from ..core.constants import NEVER
 from ..core.kernels import jit_disabled
 from ..core.record_reader import addresses, locate
 from ..core.system_call import function_address
-from ..physics.native.ranging import NEVER, list_near
+from ..physics.native.ranging import list_near
 from ..plants.local import LocalPlant
 from ..vehicle.core_entry import unit_address
 from .hil_exchange import IS_NEWS, IS_ODD, MARKS, ROOM, HilExchange, conversed

@@ -18,15 +18,14 @@ from ..bridge.ardupilot_json.autopilot_end import LONGEST_S, AutopilotEnd
 from ..bridge.ardupilot_json.motion import Motion
 from ..core import rng
 from ..core.algebra import multiply, rotate
-from ..core.constants import TICK_US
+from ..core.constants import GRAVITY, TICK_S, TICK_US
 from ..core.elementary import cos, sin
 from ..core.record_reader import locate
 from ..core.vectors import Quat, Vec3
 from ..physics.carried import Carried, carried
 from ..physics.engine import EngineError
-from ..physics.native.body import GRAVITY, unit
+from ..physics.native.body import unit
 from ..physics.native.power_on import DEFAULT_HOME, Home
-from ..physics.native.tick import TICK_S
 from ..vehicle.core_entry import bind_unit
 from .json_link import WAIT_S, JsonLink, parse_address
 from .plant import PhysicsLostError, Plant, SimulatedVehicle

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..core.constants import NEVER
 from ..physics.native.ranging import (
     LIDAR,
-    NEVER,
     RANGEFINDER,
     Ranging,
     aim_sensor,

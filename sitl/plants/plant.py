@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..core.constants import NEVER
 from ..core.record_reader import RecordReader
 from ..errors import OptionError, SitlError
 from ..physics.carried import Carried
@@ -18,8 +19,6 @@ from ..physics.engines import BACKENDS, backends
 from ..scenario import Scenario
 from ..vehicle.kind import Kind
 from ..vehicles import Airframe
-
-NEVER = 1 << 62
 
 
 class PhysicsLostError(SitlError, ConnectionError):

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ..core.constants import NEVER
 from .acting import Value, acts_not
 from .faults import Failure
-from .ordered_faults import NEVER, Ordered
+from .ordered_faults import Ordered
 
 Key = tuple[str, int]
 """Text of a fault and simulated time of its begin [us]."""

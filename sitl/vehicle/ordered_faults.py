@@ -13,10 +13,10 @@ from numbers import Integral
 from typing import NamedTuple
 
 from ..autopilot.params.table import Table
+from ..core.constants import NEVER
 from ..errors import OptionError
 from .faults import PARAMETERS, Failure, Text, known, unit_name
 
-NEVER = 1 << 62
 ONE_SHOT = ("SIM_SHOVE_TIME", "SIM_TWIST_TIME")
 """The vehicle takes these when they are set, and they are 0 again."""
 

@@ -13,6 +13,7 @@ from ..autopilot.rover.move import move as move_firmware
 from ..autopilot.rover.parameters import Simulated
 from ..autopilot.rover.state import Autopilot
 from ..core.algebra import euler_of
+from ..core.constants import TICK_S
 from ..core.displacement import Displacement, speed_along
 from ..core.elementary import tan
 from ..core.kernels import law, unit
@@ -27,7 +28,6 @@ from ..physics.native.rover.motion import hold_back
 from ..physics.native.rover.prepare import prepare
 from ..physics.native.rover.state import Physics, SteeringServo
 from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
-from ..physics.native.tick import TICK_S
 from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
 from ..vehicles.figures.rover import STEERING_SKID

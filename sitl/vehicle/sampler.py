@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
+from ..core.constants import NEVER
 from ..core.kernels import law
 from ..core.memory import ints_at, record_at
 from ..core.records import Ints, Record, array
 
-NEVER = 1 << 62
-"""A time that does not come [us]."""
 LONGEST_US = 100_000
 """Longest time between two rows [us]."""
 PERIODS = 8

@@ -10,13 +10,12 @@ import numpy as np
 from ..autopilot.params.simulation import DELIVERED, Receiver, SecondBarometer, Simulated, axes
 from ..core.algebra import ZERO, conjugate, cross, dot, quat_from_euler
 from ..core.border import BAROS_DIFFER, ONE_BARO, Sensors
-from ..core.constants import TICK_US
+from ..core.constants import TICK_S, TICK_US
 from ..core.elementary import pow
 from ..core.memory import words_of
 from ..core.rng import next_u32
 from ..core.vectors import Euler, Vec3
 from ..physics.native.records import BARO_RING, BaroFault, GpsReceiver, Iron, SensorState
-from ..physics.native.tick import TICK_S
 from ..physics.native.wind import EVEN
 from . import imu_faults
 from .record import Vehicle

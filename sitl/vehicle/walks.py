@@ -16,8 +16,8 @@ from typing import Any
 
 from ..autopilot.estimation.noise import GPS_POSITION
 from ..autopilot.estimation.state import POS
+from ..core.constants import TICK_S
 from ..core.vectors import Vec3
-from ..physics.native.tick import TICK_S
 
 
 def share(v: Any) -> float:

@@ -195,14 +195,14 @@ def test_seed_0_of_all_comes_first_and_the_shortest_first(tmp_path):
     stages = found.stages()
     assert [title for title, _ in stages] == [
         "random policy", "training, seed 0", "robustness, seed 0", "variants, seed 0",
-        "training, seed 1", "training, seed 2", "robustness, seed 1", "robustness, seed 2", "variants, seed 1",
-        "variants, seed 2",
+        "training and robustness, seed 1", "training and robustness, seed 2", "variants, seed 1", "variants, seed 2",
     ]  # fmt: skip
-    assert [job.name for job in dict(stages)["training, seed 1"]] == ["copter-hover", "copter-rooms"]
+    assert [job.name for job in dict(stages)["training and robustness, seed 1"]] == ["copter-hover", "copter-rooms"]
     whats = {(title, job.name): job.whats for title, jobs in stages for job in jobs}
     assert "worlds-unseen" in whats["training, seed 0", "copter-rooms"]
     assert "wind-8" in whats["variants, seed 0", "copter-hover-robust"]
     assert "worlds-unseen" not in whats["training, seed 0", "copter-hover"]
+    assert {"nominal", "wind-8"} <= {*whats["training and robustness, seed 1", "copter-hover"]}
     assert found.left(stages) > found.left(stages[:2]) > 0.0
 
 
@@ -383,7 +383,7 @@ def test_the_plan_lists_and_makes_nothing(few, tmp_path, capsys):
     words = [NAME, "--plan", "--seeds", "2", "--results", str(tmp_path / "results"), "--runs", str(tmp_path / "runs")]
     assert main(words) == 0
     out = capsys.readouterr().out
-    assert "== training, seed 1" in out and f"{NAME}: training" in out and "all: " in out
+    assert "== training and robustness, seed 1" in out and f"{NAME}: training" in out and "all: " in out
     assert not (tmp_path / "runs").exists()
     assert main(["rover-waypiont"]) == 1
     assert "baseline 'rover-waypiont' is not known" in capsys.readouterr().err

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from sitl.bridge.links import InProcessLink, LinkFaults
-from sitl.bridge.links.faulty_way import NEVER
 from sitl.client import Client, InProcess
 from sitl.client.endpoint import Endpoint
+from sitl.core.constants import NEVER
 from sitl.errors import OptionError
 from sitl.fleet import Fleet
 from sitl.recording.recorder import Recorder

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from sitl.bridge.links import InProcessLink, LinkFaults
-from sitl.bridge.links.faulty_way import NEVER, FaultyWay, cut, is_of_clock
+from sitl.bridge.links.faulty_way import FaultyWay, cut, is_of_clock
 from sitl.client.endpoint import Endpoint
+from sitl.core.constants import NEVER
 from sitl.errors import OptionError
 
 FRAMES = [bytes([0xFD, 3, 0, 0, k & 0xFF, 1, 1, 0, k >> 8, 9, 1, 2, 3, 4, 5]) for k in range(2000)]

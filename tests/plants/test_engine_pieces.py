@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from sitl.core.algebra import ZERO
-from sitl.physics.native.body import GRAVITY, Inertia, Wrench, fly
+from sitl.core.constants import GRAVITY
+from sitl.physics.native.body import Inertia, Wrench, fly
 from sitl.physics.native.copter import pieces as copter
 from sitl.physics.native.copter.step import step as step_copter
 from sitl.physics.native.obstacles import settle

@@ -11,9 +11,8 @@ from pathlib import Path
 import pytest
 
 from sitl import vehicles
-from sitl.core.constants import TICK_US
+from sitl.core.constants import NEVER, TICK_US
 from sitl.missions.pilot import Pilot
-from sitl.physics.native.ranging import NEVER
 from sitl.simulation import Core, Simulation
 from sitl.worlds import Box, Start, World
 

@@ -7,9 +7,10 @@ import pytest
 
 from sitl.bridge.services.faults import FaultService
 from sitl.client import Client
+from sitl.core.constants import NEVER
 from sitl.simulation import Simulation
 from sitl.vehicle.fault_history import Acted, FaultHistory
-from sitl.vehicle.ordered_faults import NEVER, Ordered
+from sitl.vehicle.ordered_faults import Ordered
 
 S = 1_000_000
 GPS = ("gps/off@2.0", 2 * S)

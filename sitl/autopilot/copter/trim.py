@@ -6,12 +6,13 @@ from __future__ import annotations
 
 from ...core.algebra import multiply, rotate
 from ...core.border import Actuators
+from ...core.constants import GRAVITY
 from ...core.kernels import law
 from ...core.scalars import constrain
 from ...core.vectors import Quat, Vec2, Vec3
 from .control.attitude_target import set_target
 from .control.motors import SPOOLING_UP, THROTTLE_UNLIMITED, hover_throttle
-from .control.state import GRAVITY, Control, MotorsState
+from .control.state import Control, MotorsState
 from .parameters import Parameters
 from .parameters.control import Motors
 from .state import Autopilot

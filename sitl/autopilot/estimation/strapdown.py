@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import cross, multiply, quat_from_rotation_vector, quat_norm_squared, rotate
+from ...core.constants import GRAVITY
 from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.vectors import Euler, Quat, Vec3
 from .state import Ekf
 
-GRAVITY = 9.80665
 MAX_RATE = 70.0
 """Rates above this are a broken sensor [rad/s] (4000 deg/s)."""
 MAX_ACC = 400.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ...core.algebra import IDENTITY
 from ...core.border import BAROS_DIFFER, IMUS_DIFFER
+from ...core.constants import TICK_S
 from ...core.kernels import inline_unit, inlined, law, unit
 from ...core.records import Records
 from .. import barometers, gps_receivers, optical_flow
@@ -38,7 +39,7 @@ from .alignment import CALIBRATE, RUN, TILT, YAW
 from .events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES
 from .state import POS, VEL, Ekf
 
-DT = 0.0025
+DT = TICK_S
 STEP_TICKS = 5
 """Ticks a filter step: 80 Hz."""
 HOLD_US = 100_000

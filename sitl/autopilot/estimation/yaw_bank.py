@@ -16,12 +16,13 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import cross, multiply, normalise, quat_from_rotation_vector, rotate, rotate_inverse, yaw_of
+from ...core.constants import GRAVITY
 from ...core.elementary import atan2, exp, sincos
 from ...core.kernels import law
 from ...core.records import FloatRows, Floats, Ints, Record, Records, array, repeat
 from ...core.scalars import wrap_pi
 from ...core.vectors import Quat, Vec2, Vec3
-from .strapdown import GRAVITY, rotation_in_tick, turned_attitude
+from .strapdown import rotation_in_tick, turned_attitude
 
 MODELS = 5
 RING = 20

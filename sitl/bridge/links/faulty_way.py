@@ -9,11 +9,11 @@ import struct
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from sitl.core.constants import NEVER
 from sitl.core.elementary import log1p
 
 from ...core import rng
 from ..frame import CHECKSUM, HEADER_V1, HEADER_V2, MARK_V1, MARK_V2, SIGNATURE, SIGNED
-from ..wire.port import NEVER
 from .faults import LinkFaults
 
 NONE = LinkFaults()

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple, Protocol, cast
 from ...autopilot import payload, relays
 from ...autopilot.aux_switch import HIGH, LOW
 from ...autopilot.mission.item import MissionItem
-from ..wire.port import NEVER
+from ...core.constants import NEVER
+from ..host import Host
 from .outputs import OFF, ON, OutputService
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO
@@ -66,7 +67,7 @@ class Falling(Protocol):
 class ParachuteService(PayloadService):
     """The parachute."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._state = State()
         self._watch(0)

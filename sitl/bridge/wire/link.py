@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, TypeVar
 
-from ...core.constants import TICK_US
+from ...core.constants import NEVER, TICK_US
 from ...core.kernels import law
 from ...core.memory import bytes_at, record_at
-from ...physics.native.ranging import NEVER, Ranging, list_near, measure, scan_due
+from ...physics.native.ranging import Ranging, list_near, measure, scan_due
 from ...vehicle.record import Vehicle
 from ...vehicle.sampler import row_due, take_row
 from .frames import COMPONENT, copy_payload, next_frame

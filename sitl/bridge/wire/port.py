@@ -7,11 +7,10 @@ bytes, takes away the frames, and acts on messages that the core leaves to it.
 
 from __future__ import annotations
 
+from ...core.constants import NEVER
 from ...core.kernels import law
 from ...core.records import Ints, Record, array
 
-NEVER = 1 << 62
-"""A time that does not come [us]."""
 STREAMS = 96
 """Messages that a client can be sent regularly."""
 SENDERS = 32

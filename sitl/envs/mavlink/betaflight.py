@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from sitl.client.connection import Connection
 from sitl.client.endpoint import ACCEPTED
+from sitl.core.constants import GRAVITY
 from sitl.core.elementary import cos, sin
 from sitl.errors import NotReadyError
 from sitl.foreign.betaflight.sticks import ACRO as _ACRO
@@ -23,7 +24,6 @@ SETPOINTS: dict[str, Encode] = {name: COPTER[name] for name in ("rates", "rc")}
 STEP_US = 20_000
 _TENTH = 100_000
 _READY_S, _CLIMB_S = 30, 20
-_GRAVITY = 9.80665
 
 
 class Hold:
@@ -46,10 +46,10 @@ class Hold:
         north, east, down = (2.0 * (speed - now) for speed, now in zip(speeds, inbox.position[4:7]))
         c, s = cos(yaw), sin(yaw)
         forward, right = north * c + east * s, east * c - north * s
-        lean = [min(max(push / _GRAVITY, -0.35), 0.35) for push in (right, -forward)]
+        lean = [min(max(push / GRAVITY, -0.35), 0.35) for push in (right, -forward)]
         turn = math.remainder(self.heading - yaw, 2.0 * math.pi)
         self._hover = min(max(self._hover - 0.03 * errors[2] * seconds, 0.05), 0.95)
-        thrust = self._hover * (1.0 - down / _GRAVITY) / max(cos(roll) * cos(pitch), 0.5)
+        thrust = self._hover * (1.0 - down / GRAVITY) / max(cos(roll) * cos(pitch), 0.5)
         return 5.0 * (lean[0] - roll), 5.0 * (lean[1] - pitch), 1.5 * turn, min(max(thrust, 0.0), 1.0)
 
 

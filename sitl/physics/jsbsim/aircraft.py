@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from ..native.body import GRAVITY
+from ...core.constants import GRAVITY
 from .model import FOOT, POUND, POUNDS_BY_SLUG, SLUG, SLUG_FOOT2
 
 RADIUS = 6_371_000.0

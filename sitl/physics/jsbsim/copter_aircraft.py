@@ -12,8 +12,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from ...core.constants import GRAVITY
 from ...vehicles.figures.copter import THRUST_MOMENTUM
-from ..native.body import GRAVITY
 from ..native.prepare import decay
 from .aircraft import Contact, written
 from .formula import component, difference, function, greatest, if_less, least, magnitude, product, root, total

@@ -16,10 +16,10 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from ...core.algebra import euler_of, quat_from_euler, rotate
+from ...core.constants import TICK_S
 from ...core.vectors import Euler, Quat, Vec3
 from ..engine import Engine, EngineError, EngineVehicle
 from ..native.atmosphere import SEA_LEVEL_TEMPERATURE, pressure, temperature
-from ..native.tick import TICK_S
 from . import start
 from .aircraft import RADIUS
 from .formula import library, load

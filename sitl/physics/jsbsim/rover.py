@@ -6,11 +6,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ...core.constants import TICK_S
 from ...core.vectors import Vec2
 from ...vehicles.figures.rover import STEERING_SKID
 from ..engine import EngineVehicle
 from ..native.rover.steering import curvature
-from ..native.tick import TICK_S
 from . import rover_aircraft
 from .engine import JsbsimEngine
 from .formula import NAME

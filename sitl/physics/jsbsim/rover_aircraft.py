@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from ...core.constants import GRAVITY
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
-from ..native.body import GRAVITY
 from .aircraft import Contact, place, written
 from .formula import difference, function, limited, product, total
 from .model import FOOT, POUND

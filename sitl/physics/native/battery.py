@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+from ...core.constants import TICK_S
 from ...core.kernels import law
 from ...vehicles.figures.body import Battery
 from .records import BatteryState
-from .tick import TICK_S
 
 OPEN_CIRCUIT = (0.714, 0.845, 0.869, 0.895, 0.905, 0.919, 0.938, 0.957, 0.976, 0.990, 1.0)
 """Share of the full voltage at charge 0, 0.1 ... 1: a lithium-polymer cell (4.20, 3.86, 3.00 V).

@@ -12,13 +12,13 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import ZERO, conjugate, multiply, norm, normalise, quat_from_euler, rotate_inverse
+from ...core.constants import GRAVITY, TICK_S
 from ...core.elementary import atan2, cos, sin
 from ...core.kernels import law
 from ...core.records import Ints
 from ...core.vectors import Euler, Quat, Vec3
-from .body import GRAVITY, small_rotation
+from .body import small_rotation
 from .records import Body
-from .tick import TICK_S
 
 SWITCH, FIRST, SECOND, THIRD = 4, 5, 6, 7
 """Indices of the outputs."""

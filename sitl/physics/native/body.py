@@ -12,12 +12,10 @@ import math
 from typing import NamedTuple
 
 from ...core.algebra import by_component, dot, multiply, quat_norm_squared, rotate, rotate_inverse
+from ...core.constants import GRAVITY
 from ...core.kernels import law
 from ...core.vectors import Quat, Vec3
 from .records import Body
-
-GRAVITY = 9.80665
-"""Standard gravity [m/s^2]."""
 
 
 class Wrench(NamedTuple):

@@ -10,6 +10,7 @@ import math
 
 from ...core.algebra import rotate_inverse
 from ...core.border import GpsReading, Sensors
+from ...core.constants import TICK_S
 from ...core.displacement import Displacement, faster, moved, turned, turned_attitude
 from ...core.geodesy import add_offset, offset_ne
 from ...core.kernels import law
@@ -20,7 +21,7 @@ from .atmosphere import pressure, set_air
 from .obstacles import nearest
 from .records import GPS_RING, Body, Fix, GpsReceiver, Obstacles, Physics, Place
 from .sensors.gps import FIX_3D
-from .tick import TICK_S, Clock
+from .tick import Clock
 
 INSIDE = 1e-6
 """A vehicle that overlaps a solid by this stands in it [m]."""

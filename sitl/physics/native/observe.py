@@ -8,13 +8,13 @@ velocity, so that an inertial filter sees no error of the integration.
 from __future__ import annotations
 
 from ...core.algebra import ZERO, conjugate, multiply, norm, rotate_inverse
+from ...core.constants import GRAVITY, TICK_S
 from ...core.elementary import atan2
 from ...core.kernels import law
 from ...core.vectors import Quat, Vec3
-from .body import GRAVITY, unit
+from .body import unit
 from .obstacles import show
 from .records import Body, Motion, Obstacles
-from .tick import TICK_S
 
 _PER_S = 1.0 / TICK_S
 

@@ -16,15 +16,14 @@ import math
 
 from ...core.algebra import dot, rotate_inverse
 from ...core.array_kernels import Table
+from ...core.constants import GRAVITY, TICK_S
 from ...core.elementary import exp, hypot
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
 from ...vehicles.figures.body import Outline
 from ...worlds.contact import Contact, Volume, gather, nearest_of
 from ...worlds.geometry import BOTTOM, SOLID_FIGURES, TOP
-from .body import GRAVITY
 from .records import OBSTACLES_MAX, Body, Obstacles
-from .tick import TICK_S
 
 REACH = 30.0
 """Solids farther away than this are not listed [m]."""

@@ -8,6 +8,7 @@ import math
 from ...core import rng as random
 from ...core.algebra import ZERO
 from ...core.border import Sensors
+from ...core.constants import GRAVITY
 from ...core.earth_field import field_ned
 from ...core.elementary import cos, sin
 from ...core.rng import Rng
@@ -15,7 +16,6 @@ from ...core.vectors import Quat, Vec3
 from ...vehicles import Airframe, apply
 from ...vehicles.figures.body import Sensors as SensorFigures
 from . import atmosphere, wind
-from .body import GRAVITY
 from .records import Physics, SensorState, Vehicle
 from .sensors import barometer, magnetometer, power
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ...core.constants import TICK_S
 from ...core.elementary import exp
 from ...core.kernels import law
 from ...vehicles.figures.body import Figures
 from .records import Derived
 from .sensors.imu import WALK_TICKS
-from .tick import TICK_S
 
 
 class Step(NamedTuple):

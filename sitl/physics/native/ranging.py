@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from ...core.algebra import rotate
 from ...core.border import Sensors
+from ...core.constants import NEVER
 from ...core.kernels import law, unit
 from ...core.memory import floats_at, ints_at, record_at, table_at
 from ...core.records import Floats, Record, Records, repeat
@@ -32,8 +33,6 @@ from .traffic import Others, meet_rays
 LIDAR, RANGEFINDER = 0, 1
 """Numbers of the sensors."""
 SENSORS = 2
-NEVER = 1 << 62
-"""A time that does not come [us]."""
 
 
 class Beams(Record):

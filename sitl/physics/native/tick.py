@@ -5,9 +5,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-TICK_US = 2500
-TICK_S = 0.0025
-
 
 class Clock(NamedTuple):
     """When it is."""

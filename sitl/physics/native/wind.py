@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 
 from ...core.algebra import ZERO
+from ...core.constants import TICK_S
 from ...core.elementary import sincos
 from ...core.kernels import law
 from ...core.rng import Rng, normal_vector
 from ...core.vectors import Vec3
 from .records import Wind
-from .tick import TICK_S
 
 PERIOD_TICKS = 8
 """Wind is stepped every 20 ms."""

@@ -26,9 +26,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
+from ...core.constants import GRAVITY
 from ...errors import MissingExtra
 from ..engine import EngineError
-from ..native.body import GRAVITY
 
 ITERATIONS = 50
 """Passes of the contact solver; it leaves off sooner when nothing changes."""

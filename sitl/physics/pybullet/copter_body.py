@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ...core.constants import TICK_S
 from ...worlds import World
-from ..native.tick import TICK_S
 from . import client, urdf
 from .client import Client
 from .copter_model import CopterModel, model, sag

@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..native.body import GRAVITY
+from ...core.constants import GRAVITY
 from .urdf import Contact, Vector, box, cylinder, document, link, sphere
 
 FOOT_RADIUS = 0.01

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from ...core.algebra import rotate
+from ...core.constants import GRAVITY
 from ...core.vectors import Quat, Vec3
 from ...worlds.contact import clearance
 from ..engine import Array, Engine, EngineError, EngineVehicle, offset
-from ..native.body import GRAVITY
 from ..native.obstacles import settle
 from ..native.records import GROUND_AIRBORNE, GROUND_STANDING
 from . import urdf, worlds

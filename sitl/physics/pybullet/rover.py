@@ -13,10 +13,9 @@ import math
 import struct
 from typing import Any, ClassVar
 
+from ...core.constants import GRAVITY, TICK_S
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS
 from ..engine import Array, Engine, EngineError, EngineVehicle, offset
-from ..native.body import GRAVITY
-from ..native.tick import TICK_S
 from . import worlds
 from .client import Client, forget, load, save
 from .contacts import hits_report

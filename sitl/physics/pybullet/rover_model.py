@@ -18,8 +18,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...core.constants import GRAVITY
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
-from ..native.body import GRAVITY
 from .client import Client
 from .wheels import ALONG_Y, Parts, meet, touch_in_one_point
 from .worlds import FLOOR_GROUP, SOLID_GROUP

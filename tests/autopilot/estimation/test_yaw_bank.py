@@ -10,8 +10,8 @@ import pytest
 from pytest import approx
 
 from sitl.autopilot.estimation import yaw_bank
-from sitl.autopilot.estimation.strapdown import GRAVITY
 from sitl.core.algebra import euler_of, multiply, quat_from_euler, quat_from_rotation_vector, rotate_inverse
+from sitl.core.constants import GRAVITY
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Euler, Vec2, Vec3
 

@@ -18,7 +18,8 @@ from sitl.bridge.wire import frames, streams
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets, message_of
 from sitl.bridge.wire.link import hear_port, keep_rest
 from sitl.bridge.wire.message import Message
-from sitl.bridge.wire.port import NEVER, OUT, Port
+from sitl.bridge.wire.port import OUT, Port
+from sitl.core.constants import NEVER
 from sitl.core.memory import bytes_at, record_at
 from sitl.core.records import Floats, Ints
 from sitl.vehicle.copter import Copter

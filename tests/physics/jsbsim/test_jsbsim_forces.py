@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.core.algebra import rotate
+from sitl.core.constants import TICK_S
 from sitl.core.vectors import Quat, Vec3
 from sitl.physics.engine import EngineError
 from sitl.physics.jsbsim.model import FOOT, POUND, POUND_FOOT, SLUG_BY_FOOT3
 from sitl.physics.native import atmosphere
 from sitl.physics.native.atmosphere import density
 from sitl.physics.native.copter.wrench import act
-from sitl.physics.native.tick import TICK_S
 from sitl.vehicles.figures.copter import THRUST_MOMENTUM
 from tests.physics.jsbsim.jsbsim_bench import Bench
 

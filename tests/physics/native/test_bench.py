@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from sitl.core.algebra import IDENTITY, euler_of, rotate_inverse
+from sitl.core.constants import GRAVITY
 from sitl.core.vectors import Vec3
 from sitl.physics.native import bench
-from sitl.physics.native.body import GRAVITY
 from sitl.physics.native.records import Body
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from sitl.core.constants import TICK_S
 from sitl.core.vectors import Vec3
 from sitl.physics.native.copter import vibration
-from sitl.physics.native.tick import TICK_S
 from sitl.simulation import Simulation
 from sitl.vehicle.copter import apply_sim_parameters
 from sitl.vehicles.figures.copter import THRUST_MOMENTUM

@@ -13,12 +13,12 @@ import pytest
 from pytest import approx
 
 from sitl.core import records
+from sitl.core.constants import TICK_S
 from sitl.core.kernels import jit_disabled
 from sitl.physics.native import truth
 from sitl.physics.native.rover.drive import commanded
 from sitl.physics.native.rover.state import SteeringServo
 from sitl.physics.native.rover.steering import followed
-from sitl.physics.native.tick import TICK_S
 from sitl.vehicle.rover import slow_servo
 
 ROVERS = ["erle_rover", "erle_rover_small", "ardupilot_rover", "skid_rover"]

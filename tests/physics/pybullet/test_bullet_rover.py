@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from sitl.core.constants import GRAVITY
+
 pytest.importorskip("pybullet")
 
 from sitl import vehicles, worlds
 from sitl.core.records import first_difference
 from sitl.physics.engine import EngineError, EngineVehicle, Laws
-from sitl.physics.native.body import GRAVITY
 from sitl.physics.native.rover.init import init
 from sitl.physics.pybullet.rover import BulletRover
 from sitl.physics.pybullet.rover_model import layout

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ....core.constants import GRAVITY
 from ....core.kernels import law
 from ....core.scalars import TWO_PI, constrain, finite
 from ...control.pid import relax_integrator, reset_filter
@@ -11,7 +12,7 @@ from ...state import Estimate
 from ..parameters import Parameters
 from ..parameters.control import Position
 from .motors import hover_throttle
-from .state import DT, GRAVITY, AltitudeState, Control
+from .state import DT, AltitudeState, Control
 
 RELAX_TIME = 0.16
 """Time constant with which the throttle decays on the ground [s] (ArduPilot's)."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ....core.algebra import dot2, finite2, horizontal, limit_length, norm2
+from ....core.constants import GRAVITY
 from ....core.kernels import inlined, law
 from ....core.scalars import finite
 from ....core.vectors import Vec2, Vec3
@@ -30,7 +31,7 @@ from ...state import Estimate
 from ..parameters import Parameters
 from ..parameters.control import Position
 from .position_start import accel_limit_ne, init_ne, is_active_ne
-from .state import DT, GRAVITY, Control, PositionState
+from .state import DT, Control, PositionState
 
 
 class PositionGains(NamedTuple):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import horizontal, limit_length, norm2, turned
+from ....core.constants import GRAVITY
 from ....core.elementary import cos, tan
 from ....core.kernels import law
 from ....core.scalars import constrain
@@ -14,7 +15,7 @@ from ...control.shaping import inverse_sqrt_controller
 from ...state import Estimate
 from ..parameters import Parameters
 from ..parameters.control import Attitude, Position
-from .state import DT, GRAVITY, Control, PositionState
+from .state import DT, Control, PositionState
 from .throttle_mix import LEAN_TICKS, lean_limit
 
 RELAX_TIME = 0.16

@@ -9,16 +9,15 @@ the rest.
 from __future__ import annotations
 
 from ....core.algebra import euler_of, quat_from_euler
+from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.records import Floats, Ints, Record, array
 from ....core.vectors import Euler, Quat, Vec2, Vec3
 from ... import state as shared
 from ...control.pid import Pid
 
-DT = 0.0025
+DT = TICK_S
 """Period of every law in this room [s]: one autopilot tick."""
-GRAVITY = 9.80665
-"""[m/s^2]"""
 MOTORS_MAX, QUAD = 8, 4
 
 

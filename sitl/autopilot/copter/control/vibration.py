@@ -11,11 +11,12 @@ passes at a bias of 2 m/s^2, at which ArduPilot's fails; here the errors themsel
 
 from __future__ import annotations
 
+from ....core.constants import GRAVITY
 from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI
 from ...control.pid import Blocked, Pid
 from ...state import Estimate
-from .state import DT, GRAVITY, VibrationState
+from .state import DT, VibrationState
 
 NOTHING, BEGINS, ENDS = 0, 1, 2
 """What ``watch`` sees."""

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import ZERO2
+from ....core.constants import GRAVITY
 from ....core.elementary import hypot, tan
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
@@ -22,7 +23,7 @@ from ...modes import ACCEPTED
 from ...state import Estimate
 from .. import avoidance, pilot
 from ..control import attitude, position, position_start
-from ..control.state import DT, GRAVITY, Control, PositionState
+from ..control.state import DT, Control, PositionState
 from ..parameters import Parameters
 from ..parameters.control import Attitude
 from ..state import Autopilot, Vehicle

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import ZERO2, horizontal, norm2
+from ....core.constants import GRAVITY
 from ....core.elementary import atan, cos, sincos
 from ....core.kernels import law
 from ....core.scalars import constrain
@@ -19,7 +20,7 @@ from ...state import Estimate
 from .. import pilot
 from ..control import attitude, position, position_start
 from ..control.attitude import Lean
-from ..control.state import DT, GRAVITY, Control
+from ..control.state import DT, Control
 from ..control.throttle_mix import lean_limit
 from ..parameters import Parameters
 from ..parameters.flight import PosHold

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import norm2, rotate
+from ....core.constants import GRAVITY
 from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
@@ -19,7 +20,7 @@ from ...modes import ACCEPTED, INIT_FAILED, REASON_THROW_COMPLETE, ask
 from ...notes import INFO
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
-from ..control.state import GRAVITY, Control
+from ..control.state import Control
 from ..parameters import Parameters
 from ..parameters.flight import Throw
 from ..state import Vehicle

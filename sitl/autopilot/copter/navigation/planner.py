@@ -7,6 +7,7 @@ import math
 from typing import NamedTuple
 
 from ....core.algebra import ZERO, dot, norm, with_down
+from ....core.constants import GRAVITY
 from ....core.sums import separation
 from ....core.vectors import Vec3
 from ...navigation.leg import (
@@ -35,7 +36,6 @@ from . import spline, spline_curve, waypoint
 from .spline_curve import SplineLimits
 from .state import Spline
 
-GRAVITY = 9.80665
 _ALONG = 0.999
 """Cosine of the angle to the path under way within which a leg goes on with its speed."""
 _AT_REST = 1e-9

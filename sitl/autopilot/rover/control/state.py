@@ -17,8 +17,6 @@ from ...control.pid import Pid
 DT = 0.02
 """Period of every law in this room [s]: ArduRover's loop of 50 Hz."""
 PERIOD_US = 20_000
-GRAVITY = 9.80665
-"""[m/s^2]"""
 TEST_THROTTLE, TEST_STEERING, TEST_LEFT, TEST_RIGHT = 1, 2, 3, 4
 """MOTOR_TEST_ORDER of ArduRover's motor test."""
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 
+from ....core.constants import GRAVITY
 from ....core.kernels import law
 from ....core.scalars import constrain, finite, wrap_pi
 from ...control.pid import pid_gains, reset_filter, update_pid
 from ...state import Estimate
 from ..parameters.control import Attitude
 from .forward_speed import yaw_rate
-from .state import DT, GRAVITY, Control, SteeringState, current_tick, is_recent
+from .state import DT, Control, SteeringState, current_tick, is_recent
 
 TIMEOUT = 10
 """Periods after which a loop that did not run starts afresh: 0.2 s, ArduPilot's."""

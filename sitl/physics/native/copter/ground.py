@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 
 from ....core.algebra import ZERO, multiply, normalise, rotate, rotate_inverse
+from ....core.constants import GRAVITY, TICK_S
 from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Quat, Vec3
 from ....vehicles.figures.copter import Legs
-from ..body import GRAVITY, small_rotation
+from ..body import small_rotation
 from ..records import GROUND_LYING, GROUND_STANDING, Body
-from ..tick import TICK_S
 from .state import Ground
 
 _LEVEL = 1e-5

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import Figures
 from ..prepare import decay, prepare_shared
-from ..tick import TICK_S
 from .state import Derived
 
 

@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 from ....core.algebra import ZERO, rotate, rotate_inverse
+from ....core.constants import GRAVITY, TICK_US
 from ....core.kernels import inline_unit, law
 from ....core.records import Records
 from ....core.vectors import Vec3
 from .. import battery, bench, obstacles, wind
-from ..body import GRAVITY, Inertia, Wrench, fly
+from ..body import Inertia, Wrench, fly
 from ..records import GROUND_AIRBORNE, GROUND_STANDING, Vehicle
 from ..sensors.imu_faults import MOTORS_TURN
 from ..sensors.sense import sense
-from ..tick import TICK_US, Clock
+from ..tick import Clock
 from . import esc, rotors, vibration
 from .ground import absorb, lifts_off, rest, touch
 from .state import Physics

@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 
 from ....core.border import Sensors
+from ....core.constants import TICK_S
 from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Vec3
 from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
 from ..sensors.imu_faults import saturate
-from ..tick import TICK_S
 from .state import Rotors
 
 HARMONICS = 8

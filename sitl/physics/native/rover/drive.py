@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....vehicles.figures.rover import Figures
-from ..tick import TICK_S
 from .state import Derived
 
 _PER_S = 1.0 / TICK_S

@@ -11,11 +11,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ....core.constants import GRAVITY, TICK_S
 from ....core.kernels import law
 from ....core.vectors import Quat, Vec2, Vec3
-from ..body import GRAVITY, small_rotation
+from ..body import small_rotation
 from ..records import Body, Obstacles
-from ..tick import TICK_S
 from .state import Wheels
 
 _PER_S = 1.0 / TICK_S

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
+from ....core.constants import GRAVITY, TICK_S
 from ....core.elementary import sin
 from ....core.kernels import law
 from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Figures
-from ..body import GRAVITY
 from ..prepare import decay, prepare_shared, whole_ticks
-from ..tick import TICK_S
 from .state import Derived
 
 UNLIMITED = 1e9

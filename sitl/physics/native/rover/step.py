@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ....core.constants import TICK_S, TICK_US
 from ....core.kernels import inline_unit, law
 from ....core.records import Floats, Records
 from ....core.vectors import Vec2
@@ -10,7 +11,7 @@ from ....vehicles.figures.rover import STEERING_SKID, Figures
 from .. import battery, bench, obstacles
 from ..records import Body, Vehicle
 from ..sensors.sense import sense
-from ..tick import TICK_S, TICK_US, Clock
+from ..tick import Clock
 from . import encoders
 from .drive import commanded, grip_along, run
 from .motion import Course, hold_back, roll

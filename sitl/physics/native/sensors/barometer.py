@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from ....core.algebra import rotate_inverse
 from ....core.border import Sensors
+from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.rng import Rng, normal
 from ....vehicles.figures.body import Sensors as SensorFigures
 from ..atmosphere import pressure, temperature
 from ..records import BARO_RING, BaroFault, Derived, Physics, SensorState
-from ..tick import TICK_S
 
 LOWEST, HIGHEST = -2000.0, 30000.0
 """Altitudes that a faulty barometer shows at most [m]."""

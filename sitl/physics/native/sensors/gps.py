@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ....core.algebra import by_component
 from ....core.border import GpsReading, Sensors
+from ....core.constants import TICK_S
 from ....core.elementary import sin
 from ....core.geodesy import add_offset
 from ....core.kernels import law
@@ -19,7 +20,7 @@ from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Sensors as SensorFigures
 from ..records import GPS_RING, Body, Derived, Fix, GpsFault, GpsReceiver, Physics, Place
-from ..tick import TICK_S, Clock
+from ..tick import Clock
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""

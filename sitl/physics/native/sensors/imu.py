@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from ....core.algebra import by_component, rotate
 from ....core.border import Sensors
+from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.rng import Rng, normal, normal_vectors
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Figures
 from ..records import Derived, Physics, SensorState
-from ..tick import TICK_S
 from .imu_faults import Sample, saturate, show
 
 WALK_TICKS = 40

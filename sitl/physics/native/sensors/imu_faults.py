@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 from ....core.algebra import by_component
 from ....core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER, Sensors
+from ....core.constants import TICK_S
 from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Vec3
 from ..records import ImuFault, Physics
-from ..tick import TICK_S
 
 WHITE = 0.1
 """Standard deviation of white noise, of the noise that is asked for; where the frame vibrates that is an amplitude."""

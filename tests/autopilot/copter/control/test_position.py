@@ -15,8 +15,9 @@ from sitl.autopilot.control.pid import Blocked, Gains
 from sitl.autopilot.control.shaping import Motion, Motion2
 from sitl.autopilot.copter.control import altitude, altitude_start, position, position_ned, position_start
 from sitl.autopilot.copter.control.motors import hover_throttle
-from sitl.autopilot.copter.control.state import DT, GRAVITY, AltitudeState, PositionState
+from sitl.autopilot.copter.control.state import DT, AltitudeState, PositionState
 from sitl.core.algebra import dot2, norm2, quat_from_euler, rotate, with_down
+from sitl.core.constants import GRAVITY
 from sitl.core.vectors import Euler, Vec2, Vec3
 from tests.autopilot.copter.control.level_autopilot import parts
 

@@ -9,9 +9,10 @@ import pytest
 
 from sitl.autopilot.control.pid import Blocked, Pid
 from sitl.autopilot.copter.control import vibration
-from sitl.autopilot.copter.control.state import DT, GRAVITY, VibrationState
+from sitl.autopilot.copter.control.state import DT, VibrationState
 from sitl.autopilot.copter.control.vibration import BEGINS, ENDS, NOTHING
 from sitl.autopilot.state import Estimate
+from sitl.core.constants import GRAVITY
 
 
 def looks(state: VibrationState, speed: float, height: float, first: int, last: int, watched: bool = True) -> list[int]:

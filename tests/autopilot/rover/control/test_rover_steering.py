@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.rover.control import motors, steering
-from sitl.autopilot.rover.control.state import DT, GRAVITY, Control
+from sitl.autopilot.rover.control.state import DT, Control
 from sitl.autopilot.rover.parameters.control import Attitude
+from sitl.core.constants import GRAVITY
 from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle, sense, set_motion
 
 
