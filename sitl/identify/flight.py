@@ -83,7 +83,8 @@ class FlightLog:
     def stream(self, name: str, instance: int | None = None) -> Table:
         """Messages of a name, or of one sensor of these, in the order of their times."""
         table = self.columns[name] if instance is None else self.columns[name].instance(instance)
-        return table.where(increasing(table.time))
+        later = increasing(table.time)
+        return table if later.all() else table.where(later)
 
     def estimate(self) -> Table:
         """XKF1 of the lane that was flown by."""

@@ -28,7 +28,7 @@ _FMT, _FMT_LENGTH = np.dtype(FMT.columns()), FMT.packer.size
 _HELP = ("FMTU", "UNIT", "MULT", "PARM", "MSG", "VER")
 """Read besides those that are asked for."""
 _INSTANCES = ("I", "C", "IMU", "Instance", "Id")
-_PIECE = 1 << 23
+_PIECE = 1 << 21
 """Bytes that are read at once."""
 _LONGEST = 256
 """More than any message has."""
