@@ -10,7 +10,7 @@ import numpy as np
 
 from .balance import balance
 from .drag import drag
-from .figure import NORMAL_95, Figure, Sought
+from .figure import NORMAL_95, Begins, Figure, Sought, silent
 from .flight import FlightLog
 from .hover import hover
 from .rates import rates
@@ -30,12 +30,20 @@ CAPACITY = Sought("battery_capacity", "Ah", "charge of the full battery")
 VIBRATION = Sought("vibration", "m/s^2", "vibration in the air (VIBE, greatest axis)")
 
 
-def figures(logs: Sequence[FlightLog]) -> list[Figure]:
-    """All figures of a copter that these logs tell, and the others with the reason."""
+def figures(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
+    """All figures of a copter that these logs tell, and the others with the reason.
+
+    Args:
+        logs: of one vehicle.
+        begins: is told what is worked on, which takes longest where rates are fast and flights long.
+    """
+    begins("hover")
     hovering = hover(logs)
+    turned = rates(logs, begins)
+    begins("thrust, balance, battery, drag, sensors")
     return [
         *hovering,
-        *rates(logs),
+        *turned,
         thrust_expo(logs, hovering[0]),
         *balance(logs),
         resistance(logs),

@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import SitlError
-from ..logs.dataflash.columns import Columns, Progress, Table
+from ..logs import forms
+from ..logs.dataflash.columns import Columns, Progress
+from ..logs.dataflash.tables import Table, Tables
+from ..logs.telemetry import Telemetry
 from .expected import Conditions
 from .signals import Span, increasing, within
 
@@ -28,6 +31,13 @@ _NAMES = (
     "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
     "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
 )  # fmt: skip
+_READ = "logs of ArduPilot are read: on-board ones (.bin, .log), and telemetry (.tlog)"
+_NO_PARAMETERS = (
+    "has no PARM, which say what its outputs mean: it begins in the middle, or its start is damaged",
+    "has no parameters (PARAM_VALUE, or @PARAM/param.pck by FTP), which say what its outputs mean: it began after the "
+    "ground station had got them. Get them again while it is recorded, or take the on-board log (.bin)",
+)
+"""Of a DataFlash log, of telemetry."""
 
 
 class IdentifyError(SitlError, ValueError):
@@ -38,7 +48,7 @@ class FlightLog:
     """A log.
 
     Args:
-        path: of the .bin.
+        path: of a .bin, a .log as text, or a .tlog.
         progress: is told how far it is read.
 
     Raises:
@@ -47,17 +57,14 @@ class FlightLog:
     """
 
     def __init__(self, path: str | Path, progress: Progress | None = None) -> None:
-        self.columns = Columns(path, _NAMES, progress)
         self.path = Path(path)
+        self.columns = self._read(progress)
         self.kind = self.columns.kind
         if self.kind != "copter":
             raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; only copters are identified as yet")
         self.parameters = self.columns.parameters
         if not self.parameters:
-            raise IdentifyError(
-                f"log {str(path)!r} has no PARM, which say what its outputs mean: "
-                "it begins in the middle, or its start is damaged"
-            )
+            raise IdentifyError(f"log {str(path)!r} {_NO_PARAMETERS[self.is_telemetry]}")
         self.armed = self._armed()
         self.spans = self._flying()
         """When it moved by itself, without failsafe."""
@@ -66,6 +73,19 @@ class FlightLog:
                 f"log {str(path)!r}: the vehicle was never in the air for {4 * _SETTLES_S:.0f} s, {_LOW_M:g} m over "
                 "the ground and without failsafe"
             )
+
+    def _read(self, progress: Progress | None) -> Tables:
+        form = forms.of(self.path)
+        if form == forms.TLOG:
+            return Telemetry(self.path, progress)
+        if form != forms.DATAFLASH:
+            raise IdentifyError(f"log {str(self.path)!r} is {form}; {_READ}")
+        return Columns(self.path, _NAMES, progress)
+
+    @property
+    def is_telemetry(self) -> bool:
+        """Whether it is what the vehicle sent, not what it kept."""
+        return isinstance(self.columns, Telemetry)
 
     @property
     def seconds(self) -> float:

@@ -19,9 +19,10 @@ from ..physics.native.atmosphere import density
 from ..vehicles import CopterAirframe
 from .copter import figures
 from .expected import exponent, slope_of
-from .figure import Figure
+from .figure import Begins, Figure, silent
 from .flight import FlightLog, IdentifyError
 from .model import Model, outflow
+from .telemetry import judged
 
 _BASES = {
     (1, 0): "ardupilot_quad",
@@ -213,14 +214,18 @@ def _known(parameters: dict[str, float]) -> dict[str, float]:
 
 
 def identify(
-    logs: str | Path | Sequence[str | Path], mass: float | None = None, progress: Progress | None = None
+    logs: str | Path | Sequence[str | Path],
+    mass: float | None = None,
+    progress: Progress | None = None,
+    begins: Begins = silent,
 ) -> Identification:
     """The figures of the copter that flew these logs.
 
     Args:
-        logs: .bin files of flights of one vehicle.
+        logs: .bin or .tlog files of flights of one vehicle.
         mass: of the vehicle [kg].
         progress: is told how far each log is read.
+        begins: is told which figures are worked on.
 
     Raises:
         sitl.logs.tlog.LogError, IdentifyError: a log that cannot be used, named with the reason.
@@ -231,4 +236,9 @@ def identify(
     if mass is not None and not (math.isfinite(mass) and 0.001 <= mass <= 1e4):
         raise IdentifyError(f"mass {mass} kg is outside 0.001 .. 10000")
     found = [FlightLog(path, progress) for path in paths]
-    return Identification(tuple(found), tuple(figures(found)), mass)
+    forms = {log.is_telemetry for log in found}
+    if len(forms) > 1:
+        words = ", ".join(f"{log.path.name} ({'telemetry' if log.is_telemetry else 'on-board'})" for log in found)
+        raise IdentifyError(f"logs of two forms, which tell different figures: {words}; give those of one form")
+    seen = figures(found, begins)
+    return Identification(tuple(found), tuple(judged(seen, found) if True in forms else seen), mass)

@@ -13,7 +13,8 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import linalg, optimize
+from scipy import optimize
+from scipy.linalg import lapack
 
 from .regression import long_run, widening
 
@@ -22,6 +23,9 @@ Array = np.ndarray[Any, Any]
 
 WEAK = 60.0
 """F statistic below which instruments are weak: neighbours in time are alike, so that chance alone reaches 25."""
+
+_WORK = 64
+"""Columns of a block of LAPACK's."""
 
 
 class Block:
@@ -38,7 +42,7 @@ class Block:
         self.columns, self.groups, self.lag = columns, groups, lag
         for column in instruments.T:
             column /= max(float(column.std()), 1e-300)
-        self.q: Array = linalg.qr(instruments, overwrite_a=True, mode="economic", check_finite=False)[0]
+        self.q = _orthonormal(instruments)
         self.weight: Array = np.eye(self.q.shape[1])
 
     def at(self, shared: Array) -> Block:
@@ -82,6 +86,14 @@ class Block:
     def _seen(self, column: int) -> tuple[Array, Array]:
         values = self.columns(np.zeros(2))[1][:, column]
         return values, self.q @ (self.q.T @ values)
+
+
+def _orthonormal(columns: Array) -> Array:
+    """Q of the QR decomposition; in the same memory when the columns stand one behind the other."""
+    reflected, tau, _, failed = lapack.dgeqrf(columns, lwork=_WORK * columns.shape[1], overwrite_a=1)
+    q, _, also_failed = lapack.dorgqr(reflected, tau, lwork=_WORK * columns.shape[1], overwrite_a=1)
+    assert not failed and not also_failed
+    return np.asarray(q)
 
 
 class JointFit(NamedTuple):
@@ -140,6 +152,7 @@ def _with_known(blocks: Iterable[Block], shared: Array, scale: Array, known: Joi
         values += found.values
         errors.append(np.hypot(found.errors[0], np.linalg.norm(gain * known.shared_errors, axis=1)))
         misfit = max(misfit, found.misfit)
+        del block  # before the next one is made
     return JointFit(shared, known.shared_errors, values, errors, misfit)
 
 

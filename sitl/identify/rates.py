@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.constants import GRAVITY
-from .figure import NORMAL_95, Figure, Sought
+from .figure import NORMAL_95, Begins, Figure, Sought, silent
 from .flight import FlightLog
 from .moments import WEAK, Block, JointFit, fit
 from .motion import motion
@@ -108,7 +108,7 @@ class _Stretch(NamedTuple):
     conditions: Array
 
 
-def rates(logs: Sequence[FlightLog]) -> list[Figure]:
+def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
     """All that RATE tells."""
     usable = [log for log in logs if log.has("RATE", "ATT", "IMU", "XKF1") and log.stream("RATE").rate >= _LEAST_HZ]
     if not usable:
@@ -123,6 +123,7 @@ def rates(logs: Sequence[FlightLog]) -> list[Figure]:
     weak: dict[str, str] = {}
     seconds, quantum = 0.0, max(resolution(log) for log in usable)
     for axis, letter, angle in AXES:
+        begins(f"{axis} rate")
         stretches = [part for log in usable for part in _stretches(log, letter, angle, rate)]
         seconds = sum(int(part.keep.sum()) for part in stretches) / rate
         if seconds < _LEAST_S:
@@ -146,9 +147,11 @@ def rates(logs: Sequence[FlightLog]) -> list[Figure]:
             chosen[axis] = (stretches, by_path)
     if not chosen:
         return [sought.hidden("; ".join(weak.values())) for sought in _all()]
+    begins("lag of the motors")
     found = fit(lags, np.array([0.02, 0.005]), np.array([0.01, 0.005]))
     shared = np.maximum(found.shared, 0.0)
     lags.clear()
+    begins("effectiveness and damping")
     blocks = (_block(parts, axis == "yaw", rate, by_path) for axis, (parts, by_path) in chosen.items())
     found = fit(blocks, shared, np.array([0.01, 0.005]), found)
     data = f"{seconds:.0f} s of RATE, ATT, {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz"
@@ -259,7 +262,8 @@ def _path(log: FlightLog, angle: str, edges: Array, otherwise: Array) -> Array:
 def _block(stretches: list[_Stretch], spins_up: bool, rate: float, by_path: bool) -> Block:
     """Moments of an axis: angular acceleration, then -rate, output by conditions, and the output's change."""
     count = len(_LAGS_S) + 4 * stretches[0].conditions.shape[1] + (not spins_up)
-    instruments = np.empty((sum(int(part.keep.sum()) for part in stretches), count), order="F")
+    length = sum(int(part.keep.sum()) for part in stretches)
+    instruments = np.empty((length, count), order="F")
     at = 0
     for part in stretches:
         n = len(part.keep)
@@ -274,18 +278,19 @@ def _block(stretches: list[_Stretch], spins_up: bool, rate: float, by_path: bool
 
     def columns(shared: Array) -> tuple[Array, Array]:
         lag, dead = shared
-        left, right = [], []
+        left, right = np.empty(length), np.empty((length, 3 + stretches[0].conditions.shape[1]))
+        at = 0
         for part in stretches:
             n, keep = len(part.keep), part.keep
+            rows = slice(at, at := at + int(keep.sum()))
             motor = part.band * part.gyro * np.exp(-part.s * dead) / (1.0 + part.s * lag)
-            left.append(np.fft.irfft(part.s * part.band * part.rate, n)[keep])
-            row = [-np.fft.irfft(part.band * part.rate, n), *(np.fft.irfft(motor * u, n) for u in part.outputs)]
-            if spins_up:
-                row.append(np.fft.irfft(part.s * motor * part.outputs[0], n))
-            else:
-                row.append(np.fft.irfft(part.band * part.gyro * part.aside, n))
-            right.append(np.stack(row, -1)[keep])
-        return np.concatenate(left), np.vstack(right)
+            left[rows] = np.fft.irfft(part.s * part.band * part.rate, n)[keep]
+            right[rows, 0] = -np.fft.irfft(part.band * part.rate, n)[keep]
+            for k, u in enumerate(part.outputs, 1):
+                right[rows, k] = np.fft.irfft(motor * u, n)[keep]
+            last = part.s * motor * part.outputs[0] if spins_up else part.band * part.gyro * part.aside
+            right[rows, -1] = np.fft.irfft(last, n)[keep]
+        return left, right
 
     groups = np.concatenate([np.full(int(part.keep.sum()), k) for k, part in enumerate(stretches)])
     return Block(columns, instruments, groups, int(2.0 * rate))
