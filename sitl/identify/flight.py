@@ -31,6 +31,7 @@ _NAMES = (
     "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
     "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
 )  # fmt: skip
+_OLDEST = (4, 0)
 _READ = "logs of ArduPilot are read: on-board ones (.bin, .log), and telemetry (.tlog)"
 _NO_PARAMETERS = (
     "has no PARM, which say what its outputs mean: it begins in the middle, or its start is damaged",
@@ -62,6 +63,16 @@ class FlightLog:
         self.kind = self.columns.kind
         if self.kind != "copter":
             raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; only copters are identified as yet")
+        if self.columns.helicopter:
+            raise IdentifyError(
+                f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}); copters with rotors of fixed pitch "
+                "are identified"
+            )
+        if (self.columns.version or _OLDEST) < _OLDEST:
+            raise IdentifyError(
+                f"log {str(path)!r} is of {self.columns.firmware}; logs of ArduPilot 4 are identified, older ones have "
+                "other messages and units (sitl twin and sitl view take them)"
+            )
         self.parameters = self.columns.parameters
         if not self.parameters:
             raise IdentifyError(f"log {str(path)!r} {_NO_PARAMETERS[self.is_telemetry]}")

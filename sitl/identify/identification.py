@@ -241,4 +241,4 @@ def identify(
         words = ", ".join(f"{log.path.name} ({'telemetry' if log.is_telemetry else 'on-board'})" for log in found)
         raise IdentifyError(f"logs of two forms, which tell different figures: {words}; give those of one form")
     seen = figures(found, begins)
-    return Identification(tuple(found), tuple(judged(seen, found) if True in forms else seen), mass)
+    return Identification(tuple(found), tuple(judged(seen, found)), mass)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which figures a telemetry log allows, by the rates at which its messages came.
+"""Which messages a figure needs: what a log lacks is named, and telemetry has to come often enough.
 
 Rates are those with which intervals held the truth in telemetry of our own copters (docs/identify.md).
 """
@@ -53,11 +53,19 @@ HOW = (
 
 
 def judged(figures: Sequence[Figure], logs: Sequence[FlightLog]) -> list[Figure]:
-    """Figures of telemetry, but for those for which a message came too seldom: these with the reason."""
-    return [_judged(figure, logs) for figure in figures]
+    """Figures with the messages that the logs lack as the reason; of telemetry, also those that came too seldom."""
+    judge = _of_telemetry if any(log.is_telemetry for log in logs) else _of_onboard
+    return [judge(figure, logs) for figure in figures]
 
 
-def _judged(figure: Figure, logs: Sequence[FlightLog]) -> Figure:
+def _of_onboard(figure: Figure, logs: Sequence[FlightLog]) -> Figure:
+    lacks = [name for name in NEEDS.get(figure.name, {}) if not any(log.has(name) for log in logs)]
+    if figure.is_observed or not lacks:
+        return figure
+    return replace(figure, reason=f"the log has no {', no '.join(lacks)} (LOG_BITMASK chooses what is logged)")
+
+
+def _of_telemetry(figure: Figure, logs: Sequence[FlightLog]) -> Figure:
     if figure.name in NEEDS:
         reason = "; ".join(filter(None, (_lack(logs, *need) for need in NEEDS[figure.name].items())))
     elif figure.name in _NEVER:

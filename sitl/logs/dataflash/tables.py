@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,9 @@ from .reader import FAR_S
 
 Array = np.ndarray[Any, Any]
 
+_VERSION = re.compile(r"V(\d+)\.(\d+)")
+_HELICOPTERS = (6, 11, 13)
+"""FRAME_CLASS: Heli, Heli_Dual, HeliQuad."""
 _INSTANCES = ("I", "C", "IMU", "Instance", "Id")
 
 
@@ -133,7 +137,8 @@ class Tables:
         if "MSG" not in self:
             return []
         table = self["MSG"]
-        return list(zip(table.time.tolist(), table["Message"].tolist()))
+        times = table.time if len(table.time) else np.zeros(len(table))  # ArduPilot 3.2 has none here
+        return list(zip(times.tolist(), table["Message"].tolist()))
 
     @property
     def firmware(self) -> str:
@@ -142,6 +147,22 @@ class Tables:
         if named or "VER" not in self or "FWS" not in self["VER"]:
             return named
         return str(self["VER"]["FWS"][0])
+
+    @property
+    def version(self) -> tuple[int, int] | None:
+        """Of the firmware: (4, 6); None when the log does not say it."""
+        found = _VERSION.search(self.firmware)
+        return (int(found[1]), int(found[2])) if found else None
+
+    @property
+    def helicopter(self) -> str:
+        """What says that it is a helicopter, whose rotors have pitch ("FRAME_CLASS 6"): ArduPilot counts it among the
+        copters; "": nothing."""
+        number = int(self.parameters.get("FRAME_CLASS", 0))
+        if number in _HELICOPTERS:
+            return f"FRAME_CLASS {number}"
+        named = re.match(r"\S*heli\w* V\d", self.firmware, re.IGNORECASE)
+        return self.firmware if named else ""
 
     @property
     def kind(self) -> str:
