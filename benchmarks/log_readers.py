@@ -48,7 +48,7 @@ def fly(path: Path, minutes: float) -> None:
     """Write a log of about this length."""
     airframe = vehicles.load("erle_copter")
     assert isinstance(airframe, CopterAirframe)
-    large = {"battery_capacity": 2.0 * minutes}
+    large = {"battery_capacity": max(2.0 * minutes, 20.0)}
     bits.FAST, usual = _LOOP_HZ, bits.FAST
     simulation = Simulation(replace(airframe, figures={**airframe.figures, **large}), seed=1, params=_PARAMETERS)
     try:

@@ -74,6 +74,7 @@ def test_intervals_of_identification_are_counted():
     assert heavy.rotors[0].x == 0.141 + 0.01
 
 
+@pytest.mark.slow
 def test_readers_of_logs_are_compared_by_the_same_messages(capsys, tmp_path):
     path = tmp_path / "flight.bin"
     log_readers.fly(path, 0.1)
