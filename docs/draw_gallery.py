@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from sitl.examples import EXAMPLES
+from sitl.cli.example_programs import EXAMPLES
 
 IMAGES = Path(__file__).parent / "images" / "gallery"
 COLOURS = 128

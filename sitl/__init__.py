@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """gym-sitl: an autopilot in the loop, in simulated time.
 
-The names of ``__all__`` are loaded when they are first used: ``import sitl`` itself loads nothing else.
+The names of ``__all__`` are loaded when they are first used: ``import sitl`` itself loads nothing but the version.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from .version import __version__
 
 if TYPE_CHECKING:
     from .bridge.links import LinkFaults
@@ -18,8 +20,6 @@ if TYPE_CHECKING:
     from .swarm import Swarm
     from .vehicles import names as vehicle_names
     from .worlds import names as world_names
-
-__version__ = "0.2.0.dev0"
 
 __all__ = [
     "Fleet",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from sitl.agents import baselines, recipes
-from sitl.agents.policies import RANDOM
+from sitl.agents.named_policies import RANDOM
 from sitl.agents.recipes import Recipe
 from sitl.agents.runs.config import RunConfig
 from sitl.envs.ids import TASKS

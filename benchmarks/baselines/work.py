@@ -17,7 +17,7 @@ import numpy.typing as npt
 from sitl.agents import baselines, learnt, rollout
 from sitl.agents.errors import ResumeError
 from sitl.agents.evaluate import Played
-from sitl.agents.policies import RANDOM, Named
+from sitl.agents.named_policies import RANDOM, Named
 from sitl.agents.runs.config import RunConfig, versions
 from sitl.agents.runs.files import make_folder, write_bytes, write_json
 from sitl.agents.runs.folder import RunFolder

@@ -12,17 +12,17 @@ from typing import Any, NamedTuple
 import gymnasium as gym
 import numpy as np
 
-import sitl
 from sitl.envs.costs import TOTAL
 from sitl.envs.navigate import Navigate
 from sitl.envs.options import EnvOptionError
 from sitl.envs.senses import SENSES, SensingRobot
 from sitl.errors import MissingExtra
+from sitl.version import __version__
 
 from . import baselines, environments
 from .errors import AgentError
 from .experts import AUTOPILOTS, Expert, Learnt
-from .policies import RANDOM
+from .named_policies import RANDOM
 
 BASELINE = "baseline"
 """The expert that is the shipped policy of the environment."""
@@ -128,7 +128,7 @@ def record(
                 made,
                 algorithm_name=chosen.name,
                 description=f"{episodes} episodes of {env}, flown by {chosen.about}.",
-                requirements=[f"gym-sitl=={sitl.__version__}"],
+                requirements=[f"gym-sitl=={__version__}"],
                 data_format="hdf5",
             )
         written.storage.update_metadata(
@@ -141,7 +141,7 @@ def record(
                 "successes": successes,
                 "state_columns": json.dumps(COLUMNS),
                 "mean_reward": float(np.mean(rewards)),
-                "versions": json.dumps({"gym-sitl": sitl.__version__, "gymnasium": gym.__version__}),
+                "versions": json.dumps({"gym-sitl": __version__, "gymnasium": gym.__version__}),
             }
         )
     finally:

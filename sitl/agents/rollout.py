@@ -24,7 +24,7 @@ from sitl.envs.robots.vehicles import INPROCESS
 from . import environments, learnt
 from .errors import AgentError
 from .evaluate import Evaluation, Played
-from .policies import Named, policies_of
+from .named_policies import Named, policies_of
 from .runs.backends import BACKENDS, Workers
 from .runs.config import MAX_STEPS, RunConfig
 from .runs.files import make_folder, write_arrays

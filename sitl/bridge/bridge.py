@@ -21,18 +21,20 @@ from .dialect import MessageType, message, message_by_id
 from .frame import Frame
 from .links.faults import LinkFaults
 from .links.link import Link
+from .listener import Listener
+from .log_store import LogStore
 from .places import Places
 from .profile import load
 from .services import all_services
+from .services.command import Entry
 from .services.commands import Grants
 from .services.faults import FaultService
 from .services.fitted import CARRIED_OUT_BY, run_aux_function, switched
-from .services.log_download import LogStore
 from .services.mission import MissionService
 from .services.outputs import OutputService
 from .services.parameters import ParameterService
 from .services.senders import SenderService
-from .services.service import ACCEPTED, FAILED, Handler, Listener, Service
+from .services.service import ACCEPTED, FAILED, Handler, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
 from .services.statustext import EventService
@@ -82,7 +84,7 @@ class Bridge:
         self._slot, self._slots_address = Slot.of(slots, 0), slots.ctypes.data - vehicle.index * slots.itemsize
         self.shell_port = Port()
         """In place of a client's, for messages that the shell builds."""
-        self.by_shell = shell_messages(self)
+        self.by_shell = shell_messages(vehicle, self.profile, self.shell_port)
         """Messages that the shell builds: number -> function that gives the payload."""
         self.telemetry = {number: message_by_id(number) for number in self.core.numbers | self.by_shell.keys()}
         """Every message that can be sent by its number."""
@@ -161,6 +163,16 @@ class Bridge:
         """Our system id (MAV_SYSID)."""
         return min(max(int(self._system()), 1), 255)
 
+    @property
+    def commands(self) -> Mapping[int, Entry]:
+        """MAV_CMD -> how it is carried out."""
+        return self.profile.commands
+
+    @property
+    def is_clock_pushed(self) -> bool:
+        """Whether clients grant the vehicle its time (``push_clock``)."""
+        return self.grants is not None
+
     def refresh_identity(self) -> None:
         """Take over a changed MAV_SYSID."""
         for channel in self.channels:
@@ -185,6 +197,11 @@ class Bridge:
         """How often clients have said something, so far."""
         return self.board.heard
 
+    @property
+    def links(self) -> Sequence[Link]:
+        """Ways on which clients may come."""
+        return self.board.links
+
     def add_link(self, link: Link) -> None:
         """Open a way for clients to reach the vehicle."""
         self.board.add_link(link)
@@ -197,7 +214,7 @@ class Bridge:
         """Faults of one link from now on, or of all, later ones too but for logs; None: none."""
         self.board.faults.set(faults, link)
         for channel in self.channels:
-            self.board.faults.follow(channel, self.grants is not None)
+            self.board.faults.follow(channel, self.is_clock_pushed)
         self.board.faults.look(self.channels)
 
     @property
@@ -212,7 +229,7 @@ class Bridge:
         self._channels_changed()
         channel.port.epoch_us = self.epoch_us + self._before_boot_us
         if channel.peer.ways is None:  # else it has outlived a reboot
-            self.board.faults.follow(channel, self.grants is not None)
+            self.board.faults.follow(channel, self.is_clock_pushed)
         self.board.faults.look(self.channels)
         for service in self.services.values():
             service.channel_added(channel)
@@ -569,6 +586,11 @@ class Bridge:
         """A parameter was set: services follow."""
         for service in self._following:
             service.parameter_changed(name)
+
+    def arming_changed(self) -> None:
+        """The vehicle was armed or disarmed: services follow."""
+        for service in self.services.values():
+            service.arming_changed()
 
     def switched(self, function: int, position: int) -> None:
         """A switch of gimbal or payload was moved."""

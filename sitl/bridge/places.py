@@ -13,7 +13,13 @@ from ..core.kernels import law
 from ..core.scalars import finite
 from ..core.vectors import Vec3
 from .autopilot_api import Vector
-from .services.command import FRAMES_AMSL, FRAMES_TERRAIN
+
+GLOBAL, LOCAL_NED, MISSION, GLOBAL_RELATIVE_ALT = 0, 1, 2, 3
+FRAMES_AMSL = (0, 5)
+FRAMES_RELATIVE = (3, 6)
+FRAMES_TERRAIN = (10, 11)
+GLOBAL_FRAMES = FRAMES_AMSL + FRAMES_RELATIVE + FRAMES_TERRAIN
+"""MAV_FRAME numbers with latitude and longitude."""
 
 LAT_MAX, LON_MAX = 900_000_000, 1_800_000_000
 """[degE7]"""

@@ -15,8 +15,8 @@ from collections.abc import Iterator, Sequence
 from importlib import import_module, metadata
 from typing import Any
 
-from .. import __version__
 from ..errors import SitlError
+from ..version import __version__
 from . import plugins
 from .commands import COMMANDS, WELCOME
 from .parser import Parser

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 from ..core import code_cache
 from ..core import compile as compiler
 from ..core.array_kernels import KERNELS, build_kernels, is_shipped, missing_kernels
+from ..core.numba_tuning import summary
 from ..core.shipped.build import Piece, build, pieces
 from ..core.shipped.library import library
-from ..core.shipped.targets import TARGETS
+from ..core.shipped.targets import TARGETS, usable
+from ..errors import OptionError
 from .output import add_json_option, print_json
 
 if TYPE_CHECKING:
@@ -68,6 +70,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser("cache")
     parser.add_argument("action", choices=("show", "clear", "build", "ship"))
     parser.add_argument("--folder", type=Path, default=Path("build/shipped"), help="with ship, where libraries go")
+    parser.add_argument("--here", action="store_true", help="with ship, for this machine alone")
     add_json_option(parser, "with show, the folder and its units")
     parser.set_defaults(function=cache)
 
@@ -85,8 +88,11 @@ def cache(options: argparse.Namespace) -> int:
             took += build_kernels(KERNEL_MODULES, progress)
         print(f"built in {took:.1f} s")
     elif options.action == "ship":
-        with CompileProgress(f"gym-sitl compiles its core for {', '.join(t.name for t in TARGETS)}") as progress:
-            for file in build(shipped_pieces(), options.folder, progress=progress):
+        targets = usable()[:1] if options.here else TARGETS
+        if not targets:
+            raise OptionError("sitl cache ship --here: code is shipped for Linux alone; sitl cache build compiles here")
+        with CompileProgress(f"gym-sitl compiles its core for {', '.join(t.name for t in targets)}") as progress:
+            for file in build(shipped_pieces(), options.folder, targets, progress):
                 print(f"{file}: {file.stat().st_size / 1e6:.1f} MB")
     elif options.json:
         rows = [
@@ -95,10 +101,12 @@ def cache(options: argparse.Namespace) -> int:
         ]
         shipped = library()
         from_package = None if shipped is None else str(shipped.file)
-        print_json({"folder": str(code_cache.cache_folder()), "library": from_package, "units": rows})
+        folder = str(code_cache.cache_folder())
+        print_json({"folder": folder, "library": from_package, "compiler": summary(), "units": rows})
     else:
         print(code_cache.cache_folder())
         print(shipped_library())
+        print(summary())
         for kind, unit, state in units():
             print(f"  {state:8}  {kind}: {unit}")
     return 0

@@ -12,13 +12,13 @@ import time
 from tqdm import tqdm
 
 from ..errors import MissingExtra
-from ..examples import FOLDER
 from ..logs import flight as flights
 from ..logs import plot
 from ..run import runner
 from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import KINDS
 from . import execute, recordings
+from .example_programs import FOLDER
 from .fault_options import say_faults
 from .options import add_vehicle_options, build_simulation, open_folder
 from .view_options import add_view_options, check_view, default_speedup, shown

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..core.whole_file import write_whole
 from ..errors import OptionError, did_you_mean
-from ..examples import EXAMPLES, source, title
+from .example_programs import EXAMPLES, source, title
 from .output import add_json_option, print_json
 
 COPIES = Path("examples")

@@ -8,9 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .companion import Companion
 from .files import Files
-from .session import Repeated
+from .session import OnBoard, Repeated
 from .telemetry import Telemetry
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ class Moment:
     texts_read: int
     is_silent: bool
     asked: tuple[int, int, frozenset[str]]
-    companions: tuple[tuple[Companion, dict[str, Any]], ...]
+    companions: tuple[tuple[OnBoard, dict[str, Any]], ...]
 
 
 class Client(Files):

@@ -22,15 +22,12 @@ It is listened to by the wall clock, at a socket, also when the vehicle's time s
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from ..bridge.dialect import MessageType, message
 from .commands import command_number
-from .endpoint import ACCEPTED, ACK, AUTOPILOT, BUSY, HEARTBEAT, IN_PROGRESS, PARAMETER
+from .endpoint import ACCEPTED, ACK, AUTOPILOT, BUSY, HEARTBEAT, IN_PROGRESS, PARAMETER, Endpoint
 from .voices import Voices
-
-if TYPE_CHECKING:
-    from .connection import Connection
 
 PARAMETER_NAME = "SIM_WIND_SPD"
 REQUEST_MESSAGE = command_number("REQUEST_MESSAGE")
@@ -48,6 +45,31 @@ CHANGE_US = 2_200_000
 """And so long after that, when HEARTBEATs have told of a change: it has changed, or there are two [us]."""
 
 
+class Link(Protocol):
+    """What is needed to ask a vehicle: a ``Connection`` is one."""
+
+    is_exact: bool
+    inbox: Any
+
+    @property
+    def endpoint(self) -> Endpoint:
+        """Encodes what is sent."""
+        ...
+
+    @property
+    def system(self) -> int:
+        """MAVLink id of the vehicle. Raises LinkLostError when none has been heard."""
+        ...
+
+    def ask_parameter(self, name: str) -> None:
+        """Ask the vehicle for a parameter by its name."""
+        ...
+
+    def listen(self, us: int) -> None:
+        """Send what is kept and take in what comes within this wall time [us]. Raises LinkLostError."""
+        ...
+
+
 class Signs:
     """What a vehicle has answered.
 
@@ -55,7 +77,7 @@ class Signs:
         link: to the vehicle.
     """
 
-    def __init__(self, link: Connection) -> None:
+    def __init__(self, link: Link) -> None:
         self._link = link
         self.voices = Voices(link.is_exact)
         self._asked = self._answers = 0
@@ -163,7 +185,7 @@ class Signs:
         self._against = f"it refuses SIMSTATE or AUTOPILOT_VERSION (MAV_RESULT {result})"
 
 
-def ask(link: Connection, tries: int = TRIES) -> Signs:
+def ask(link: Link, tries: int = TRIES) -> Signs:
     """Ask a vehicle for the signs, and listen to what contradicts them.
 
     Args:

@@ -5,13 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 from ..bridge.dialect import message
 from ..errors import OptionError, did_you_mean
 from . import px4
 from .commands import arguments, command_name, command_number, constant, entry_name
-from .companion import Companion
 from .connection import Connection, InProcess, connect
 from .endpoint import AUTOPILOT
 from .errors import (
@@ -58,6 +57,27 @@ Repeated = tuple[str, dict[str, Any]]
 """A message that is sent again and again: its name, its fields."""
 
 
+class OnBoard(Protocol):
+    """Another program on board of the vehicle (``Companion`` is the base of such): it acts while a client lets time
+    pass."""
+
+    def step(self, now_us: int) -> None:
+        """A step of the client's time has gone by; now it is ``now_us`` since the start."""
+        ...
+
+    def take(self, name: str, fields: Any) -> None:
+        """A message of the vehicle has come."""
+        ...
+
+    def state(self) -> dict[str, Any]:
+        """What it knows besides its client: a copy."""
+        ...
+
+    def restored(self, state: dict[str, Any], client: Any) -> OnBoard:
+        """This one, or for another client one like it, in that state."""
+        ...
+
+
 class Session:
     """Time, messages and commands of one vehicle.
 
@@ -98,7 +118,7 @@ class Session:
         self._rates = dict(RATES_HZ if rates is None else rates)
         self._asked_us, self._unanswered, self._awaited = 0, 0, set[str]()
         self._repeated: dict[str, Repeated] = {}
-        self.companions: list[Companion] = []
+        self.companions: list[OnBoard] = []
         """Other programs on board that send messages (``sitl.client.odometry``)."""
         self._next_us = {_HEARTBEAT: 0} if heartbeat else {}
         self._texts_read = 0

@@ -20,13 +20,13 @@ from .compile import Progress, compile_tasks, make_jitable, toolchain
 from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
 from .numba_tuning import COMMON
+from .order import KERNELS_PATH, Order
 from .records import FloatRows, Floats, IntRows, Ints, Records
 from .shipped import library as shipped
 from .shipped.calls import Calls
 from .shipped.identity import identity
 from .shipped.signature import described, records_of
 from .vectors import Value
-from .worker import KERNELS_PATH, Order
 
 KERNELS: dict[str, Kernel[..., Any]] = {}
 P = ParamSpec("P")

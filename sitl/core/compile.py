@@ -31,11 +31,11 @@ from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_ve
 from .fingerprint import fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import TRUST, law_options, trust_laws
+from .order import Order
 from .records import Record
 from .shipped import library as shipped
 from .shipped.identity import identity
 from .shipped.objects import ENVIRONMENT as OBJECT_ENVIRONMENT
-from .worker import Order
 
 Progress = Callable[[str, float, float], None]
 """Called as ``progress(unit name, work done, work of all)``, several times a second, in estimated seconds of work."""

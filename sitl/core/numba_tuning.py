@@ -3,16 +3,17 @@
 
 Numba is built for functions that Python calls one by one: of every law that a unit contains it makes machine code and
 wrappers for Python and for C. Of a unit only the entry is ever called. What is switched off here reaches into Numba's
-internals, so a patch is made only in a Numba of the versions that were tried (``is_tried``) that has every name which
-the patch uses; else compilation is slower, and nothing else changes.
+internals, so a patch is made only in a Numba of the versions that were tried that has every name which the patch uses
+(``numba_internals``); else compilation is slower, and nothing else changes. ``summary`` says which it is.
 """
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 from collections.abc import Callable, Iterator
 from typing import Any
+
+from .numba_internals import REPLACED, fits, why_not
 
 _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
@@ -33,59 +34,14 @@ def law_options(inline: bool = False) -> dict[str, Any]:
     return {**COMMON, **_NO_WRAPPERS, "forceinline": inline}
 
 
-OLDEST, NEXT = (0, 60), (0, 69)
-"""Versions of Numba from the first on, before the second, are tried; pyproject.toml has the same."""
-NAMES = {
-    "quick": (
-        "numba.core.codegen:CPUCodeLibrary._finalize_final_module",
-        "numba.core.codegen:CPUCodeLibrary._finalize_dynamic_globals",
-        "numba.core.codegen:CodeLibrary._finalized",
-        "numba.core.codegen:CodeLibrary.name",
-        "numba.core.cpu:CPUContext.get_executable",
-    ),
-    "trust_laws": (
-        "numba.core.callconv:RETCODE_OK",
-        "numba.core.callconv:CPUCallConv.call_function",
-        "numba.core.callconv:CPUCallConv._get_excinfo_argument",
-        "numba.core.callconv:BaseCallConv._get_arg_packer",
-        "numba.core.callconv:CPUCallConv._get_return_status",
-        "numba.core.base:BaseContext.get_returned_value",
-        "numba.core.datamodel:ArgPacker.as_arguments",
-        "numba.core.types:Optional",
-        "numba.core.types:none",
-        "llvmlite.ir:IRBuilder.goto_entry_block",
-        "llvmlite.ir:IRBuilder.alloca",
-        "llvmlite.ir:IRBuilder.load",
-        "llvmlite.ir:IRBuilder.call",
-        "llvmlite.ir:IRBuilder.function",
-    ),
-}
-"""Patch -> every name of Numba and llvmlite that it replaces or uses, as module:name, where it is defined."""
-
-
-def is_tried(version: str) -> bool:
-    """Whether the patches were tried with this version of Numba."""
-    parts = version.split(".")
-    return (
-        len(parts) > 1 and all(part.isdigit() for part in parts[:2]) and OLDEST <= (int(parts[0]), int(parts[1])) < NEXT
-    )
-
-
-def fits(patch: str) -> bool:
-    """Whether the Numba at hand was tried and has all that a patch (``NAMES``) uses."""
+def summary() -> str:
+    """How units are compiled with the Numba at hand, in words."""
     import numba
 
-    if not is_tried(numba.__version__):
-        return False
-    try:
-        for name in NAMES[patch]:
-            module, _, path = name.partition(":")
-            found: Any = importlib.import_module(module)
-            for part in path.split("."):
-                found = vars(found)[part]
-    except (ImportError, KeyError):
-        return False
-    return True
+    reasons = dict.fromkeys(reason for patch in REPLACED if (reason := why_not(patch)))
+    if not reasons:
+        return f"Numba {numba.__version__}: all that speeds up compiling is on"
+    return f"compiling takes longer, and results are the same: {'; '.join(reasons)}"
 
 
 @contextlib.contextmanager

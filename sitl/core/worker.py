@@ -17,29 +17,11 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
-from .shipped.objects import Objects
+from .order import KERNELS_PATH, Order
 
 FORKS = sys.platform == "linux"
 """Copies of a process that has loaded Numba work there."""
-
-KERNELS_PATH = "kernels"
-"""In place of the path of a record type: what is compiled are kernels."""
-OBJECTS_OPTION = "--objects="
-
-
-class Order(NamedTuple):
-    """What a worker makes of what it compiles."""
-
-    path: str
-    """Of the record type, or ``KERNELS_PATH``."""
-    objects: Objects | None = None
-    """The object files to make; None: what this machine loads."""
-
-    def arguments(self) -> list[str]:
-        """Of the command line."""
-        return [*([] if self.objects is None else [f"{OBJECTS_OPTION}{self.objects}"]), self.path]
 
 
 def compile_one(order: Order, name: str) -> None:
@@ -127,10 +109,7 @@ def compile_all(order: Order, jobs: int, tasks: Sequence[str]) -> int:
 
 def main() -> int:
     """Compile the units of the command line."""
-    words = sys.argv[1:]
-    objects = Objects.from_text(words.pop(0).removeprefix(OBJECTS_OPTION)) if words[0].startswith("--") else None
-    path, jobs, *tasks = words
-    order = Order(path, objects)
+    order, (jobs, *tasks) = Order.taken(sys.argv[1:])
     if jobs == "0":
         module, _, name = tasks[0].partition(":")
         importlib.import_module(module)

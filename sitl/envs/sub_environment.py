@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -20,22 +20,57 @@ from .session import Snapshot
 from .tasks import Task, reward_of_goals
 from .worlds import WorldOption
 
-if TYPE_CHECKING:
-    from .vector import NavigateVector
-
 _ROWS = ("pose", "velocity", "scan", "collided", "time", "worlds", "floors")
 _BY_INDEX = ("link", "simulation", "view", "snapshot", "photograph")
 _OF_ALL = ("apply", "advance", "advance_late", "look", "reset", "restore", "set_figure", "close", "enter")
 
 
 class OfSubEnvironments(VectorEnv[Any, Any, Any]):
-    """What a vector environment offers of each robot: random numbers, methods and attributes."""
+    """What a vector environment offers of each robot: random numbers, methods and attributes.
+
+    ``NavigateVector`` is one, and has what only all robots together can do.
+    """
 
     generators: list[np.random.Generator | None]
     """Of each robot's episodes; None before its first reset."""
     seeds: list[int | None]
     """Their seeds; -1: not known."""
     _envs: list[SubEnvironment] | None = None
+
+    @property
+    def robot(self) -> Robot:
+        """The robots, with a row for each."""
+        raise NotImplementedError
+
+    @property
+    def task(self) -> Task:
+        """The task of all robots."""
+        raise NotImplementedError
+
+    @property
+    def step_time(self) -> float:
+        """Simulated time of a step [s]."""
+        raise NotImplementedError
+
+    def set_worlds(self, world: WorldOption) -> None:
+        """Draw the worlds of later episodes from others."""
+        raise NotImplementedError
+
+    def observe(self) -> Any:
+        """The observations of all robots now."""
+        raise NotImplementedError
+
+    def snapshot_of(self, index: int) -> Snapshot:
+        """All that ``restore_one`` needs to put one robot back."""
+        raise NotImplementedError
+
+    def restore_one(self, index: int, snapshot: Snapshot) -> None:
+        """Put one robot back to a snapshot."""
+        raise NotImplementedError
+
+    def picture(self, index: int) -> npt.NDArray[np.uint8] | None:
+        """An image of one robot, shape (height, width, 3), uint8; None without a render mode."""
+        raise NotImplementedError
 
     def generator(self, index: int) -> np.random.Generator:
         """Random generator of one robot's episodes.
@@ -52,7 +87,7 @@ class OfSubEnvironments(VectorEnv[Any, Any, Any]):
     def envs(self) -> list[SubEnvironment]:
         """Each robot as an environment of its own, for ``call``, ``get_attr`` and ``set_attr``."""
         if self._envs is None:
-            self._envs = [SubEnvironment(cast("NavigateVector", self), index) for index in range(self.num_envs)]
+            self._envs = [SubEnvironment(self, index) for index in range(self.num_envs)]
         return self._envs
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
@@ -128,7 +163,7 @@ class SubEnvironment(gym.Env[Any, Any]):
         index: which robot.
     """
 
-    def __init__(self, vector: NavigateVector, index: int) -> None:
+    def __init__(self, vector: OfSubEnvironments, index: int) -> None:
         self._vector, self._index = vector, index
         self.metadata = {"render_modes": vector.metadata["render_modes"], "render_fps": vector.metadata["render_fps"]}
         self.render_mode = vector.render_mode
@@ -182,7 +217,8 @@ class SubEnvironment(gym.Env[Any, Any]):
         """Reset this robot; the others go on. See ``Navigate.reset``."""
         vector, mine = self._vector, np.arange(self._vector.num_envs) == self._index
         seeds = [seed if me else None for me in mine.tolist()]
-        observations, infos = vector.reset(seed=seeds, options={**(options or {}), "reset_mask": mine})
+        given = {**(options or {}), "reset_mask": mine}  # of lists of seeds Gymnasium's annotation says nothing
+        observations, infos = vector.reset(seed=seeds, options=given)  # type: ignore[arg-type]
         return row_of(observations, self._index), {
             name: value[self._index] for name, value in infos.items() if not name.startswith("_")
         }

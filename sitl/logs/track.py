@@ -6,51 +6,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..core.geodesy import offset_ne
-from .tlog import LogError
-
-Array = np.ndarray[Any, Any]
-
-STEP_US = 100_000
-"""Time between two samples [us]."""
-LONGEST_S = 48.0 * 3600.0
-"""Of a track [s]: 1.7 million samples, 150 MB."""
-
-
-class Column(NamedTuple):
-    """One thing that is sampled."""
-
-    name: str
-    unit: str
-    quantum: float
-    """Step in which it is kept in bytes."""
-
-
-COLUMNS = (
-    Column("t", "s", 0.001),
-    Column("north", "m", 0.01),
-    Column("east", "m", 0.01),
-    Column("down", "m", 0.01),
-    Column("vn", "m/s", 0.01),
-    Column("ve", "m/s", 0.01),
-    Column("vd", "m/s", 0.01),
-    Column("roll", "rad", np.radians(0.1)),
-    Column("pitch", "rad", np.radians(0.1)),
-    Column("yaw", "rad", np.radians(0.1)),
-    Column("energy", "Wh", 0.01),
-)
-"""``t`` since the start of the simulation (a log of others: since its vehicle's boot), place from ``Track.home``, all
-NED; yaw within +-pi; energy taken from the battery."""
-NAMES = tuple(column.name for column in COLUMNS)
-QUANTA = np.array([column.quantum for column in COLUMNS])
-
-
-class TrackError(LogError):
-    """A track that is none, or a log that holds no flight."""
+from .track_bytes import Content, pack, unpack
+from .track_columns import COLUMNS, LONGEST_S, NAMES, QUANTA, STEP_US, Array, TrackError
 
 
 @dataclass
@@ -123,9 +85,8 @@ class Track:
 
     def to_bytes(self) -> bytes:
         """All of it in few bytes (``track_bytes``): about 4 kB a minute."""
-        from . import track_bytes
-
-        return track_bytes.pack(self)
+        events = (self.modes, self.items, self.texts, self.armed)
+        return pack(Content(self.kind, self.home, *events, self.data))
 
     @staticmethod
     def from_bytes(data: bytes) -> Track:
@@ -134,9 +95,9 @@ class Track:
         Raises:
             TrackError: the bytes are no track, or damaged.
         """
-        from . import track_bytes
-
-        return track_bytes.unpack(data)
+        found = unpack(data)
+        events = (found.modes, found.items, found.texts, found.armed)
+        return Track(found.kind, found.data, found.home, *events)
 
 
 def sample_times(first: float, last: float, title: str) -> Array:

@@ -18,7 +18,8 @@ import numpy as np
 from . import firmwares
 from .dataflash.reader import DataFlash, Row
 from .kind import mode_name
-from .track import Track, TrackError
+from .track import Track
+from .track_columns import TrackError
 from .track_rows import complete, integrated, place_row
 
 _PLACES = ("POS", "AHR2", "GPS")

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import json
 import lzma
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core import documents
 from ..vehicle.kinds import KINDS
-from .track import COLUMNS, LONGEST_S, QUANTA, STEP_US, Array, Track, TrackError
+from .track_columns import COLUMNS, LONGEST_S, QUANTA, STEP_US, Array, TrackError
 
 MAGIC = b"SITLTRK\x01"
 _PACKING = {"format": lzma.FORMAT_XZ, "check": lzma.CHECK_CRC32, "preset": 9 | lzma.PRESET_EXTREME}
@@ -32,7 +32,19 @@ _FAR = 1e12
 _HEADER = ("kind", "home", "modes", "items", "texts", "armed", "samples")
 
 
-def pack(track: Track) -> bytes:
+class Content(NamedTuple):
+    """What the bytes hold: fields of a ``Track``, under the same names."""
+
+    kind: str
+    home: tuple[float, float, float]
+    modes: list[Any]
+    items: list[Any]
+    texts: list[Any]
+    armed: list[Any]
+    data: Array
+
+
+def pack(track: Content) -> bytes:
     """A track as bytes; equal tracks give equal bytes."""
 
     def rounded(events: list[Any]) -> list[Any]:
@@ -45,7 +57,7 @@ def pack(track: Track) -> bytes:
         "items": rounded(track.items),
         "texts": rounded(track.texts),
         "armed": rounded(track.armed),
-        "samples": len(track),
+        "samples": len(track.data),
     }
     text = json.dumps(header, separators=(",", ":")).encode()
     whole = np.round(track.data / QUANTA).astype(np.int64)
@@ -53,7 +65,7 @@ def pack(track: Track) -> bytes:
     return MAGIC + lzma.compress(len(text).to_bytes(4, "little") + text + columns, **_PACKING)  # type: ignore[arg-type]
 
 
-def unpack(data: bytes) -> Track:
+def unpack(data: bytes) -> Content:
     """A track from bytes.
 
     Raises:
@@ -69,14 +81,14 @@ def unpack(data: bytes) -> Track:
         size = int.from_bytes(raw[:4], "little")
         header = documents.of_json(raw[4 : 4 + size])
         track, count = _of_header(header)
-        track.data = _columns(memoryview(raw)[4 + size :], count) * QUANTA
-        _check_times(track.t)
+        track = track._replace(data=_columns(memoryview(raw)[4 + size :], count) * QUANTA)
+        _check_times(track.data[:, 0])
     except (lzma.LZMAError, ValueError, KeyError, TypeError, EOFError, OverflowError) as error:
         raise TrackError(f"the track is damaged: {error}") from None
     return track
 
 
-def _of_header(header: Any) -> tuple[Track, int]:
+def _of_header(header: Any) -> tuple[Content, int]:
     """A track without samples, and how many it has."""
     kind, home, *events, count = (header[name] for name in _HEADER)
     if not isinstance(kind, str) or kind not in KINDS:
@@ -97,7 +109,9 @@ def _of_header(header: Any) -> tuple[Track, int]:
             if any(type(value) is not type_ for value, type_ in zip(row[1:], types, strict=True)):
                 raise ValueError(f"one of its {name} is {row!r}")
         found.append([tuple(row) for row in rows])
-    return Track(kind, np.zeros((0, len(COLUMNS))), (home[0], home[1], home[2]), *found), count
+    modes, items, texts, armed = found
+    place = (home[0], home[1], home[2])
+    return Content(kind, place, modes, items, texts, armed, np.zeros((0, len(COLUMNS)))), count
 
 
 def _is_number(value: Any) -> bool:

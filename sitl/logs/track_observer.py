@@ -14,7 +14,8 @@ from ..autopilot.arming_checks import ARMED, DISARMED
 from ..autopilot.events import EVENT_RING
 from ..autopilot.modes import MODE_CHANGED, shown
 from ..core.geodesy import offset_ne
-from .track import COLUMNS, LONGEST_S, STEP_US, Track
+from .track import Track
+from .track_columns import COLUMNS, LONGEST_S, STEP_US
 
 BITS_US = 10_000_000
 """Simulated time between two digests of a flight's bits [us]."""

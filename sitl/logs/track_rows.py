@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.geodesy import offset_ne
-from .track import Array, Track, TrackError, is_angle, sample_times, sampled
+from .track import Track, is_angle, sample_times, sampled
+from .track_columns import Array, TrackError
 
 Rows = Sequence[tuple[float, ...]]
 MOST_DEG = (90.0, 180.0)

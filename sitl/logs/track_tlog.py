@@ -13,7 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from .kind import kind_of_mav_type, mode_name
 from .tlog import LogError, read_steady
-from .track import STEP_US, Track, TrackError
+from .track import Track
+from .track_columns import STEP_US, TrackError
 from .track_rows import complete, integrated, place_row
 
 _ARMED = 128

@@ -10,13 +10,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .. import __version__
 from ..bridge.services.faults import FaultService
 from ..core import compile as compiler
 from ..core.fingerprint import reached
 from ..physics.engines import NATIVE
 from ..simulation import Simulation
 from ..vehicle.kind import Kind
+from ..version import __version__
 from ..worlds import World
 
 ROOMS = ("autopilot", "bridge", "core", "physics", "plants", "vehicle", "vehicles")

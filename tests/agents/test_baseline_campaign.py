@@ -383,7 +383,7 @@ def test_the_plan_lists_and_makes_nothing(few, tmp_path, capsys):
     words = [NAME, "--plan", "--seeds", "2", "--results", str(tmp_path / "results"), "--runs", str(tmp_path / "runs")]
     assert main(words) == 0
     out = capsys.readouterr().out
-    assert "== training, seed 1" in out and f"{NAME}: training" in out and "all: " in out
+    assert "== training and robustness, seed 1" in out and f"{NAME}: training" in out and "all: " in out
     assert not (tmp_path / "runs").exists()
     assert main(["rover-waypiont"]) == 1
     assert "baseline 'rover-waypiont' is not known" in capsys.readouterr().err

@@ -18,7 +18,7 @@ from sitl.agents.deep import library, training
 from sitl.agents.deep.actions import Actions
 from sitl.agents.deep.features import Features, Frames, nearest
 from sitl.agents.deep.settings import Dqn, Ppo, Sac
-from sitl.agents.deep.training import Tally
+from sitl.agents.deep.tally import Tally
 from sitl.agents.errors import AgentError
 from sitl.errors import MissingExtra
 from tests.agents.deep_runs import CIRCUIT2

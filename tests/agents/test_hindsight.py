@@ -49,7 +49,7 @@ def test_a_resumed_run_equals_an_uninterrupted_one(tmp_path, algorithm, form):
 def test_goals_are_worth_what_the_environment_says(tmp_path):
     from sitl.agents.deep.actions import Actions
     from sitl.agents.deep.robots import Robots
-    from sitl.agents.deep.training import Tally
+    from sitl.agents.deep.tally import Tally
 
     config = run_of(tmp_path / "run", "sac").config
     env = environments.make_many(config, 2)

@@ -214,9 +214,8 @@ def registered() -> Iterator[Any]:
 
 
 def test_a_registered_law_comes_before_others(registered: Any, v: Copter) -> None:
-    vehicle = SimpleNamespace(v=v, has_truth_in_record=True)
-    bridge: Any = SimpleNamespace(vehicle=vehicle, profile=load("copter"), shell_port=Port())
-    made = builder.shell_messages(bridge)
+    vehicle: Any = SimpleNamespace(v=v, has_truth_in_record=True)
+    made = builder.shell_messages(vehicle, load("copter"), Port())
     assert Attitude.kind.decode(made[Attitude.kind.id]()).roll == 0.0
     v.time_us = 0
     assert made[Attitude.kind.id]() == b""

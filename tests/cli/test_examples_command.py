@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sitl.cli import main, parser
-from sitl.examples import EXAMPLES, FOLDER, source, title
+from sitl.cli.example_programs import EXAMPLES, FOLDER, source, title
 
 
 def test_each_example_is_listed_and_each_that_is_listed_is_there() -> None:

@@ -39,8 +39,8 @@ def test_worlds(capsys) -> None:
 
 
 def test_the_cache(capsys) -> None:
-    found, (folder, library, *lines) = read("cache show", capsys), printed("cache show", capsys)
-    assert found["folder"] == folder
+    found, (folder, library, compiler, *lines) = read("cache show", capsys), printed("cache show", capsys)
+    assert (found["folder"], found["compiler"]) == (folder, compiler)
     assert library.startswith(found["library"] or "no machine code came")
     assert not any(row["shipped"] for row in found["units"] if not row["ready"] or not found["library"])
     assert [f"{row['vehicle']}: {row['unit']}" for row in found["units"]] == [line[12:] for line in lines]

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from sitl.examples import EXAMPLES, source
+from sitl.cli.example_programs import EXAMPLES, source
 from sitl.simulation import Core
 from tests.clients.conftest import ROOT, Fly
 

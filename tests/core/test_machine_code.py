@@ -13,16 +13,20 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import llvmlite.binding as llvm
 import numba
 import pytest
 from numba import float64
 
-from sitl.cli.cache import all_entries
+from sitl.cli.cache import all_entries, shipped_pieces
 from sitl.core import compile as compiler
-from sitl.core.array_kernels import KERNELS, Kernel, Line, _folder, _signature
+from sitl.core.array_kernels import KERNELS, Kernel, Line, _folder, _signature, is_shipped
 from sitl.core.code_cache import is_built
 from sitl.core.kernels import jit_disabled, law
 from sitl.core.numba_tuning import law_options
+from sitl.core.shipped.build import Piece
+from sitl.core.shipped.library import library
+from sitl.core.worker import KERNELS_PATH
 from sitl.vehicle.kinds import KINDS
 from tests.core.machine_code import PROCESSORS, assembly, declared, freedoms, fused, referred
 
@@ -61,23 +65,43 @@ def ir_of(library: Any) -> str:
     return str(library._get_module_for_linking())
 
 
+def shipped_code(piece: Piece) -> str | None:
+    """LLVM's code of a piece of the library that these tests run with (``sitl cache ship``); None: there is no such
+    library, or it holds another version of the piece."""
+    if (found := library()) is None or found.identities.get(piece.key) != piece.identity:
+        return None
+    file = f"objects/*/{piece.symbol}-{piece.identity}-{found.target.name}.bc"
+    codes = sorted(found.file.parent.glob(file))
+    return str(llvm.parse_bitcode(codes[-1].read_bytes())) if codes else None
+
+
 @pytest.fixture(scope="module")
-def units() -> dict[tuple[str, str], Any]:
-    """(Name, path of the record type) -> Numba's library, of all units of both kinds."""
-    for kind in KINDS.values():
-        for entry in all_entries(kind):
-            compiler.load(entry, kind.record_path)
-    return {key: function._library for key, function in compiler._compiled.items() if key[1].startswith("sitl.")}
+def units() -> dict[tuple[str, str], str]:
+    """(Name, path of the record type) -> LLVM's code, of all units of both kinds: what is run here."""
+    codes = {}
+    for piece in shipped_pieces():
+        if piece.path != KERNELS_PATH:
+            codes[piece.unit.name, piece.path] = shipped_code(piece)
+    if None in codes.values():
+        for kind in KINDS.values():
+            for entry in all_entries(kind):
+                compiler.load(entry, kind.record_path)
+        compiled = {key: function for key, function in compiler._compiled.items() if key in codes}
+        codes |= {key: ir_of(function._library) for key, function in compiled.items() if codes[key] is None}
+    return {key: code for key, code in codes.items() if code is not None}
 
 
-def kernels() -> Iterator[tuple[str, Any]]:
+def kernels() -> Iterator[tuple[str, str]]:
     """Those that are built: none is compiled for a look at it."""
+    for piece in shipped_pieces():
+        if piece.path == KERNELS_PATH and (code := shipped_code(piece)) is not None:
+            yield piece.key, code
     for name, kernel in list(KERNELS.items()):
-        if name.startswith("toy") or not is_built(_folder(kernel, _signature(kernel.law))):
+        if name.startswith("toy") or is_shipped(kernel) or not is_built(_folder(kernel, _signature(kernel.law))):
             continue
         function: Any = kernel.function()
         for overload in function.overloads.values():
-            yield name, overload.library
+            yield name, ir_of(overload.library)
 
 
 def unknown(names: set[str]) -> set[str]:
@@ -85,28 +109,27 @@ def unknown(names: set[str]) -> set[str]:
     return {name for name in names - EXACT - MEMORY if not OURS.match(name)}
 
 
-def test_no_unit_allows_other_arithmetic(units: dict[tuple[str, str], Any]) -> None:
+def test_no_unit_allows_other_arithmetic(units: dict[tuple[str, str], str]) -> None:
     assert len(units) >= 50
-    loose = {key: found for key, library in units.items() if (found := freedoms(ir_of(library)))}
+    loose = {key: found for key, code in units.items() if (found := freedoms(code))}
     assert not loose
 
 
-def test_units_call_what_is_listed(units: dict[tuple[str, str], Any]) -> None:
-    called = {key: declared(ir_of(library)) for key, library in units.items()}
+def test_units_call_what_is_listed(units: dict[tuple[str, str], str]) -> None:
+    called = {key: declared(code) for key, code in units.items()}
     assert not {key: names for key, found in called.items() if (names := unknown(found))}
 
 
 def test_no_kernel_allows_other_arithmetic_or_calls_what_is_not_listed() -> None:
-    for name, library in kernels():
-        ir = ir_of(library)
+    for name, ir in kernels():
         assert (name, freedoms(ir), unknown(declared(ir))) == (name, [], set())
 
 
 @pytest.mark.parametrize("processor", PROCESSORS)
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW)])
-def test_machine_code_fuses_nothing(units: dict[tuple[str, str], Any], name: str, processor: str) -> None:
+def test_machine_code_fuses_nothing(units: dict[tuple[str, str], str], name: str, processor: str) -> None:
     """As this processor's optimiser leaves the unit, and the other one's after it."""
-    code = assembly(ir_of(next(library for (unit, _), library in units.items() if unit == name)), processor)
+    code = assembly(next(code for (unit, _), code in units.items() if unit == name), processor)
     assert len(re.findall(r"^\s+v?f?mul(?:sd|pd)?\s", code, re.MULTILINE)) > 20, "there is something to fuse"
     assert fused(code) == []
     assert unknown(referred(code, processor)) == set()

@@ -235,14 +235,16 @@ def test_an_autopilot_started_anew_begins_at_power_on(copter_plant):
 
 def converse(host, answers: int, until_us: int, rate: int = 400, pulse: int = 1500) -> list[bytes]:
     """What an autopilot in a thread of its own is told until a time."""
-    told, peer = [], Peer(host)
-    peer.socket.settimeout(5.0)
+    told, peer, is_over = [], Peer(host), threading.Event()
+    peer.socket.settimeout(0.05)
 
     def ask():
-        with contextlib.suppress(OSError):
-            while True:
-                peer.send(len(told), rate=rate, pulse=pulse + len(told) % 100)
-                told.append(peer.socket.recv(65535))
+        while not is_over.is_set():
+            peer.send(len(told), rate=rate, pulse=pulse + len(told) % 100)
+            while not is_over.is_set():
+                with contextlib.suppress(TimeoutError):
+                    told.append(peer.socket.recv(65535))
+                    break
 
     thread = threading.Thread(target=ask)
     thread.start()
@@ -251,7 +253,7 @@ def converse(host, answers: int, until_us: int, rate: int = 400, pulse: int = 15
             host.step(until_us, answers)
     while not host.listen():
         pass
-    peer.socket.shutdown(socket.SHUT_RDWR)
+    is_over.set()
     thread.join()
     peer.close()
     return told

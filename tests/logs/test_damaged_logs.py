@@ -15,8 +15,9 @@ import pytest
 from sitl.errors import SitlError
 from sitl.logs import track_bin, track_tlog
 from sitl.logs.flight import read as read_columns
-from sitl.logs.track import COLUMNS, Track, TrackError
+from sitl.logs.track import Track
 from sitl.logs.track_bytes import MAGIC
+from sitl.logs.track_columns import COLUMNS, TrackError
 from sitl.missions.comparison.alignment import part
 from sitl.missions.comparison.flight import read
 from sitl.missions.tlog_replay.log import Log

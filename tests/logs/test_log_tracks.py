@@ -11,7 +11,7 @@ import pytest
 from sitl.logs import track_bin, track_tlog
 from sitl.logs.dataflash.reader import DataFlash
 from sitl.logs.tlog import read_steady, read_tlog
-from sitl.logs.track import LONGEST_S, TrackError
+from sitl.logs.track_columns import LONGEST_S, TrackError
 from tests.logs.log_files import V32, V36, Message, binary, flight, old_flight, telemetry, text, written
 
 

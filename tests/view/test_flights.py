@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from sitl.errors import OptionError
-from sitl.logs.track import NAMES, Track
+from sitl.logs.track import Track
+from sitl.logs.track_columns import NAMES
 from sitl.missions.comparison import flight
 from sitl.missions.comparison.alignment import AlignmentError
 from sitl.missions.view import together

@@ -19,7 +19,8 @@ from sitl.client import Client, Endpoint
 from sitl.client.commands import command_number
 from sitl.core.algebra import euler_of
 from sitl.envs.page.source import EnvSource
-from sitl.logs.track import NAMES, Track
+from sitl.logs.track import Track
+from sitl.logs.track_columns import NAMES
 from sitl.simulation import Core
 from sitl.view import horizon
 from sitl.view.flight_page import state as state_of_flights

@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from .. import datasets
 from ..experts import AUTOPILOTS
-from ..policies import RANDOM
+from ..named_policies import RANDOM
 from .options import assignments, env_option, positive, whole
 
 

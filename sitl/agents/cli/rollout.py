@@ -17,7 +17,7 @@ from ...core.whole_file import whole_file
 from .. import baselines, environments
 from ..errors import AgentError
 from ..evaluate import Played
-from ..policies import RANDOM, Named
+from ..named_policies import RANDOM, Named
 from ..rollout import ROBOTS, rollout
 from ..runs.files import make_folder
 from .options import add_jobs, assignments, env_option, positive, whole, workers

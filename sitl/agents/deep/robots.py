@@ -17,7 +17,7 @@ from stable_baselines3.common.vec_env import VecEnv  # noqa: E402 (after the mes
 
 from .actions import Actions  # noqa: E402
 from .features import Features, Frames, goals_of  # noqa: E402
-from .training import Tally  # noqa: E402
+from .tally import Tally  # noqa: E402
 
 
 class Robots(VecEnv):

@@ -12,9 +12,9 @@ from typing import Any
 
 import gymnasium as gym
 
-import sitl
 from sitl import envs
 from sitl.core import code_in_files, documents
+from sitl.version import __version__
 
 from ..errors import AgentError
 from .files import write_json
@@ -31,7 +31,7 @@ _LIBRARIES = ("numpy", "numba", "gymnasium")
 
 def versions(*libraries: str) -> dict[str, str]:
     """Versions of this program, of Python, and of the libraries that results depend on."""
-    found = {"gym-sitl": sitl.__version__, "python": platform.python_version()}
+    found = {"gym-sitl": __version__, "python": platform.python_version()}
     return {**found, **{name: metadata.version(name) for name in (*_LIBRARIES, *libraries)}}
 
 

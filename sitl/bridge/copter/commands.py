@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, cast
 
 from ...autopilot.navigation.state import BY_LANDING, BY_PATH
 from ..channel import Channel
+from ..host import Host
+from ..places import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT
 from ..services import command_table
-from ..services.command import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT, Command, Entry, is_on_earth
+from ..services.command import Command, Entry, is_on_earth
 from ..services.command_table import set_mode
 from ..services.motor_test import MotorTestService
 from ..services.mount import MountService
@@ -22,27 +24,26 @@ from ..services.service import ACCEPTED, DENIED, FAILED
 from ..services.winch import WinchService
 
 if TYPE_CHECKING:
-    from ..bridge import Bridge
     from .autopilot import CopterAutopilot
 
 LOITER, LAND = 5, 9
 
 
-def _copter(bridge: Bridge) -> CopterAutopilot:
+def _copter(bridge: Host) -> CopterAutopilot:
     return cast("CopterAutopilot", bridge.autopilot)
 
 
-def loiter(bridge: Bridge, channel: Channel, command: Command) -> int:
+def loiter(bridge: Host, channel: Channel, command: Command) -> int:
     """17: changes to LOITER; FAILED when the mode cannot be entered."""
     return set_mode(bridge, LOITER)
 
 
-def land(bridge: Bridge, channel: Channel, command: Command) -> int:
+def land(bridge: Host, channel: Channel, command: Command) -> int:
     """21, 85: changes to LAND, where the vehicle is; the command's place is not used (as in ArduCopter)."""
     return set_mode(bridge, LAND)
 
 
-def takeoff(bridge: Bridge, channel: Channel, command: Command) -> int:
+def takeoff(bridge: Host, channel: Channel, command: Command) -> int:
     """22, 84: p7 height above home [m]. Armed in GUIDED, LOITER, ALT_HOLD, POSHOLD, landed or climbing; else FAILED."""
     if command.frame != GLOBAL_RELATIVE_ALT:
         return DENIED
@@ -57,7 +58,7 @@ BOARD_ORDER = 2.0
 """MOTOR_TEST_ORDER: by motor number; the others go clockwise from the front."""
 
 
-def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
+def motor_test(bridge: Host, channel: Channel, command: Command) -> int:
     """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p5 motors in turn, p6 order."""
     kind = int(command.p2)
     throttle, (least, most) = -1.0, (bridge.parameter(f"MOT_PWM_{end}") or 0.0 for end in ("MIN", "MAX"))
@@ -74,14 +75,14 @@ KINDS_OF_SPEED = 4
 """SPEED_TYPE's end."""
 
 
-def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
+def change_speed(bridge: Host, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 horizontal, 2 climb, 3 descent; p2 speed [m/s]."""
     if command.p2 <= 0.0 or int(command.p1) == KINDS_OF_SPEED:
         return DENIED
     return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
 
 
-def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
+def condition_yaw(bridge: Host, channel: Channel, command: Command) -> int:
     """115: p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 1 relative. Taken in any mode."""
     if not 0.0 <= command.p1 <= 360.0 or command.p4 not in (0.0, 1.0):
         return FAILED
@@ -90,7 +91,7 @@ def condition_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if _copter(bridge).condition_yaw(angle, rate, direction, command.p4 == 1.0) else FAILED
 
 
-def pause_continue(bridge: Bridge, channel: Channel, command: Command) -> int:
+def pause_continue(bridge: Host, channel: Channel, command: Command) -> int:
     """193: p1 0 pause, 1 continue, in GUIDED and AUTO; FAILED, with a text, in other modes and where AUTO has none."""
     if int(command.p1) not in (0, 1):
         return DENIED
@@ -99,7 +100,7 @@ def pause_continue(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if ok else FAILED
 
 
-def set_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_roi(bridge: Host, channel: Channel, command: Command) -> int:
     """195, 201: point the nose at a place, or the gimbal if it has a yaw axis; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return DENIED
@@ -118,18 +119,18 @@ def set_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
     return command_table.look_at(bridge, channel, command)
 
 
-def no_roi(bridge: Bridge, channel: Channel, command: Command) -> int:
+def no_roi(bridge: Host, channel: Channel, command: Command) -> int:
     """197: look ahead again."""
     _copter(bridge).set_roi(None)
     return command_table.look_ahead(bridge, channel, command)
 
 
-def winch(bridge: Bridge, channel: Channel, command: Command) -> int:
+def winch(bridge: Host, channel: Channel, command: Command) -> int:
     """42600: p2 0 lets the line go, 1 lowers by p3 [m] (below 0 raises), 2 winds at p4 [m/s]; FAILED without winch."""
     return int(bridge.get(WinchService).act(command.p2, command.p3, command.p4))
 
 
-def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
+def terminate(bridge: Host, channel: Channel, command: Command) -> int:
     """185: p1 above 0.5 stops the motors, in flight too."""
     if command.p1 <= 0.5:
         return FAILED
@@ -138,24 +139,24 @@ def terminate(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-def release_parachute(bridge: Bridge, channel: Channel, command: Command) -> int:
+def release_parachute(bridge: Host, channel: Channel, command: Command) -> int:
     """208: p1 0 disables the parachute, 1 enables it, 2 releases it: in flight and above CHUTE_ALT_MIN, else a text."""
     answer = bridge.get(ParachuteService).act(command.p1)
     bridge.say_pending()
     return int(answer)
 
 
-def return_path(bridge: Bridge, channel: Channel, command: Command) -> int:
+def return_path(bridge: Host, channel: Channel, command: Command) -> int:
     """188: AUTO_RTL by the mission's return path that is nearest."""
     return _go_back(bridge, BY_PATH)
 
 
-def landing_sequence(bridge: Bridge, channel: Channel, command: Command) -> int:
+def landing_sequence(bridge: Host, channel: Channel, command: Command) -> int:
     """189: AUTO_RTL by the mission's landing sequence that is nearest."""
     return _go_back(bridge, BY_LANDING)
 
 
-def _go_back(bridge: Bridge, way: int) -> int:
+def _go_back(bridge: Host, way: int) -> int:
     ok = _copter(bridge).go_back(way)
     bridge.say_pending()
     return ACCEPTED if ok else FAILED

@@ -13,7 +13,8 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ...vehicle.copter import QUADROTOR
-from ..profile import Profile, Targets
+from ..mavlink_firmware import Targets
+from ..profile import Profile
 from ..services.setpoints import SetpointService
 from ..telemetry.motion import global_position
 from ..telemetry.shell import CAPABILITIES, TERMINATION, TERRAIN

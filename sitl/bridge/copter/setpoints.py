@@ -26,8 +26,7 @@ from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Quat, Vec3
 from ...vehicle.copter import Copter
-from ..places import LocalPlace, local_place
-from ..services.command import FRAMES_TERRAIN, GLOBAL_FRAMES
+from ..places import FRAMES_TERRAIN, GLOBAL_FRAMES, LocalPlace, local_place
 from ..services.follow import take_position
 from ..services.setpoints import (
     ATTITUDE_IGNORED,

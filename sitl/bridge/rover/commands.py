@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, cast
 
 from ...autopilot.rover.motor_test import PULSE_MAX
 from ..channel import Channel
+from ..host import Host
 from ..services import command_table
 from ..services.command import Command, Entry
 from ..services.service import ACCEPTED, CRITICAL, DENIED, FAILED
 from ..services.statustext import StatusTextService
 
 if TYPE_CHECKING:
-    from ..bridge import Bridge
     from .autopilot import RoverAutopilot
 
 
-def _rover(bridge: Bridge) -> RoverAutopilot:
+def _rover(bridge: Host) -> RoverAutopilot:
     return cast("RoverAutopilot", bridge.autopilot)
 
 
@@ -28,14 +28,14 @@ UP_AND_DOWN = (2, 3, 4)
 """SPEED_TYPE of climb and descent, and its end."""
 
 
-def change_speed(bridge: Bridge, channel: Channel, command: Command) -> int:
+def change_speed(bridge: Host, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 (DENIED: climb, descent), p2 speed [m/s]; FAILED in a mode without a speed target."""
     if int(command.p1) in UP_AND_DOWN:
         return DENIED
     return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
 
 
-def set_reverse(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_reverse(bridge: Host, channel: Channel, command: Command) -> int:
     """194: p1 1 drives paths backwards until the mode changes, 0 forwards."""
     _rover(bridge).set_reversed(command.p1 == 1.0)
     return ACCEPTED
@@ -46,7 +46,7 @@ PERCENT, PULSE, PILOT = range(3)
 LAST_MOTOR = 4
 
 
-def motor_test(bridge: Bridge, channel: Channel, command: Command) -> int:
+def motor_test(bridge: Host, channel: Channel, command: Command) -> int:
     """209: p1 1 throttle, 2 steering, 3 left, 4 right, p2 0 percent, 1 pulse, 2 stick, p3 how much, p4 seconds (to 30).
 
     Arms.
@@ -73,7 +73,7 @@ def _why_no_test(motor: int, kind: int, how_much: float) -> str:
     return f"percentage ({how_much:.0f}) too high" if kind == PERCENT and how_much > 100.0 else ""
 
 
-def aux_function(bridge: Bridge, channel: Channel, command: Command) -> int:
+def aux_function(bridge: Host, channel: Channel, command: Command) -> int:
     """218: p1 function of a switch (0 none), p2 0 low, 1 middle, 2 high."""
     if int(command.p1) == 0:
         return ACCEPTED if command.p2 <= 2.0 else DENIED

@@ -10,7 +10,8 @@ from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES, is_autonomous
 from ...vehicle.rover import GROUND_ROVER
-from ..profile import Profile, Targets
+from ..mavlink_firmware import Targets
+from ..profile import Profile
 from ..telemetry.shell import CAPABILITIES
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS

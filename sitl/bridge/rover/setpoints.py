@@ -27,8 +27,7 @@ from ...core.kernels import law
 from ...core.scalars import constrain, finite
 from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
-from ..places import local_place
-from ..services.command import GLOBAL, GLOBAL_FRAMES
+from ..places import GLOBAL, GLOBAL_FRAMES, local_place
 from ..services.follow import take_position
 from ..services.setpoints import (
     BODY_YAW_RATE_IGNORED,

@@ -22,8 +22,10 @@ from ...core.constants import GRAVITY, NEVER
 from ...core.vectors import Vec3
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from .parameters import ParameterService
-from .service import ACCEPTED, CRITICAL, FAILED, INFO, TEMPORARILY_REJECTED, Handler, Sender, Service
+from .service import ACCEPTED, CRITICAL, FAILED, INFO, TEMPORARILY_REJECTED, Handler, Service
 from .statustext import StatusTextService
 
 COMMAND_LONG = message("COMMAND_LONG")
@@ -44,7 +46,7 @@ GYROS, LEVEL, SIMPLE, POSITION = "gyros", "level", "simple", "position"
 class CalibrationService(Service):
     """Gyros and accelerometers."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._task = ""
         """What is being measured; "": nothing."""

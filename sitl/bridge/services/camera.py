@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from sitl.core.constants import NEVER
 from sitl.core.elementary import hypot
@@ -18,12 +18,11 @@ from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from ..telemetry.motion import global_position
 from .liveness import HeartbeatService
-from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED, Handler, Sender, Service
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
+from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED, Handler, Service
 
 FEEDBACK, COMMAND_LONG = message("CAMERA_FEEDBACK"), message("COMMAND_LONG")
 EVERY_US = 20_000
@@ -57,7 +56,7 @@ class State(NamedTuple):
 class CameraService(Service):
     """The camera."""
 
-    def __init__(self, bridge: Bridge) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._values = bridge.vehicle.parameters
         self.kind = int(self._values["CAM1_TYPE"]) if "CAM1_TYPE" in self._values.table else camera.NO_CAMERA

@@ -5,19 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ..channel import Channel
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
-
-GLOBAL, LOCAL_NED, MISSION, GLOBAL_RELATIVE_ALT = 0, 1, 2, 3
-FRAMES_AMSL = (0, 5)
-FRAMES_RELATIVE = (3, 6)
-FRAMES_TERRAIN = (10, 11)
-GLOBAL_FRAMES = FRAMES_AMSL + FRAMES_RELATIVE + FRAMES_TERRAIN
-"""MAV_FRAME numbers with latitude and longitude."""
+from ..host import Host
+from ..places import GLOBAL_RELATIVE_ALT
 
 
 class Command(NamedTuple):
@@ -48,7 +40,7 @@ HIGHEST_M = 83_000.0
 class Entry(NamedTuple):
     """How a command is carried out."""
 
-    run: Callable[[Bridge, Channel, Command], int]
+    run: Callable[[Host, Channel, Command], int]
     """Gives the MAV_RESULT."""
     required: tuple[int, ...] = ()
     """Parameters (1..7) that must be numbers: NaN is refused with DENIED."""

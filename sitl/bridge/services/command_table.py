@@ -8,19 +8,19 @@ Results as ArduPilot gives them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ...autopilot.aux_switch import LOW
 from ...autopilot.fence.checks import ALL, kinds, switch_by_user
 from ...core.scalars import constrain
 from ..autopilot_api import LONGEST_US
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..places import FRAMES_AMSL, GLOBAL_FRAMES
 from ..telemetry.shell import banner
 from . import calibration
 from .calibration import CalibrationService
 from .camera import CameraService
-from .command import FRAMES_AMSL, GLOBAL_FRAMES, Command, Entry, is_on_earth
+from .command import Command, Entry, is_on_earth
 from .compass_calibration import CompassCalibrationService
 from .faults import FaultService
 from .gripper import GripperService
@@ -34,29 +34,25 @@ from .sprayer import SprayerService
 from .statustext import StatusTextService
 from .streams import StreamService
 
-if TYPE_CHECKING:
-    from ..bridge import Bridge
-
-
 HOME_POSITION, AUTOPILOT_VERSION = message("HOME_POSITION").id, message("AUTOPILOT_VERSION").id
 
 
-def set_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_interval(bridge: Host, channel: Channel, command: Command) -> int:
     """511: p1 message, p2 interval [us]: -1 stops, 0 default. DENIED: unknown, too fast."""
     return int(bridge.get(StreamService).set_interval(channel, command))
 
 
-def get_interval(bridge: Bridge, channel: Channel, command: Command) -> int:
+def get_interval(bridge: Host, channel: Channel, command: Command) -> int:
     """510: answers MESSAGE_INTERVAL for message p1."""
     return int(bridge.get(StreamService).get_interval(channel, command))
 
 
-def request_message(bridge: Bridge, channel: Channel, command: Command) -> int:
+def request_message(bridge: Host, channel: Channel, command: Command) -> int:
     """512: sends message p1 once; FAILED when there is none."""
     return int(bridge.get(StreamService).request_message(channel, command))
 
 
-def control_high_latency(bridge: Bridge, channel: Channel, command: Command) -> int:
+def control_high_latency(bridge: Host, channel: Channel, command: Command) -> int:
     """2600: p1 1 sends HIGH_LATENCY2 on links of high latency, 0 does not; else FAILED."""
     if command.p1 not in (0.0, 1.0):
         return FAILED
@@ -64,21 +60,21 @@ def control_high_latency(bridge: Bridge, channel: Channel, command: Command) -> 
     return ACCEPTED
 
 
-def get_home(bridge: Bridge, channel: Channel, command: Command) -> int:
+def get_home(bridge: Host, channel: Channel, command: Command) -> int:
     """410 (old): answers HOME_POSITION."""
     if not bridge.vehicle.v.autopilot.home.is_set:
         return FAILED
     return bridge.send_after_answer(channel, HOME_POSITION)
 
 
-def request_version(bridge: Bridge, channel: Channel, command: Command) -> int:
+def request_version(bridge: Host, channel: Channel, command: Command) -> int:
     """520 (old): p1 must be 1, else FAILED; answers AUTOPILOT_VERSION."""
     if command.p1 != 1.0:
         return FAILED
     return bridge.send_after_answer(channel, AUTOPILOT_VERSION)
 
 
-def prearm_checks(bridge: Bridge, channel: Channel, command: Command) -> int:
+def prearm_checks(bridge: Host, channel: Channel, command: Command) -> int:
     """401: the checks that fail now, as texts."""
     if bridge.autopilot.armed():
         return TEMPORARILY_REJECTED
@@ -90,7 +86,7 @@ def prearm_checks(bridge: Bridge, channel: Channel, command: Command) -> int:
 FORCE_REBOOT = 20190226.0
 
 
-def reboot(bridge: Bridge, channel: Channel, command: Command) -> int:
+def reboot(bridge: Host, channel: Channel, command: Command) -> int:
     """246: p1 1 or 3 reboots the autopilot, when disarmed or when p6 is 20190226."""
     if bridge.autopilot.armed() and command.p6 != FORCE_REBOOT:
         return FAILED
@@ -104,7 +100,7 @@ POSITIONS_OF_ACCELEROMETER, LEVEL_TRIM, SIMPLE_ACCELEROMETER, SAVE = 1.0, 2.0, 4
 """p5 of 241; SAVE: p2 or p5, what parameters hold counts as calibrated."""
 
 
-def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
+def calibrate(bridge: Host, channel: Channel, command: Command) -> int:
     """241: p1 1 gyros, p3 1 barometer, p5 1 accelerometers in six positions, 2 level, 4 accelerometers level."""
     say, service = bridge.get(StatusTextService).say, bridge.get(CalibrationService)
     if bridge.autopilot.armed():
@@ -125,12 +121,12 @@ def calibrate(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if SAVE in (command.p2, command.p5) else UNSUPPORTED
 
 
-def accelerometer_position(bridge: Bridge, channel: Channel, command: Command) -> int:
+def accelerometer_position(bridge: Host, channel: Channel, command: Command) -> int:
     """42429: the vehicle is in position p1."""
     return int(bridge.get(CalibrationService).is_in_position(command.p1))
 
 
-def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
+def storage(bridge: Host, channel: Channel, command: Command) -> int:
     """245: parameters and missions live as long as the process.
 
     There is no storage to read, write or reset.
@@ -138,34 +134,34 @@ def storage(bridge: Bridge, channel: Channel, command: Command) -> int:
     return DENIED
 
 
-def calibrate_compass(bridge: Bridge, channel: Channel, command: Command) -> int:
+def calibrate_compass(bridge: Host, channel: Channel, command: Command) -> int:
     """42424: p1 bits of compasses (0 all), p2 again after a failure, p3 saves, p4 delay [s], p5 reboots then."""
     p = command
     return int(bridge.get(CompassCalibrationService).start(p.p1, p.p2 != 0.0, p.p3 != 0.0, p.p4, p.p5 != 0.0))
 
 
-def accept_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
+def accept_compass_calibration(bridge: Host, channel: Channel, command: Command) -> int:
     """42425: saves what was found of compasses p1."""
     return int(bridge.get(CompassCalibrationService).accept(command.p1))
 
 
-def cancel_compass_calibration(bridge: Bridge, channel: Channel, command: Command) -> int:
+def cancel_compass_calibration(bridge: Host, channel: Channel, command: Command) -> int:
     """42426: stops the calibration of compasses p1."""
     return int(bridge.get(CompassCalibrationService).cancel(command.p1))
 
 
-def calibrate_compass_by_heading(bridge: Bridge, channel: Channel, command: Command) -> int:
+def calibrate_compass_by_heading(bridge: Host, channel: Channel, command: Command) -> int:
     """42006: p1 heading [deg], p2 bits of compasses (0 all), p3 and p4 place [deg] (0, 0: where the vehicle is)."""
     return int(bridge.get(CompassCalibrationService).use_heading(command.p1, command.p2, command.p3, command.p4))
 
 
-def send_banner(bridge: Bridge, channel: Channel, command: Command) -> int:
+def send_banner(bridge: Host, channel: Channel, command: Command) -> int:
     """42428: the version as a text."""
     bridge.get(StatusTextService).say(INFO, banner(bridge.profile))
     return ACCEPTED
 
 
-def reset_battery(bridge: Bridge, channel: Channel, command: Command) -> int:
+def reset_battery(bridge: Host, channel: Channel, command: Command) -> int:
     """42651: p1 bits of batteries, p2 charge left [%], within 0 .. 100; FAILED when that battery counts no current.
 
     Bits of batteries that are not there have no effect.
@@ -175,7 +171,7 @@ def reset_battery(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if bridge.autopilot.set_battery_left(constrain(command.p2, 0.0, 100.0)) else FAILED
 
 
-def inject_failure(bridge: Bridge, channel: Channel, command: Command) -> int:
+def inject_failure(bridge: Host, channel: Channel, command: Command) -> int:
     """420: p1 FAILURE_UNIT, p2 FAILURE_TYPE (0 repairs), p3 instance (0 all); UNSUPPORTED while SYS_FAILURE_EN is 0."""
     return int(bridge.get(FaultService).command(command.p1, command.p2, command.p3))
 
@@ -185,7 +181,7 @@ CHANGE_MODE = 1
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
 
 
-def arm_disarm(bridge: Bridge, channel: Channel, command: Command) -> int:
+def arm_disarm(bridge: Host, channel: Channel, command: Command) -> int:
     """400: p1 1 arms, 0 disarms; p2 2989 or 21196 forces arming, 21196 disarming in the air."""
     if command.p1 == 1.0:
         ok = bridge.autopilot.armed() or bridge.autopilot.arm(command.p2 in (FORCE_ARM, FORCE))
@@ -197,14 +193,14 @@ def arm_disarm(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if ok else FAILED
 
 
-def set_mode(bridge: Bridge, number: int) -> int:
+def set_mode(bridge: Host, number: int) -> int:
     """Change to a mode by ArduPilot's number and say why not."""
     ok = bridge.autopilot.set_mode(number)
     bridge.say_pending()
     return ACCEPTED if ok else FAILED
 
 
-def do_set_mode(bridge: Bridge, channel: Channel, command: Command) -> int:
+def do_set_mode(bridge: Host, channel: Channel, command: Command) -> int:
     """176: p1 must have MAV_MODE_FLAG_CUSTOM_MODE_ENABLED (else DENIED), p2 is the mode's number (else FAILED)."""
     if not 0.0 <= command.p1 < 256.0 or not int(command.p1) & 1:
         return DENIED
@@ -213,7 +209,7 @@ def do_set_mode(bridge: Bridge, channel: Channel, command: Command) -> int:
     return set_mode(bridge, int(command.p2))
 
 
-def aux_function(bridge: Bridge, channel: Channel, command: Command) -> int:
+def aux_function(bridge: Host, channel: Channel, command: Command) -> int:
     """218: p1 function of a switch, p2 0 low, 1 middle, 2 high."""
     if command.p2 not in (0.0, 1.0, 2.0) or command.p1 != int(command.p1):
         return DENIED
@@ -222,19 +218,19 @@ def aux_function(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if ok else FAILED
 
 
-def return_to_launch(bridge: Bridge, channel: Channel, command: Command) -> int:
+def return_to_launch(bridge: Host, channel: Channel, command: Command) -> int:
     """20: changes to RTL; FAILED when the mode cannot be entered."""
     return set_mode(bridge, bridge.profile.rtl)
 
 
-def set_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_servo(bridge: Host, channel: Channel, command: Command) -> int:
     """183: p1 output (those of motors are refused), p2 pulse, 0 .. 3000 us, else DENIED."""
     if not 0.0 <= command.p2 <= LONGEST_US:
         return DENIED
     return ACCEPTED if bridge.get(OutputService).set_servo(int(command.p1), int(command.p2)) else FAILED
 
 
-def repeat_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
+def repeat_servo(bridge: Host, channel: Channel, command: Command) -> int:
     """184: p1 output, p2 pulse, 0 .. 3000 us, by turns with SERVOn_TRIM, p3 times (below 0 for ever), each p4 [s]."""
     if not 0.0 <= command.p2 <= LONGEST_US or not abs(command.p3) <= MANY:
         return DENIED
@@ -242,12 +238,12 @@ def repeat_servo(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4) else FAILED
 
 
-def set_relay(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_relay(bridge: Host, channel: Channel, command: Command) -> int:
     """181: p1 relay, from 0, p2 0 off, 1 on, others the other way; FAILED without RELAYn_FUNCTION 1."""
     return ACCEPTED if bridge.get(OutputService).set_relay(int(command.p1), command.p2) else FAILED
 
 
-def repeat_relay(bridge: Bridge, channel: Channel, command: Command) -> int:
+def repeat_relay(bridge: Host, channel: Channel, command: Command) -> int:
     """182: p1 relay, from 0, the other way and back p2 times (below 0 for ever), each p3 [s]."""
     if not abs(command.p2) <= MANY:
         return DENIED
@@ -259,74 +255,74 @@ MANY = 32767.0
 """Times that something can be repeated."""
 
 
-def configure_camera(bridge: Bridge, channel: Channel, command: Command) -> int:
+def configure_camera(bridge: Host, channel: Channel, command: Command) -> int:
     """202: with CAM1_TYPE 5 passed on to other components of the vehicle; else no effect."""
     c = command
     bridge.get(CameraService).configure((c.p1, c.p2, c.p3, c.p4, c.p5, c.p6, c.z))
     return ACCEPTED
 
 
-def control_camera(bridge: Bridge, channel: Channel, command: Command) -> int:
+def control_camera(bridge: Host, channel: Channel, command: Command) -> int:
     """203: p5 1 takes a picture; with CAM1_TYPE 5 passed on to other components; no effect without a camera."""
     c = command
     bridge.get(CameraService).control((c.p1, c.p2, c.p3, c.p4, c.p5, c.p6))
     return ACCEPTED
 
 
-def set_camera_distance(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_camera_distance(bridge: Host, channel: Channel, command: Command) -> int:
     """206: a picture each p1 [m] (0: none), p3 1 one at once; no effect without a camera."""
     bridge.get(CameraService).set_distance(command.p1, command.p3 == 1.0)
     return ACCEPTED
 
 
-def start_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
+def start_pictures(bridge: Host, channel: Channel, command: Command) -> int:
     """2000: p1 camera (0 all, 1), p2 interval [s], p3 pictures (0 for ever; if p2 is 0, one); FAILED without camera."""
     return int(bridge.get(CameraService).start(command.p1, command.p2, command.p3))
 
 
-def stop_pictures(bridge: Bridge, channel: Channel, command: Command) -> int:
+def stop_pictures(bridge: Host, channel: Channel, command: Command) -> int:
     """2001: p1 camera (0 all, 1): ends what 2000 began."""
     return int(bridge.get(CameraService).stop(command.p1))
 
 
-def grip(bridge: Bridge, channel: Channel, command: Command) -> int:
+def grip(bridge: Host, channel: Channel, command: Command) -> int:
     """211: p2 0 opens the gripper, 1 closes it; FAILED without GRIP_ENABLE and GRIP_TYPE 1 or 2."""
     return int(bridge.get(GripperService).act(command.p2))
 
 
-def spray(bridge: Bridge, channel: Channel, command: Command) -> int:
+def spray(bridge: Host, channel: Channel, command: Command) -> int:
     """216: p1 1 runs the sprayer, 0 ends it; no effect without SPRAY_ENABLE."""
     bridge.get(SprayerService).act(command.p1)
     return ACCEPTED
 
 
-def configure_mount(bridge: Bridge, channel: Channel, command: Command) -> int:
+def configure_mount(bridge: Host, channel: Channel, command: Command) -> int:
     """204 (old): p1 mode of the gimbal, as for 205; FAILED without MNT1_TYPE 1."""
     return int(bridge.get(MountService).configure(command.p1))
 
 
-def control_mount(bridge: Bridge, channel: Channel, command: Command) -> int:
+def control_mount(bridge: Host, channel: Channel, command: Command) -> int:
     """205: p1 pitch, p2 roll, p3 yaw [deg]; p7 0 folds, 1 neutral, 2 these angles, 3 sticks, 4 last place, 6 home."""
     return int(bridge.get(MountService).control(command.p1, command.p2, command.p3, command.z))
 
 
-def pitch_and_yaw(bridge: Bridge, channel: Channel, command: Command) -> int:
+def pitch_and_yaw(bridge: Host, channel: Channel, command: Command) -> int:
     """1000: p1 pitch, p2 yaw [deg], or NaN and p3, p4 their rates [deg/s]; p5 flags, p7 gimbal (0, 1)."""
     c = command
     return int(bridge.get(MountService).pitch_yaw(c.p1, c.p2, c.p3, c.p4, c.p5, c.z))
 
 
-def control_gimbal(bridge: Bridge, channel: Channel, command: Command) -> int:
+def control_gimbal(bridge: Host, channel: Channel, command: Command) -> int:
     """1001: p1 system and p2 component that have primary control of the gimbal; -2: the sender."""
     return int(bridge.get(MountService).give_control(command.p1, command.p2, command.sender))
 
 
-def follow_system(bridge: Bridge, channel: Channel, command: Command) -> int:
+def follow_system(bridge: Host, channel: Channel, command: Command) -> int:
     """198: taken; the gimbal does not follow other vehicles here."""
     return ACCEPTED
 
 
-def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
+def look_at(bridge: Host, channel: Channel, command: Command) -> int:
     """195, 201: the gimbal points at a place; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return DENIED
@@ -343,13 +339,13 @@ def look_at(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-def look_ahead(bridge: Bridge, channel: Channel, command: Command) -> int:
+def look_ahead(bridge: Host, channel: Channel, command: Command) -> int:
     """197: the gimbal returns to the mode of MNT1_DEFLT_MODE."""
     bridge.get(MountService).look_ahead()
     return ACCEPTED
 
 
-def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
+def reposition(bridge: Host, channel: Channel, command: Command) -> int:
     """192: go to a place in GUIDED; p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
     The place is refused before the mode is changed. p1 is the speed [m/s] of a rover that drives to a place already
@@ -373,7 +369,7 @@ def reposition(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if bridge.autopilot.guided_position(place) else FAILED
 
 
-def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_home(bridge: Host, channel: Channel, command: Command) -> int:
     """179: p1 1 (or latitude and longitude zero): here; else the place given."""
     if command.p1 == 1.0 or (command.lat == 0 and command.lon == 0):
         return _home_result(bridge, bridge.autopilot.set_home_here())
@@ -387,7 +383,7 @@ def set_home(bridge: Bridge, channel: Channel, command: Command) -> int:
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
 
-def set_origin(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_origin(bridge: Host, channel: Channel, command: Command) -> int:
     """611: the estimator's origin; FAILED when it has one already."""
     if command.frame not in GLOBAL_FRAMES or not is_on_earth(command.lat, command.lon):
         return DENIED
@@ -398,14 +394,14 @@ def set_origin(bridge: Bridge, channel: Channel, command: Command) -> int:
     return _home_result(bridge, bridge.autopilot.set_origin(command.lat, command.lon, command.z))
 
 
-def _home_result(bridge: Bridge, ok: bool) -> int:
+def _home_result(bridge: Host, ok: bool) -> int:
     bridge.say_pending()
     if ok:
         bridge.get(HomeService).tell_changes()
     return ACCEPTED if ok else FAILED
 
 
-def enable_fence(bridge: Bridge, channel: Channel, command: Command) -> int:
+def enable_fence(bridge: Host, channel: Channel, command: Command) -> int:
     """207: p1 1 switches fences on, 0 off; p2 which (bits as of FENCE_TYPE), 0 all."""
     which = int(command.p2) if 0.0 < command.p2 <= ALL else ALL
     if not 0.0 <= command.p1 <= 2.0 or not 0.0 <= command.p2 <= ALL:
@@ -418,7 +414,7 @@ def enable_fence(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
+def mission_start(bridge: Host, channel: Channel, command: Command) -> int:
     """300: AUTO from the beginning; p1, p2 (first and last item) must be zero."""
     if command.p1 != 0.0 or command.p2 != 0.0:
         return DENIED
@@ -427,7 +423,7 @@ def mission_start(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if ok else FAILED
 
 
-def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> int:
+def set_mission_current(bridge: Host, channel: Channel, command: Command) -> int:
     """224: p1 number of the item (0: the first); in AUTO p2 1 runs a complete mission again; DENIED without it, FAILED
     where there is no mission."""
     seq, count = int(command.p1), len(bridge.autopilot.mission_items())
@@ -438,7 +434,7 @@ def set_mission_current(bridge: Bridge, channel: Channel, command: Command) -> i
     return ACCEPTED if ok else FAILED
 
 
-def jump_to_tag(bridge: Bridge, channel: Channel, command: Command) -> int:
+def jump_to_tag(bridge: Host, channel: Channel, command: Command) -> int:
     """601: p1 the tag of a JUMP_TAG of the mission, which goes on there; FAILED without it."""
     if not 0.0 <= command.p1 <= 65535.0:
         return DENIED
@@ -447,7 +443,7 @@ def jump_to_tag(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED if ok else FAILED
 
 
-def choose_sources(bridge: Bridge, channel: Channel, command: Command) -> int:
+def choose_sources(bridge: Host, channel: Channel, command: Command) -> int:
     """42007: p1 the set of sources of the estimator, 1 .. 3 (EK3_SRC1_* ..)."""
     if command.p1 not in (1.0, 2.0, 3.0):
         return DENIED

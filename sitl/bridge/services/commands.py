@@ -14,29 +14,53 @@ has grants; elsewhere the commands are UNSUPPORTED.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any, Protocol
 
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
 from ..links.link import Peer
+from ..listener import Sender
+from ..places import GLOBAL_RELATIVE_ALT
+from ..switchboard import Switchboard
 from . import command_table
-from .command import GLOBAL_RELATIVE_ALT, Command, Entry, from_int, from_long
-from .service import ACCEPTED, DENIED, UNSUPPORTED, Handler, Sender, Service
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
-
+from .command import Command, Entry, from_int, from_long
+from .service import ACCEPTED, DENIED, UNSUPPORTED, Handler, Service
 
 ACK = message("COMMAND_ACK")
 DO_SET_MODE = 176
 
 
+class CommandHost(Host, Protocol):
+    """The bridge, as commands know it."""
+
+    board: Switchboard
+    grants: Grants | None
+    """How far clients let the vehicle go; None: they do not push its clock."""
+
+    @property
+    def commands(self) -> Mapping[int, Entry]:
+        """MAV_CMD -> how it is carried out."""
+        ...
+
+    def send_asked(self) -> None:
+        """The command has been answered: send what it asked for."""
+        ...
+
+    def flush(self) -> None:
+        """Hand everything queued to the links."""
+        ...
+
+
 class CommandService(Service):
     """Commands, and the old way to set the mode."""
 
-    def __init__(self, bridge: Any) -> None:
+    bridge: CommandHost
+
+    def __init__(self, bridge: CommandHost) -> None:
         super().__init__(bridge)
-        self._table = bridge.profile.commands
+        self._table = bridge.commands
 
     def handlers(self) -> dict[str, Handler]:
         return {"COMMAND_LONG": self._long, "COMMAND_INT": self._int, "SET_MODE": self._set_mode}
@@ -95,7 +119,7 @@ class Grants:
         """Simulated time since the start that has been granted [us]."""
         self._asked: list[tuple[Peer, Sender, int]] = []
 
-    def command(self, bridge: Bridge, channel: Channel, fields: Any, sender: Sender) -> bool:
+    def command(self, bridge: CommandHost, channel: Channel, fields: Any, sender: Sender) -> bool:
         """Take a COMMAND_INT; False when it is none of these."""
         if fields.command == GRANT:
             if fields.x < 0:
@@ -110,7 +134,7 @@ class Grants:
             _ack(channel, RESEED, ACCEPTED, sender, 0)
         return fields.command in (GRANT, RESEED)
 
-    def answer(self, bridge: Bridge) -> None:
+    def answer(self, bridge: CommandHost) -> None:
         """Answer all grants whose time has been reached."""
         now = bridge.elapsed_us
         journal = bridge.board.journal

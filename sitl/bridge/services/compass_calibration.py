@@ -23,6 +23,7 @@ from ...core.earth_field import field_ned
 from ...core.sums import lengths, matrix_product
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
+from ..host import Host
 from .parameters import ParameterService
 from .service import ACCEPTED, FAILED, NOTICE, Service
 from .statustext import StatusTextService
@@ -74,7 +75,7 @@ class State(NamedTuple):
 class CompassCalibrationService(Service):
     """Calibration of compasses."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._states: dict[int, State] = {}
         """By number of the compass."""

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...core.constants import NEVER
+from ..host import Host
 from .service import CRITICAL, Service
 from .statustext import StatusTextService
 
@@ -16,7 +15,7 @@ TEXTS = ("Config Error: Baro: unable to initialise driver", "Config Error: fix p
 class ConfigErrorService(Service):
     """No barometer was found at power-on (SIM_BARO_COUNT): the estimator does not start, and nothing can be armed."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self.due_us = EVERY_US if bridge.vehicle.parameters["SIM_BARO_COUNT"] < 1 else NEVER
 

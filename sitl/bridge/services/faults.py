@@ -15,6 +15,7 @@ from ...vehicle.equipment import Equipment
 from ...vehicle.fault_history import Acted, FaultHistory, Key, changes_nothing
 from ...vehicle.faults import TYPES, UNITS, Failure, known
 from ...vehicle.ordered_faults import ONE_SHOT, Ordered, OrderedFaults, Repair
+from ..host import Host
 from .parameters import ParameterService
 from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
 
@@ -26,7 +27,7 @@ LOOK_US = 100_000
 class FaultService(Service):
     """What fails, and when."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._table = bridge.vehicle.firmware.table
         self._faults = OrderedFaults(self._table)

@@ -11,16 +11,14 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .. import metadata
+from ..host import Host
 from .client_files import ClientFiles
 from .mission import FENCE, MISSION, RALLY, MissionService
 from .mission_upload import ITEM_INT, to_int
 from .parameters import ParameterService
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
 
 PARAMETERS = "@PARAM/param.pck"
 LOGS = "logs"
@@ -61,7 +59,7 @@ class Log:
         return found ^ 0xFFFFFFFF
 
 
-def read(bridge: Bridge, clients: ClientFiles, path: str, queries: list[str]) -> bytes | Log | None:
+def read(bridge: Host, clients: ClientFiles, path: str, queries: list[str]) -> bytes | Log | None:
     """What is in a file now; None: there is none.
 
     Args:
@@ -81,7 +79,7 @@ def read(bridge: Bridge, clients: ClientFiles, path: str, queries: list[str]) ->
     return metadata.files(values.table).get(path, clients.read(path))
 
 
-def listing(bridge: Bridge, clients: ClientFiles, path: str) -> list[str] | None:
+def listing(bridge: Host, clients: ClientFiles, path: str) -> list[str] | None:
     """Entries of a folder, as FTP tells them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
     sizes = {f"@SYS/{name}": UNKNOWN_SIZE for name in SYSTEM} | {"@SYS/storage.bin": STORAGE_SIZE}
     sizes |= {name: len(file()) for name, file in _system(bridge).items()}
@@ -96,7 +94,7 @@ def listing(bridge: Bridge, clients: ClientFiles, path: str) -> list[str] | None
     return ["D.", "D..", *(f"D{name}" for name in sorted(folders)), *(clients.listing("") or ())]
 
 
-def pack_mission(bridge: Bridge, kind: int) -> bytes:
+def pack_mission(bridge: Host, kind: int) -> bytes:
     """Mission, fence or rally points as a file."""
     service = bridge.get(MissionService)
     items = service.items(kind) or service.home_alone(kind)
@@ -104,7 +102,7 @@ def pack_mission(bridge: Bridge, kind: int) -> bytes:
     return MISSION_HEADER.pack(MISSION_MAGIC, kind, 0, 0, len(items)) + b"".join(parts)
 
 
-def write(bridge: Bridge, path: str, data: bytes) -> bool:
+def write(bridge: Host, path: str, data: bytes) -> bool:
     """Take a file of ``MISSIONS`` in place of what it holds; False, and that stays, when it is none or not valid."""
     if len(data) < MISSION_HEADER.size:
         return False
@@ -128,11 +126,11 @@ STORAGE_SIZE = 16384
 """Of ArduPilot's storage."""
 
 
-def _system(bridge: Bridge) -> Mapping[str, Reader]:
+def _system(bridge: Host) -> Mapping[str, Reader]:
     return {"@SYS/uarts.txt": lambda: _links(bridge), "@SYS/tasks.txt": lambda: b"TasksV2\n"}
 
 
-def _links(bridge: Bridge) -> bytes:
+def _links(bridge: Host) -> bytes:
     lines = [
         f"SERIAL{channel.number} TX={channel.port.sent:8d} RX={channel.port.received:8d} messages ({channel.name})"
         for channel in bridge.channels
@@ -140,7 +138,7 @@ def _links(bridge: Bridge) -> bytes:
     return "\n".join(["UARTV1", *lines, ""]).encode("ascii", "replace")
 
 
-def _logs(bridge: Bridge) -> dict[str, Any]:
+def _logs(bridge: Host) -> dict[str, Any]:
     """Name of each log -> its entry in the list."""
     entries = bridge.logs.entries() if bridge.logs is not None else ()
     return {f"{LOGS}/{entry.number:08d}.BIN": entry for entry in entries}

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...autopilot import payload
 from ...autopilot.aux_switch import HIGH, LOW, MIDDLE
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
+from ..host import Host
 from .camera import CameraService
 from .gripper import GripperService
 from .mount import MountService
@@ -18,9 +19,6 @@ from .parachute import ParachuteService
 from .service import Service
 from .sprayer import SprayerService
 from .winch import WinchService
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
 
 CARRIED_OUT_BY: dict[int, type[Service]] = {
     **dict.fromkeys(commands.CAMERA_COMMANDS, CameraService),
@@ -56,7 +54,7 @@ _SWITCHES: dict[int, tuple[type[Service], Callable[[Any, int], None]]] = {
 _PARACHUTE = (payload.SWITCH_PARACHUTE_ENABLE, payload.SWITCH_PARACHUTE_RELEASE, payload.SWITCH_PARACHUTE)
 
 
-def run_aux_function(bridge: Bridge, item: MissionItem) -> None:
+def run_aux_function(bridge: Host, item: MissionItem) -> None:
     """A mission's DO_AUX_FUNCTION: parameter 1 a function of switches, 2 its position (0 low, 1 middle, 2 high)."""
     function, position = int(item.p1), LOW + int(item.p2)
     if position in (LOW, MIDDLE, HIGH):
@@ -64,7 +62,7 @@ def run_aux_function(bridge: Bridge, item: MissionItem) -> None:
         bridge.say_pending()
 
 
-def switched(bridge: Bridge, function: int, position: int) -> None:
+def switched(bridge: Host, function: int, position: int) -> None:
     """A switch with one of these functions was moved."""
     if function in payload.SWITCH_RELAYS:
         if position != MIDDLE:

@@ -8,6 +8,7 @@ from typing import Any
 
 from ...core.algebra import rotate
 from ..dialect import message
+from ..host import Host
 from ..telemetry.plain import told
 from ..telemetry.units import boot_ms
 from .service import Service
@@ -20,7 +21,7 @@ ON_GROUND, IN_AIR = 1, 2
 class FlightStateService(Service):
     """When it was armed and took off, which item of the mission it reached last, and what a gimbal needs."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._took_off_us = 0
         self._reached = NONE_REACHED

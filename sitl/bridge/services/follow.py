@@ -15,10 +15,9 @@ from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Vec3
 from ...vehicle.record import Vehicle
-from ..places import local_place
+from ..places import GLOBAL, GLOBAL_RELATIVE_ALT, local_place
 from ..telemetry.motion import GlobalPositionInt
 from ..wire.message import Message
-from .command import GLOBAL, GLOBAL_RELATIVE_ALT
 from .setpoints import rotation
 
 HEADINGS = 36_000

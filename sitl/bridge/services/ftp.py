@@ -14,10 +14,12 @@ from typing import Any, NamedTuple
 from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from ..metadata import file_crc
 from . import files
 from .client_files import ClientFiles
-from .service import Handler, Sender, Service
+from .service import Handler, Service
 
 KIND = message("FILE_TRANSFER_PROTOCOL")
 HEADER = struct.Struct("<HBBBBBBI")
@@ -80,7 +82,7 @@ class _Session:
 class FtpService(Service):
     """MAVLink FTP: one session for each channel, under the number that the client gives it, as in ArduPilot."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._sessions: dict[Channel, _Session] = {}
         self._answered: dict[Channel, _Answered] = {}

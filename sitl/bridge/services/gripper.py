@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
 from ...core.constants import NEVER
+from ..host import Host
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService
@@ -38,7 +39,7 @@ class State(NamedTuple):
 class GripperService(PayloadService):
     """The gripper."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         kind = self._value("GRIP_TYPE")
         self._is_magnet = kind == payload.BY_MAGNET

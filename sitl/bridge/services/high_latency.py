@@ -11,6 +11,7 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
 from ..wire.streams import set_interval
 from .service import Service
 
@@ -22,7 +23,7 @@ EVERY_US = 5_000_000
 class HighLatencyService(Service):
     """MAV_CMD_CONTROL_HIGH_LATENCY switches these links on and off; other links do not mind."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._is_on = False
         self._every_us: Mapping[int, int] = {}
@@ -30,7 +31,7 @@ class HighLatencyService(Service):
 
     def has(self, channel: Channel) -> bool:
         """Whether the client is on such a link."""
-        return any(link.is_high_latency and channel.peer in link.peers for link in self.bridge.board.links)
+        return any(link.is_high_latency and channel.peer in link.peers for link in self.bridge.links)
 
     def channel_added(self, channel: Channel) -> None:
         if self.has(channel):

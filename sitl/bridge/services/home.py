@@ -11,7 +11,9 @@ from typing import Any
 from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from .service import Handler, Sender, Service
+from ..host import Host
+from ..listener import Sender
+from .service import Handler, Service
 from .terrain import TerrainService
 
 HOME, ORIGIN = message("HOME_POSITION").id, message("GPS_GLOBAL_ORIGIN").id
@@ -23,7 +25,7 @@ H, E = "autopilot.home.", "autopilot.estimate.origin_"
 class HomeService(Service):
     """Home, and the estimator's origin as long as it has none."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._home = bridge.reader.fields(H + "is_set", H + "lat", H + "lon", H + "alt")
         self._origin = bridge.reader.fields(E + "set", E + "lat", E + "lon", E + "alt")

@@ -12,14 +12,16 @@ from typing import Any
 
 from ..channel import Channel
 from ..dialect import MessageType, message
+from ..host import Host
+from ..listener import Sender
 from .senders import SenderService
-from .service import Handler, Sender, Service
+from .service import Handler, Service
 
 
 class HeartbeatService(Service):
     """Heartbeats of ground stations (https://mavlink.io/en/services/heartbeat.html); our own is a stream."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._channels: frozenset[int] = frozenset()
         """Numbers of channels on which other components of our own system were heard."""

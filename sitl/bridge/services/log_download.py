@@ -9,13 +9,14 @@ the gaps that a bad link has left, are answered one after the other.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from .service import Handler, Sender, Service
+from ..host import Host
+from ..listener import Sender
+from .service import Handler, Service
 
 ENTRY, DATA = message("LOG_ENTRY"), message("LOG_DATA")
 PIECE = 90
@@ -29,45 +30,6 @@ MOST_REQUESTS = 128
 """As many of them wait; what is more is not answered."""
 
 
-class LogEntry(Protocol):
-    """A log that there is."""
-
-    @property
-    def number(self) -> int:
-        """From 1 on."""
-        ...
-
-    @property
-    def time_utc(self) -> int:
-        """When it began [s, Unix]."""
-        ...
-
-    @property
-    def size(self) -> int:
-        """[bytes]"""
-        ...
-
-
-class LogStore(Protocol):
-    """Where the logs are."""
-
-    def entries(self) -> Sequence[LogEntry]:
-        """All logs, with everything up to now in them."""
-        ...
-
-    def read(self, number: int, offset: int, count: int) -> bytes:
-        """Bytes of a log; fewer at its end."""
-        ...
-
-    def erase(self) -> None:
-        """Forget all logs."""
-        ...
-
-    def close(self) -> None:
-        """Write everything; no more is logged."""
-        ...
-
-
 class _Transfer(NamedTuple):
     number: int
     offset: int
@@ -77,7 +39,7 @@ class _Transfer(NamedTuple):
 class LogDownloadService(Service):
     """Lists the on-board logs of this run, sends their bytes, forgets them; without a logger there are none."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._transfers: dict[Channel, tuple[_Transfer, ...]] = {}
         """What is to be sent, in order."""

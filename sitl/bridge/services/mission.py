@@ -17,6 +17,8 @@ from ...autopilot.mission.validate import MAX_ITEMS
 from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from . import place_lists
 from .mission_upload import (
     ACCEPTED,
@@ -32,7 +34,7 @@ from .mission_upload import (
     to_float,
     to_int,
 )
-from .service import DEBUG, INFO, WARNING, Handler, Sender, Service
+from .service import DEBUG, INFO, WARNING, Handler, Service
 from .setpoints import SetpointService
 from .statustext import StatusTextService
 
@@ -52,7 +54,7 @@ GUIDED_TARGET, ALTITUDE_CHANGE = 2, 3
 class MissionService(Service):
     """Missions, fences, rally points: upload, download, clear, partial write; the mission's current item."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._taken = {MISSION: STORED, FENCE: FENCE_COMMANDS, RALLY: (RALLY_POINT,)}
         self._lists: dict[int, tuple[MissionItem, ...]] = {FENCE: (), RALLY: ()}

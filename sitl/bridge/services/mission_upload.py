@@ -18,7 +18,7 @@ from ...autopilot.mission.storage import stored, whole
 from ...autopilot.mission.validate import INVALID_PARAM5_X, INVALID_PARAM6_Y, check
 from ..channel import Channel
 from ..dialect import MessageType, message
-from .service import Sender
+from ..listener import Sender
 
 ITEM_INT, ITEM = message("MISSION_ITEM_INT"), message("MISSION_ITEM")
 _DEGE7 = np.float32(1e7)

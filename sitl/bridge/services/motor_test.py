@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple, Protocol, cast
 
 from ...core.constants import NEVER
+from ..host import Host
 from .service import ACCEPTED, FAILED, Service
 
 LONGEST_S = 600.0
@@ -45,7 +46,7 @@ class TestsMotors(Protocol):
 class MotorTestService(Service):
     """The series under way; the vehicle's own law ends the test of its last motor."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._autopilot = cast("TestsMotors", bridge.autopilot)
         self._series: Series | None = None

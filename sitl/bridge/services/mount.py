@@ -20,8 +20,10 @@ from ...core.elementary import atan2, hypot
 from ...core.scalars import wrap_pi
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from .payload import PayloadService
-from .service import ACCEPTED, FAILED, Sender
+from .service import ACCEPTED, FAILED
 
 ATTITUDE_STATUS, INFORMATION, STATUS = (
     message(f"GIMBAL_{name}") for name in ("DEVICE_ATTITUDE_STATUS", "MANAGER_INFORMATION", "MANAGER_STATUS")
@@ -67,7 +69,7 @@ class State(NamedTuple):
 class MountService(PayloadService):
     """The gimbal."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._there = self._value("MNT1_TYPE") == payload.BY_SERVO
         self._fitted = {axis: self._is_fitted(function) for axis, function in FUNCTIONS.items()}

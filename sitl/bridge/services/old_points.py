@@ -19,9 +19,11 @@ from ...autopilot.mission.item import (
 )
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from .mission import MissionService
 from .place_lists import counted
-from .service import INFO, WARNING, Handler, Sender, Service
+from .service import INFO, WARNING, Handler, Service
 from .statustext import StatusTextService
 
 FENCE, RALLY = message("FENCE_POINT"), message("RALLY_POINT")
@@ -34,7 +36,7 @@ NOWHERE: Place = (0, 0)
 class OldPointService(Service):
     """FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT, RALLY_FETCH_POINT."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._warned: tuple[str, ...] = ()
 

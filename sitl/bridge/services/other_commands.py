@@ -7,17 +7,15 @@ A command to a part that no such vehicle can have is UNSUPPORTED; these are abou
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from ..channel import Channel
-from .command import FRAMES_AMSL, Command, Entry
+from ..host import Host
+from ..places import FRAMES_AMSL
+from .command import Command, Entry
 from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED
 
-if TYPE_CHECKING:
-    from ..bridge import Bridge
 
-
-def follow(bridge: Bridge, channel: Channel, command: Command) -> int:
+def follow(bridge: Host, channel: Channel, command: Command) -> int:
     """32: p1 system id of the vehicle that FOLLOW follows, 1 .. 255."""
     if not 0.0 < command.p1 <= 255.0:
         return DENIED
@@ -25,27 +23,27 @@ def follow(bridge: Bridge, channel: Channel, command: Command) -> int:
     return ACCEPTED
 
 
-def pair_receiver(bridge: Bridge, channel: Channel, command: Command) -> int:
+def pair_receiver(bridge: Host, channel: Channel, command: Command) -> int:
     """500: the receiver is paired already."""
     return ACCEPTED
 
 
-def move_landing_gear(bridge: Bridge, channel: Channel, command: Command) -> int:
+def move_landing_gear(bridge: Host, channel: Channel, command: Command) -> int:
     """2520: the landing gear, which is fixed, stays as it is."""
     return ACCEPTED
 
 
-def identify(bridge: Bridge, channel: Channel, command: Command) -> int:
+def identify(bridge: Host, channel: Channel, command: Command) -> int:
     """10001: there is no ADS-B transmitter."""
     return FAILED
 
 
-def forward_can(bridge: Bridge, channel: Channel, command: Command) -> int:
+def forward_can(bridge: Host, channel: Channel, command: Command) -> int:
     """32000: p1 0 forwards no CAN bus to this link; others: there is none."""
     return ACCEPTED if int(command.p1) == 0 else FAILED
 
 
-def trap(bridge: Bridge, channel: Channel, command: Command) -> int:
+def trap(bridge: Host, channel: Channel, command: Command) -> int:
     """42700: no debugger is called."""
     return DENIED
 
@@ -54,7 +52,7 @@ STOP_SCRIPTS, RESTART_SCRIPTS = 2, 3
 """SCRIPTING_CMD; 0 and 1 are of an interpreter on the link."""
 
 
-def script(bridge: Bridge, channel: Channel, command: Command) -> int:
+def script(bridge: Host, channel: Channel, command: Command) -> int:
     """42701: p1 2 stops, 3 restarts scripts on board, of which there are none."""
     number = int(command.p1)
     if number in (STOP_SCRIPTS, RESTART_SCRIPTS):
@@ -66,7 +64,7 @@ DANGEROUS, SAFE = 1, 0
 """SAFETY_SWITCH_STATE"""
 
 
-def switch_safety(bridge: Bridge, channel: Channel, command: Command) -> int:
+def switch_safety(bridge: Host, channel: Channel, command: Command) -> int:
     """5300: p1 1: there is no safety switch that keeps the outputs off, 0 FAILED."""
     number = int(command.p1)
     if number == DANGEROUS:
@@ -78,22 +76,22 @@ FOCUS_TYPES = (1, 2, 4, 5, 6)
 """SET_FOCUS_TYPE: continuous, range, automatic ones"""
 
 
-def focus(bridge: Bridge, channel: Channel, command: Command) -> int:
+def focus(bridge: Host, channel: Channel, command: Command) -> int:
     """532: p1 SET_FOCUS_TYPE; no camera here has a focus."""
     return FAILED if int(command.p1) in FOCUS_TYPES else DENIED
 
 
-def choose_camera_source(bridge: Bridge, channel: Channel, command: Command) -> int:
+def choose_camera_source(bridge: Host, channel: Channel, command: Command) -> int:
     """534: no camera here has several sources."""
     return DENIED
 
 
-def record_video(bridge: Bridge, channel: Channel, command: Command) -> int:
+def record_video(bridge: Host, channel: Channel, command: Command) -> int:
     """2500, 2501: no camera here records videos."""
     return FAILED
 
 
-def external_position(bridge: Bridge, channel: Channel, command: Command) -> int:
+def external_position(bridge: Host, channel: Channel, command: Command) -> int:
     """43003: in a frame without altitude (p7 NaN); the estimator, which has a receiver, does not take it."""
     if command.frame not in FRAMES_AMSL or not math.isnan(command.z):
         return DENIED

@@ -6,18 +6,16 @@ One thing repeats at a time, as in ArduPilot; setting that output or relay ends 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ...autopilot import relays
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
 from ...core.constants import NEVER
 from ..autopilot_api import LONGEST_US
+from ..host import Host
 from .service import WARNING, Service
 from .statustext import StatusTextService
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
 
 SHORTEST_US = 20_000
 """ArduPilot looks 50 times a second."""
@@ -43,7 +41,7 @@ class Repeat(NamedTuple):
 class OutputService(Service):
     """Servo outputs and relays."""
 
-    def __init__(self, bridge: Bridge) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._values = bridge.vehicle.parameters
         self._repeat: Repeat | None = None

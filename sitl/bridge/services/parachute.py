@@ -15,6 +15,7 @@ from ...autopilot import payload, relays
 from ...autopilot.aux_switch import HIGH, LOW
 from ...autopilot.mission.item import MissionItem
 from ...core.constants import NEVER
+from ..host import Host
 from .outputs import OFF, ON, OutputService
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO
@@ -66,7 +67,7 @@ class Falling(Protocol):
 class ParachuteService(PayloadService):
     """The parachute."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._state = State()
         self._watch(0)

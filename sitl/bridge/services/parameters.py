@@ -22,7 +22,9 @@ from ...autopilot.params.renamed import Alias, alias
 from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
-from .service import INFO, WARNING, Handler, Sender, Service
+from ..host import Host
+from ..listener import Sender
+from .service import INFO, WARNING, Handler, Service
 from .statustext import StatusTextService
 
 VALUE, ERROR = message("PARAM_VALUE"), message("PARAM_ERROR")
@@ -41,7 +43,7 @@ TOLD = 10
 class ParameterService(Service):
     """Parameters: list, read by name or index, set."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._table, self._values = bridge.vehicle.firmware.table, bridge.vehicle.parameters
         self._lists: dict[Channel, int] = {}

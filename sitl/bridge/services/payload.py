@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...autopilot.payload import OUTPUTS
+from ..host import Host
 from .service import Service
 
 SHORTEST, MIDDLE, LONGEST = 1100.0, 1500.0, 1900.0
@@ -15,7 +14,7 @@ SHORTEST, MIDDLE, LONGEST = 1100.0, 1500.0, 1900.0
 class PayloadService(Service):
     """Something that hangs on servo outputs. What it is, parameters say at boot."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._values = bridge.vehicle.parameters
 

@@ -7,12 +7,11 @@ others reach it as the first one's.
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...autopilot.shell_parameters import GCS_SYSID_HI, MAV_OPTIONS, ONLY_GROUND_STATIONS
 from ..channel import Channel
 from ..dialect import message
 from ..frame import Splitter, encode_v2
+from ..host import Host
 from .service import Service
 from .signing import TAKEN_UNSIGNED as OF_RADIOS
 
@@ -25,7 +24,7 @@ class SenderService(Service):
     """Knows the ground stations, and takes frames of others than them, the vehicle itself and radios out of what comes
     in, without a word, while MAV_OPTIONS says so."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._splitters: dict[int, Splitter] = {}
         """Of channels by their numbers: what they sent is cut into frames here first."""

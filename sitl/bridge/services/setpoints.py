@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ...autopilot.mission.item import MissionItem
 from ...autopilot.state import Estimate
@@ -19,8 +19,9 @@ from ...core.algebra import IDENTITY, ZERO, horizontal, quat_norm_squared, turne
 from ...core.kernels import law
 from ...core.records import Floats
 from ...core.vectors import Quat, Vec3
+from ..host import Host
+from ..places import GLOBAL_FRAMES
 from ..wire.message import Message
-from .command import GLOBAL_FRAMES
 from .service import Service
 
 POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
@@ -167,7 +168,7 @@ def rotation(numbers: Floats) -> Rotation:
 class SetpointService(Service):
     """Mission items with ``current`` 2: places to go to at once, in GUIDED."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._mode: Callable[[], int] = bridge.reader.field("autopilot.modes.number")
         self._guided: int = bridge.profile.guided

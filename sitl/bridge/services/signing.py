@@ -8,8 +8,10 @@ from typing import Any
 from ..channel import Channel
 from ..dialect import message
 from ..frame import Splitter
+from ..host import Host
+from ..listener import Sender
 from ..signing import Signing, SigningState, Stream, is_signed, unsigned
-from .service import ERROR, Handler, Sender, Service
+from .service import ERROR, Handler, Service
 from .statustext import StatusTextService
 
 TAKEN_UNSIGNED = frozenset((message("RADIO_STATUS").id, message("RADIO").id))
@@ -19,7 +21,7 @@ TAKEN_UNSIGNED = frozenset((message("RADIO_STATUS").id, message("RADIO").id))
 class SigningService(Service):
     """One key for all links. Links within the process need no signatures and get none."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self.signing = Signing()
         self._splitters: dict[int, Splitter] = {}

@@ -9,6 +9,7 @@ from sitl.core.elementary import hypot
 
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
+from ..host import Host
 from .payload import PayloadService
 
 EVERY_US = 333_333
@@ -32,7 +33,7 @@ class State(NamedTuple):
 class SprayerService(PayloadService):
     """The sprayer."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._there = self._value("SPRAY_ENABLE") != 0.0
         self._state = State()

@@ -25,6 +25,7 @@ from ...autopilot.terrain.ground import TERRAIN_LEFT
 from ...core.constants import NEVER
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
 from .flight_state import FlightStateService
 from .home import HomeService
 from .service import Service
@@ -86,12 +87,12 @@ E = "autopilot.events."
 class EventService(Service):
     """Reads the ring of events; says texts; tells of home, origin and the mission's progress."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._events = bridge.vehicle.firmware.events
         self._acts: dict[int, Callable[[], None]] = {
-            ARMED: self._arming_changed,
-            DISARMED: self._arming_changed,
+            ARMED: bridge.arming_changed,
+            DISARMED: bridge.arming_changed,
             MODE_CHANGED: lambda: bridge.send_to_all(HEARTBEAT),
             FENCE_BREACHED: lambda: bridge.send_to_all(FENCE_STATUS),
             TERRAIN_LEFT: lambda: bridge.get(TerrainService).look_up(),
@@ -140,10 +141,6 @@ class EventService(Service):
             self._acts[code]()
         if code in self._events:
             self.notes(self._events[code].notes(self.bridge.vehicle.v, a, b))
-
-    def _arming_changed(self) -> None:
-        for service in self.bridge.services.values():
-            service.arming_changed()
 
     def notes(self, notes: Sequence[Any]) -> None:
         """Texts and progress that the mission's sequencer or a law gave back."""

@@ -14,10 +14,12 @@ from typing import Any
 from ...autopilot.modes import Mode
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from ..wire.streams import interval_of, set_interval
 from .command import Command
 from .high_latency import HIGH_LATENCY2, HighLatencyService
-from .service import ACCEPTED, DENIED, FAILED, INFO, Handler, Sender, Service
+from .service import ACCEPTED, DENIED, FAILED, INFO, Handler, Service
 from .statustext import StatusTextService
 from .terrain import REPORT, TerrainService
 
@@ -62,7 +64,7 @@ INTERVAL = message("MESSAGE_INTERVAL")
 class StreamService(Service):
     """What is sent regularly: each channel's intervals, as clients ask for them."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._groups = bridge.profile.groups
         self._group_of = {message(n).id: group for group, (_, names) in self._groups.items() for n in names}
@@ -139,7 +141,7 @@ class StreamService(Service):
         all of it."""
         bridge = self.bridge
         period_us = 1_000_000 // max(int(bridge.parameter("SCHED_LOOP_RATE") or 400), 1)
-        if bridge.is_stepped or bridge.grants is not None:
+        if bridge.is_stepped or bridge.is_clock_pushed:
             return period_us
         return max(period_us // 800, 1) * 1000
 

@@ -18,8 +18,10 @@ from ...core.constants import NEVER
 from ...core.geodesy import add_offset, offset_ne
 from ..channel import Channel
 from ..dialect import message
+from ..host import Host
+from ..listener import Sender
 from ..wire.streams import interval_of
-from .service import Handler, Sender, Service
+from .service import Handler, Service
 
 REPORT, REQUEST = message("TERRAIN_REPORT"), message("TERRAIN_REQUEST")
 TERRAIN = "TERRAIN_", grid.SIM_TERRAIN
@@ -42,7 +44,7 @@ START_RADIUS = 100.0
 class TerrainService(Service):
     """Terrain data, requested from ground stations."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._ap, self._values = bridge.vehicle.v.autopilot, bridge.vehicle.parameters
         self._terrain: Any = getattr(self._ap, "terrain", None)

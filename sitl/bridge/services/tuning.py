@@ -10,6 +10,7 @@ from typing import Any
 
 from ...core.border import RC_INPUTS
 from ...core.constants import NEVER
+from ..host import Host
 from .service import Service
 
 EVERY_US = 300_000
@@ -34,7 +35,7 @@ TUNED: dict[int, tuple[str, ...]] = {
 class TuningService(Service):
     """The knobs."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._values = bridge.vehicle.parameters
         self._speed: float | None = None

@@ -11,6 +11,7 @@ from ...autopilot import payload
 from ...autopilot.aux_switch import HIGH
 from ...autopilot.mission.item import MissionItem
 from ..dialect import message
+from ..host import Host
 from .payload import PayloadService
 from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService
@@ -40,7 +41,7 @@ class State(NamedTuple):
 class WinchService(PayloadService):
     """The winch."""
 
-    def __init__(self, bridge: Any) -> None:
+    def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._there = self._value("WINCH_TYPE") == payload.BY_SERVO
         self._state = State()

@@ -5,16 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
+from ..autopilot_api import Vehicle
 from ..dialect import message
+from ..mavlink_firmware import MavlinkFirmware
 from ..wire.choose import Builder, message_of
+from ..wire.port import Port
 from . import channels, fence, flow, motion, ranging, sensors, status
 from .plain import build
 from .shell import shell_builders
-
-if TYPE_CHECKING:
-    from ..bridge import Bridge
 
 _MODULES = (motion, sensors, ranging, status, channels, fence, flow)
 _registered: dict[int, Builder] = {}
@@ -46,14 +45,13 @@ def compiled(own: tuple[Builder, ...]) -> tuple[Builder, ...]:
     return tuple(found[number] for number in sorted(found))
 
 
-def shell_messages(bridge: Bridge) -> dict[int, Callable[[], bytes]]:
+def shell_messages(vehicle: Vehicle, profile: MavlinkFirmware, port: Port) -> dict[int, Callable[[], bytes]]:
     """What the shell builds for a vehicle: message number -> function that gives the payload now.
 
-    It comes before a law of the core for the same message.
+    It comes before a law of the core for the same message. ``port``: in place of a client's, for laws that take one.
     """
-    vehicle, port = bridge.vehicle, bridge.shell_port
     found: dict[int, Callable[[], bytes]] = {
-        message(name).id: partial(shell, vehicle, bridge.profile) for name, shell in shell_builders(vehicle).items()
+        message(name).id: partial(shell, vehicle, profile) for name, shell in shell_builders(vehicle).items()
     }
     return found | {number: partial(build, builder, vehicle.v, port) for number, builder in _registered.items()}
 

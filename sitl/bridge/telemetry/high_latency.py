@@ -3,17 +3,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from ..autopilot_api import Vehicle
 from ..dialect import message
+from ..mavlink_firmware import MavlinkFirmware
 from .motion import global_position
 from .plain import told
 from .status import ACCEL, AHRS, BARO, BATTERY, GEOFENCE, GPS, GYRO, MAG, RECEIVER, TERRAIN
 from .units import boot_ms, heading_cdeg, int16, percent, uint8, uint16
-
-if TYPE_CHECKING:
-    from ..autopilot_api import Vehicle
-    from ..profile import Profile
 
 ARDUPILOTMEGA = 3
 DIFFERENTIAL_PRESSURE = 0x10
@@ -28,7 +24,7 @@ UNIT = 5.0
 """Of speeds [1/(m/s)]."""
 
 
-def high_latency(vehicle: Vehicle, profile: Profile) -> bytes:
+def high_latency(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     """HIGH_LATENCY2: place, target, speeds in 0.2 m/s, headings in 2 degrees, distance to the target in 10 m, failures;
     ``custom0`` is HEARTBEAT's base_mode. The air's temperature is an airspeed sensor's (ARSPD_ENABLE, ARSPD_TYPE)."""
     v = vehicle.v

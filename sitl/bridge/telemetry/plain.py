@@ -4,16 +4,14 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...core.records import as_bytes
 from ...vehicle.record import Vehicle
+from ..mavlink_firmware import MavlinkFirmware
 from ..wire.choose import Builder, message_of
 from ..wire.message import Message
 from ..wire.port import Port
-
-if TYPE_CHECKING:
-    from ..profile import Profile
 
 
 @cache
@@ -30,7 +28,7 @@ def filled(builder: Builder, v: Vehicle, port: Port | None = None) -> Any:
     return m if said else None
 
 
-def told(profile: Profile, v: Vehicle, name: str) -> Any:
+def told(profile: MavlinkFirmware, v: Vehicle, name: str) -> Any:
     """A message of a firmware's laws as it is now; None when the vehicle has nothing to say."""
     law = next(law for law in profile.core.builders if message_of(law).kind.name == name)
     return filled(law, v)

@@ -5,22 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from hashlib import sha1
-from typing import TYPE_CHECKING
 
-from ... import __version__
 from ...autopilot import relays
 from ...core.records import as_bytes
+from ...version import __version__
 from .. import metadata
+from ..autopilot_api import Vehicle
 from ..dialect import message
+from ..mavlink_firmware import MavlinkFirmware
 from .high_latency import high_latency
 from .sensors import SimState, SimStateWithSpeed, fill_sim_state, fill_simstate
 from .units import boot_ms
 
-if TYPE_CHECKING:
-    from ..autopilot_api import Vehicle
-    from ..profile import Profile
-
-ShellBuilder = Callable[["Vehicle", "Profile"], bytes]
+ShellBuilder = Callable[[Vehicle, MavlinkFirmware], bytes]
 """``build(vehicle, profile)``: the payload now; empty when there is nothing to say."""
 
 MISSION_FLOAT, PARAM_FLOAT, MISSION_INT, COMMAND_INT, FTP = 0x1, 0x2, 0x4, 0x8, 0x20
@@ -40,7 +37,7 @@ VERSION_DIGITS = tuple(sha1(f"gym-sitl {__version__}".encode()).hexdigest()[:8].
 """What tells this program's versions apart: eight hexadecimal digits, as tools expect of a commit."""
 
 
-def autopilot_version(vehicle: Vehicle, profile: Profile) -> bytes:
+def autopilot_version(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     """AUTOPILOT_VERSION: capabilities and version."""
     major, minor, patch, kind = FLIGHT_VERSION
     return message("AUTOPILOT_VERSION").payload(
@@ -51,27 +48,27 @@ def autopilot_version(vehicle: Vehicle, profile: Profile) -> bytes:
     )
 
 
-def banner(profile: Profile) -> str:
+def banner(profile: MavlinkFirmware) -> str:
     """The text that tells firmware and version."""
     major, minor, patch, _ = FLIGHT_VERSION
     return f"{profile.firmware} V{major}.{minor}.{patch}-dev (gym-sitl {__version__})"
 
 
-def simstate(vehicle: Vehicle, profile: Profile) -> bytes:
+def simstate(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     """SIMSTATE of a vehicle whose physics is at the other end of a link: it is asked."""
     m = SimState()
     fill_simstate(m, vehicle.truth())
     return bytes(as_bytes(m, m.dtype))
 
 
-def sim_state(vehicle: Vehicle, profile: Profile) -> bytes:
+def sim_state(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     """SIM_STATE of such a vehicle."""
     m = SimStateWithSpeed()
     fill_sim_state(m, vehicle.truth())
     return bytes(as_bytes(m, m.dtype))
 
 
-def component_metadata(vehicle: Vehicle, profile: Profile) -> bytes:
+def component_metadata(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     """COMPONENT_METADATA: the file that names the parameters' descriptions, to be read by FTP."""
     general = metadata.files(vehicle.firmware.table)[metadata.GENERAL]
     return message("COMPONENT_METADATA").payload(
@@ -81,7 +78,7 @@ def component_metadata(vehicle: Vehicle, profile: Profile) -> bytes:
     )
 
 
-def relay_status(vehicle: Vehicle, profile: Profile) -> bytes:
+def relay_status(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     """RELAY_STATUS: which relays there are and which of them are on, a bit each."""
     values = vehicle.parameters
     fitted = relays.fitted(values) if relays.MASK in values.table else []

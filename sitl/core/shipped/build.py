@@ -18,7 +18,7 @@ from ..array_kernels import KERNELS, kernel_identity, kernels_of, unit_of
 from ..compile import Progress, compile_tasks, symbol, unit_identity
 from ..fingerprint import reached
 from ..kernels import Unit
-from ..worker import KERNELS_PATH, Order
+from ..order import KERNELS_PATH, Order
 from .library import CONTENTS, SLOT, TABLE, call_symbol, kernel_symbol, unit_key
 from .objects import Objects
 from .targets import TARGETS, Target

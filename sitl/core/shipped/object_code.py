@@ -30,7 +30,7 @@ from ..code_cache import ENTRY
 from ..compile import ENTRY_OPTIONS, entry_of, make_jitable, symbol, unit_identity
 from ..kernels import UNITS, Unit
 from ..numba_tuning import COMMON, quick, trust_laws
-from ..worker import KERNELS_PATH
+from ..order import KERNELS_PATH
 from .library import PYTHON, SLOT, TABLE, call_symbol, kernel_symbol, own_symbol
 from .objects import Objects
 from .python_calls import entry_for_python
@@ -49,8 +49,8 @@ class Translated:
         """By which others call it."""
         self._code, self._text, self._entry = code, text, entry
 
-    def object_code(self, target: Target) -> bytes:
-        """Its object file for a target."""
+    def compiled(self, target: Target) -> tuple[bytes, bytes]:
+        """Its object file for a target, and LLVM's code (bitcode) that it was made from."""
         machine = machine_of(target)
         module = llvm.parse_assembly(self._text)
         module.name = self._code
@@ -65,7 +65,7 @@ class Translated:
         for cost in ("cheap", "full"):
             _optimise(module, machine, cost)
         module.verify()
-        return bytes(machine.emit_object(module))
+        return bytes(machine.emit_object(module)), bytes(module.as_bitcode())
 
 
 def machine_of(target: Target) -> Any:
@@ -325,6 +325,7 @@ def write(path: str, name: str, objects: Objects) -> None:
         made, identity = translate_unit(unit, path), unit_identity(unit, path)
     for target in objects.targets:
         file = objects.file(made.symbol, identity, target)
-        scratch = file.with_suffix(f".{os.getpid()}")
-        scratch.write_bytes(made.object_code(target))
-        scratch.replace(file)
+        for code, whole in zip(reversed(made.compiled(target)), (file.with_suffix(".bc"), file), strict=True):
+            scratch = file.with_suffix(f".{os.getpid()}")
+            scratch.write_bytes(code)
+            scratch.replace(whole)

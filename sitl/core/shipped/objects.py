@@ -24,7 +24,7 @@ class Objects(NamedTuple):
     """Object files that are wanted, of units and kernels, for some targets.
 
     A file is named after the sources of what it holds, and the folder after the compilers, so that nothing stale is
-    linked.
+    linked. Beside each is what it was made from, LLVM's optimised code (``.bc``), for those who look at it.
     """
 
     folder: Path

@@ -14,12 +14,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
-from ... import __version__
 from ...autopilot.arming_checks import ARMING_REFUSED
 from ...autopilot.events import EVENT_RING
 from ...autopilot.shell_parameters import rotates_logs
 from ...core.constants import NEVER
 from ...vehicle.sampler import LONGEST_US, next_row_us
+from ...version import __version__
 from ..tlog import LogError
 from . import board
 from .encoder import LogEncoder, Vehicle

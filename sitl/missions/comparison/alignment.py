@@ -13,7 +13,8 @@ from sitl.core import elementary_arrays as arrays
 from sitl.core.geodesy import offset_ne
 from sitl.core.sums import lengths
 from sitl.errors import OptionError
-from sitl.logs.track import NAMES, Track, is_angle, sampled
+from sitl.logs.track import Track, is_angle, sampled
+from sitl.logs.track_columns import NAMES
 
 Array = np.ndarray[Any, Any]
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..native.body import GRAVITY
+from ...core.constants import GRAVITY
 from .client import Client
 from .wheels import ALONG_Y, Parts, meet, touch_in_one_point
 from .worlds import FLOOR_GROUP, SOLID_GROUP

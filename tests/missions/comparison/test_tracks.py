@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from sitl.logs import track_observer
 from sitl.logs.dataflash.reader import Row
 from sitl.logs.tlog import LogError
-from sitl.logs.track import COLUMNS, QUANTA, Track, TrackError
+from sitl.logs.track import Track
 from sitl.logs.track_bin import _Reader as Reader
+from sitl.logs.track_columns import COLUMNS, QUANTA, TrackError
 from sitl.logs.track_observer import TrackObserver
 from sitl.missions.comparison import alignment
 from sitl.missions.comparison.alignment import AlignmentError, match, pair, part

@@ -15,10 +15,10 @@ from sitl.core.algebra import (
     quat_from_rotation_vector,
     rotate,
 )
+from sitl.core.constants import GRAVITY, TICK_S
 from sitl.core.vectors import Euler, Quat, Vec3
-from sitl.physics.native.body import GRAVITY, Inertia, Wrench, fly, small_rotation
+from sitl.physics.native.body import Inertia, Wrench, fly, small_rotation
 from sitl.physics.native.records import Body
-from sitl.physics.native.tick import TICK_S
 
 MOMENTS = Vec3(0.0347, 0.0459, 0.0977)
 INERTIA = Inertia(MOMENTS, Vec3(1.0 / 0.0347, 1.0 / 0.0459, 1.0 / 0.0977), 1.0 / 1.14)

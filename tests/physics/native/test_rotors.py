@@ -5,8 +5,8 @@ import pytest
 from pytest import approx
 
 from sitl.core.algebra import quat_from_euler, rotate
+from sitl.core.constants import GRAVITY
 from sitl.core.vectors import Euler
-from sitl.physics.native.body import GRAVITY
 from sitl.physics.native.copter.wrench import act
 
 
