@@ -34,6 +34,7 @@ from sitl.identify.plan import write
 from sitl.identify.rover.expected import expected
 from sitl.identify.shared import NOISES
 from sitl.logs.dataflash.log import attach
+from sitl.logs.tlog import TlogWriter
 from sitl.missions import files
 from sitl.vehicles import Airframe, CopterAirframe, RoverAirframe
 
@@ -111,8 +112,8 @@ def drill(vehicle: Client) -> None:
     sticks(0.0, 0.0, 6.0)
 
 
-def fly(name: str, seed: int, path: Path) -> dict[str, float]:
-    """Fly the plan; the wind that blew."""
+def fly(name: str, seed: int, path: Path, telemetry_hz: int = 0) -> dict[str, float]:
+    """Fly the plan; the wind that blew. With a rate its telemetry (.tlog) is kept, too, each message so often."""
     path.unlink(missing_ok=True)
     draw = random.Random(seed)
     wind, bearing = draw.uniform(0.0, 6.0), draw.uniform(0.0, 360.0)
@@ -129,7 +130,12 @@ def fly(name: str, seed: int, path: Path) -> dict[str, float]:
     simulation = Simulation(airframe_of(name), seed=seed, params=settings)
     try:
         attach(simulation, path)
+        if telemetry_hz:
+            simulation.bridge.taps.append(TlogWriter(path.with_suffix(".tlog"), simulation.bridge.epoch_us))
         vehicle = Client(simulation)
+        if telemetry_hz:
+            vehicle.params.read_all()
+            vehicle.send("REQUEST_DATA_STREAM", req_message_rate=telemetry_hz, start_stop=1)
         vehicle.params["LOG_BITMASK"] = int(vehicle.params["LOG_BITMASK"]) | _FAST_ATTITUDE
         vehicle.wait_ready()
         vehicle.delay(30)
@@ -186,11 +192,11 @@ Result = tuple[float, float, float, float]
 """Truth, estimate, ends of the interval; not a number where it was not observed."""
 
 
-def judge(name: str, seed: int, folder: Path) -> dict[str, Result]:
-    """Fly and identify one log."""
+def judge(name: str, seed: int, folder: Path, telemetry_hz: int = 0) -> dict[str, Result]:
+    """Fly and identify one log; with a rate its telemetry."""
     path = folder / f"{name.replace(', ', '-').replace(' ', '-')}-{seed}.bin"
-    winds = (drive if name in ROVERS else fly)(name, seed, path)
-    found = identify(path)
+    winds = drive(name, seed, path) if name in ROVERS else fly(name, seed, path, telemetry_hz)
+    found = identify(path.with_suffix(".tlog") if telemetry_hz else path)
     known = truth(name, found, winds)
     return {
         figure.name: (known[figure.name], figure.value, figure.low, figure.high)
@@ -236,8 +242,11 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--airframes", nargs="+", default=list(AIRFRAMES), metavar="NAME")
     parser.add_argument("--seeds", type=seeds, default=seeds("101..105"), metavar="A..B", help="or 3,7")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the logs there")
+    parser.add_argument("--telemetry", type=int, default=0, metavar="HZ", help="judge telemetry of this rate instead")
     parser.add_argument("--details", action="store_true", help="a line for each figure of each log")
     options = parser.parse_args(argv)
+    if options.telemetry and not {*ROVERS}.isdisjoint(options.airframes):
+        parser.error(f"--telemetry is of copters: --airframes {' '.join(COPTERS[:3])}")
     lines: list[str] = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or Path(temporary)
@@ -246,7 +255,7 @@ def main(argv: list[str] | None = None) -> int:
             results = []
             for seed in tqdm(options.seeds, name, leave=False, disable=None):
                 try:
-                    results.append(judge(name, seed, folder))
+                    results.append(judge(name, seed, folder, options.telemetry))
                 except SitlError as error:
                     print(f"{name}, seed {seed}: {error}")
                     continue

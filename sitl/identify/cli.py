@@ -15,7 +15,10 @@ from ..errors import MissingExtra, OptionError
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("identify")
-    parser.add_argument("logs", nargs="*", type=Path, metavar="LOG", help=".bin logs of one copter or rover")
+    parser.add_argument(
+        "logs", nargs="*", type=Path, metavar="LOG",
+        help="logs of one copter (.bin, or telemetry: .tlog) or of one rover (.bin)",
+    )  # fmt: skip
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the airframe that --frame takes")
     parser.add_argument("--mass", type=float, metavar="KG", help="mass of the vehicle: logs alone tell ratios")
     parser.add_argument(
@@ -35,7 +38,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Print what the logs tell; write the airframe or the plan."""
     if options.plan is None and not options.logs:
-        raise OptionError("LOG is missing: a .bin log, or --plan FILE for what to fly")
+        raise OptionError("LOG is missing: a .bin or .tlog log, or --plan FILE for what to fly")
     if options.out is not None and options.out.suffix != ".toml":
         raise OptionError(f"--out {str(options.out)!r} does not end in .toml, by which --frame tells such files")
     if options.plan is not None:
@@ -72,6 +75,7 @@ def _home(text: str | None) -> tuple[float, float]:
 def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> None:
     try:
         from .identification import identify
+        from .telemetry import HOW
     except ModuleNotFoundError as error:
         if error.name != "scipy":
             raise
@@ -84,8 +88,14 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> Non
             bar.total = total
             bar.update(done - bar.n)
 
-        found = identify(logs, mass, progress)
+        def begins(what: str) -> None:
+            bar.bar_format = "{desc} ({elapsed})"
+            bar.set_description_str(f"figures: {what}")
+
+        found = identify(logs, mass, progress, begins)
     print(found.table())
+    if any(log.is_telemetry for log in found.logs):
+        print(f"note: {HOW}")
     if out is not None:
         found.write(out)
         print(f"airframe: {out}")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .balance import balance
 from .board import CAPACITY, resistance, vibration
 from .drag import drag
-from .figure import Figure
+from .figure import Begins, Figure, silent
 from .flight import FlightLog
 from .hover import hover
 from .rates import rates
@@ -16,12 +16,20 @@ from .sensors import sensors
 from .thrust import thrust_expo
 
 
-def figures(logs: Sequence[FlightLog]) -> list[Figure]:
-    """All figures of a copter that these logs tell, and the others with the reason."""
+def figures(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
+    """All figures of a copter that these logs tell, and the others with the reason.
+
+    Args:
+        logs: of one vehicle.
+        begins: is told what is worked on, which takes longest where rates are fast and flights long.
+    """
+    begins("hover")
     hovering = hover(logs)
+    turned = rates(logs, begins)
+    begins("thrust, balance, battery, drag, sensors")
     return [
         *hovering,
-        *rates(logs),
+        *turned,
         thrust_expo(logs, hovering[0]),
         *balance(logs),
         resistance(logs),

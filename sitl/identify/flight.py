@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import SitlError
-from ..logs.dataflash.columns import Columns, Progress, Table
+from ..logs import forms
+from ..logs.dataflash.columns import Columns, Progress
+from ..logs.dataflash.tables import Table, Tables
+from ..logs.telemetry import Telemetry
 from .expected import Conditions
 from .signals import Span, increasing, within
 
@@ -31,6 +34,14 @@ _NAMES = (
     "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
     "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
 )  # fmt: skip
+_OLDEST = (4, 0)
+_READ = "logs of ArduPilot are read: on-board ones (.bin, .log), and telemetry (.tlog)"
+_NO_PARAMETERS = (
+    "has no PARM, which say what its outputs mean: it begins in the middle, or its start is damaged",
+    "has no parameters (PARAM_VALUE, or @PARAM/param.pck by FTP), which say what its outputs mean: it began after the "
+    "ground station had got them. Get them again while it is recorded, or take the on-board log (.bin)",
+)
+"""Of a DataFlash log, of telemetry."""
 
 
 class IdentifyError(SitlError, ValueError):
@@ -41,7 +52,7 @@ class FlightLog:
     """A log.
 
     Args:
-        path: of the .bin.
+        path: of a .bin, a .log as text, or a .tlog.
         progress: is told how far it is read.
 
     Raises:
@@ -50,17 +61,24 @@ class FlightLog:
     """
 
     def __init__(self, path: str | Path, progress: Progress | None = None) -> None:
-        self.columns = Columns(path, _NAMES, progress)
         self.path = Path(path)
+        self.columns = self._read(progress)
         self.kind = self.columns.kind
         if self.kind not in _KINDS:
             raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; {' and '.join(_KINDS)}s are identified")
+        if self.columns.helicopter:
+            raise IdentifyError(
+                f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}); copters with rotors of fixed pitch "
+                "are identified"
+            )
+        if (self.columns.version or _OLDEST) < _OLDEST:
+            raise IdentifyError(
+                f"log {str(path)!r} is of {self.columns.firmware}; logs of ArduPilot 4 are identified, older ones have "
+                "other messages and units (sitl twin and sitl view take them)"
+            )
         self.parameters = self.columns.parameters
         if not self.parameters:
-            raise IdentifyError(
-                f"log {str(path)!r} has no PARM, which say what its outputs mean: "
-                "it begins in the middle, or its start is damaged"
-            )
+            raise IdentifyError(f"log {str(path)!r} {_NO_PARAMETERS[self.is_telemetry]}")
         self.armed = self._armed()
         self.spans = self._flying() if self.kind == "copter" else self._driving()
         """When it moved by itself, without failsafe."""
@@ -73,6 +91,19 @@ class FlightLog:
             raise IdentifyError(
                 f"log {str(path)!r}: the vehicle was never {where} for {4 * _SETTLES_S:.0f} s without failsafe"
             )
+
+    def _read(self, progress: Progress | None) -> Tables:
+        form = forms.of(self.path)
+        if form == forms.TLOG:
+            return Telemetry(self.path, progress)
+        if form != forms.DATAFLASH:
+            raise IdentifyError(f"log {str(self.path)!r} is {form}; {_READ}")
+        return Columns(self.path, _NAMES, progress)
+
+    @property
+    def is_telemetry(self) -> bool:
+        """Whether it is what the vehicle sent, not what it kept."""
+        return isinstance(self.columns, Telemetry)
 
     @property
     def seconds(self) -> float:
@@ -90,7 +121,8 @@ class FlightLog:
     def stream(self, name: str, instance: int | None = None) -> Table:
         """Messages of a name, or of one sensor of these, in the order of their times."""
         table = self.columns[name] if instance is None else self.columns[name].instance(instance)
-        return table.where(increasing(table.time))
+        later = increasing(table.time)
+        return table if later.all() else table.where(later)
 
     def estimate(self) -> Table:
         """XKF1 of the lane that was flown by."""

@@ -17,12 +17,13 @@ from ..logs.dataflash.columns import Progress
 from ..vehicles import Airframe
 from .copter import figures
 from .copter_airframe import model_of
-from .figure import Figure
+from .figure import Begins, Figure, silent
 from .flight import FlightLog, IdentifyError
 from .model import Model
 from .rover.airframe import RoverModel
 from .rover.airframe import model_of as rover_model_of
 from .rover.figures import figures as rover_figures
+from .telemetry import judged
 
 _CELLS = ("hover_voltage", "battery_voltage")
 """Figures of which the number of cells follows, at whose ends there may be one more."""
@@ -128,14 +129,18 @@ class Identification:
 
 
 def identify(
-    logs: str | Path | Sequence[str | Path], mass: float | None = None, progress: Progress | None = None
+    logs: str | Path | Sequence[str | Path],
+    mass: float | None = None,
+    progress: Progress | None = None,
+    begins: Begins = silent,
 ) -> Identification:
     """The figures of the copter or rover that these logs are of.
 
     Args:
-        logs: .bin files of flights of one vehicle.
+        logs: .bin or .tlog files of flights of one vehicle.
         mass: of the vehicle [kg].
         progress: is told how far each log is read.
+        begins: is told which figures are worked on.
 
     Raises:
         sitl.logs.tlog.LogError, IdentifyError: a log that cannot be used, named with the reason.
@@ -151,5 +156,16 @@ def identify(
         raise IdentifyError(
             f"logs of {' and '.join(f'a {kind}' for kind in sorted(kinds))}: they must be of one vehicle"
         )
-    of_kind = figures if found[0].kind == "copter" else rover_figures
-    return Identification(tuple(found), tuple(of_kind(found)), mass)
+    forms = {log.is_telemetry for log in found}
+    if len(forms) > 1:
+        words = ", ".join(f"{log.path.name} ({'telemetry' if log.is_telemetry else 'on-board'})" for log in found)
+        raise IdentifyError(f"logs of two forms, which tell different figures: {words}; give those of one form")
+    kind, is_telemetry = found[0].kind, found[0].is_telemetry
+    if kind == "rover":
+        if is_telemetry:
+            raise IdentifyError(
+                f"log {str(paths[0])!r} is telemetry of a rover; rovers are identified by on-board logs (.bin)"
+            )
+        begins("drive, steering, battery, sensors")
+    seen = figures(found, begins) if kind == "copter" else rover_figures(found)
+    return Identification(tuple(found), tuple(judged(seen, found)), mass)

@@ -20,6 +20,8 @@ Array = np.ndarray[Any, Any]
 
 GUSTS_S = 8.0
 """Residuals of flights are correlated for so long."""
+_WINDOWS = 1 << 14
+"""Sums that are held at once."""
 
 
 class Fit(NamedTuple):
@@ -36,16 +38,27 @@ class Fit(NamedTuple):
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def long_run(scores: Array, groups: Array, lag: int) -> Array:
-    """Sum of the covariances of scores (n, k) over all pairs up to a lag of each other, within the same group."""
-    total = np.zeros((scores.shape[1], scores.shape[1]))
+def long_run(factors: Array, errors: Array, groups: Array, lag: int) -> Array:
+    """Sum of the covariances of scores over all pairs up to a lag of each other, within the same group.
+
+    Scores are factors (n, k), each row times its error (n,).
+
+    A pair j apart has the weight 1 - j / (lag + 1): it is in that share of all windows of lag + 1 samples. So sums over
+    such windows, multiplied once, are the same as a product for each lag.
+    """
+    width = lag + 1
+    total = np.zeros((factors.shape[1], factors.shape[1]))
     for group in np.unique(groups):
-        part = scores[groups == group]
-        total += part.T @ part
-        for j in range(1, min(lag, len(part) - 1) + 1):
-            weight = 1.0 - j / (lag + 1.0)
-            cross = part[j:].T @ part[:-j]
-            total += weight * (cross + cross.T)
+        rows = np.flatnonzero(groups == group)
+        for first in range(0, len(rows) + lag, _WINDOWS):  # the window k ends with row k
+            last = min(first + _WINDOWS, len(rows) + lag)
+            begin, end = max(first - lag, 0), min(last, len(rows))
+            part = rows[begin:end]
+            sums = np.zeros((len(part) + 1, factors.shape[1]))
+            np.cumsum(factors[part] * errors[part, None], axis=0, out=sums[1:])
+            ends = np.arange(first, last)
+            windows = sums[np.minimum(ends + 1, end) - begin] - sums[np.maximum(ends - lag, begin) - begin]
+            total += windows.T @ windows / width
     return total
 
 
@@ -86,7 +99,7 @@ def least_squares(
     by = slopes(found.x) if slopes is not None else _slopes(residuals, found.x, scale)
     weight = np.minimum(1.0, 3.0 * spread / np.maximum(np.abs(error), 1e-300))
     bread = np.linalg.pinv((by * weight[:, None]).T @ by)
-    meat = long_run(by * (weight * error)[:, None], groups, lag)
+    meat = long_run(by, weight * error, groups, lag)
     covariance = bread @ meat @ bread * widening(len(error), len(start), lag)
     return Fit(found.x, covariance, error)
 
