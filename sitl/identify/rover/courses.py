@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.array_kernels import Kernel, Line, Table
+from ...core.constants import TICK_S
 from ...core.kernels import law
 from ...core.records import Records
 from ...physics.native.rover.prepare import prepare
 from ...physics.native.rover.state import Physics
 from ...physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, move
-from ...physics.native.tick import TICK_S
 from ...vehicles.figures.rover import STEERING_SKID
 
 Array = np.ndarray[Any, Any]
