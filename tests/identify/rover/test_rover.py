@@ -15,9 +15,10 @@ from sitl.logs.dataflash.log import attach
 from sitl.missions import files
 
 
-def drive(airframe, path) -> None:
-    """Rest; full throttle both ways; steering from side to side."""
-    simulation = Simulation(airframe, seed=5, params={"LOG_DISARMED": 1})
+def drive(airframe, path, reversals: int = 0) -> None:
+    """Rest; full throttle both ways, at once from one to the other so many times; steering from side to side."""
+    slew = {"MOT_SLEWRATE": 0} if reversals else {}
+    simulation = Simulation(airframe, seed=5, params={"LOG_DISARMED": 1, **slew})
     attach(simulation, path)
     vehicle = Client(simulation)
     vehicle.wait_ready()
@@ -33,6 +34,9 @@ def drive(airframe, path) -> None:
     sticks(0.0, 0.0, 4.0)
     for throttle in (0.4, 1.0, 0.0, -0.6, -1.0, 0.0):
         sticks(0.0, throttle, 4.0)
+    for _ in range(reversals):
+        sticks(0.0, 1.0, 3.03)
+        sticks(0.0, -1.0, 3.06)
     for throttle in (0.4, 0.7):
         for steering in (0.5, -0.5, 1.0, -1.0):
             sticks(steering, throttle, 3.0)
@@ -92,6 +96,16 @@ def test_tyres_that_slide_tell_their_grip(tmp_path) -> None:
     drive(airframe, tmp_path / "slippery.bin")
     figure = identify(tmp_path / "slippery.bin")["grip"]
     assert figure.low < 0.06 < figure.high and figure.relative < 0.3, str(figure)
+
+
+@pytest.mark.slow
+def test_motors_that_give_all_they_have_tell_it(tmp_path) -> None:
+    drive("erle_rover", tmp_path / "reversals.bin", reversals=6)
+    found, known = identify(tmp_path / "reversals.bin"), expected(vehicles.load("erle_rover"))
+    for name in ("drive_accel", "brake_accel"):
+        figure = found[name]
+        assert figure.low < known[name] < figure.high and figure.relative < 0.1, f"{figure}, truth {known[name]}"
+    assert found.airframe().value("drive_accel") == found["drive_accel"].value
 
 
 @pytest.mark.slow
