@@ -99,6 +99,20 @@ class FlightLog:
         return isinstance(self.columns, Telemetry)
 
     @property
+    def notes(self) -> list[str]:
+        """What is wrong with the file, and was passed over."""
+        log, found = self.columns, []
+        if isinstance(log, Telemetry):
+            found += [f"{log.bad} frames with a wrong checksum are left out"] * (log.bad > 0)
+        elif isinstance(log, Columns):
+            found += [f"{log.skipped} bytes are no messages: the log is damaged there"] * (log.skipped > 0)
+            found += ["it is cut off within a message"] * log.truncated
+        found += [f"{log.left_out} messages with times that cannot be are left out"] * (log.left_out > 0)
+        if self.armed and self.armed[-1].end >= self._end:
+            found.append("it ends while the vehicle is armed: it is read up to there")
+        return [f"{self.path.name}: {note}" for note in found]
+
+    @property
     def seconds(self) -> float:
         """How long it moved [s]."""
         return sum(span.length for span in self.spans)
