@@ -16,7 +16,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("identify")
     parser.add_argument(
-        "logs", nargs="*", type=Path, metavar="LOG", help="logs of one copter: .bin, or telemetry (.tlog)"
+        "logs", nargs="*", type=Path, metavar="LOG", help="logs of one copter (.bin, .tlog) or rover (.bin)"
     )
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the airframe that --frame takes")
     parser.add_argument("--mass", type=float, metavar="KG", help="mass of the vehicle: logs alone tell ratios")
@@ -24,6 +24,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the figures observable"
     )
     parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
+    parser.add_argument("--vehicle", choices=("copter", "rover"), default="copter", help="that drives --plan (copter)")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="M/S",
+        help="of the fastest legs of a rover's --plan (1.5), whose size follows from it",
+    )
     parser.set_defaults(function=run)
 
 
@@ -34,14 +41,24 @@ def run(options: argparse.Namespace) -> int:
     if options.out is not None and options.out.suffix != ".toml":
         raise OptionError(f"--out {str(options.out)!r} does not end in .toml, by which --frame tells such files")
     if options.plan is not None:
-        from .plan import ADVICE, write
+        from .plan import advice, write
 
-        write(options.plan, _home(options.home))
-        print(ADVICE)
+        speed = _speed(options.vehicle, options.speed)
+        write(options.plan, _home(options.home), options.vehicle, speed)
+        print(advice(options.vehicle, speed))
         print(f"mission: {options.plan}")
     if options.logs:
         _identify(options.logs, options.mass, options.out)
     return 0
+
+
+def _speed(vehicle: str, speed: float | None) -> float:
+    if speed is not None and vehicle != "rover":
+        raise OptionError(f"--speed {speed:g} is of a rover's plan: add --vehicle rover")
+    found = 1.5 if speed is None else speed
+    if not 0.1 <= found <= 30.0:
+        raise OptionError(f"--speed {found:g} m/s is outside 0.1 .. 30")
+    return found
 
 
 def _home(text: str | None) -> tuple[float, float]:

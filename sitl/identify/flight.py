@@ -27,6 +27,9 @@ _SETTLES_S = 3.0
 """After take-off and before landing [s]."""
 _LOW_M = 2.0
 """Nearer to the ground than this the rotors' air comes back [m]."""
+_DRIVES = 0.1
+"""A rover that never drove faster stood [m/s]."""
+_KINDS = ("copter", "rover")
 _NAMES = (
     "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
     "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
@@ -61,8 +64,8 @@ class FlightLog:
         self.path = Path(path)
         self.columns = self._read(progress)
         self.kind = self.columns.kind
-        if self.kind != "copter":
-            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; only copters are identified as yet")
+        if self.kind not in _KINDS:
+            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; {' and '.join(_KINDS)}s are identified")
         if self.columns.helicopter:
             raise IdentifyError(
                 f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}); copters with rotors of fixed pitch "
@@ -73,16 +76,25 @@ class FlightLog:
                 f"log {str(path)!r} is of {self.columns.firmware}; logs of ArduPilot 4 are identified, older ones have "
                 "other messages and units (sitl twin and sitl view take them)"
             )
+        if self.is_telemetry and self.kind != "copter":
+            raise IdentifyError(
+                f"log {str(path)!r} is telemetry of a {self.kind}, which tells too little of it; "
+                "take the on-board log (.bin)"
+            )
         self.parameters = self.columns.parameters
         if not self.parameters:
             raise IdentifyError(f"log {str(path)!r} {_NO_PARAMETERS[self.is_telemetry]}")
         self.armed = self._armed()
-        self.spans = self._flying()
+        self.spans = self._flying() if self.kind == "copter" else self._driving()
         """When it moved by itself, without failsafe."""
         if not self.spans:
+            where = (
+                f"in the air, {_LOW_M:g} m over the ground"
+                if self.kind == "copter"
+                else f"armed and driving (XKF1 over {_DRIVES:g} m/s)"
+            )
             raise IdentifyError(
-                f"log {str(path)!r}: the vehicle was never in the air for {4 * _SETTLES_S:.0f} s, {_LOW_M:g} m over "
-                "the ground and without failsafe"
+                f"log {str(path)!r}: the vehicle was never {where} for {4 * _SETTLES_S:.0f} s without failsafe"
             )
 
     def _read(self, progress: Progress | None) -> Tables:
@@ -184,6 +196,19 @@ class FlightLog:
         spans = _without(spans, self._failsafes())
         spans = _without(spans, self._near_ground(found))
         return [span for span in spans if span.length > 2.0 * _SETTLES_S]
+
+    def _driving(self) -> list[Span]:
+        """Armed, without failsafe: a rover that stands tells that its outputs do not move it."""
+        spans = _without(self.armed, self._failsafes())
+        return [span for span in spans if span.length > 2.0 * _SETTLES_S and self._fastest(span) > _DRIVES]
+
+    def _fastest(self, span: Span) -> float:
+        """Greatest speed over the ground in a span [m/s]."""
+        if not self.has("XKF1"):
+            return 0.0
+        table = self.estimate()
+        table = table.where(within(table.time, [span]))
+        return float(np.hypot(table["VN"], table["VE"]).max()) if len(table) else 0.0
 
     def _near_ground(self, flights: list[Span]) -> list[Span]:
         """When it was near the height at which it took off; all of it when the log has no heights."""

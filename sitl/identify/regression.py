@@ -70,7 +70,13 @@ def widening(count: int, used: int, lag: int) -> float:
 
 
 def least_squares(
-    residuals: Callable[[Array], Array], start: Array, groups: Array, lag: int, scale: Array | None = None
+    residuals: Callable[[Array], Array],
+    start: Array,
+    groups: Array,
+    lag: int,
+    scale: Array | None = None,
+    limits: tuple[Array, Array] = (np.array(-np.inf), np.array(np.inf)),
+    slopes: Callable[[Array], Array] | None = None,
 ) -> Fit:
     """Parameters that make residuals small (robust to outliers by Huber's loss).
 
@@ -80,17 +86,20 @@ def least_squares(
         groups: (n,) stretches within which residuals are correlated.
         lag: over how many samples.
         scale: typical size of each parameter.
+        limits: least and greatest that each parameter may be.
+        slopes: of the residuals by the parameters (n, k), where not all need be worked out one by one.
     """
-    first = optimize.least_squares(residuals, start, x_scale=scale if scale is not None else 1.0)
+    ways: Any = {"x_scale": scale if scale is not None else 1.0, "bounds": limits, "jac": slopes or "2-point"}
+    if slopes is not None:  # each evaluation is long
+        ways["ftol"] = 1e-6
+    first = optimize.least_squares(residuals, start, **ways)
     spread = 1.4826 * float(np.median(np.abs(first.fun - np.median(first.fun)))) or 1.0
-    found = optimize.least_squares(
-        residuals, first.x, loss="huber", f_scale=3.0 * spread, x_scale=scale if scale is not None else 1.0
-    )
+    found = optimize.least_squares(residuals, first.x, loss="huber", f_scale=3.0 * spread, **ways)
     error = residuals(found.x)
-    slopes = _slopes(residuals, found.x, scale)
+    by = slopes(found.x) if slopes is not None else _slopes(residuals, found.x, scale)
     weight = np.minimum(1.0, 3.0 * spread / np.maximum(np.abs(error), 1e-300))
-    bread = np.linalg.pinv((slopes * weight[:, None]).T @ slopes)
-    meat = long_run(slopes, weight * error, groups, lag)
+    bread = np.linalg.pinv((by * weight[:, None]).T @ by)
+    meat = long_run(by, weight * error, groups, lag)
     covariance = bread @ meat @ bread * widening(len(error), len(start), lag)
     return Fit(found.x, covariance, error)
 

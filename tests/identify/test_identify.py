@@ -90,7 +90,6 @@ def test_logs_of_no_use_are_named(flown, tmp_path) -> None:
     data = flown.read_bytes()
     for name, content, says in (
         ("no_parm.bin", data.replace(b"PARM", b"PXRM"), "has no PARM"),
-        ("rover.bin", data.replace(b"ArduCopter V", b"xArduRover V"), "is of a rover; only copters"),
         ("ground.bin", data[: len(data) // 5], "never in the air"),
         ("plane.bin", data.replace(b"ArduCopter V", b"MArduPlane V"), "is of a plane"),
         ("sub.bin", data.replace(b"ArduCopter V", b"MMMArduSub V"), "is of a submarine"),
@@ -107,6 +106,10 @@ def test_logs_of_no_use_are_named(flown, tmp_path) -> None:
         path.write_bytes(content)
         with pytest.raises((IdentifyError, LogError), match=rf"{name}' {says}|{name}': .*{says}"):
             identify(path)
+    rover = tmp_path / "rover.bin"
+    rover.write_bytes(data.replace(b"ArduCopter V", b"xArduRover V"))
+    with pytest.raises(IdentifyError, match="logs of a copter and a rover: they must be of one vehicle"):
+        identify([flown, rover])
     with pytest.raises(IdentifyError, match="mass -1"):
         identify(flown, mass=-1.0)
 
