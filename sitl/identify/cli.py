@@ -16,9 +16,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Declare the command."""
     parser = commands.add_parser("identify")
     parser.add_argument(
-        "logs", nargs="*", type=Path, metavar="LOG",
-        help="logs of one copter (.bin, or telemetry: .tlog) or of one rover (.bin)",
-    )  # fmt: skip
+        "logs", nargs="*", type=Path, metavar="LOG", help="logs of one copter (.bin, .tlog) or rover (.bin)"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the airframe that --frame takes")
     parser.add_argument("--mass", type=float, metavar="KG", help="mass of the vehicle: logs alone tell ratios")
     parser.add_argument(
@@ -94,6 +93,8 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> Non
 
         found = identify(logs, mass, progress, begins)
     print(found.table())
+    for note in (note for log in found.logs for note in log.notes):
+        print(f"note: {note}")
     if any(log.is_telemetry for log in found.logs):
         print(f"note: {HOW}")
     if out is not None:

@@ -76,6 +76,11 @@ class FlightLog:
                 f"log {str(path)!r} is of {self.columns.firmware}; logs of ArduPilot 4 are identified, older ones have "
                 "other messages and units (sitl twin and sitl view take them)"
             )
+        if self.is_telemetry and self.kind != "copter":
+            raise IdentifyError(
+                f"log {str(path)!r} is telemetry of a {self.kind}, which tells too little of it; "
+                "take the on-board log (.bin)"
+            )
         self.parameters = self.columns.parameters
         if not self.parameters:
             raise IdentifyError(f"log {str(path)!r} {_NO_PARAMETERS[self.is_telemetry]}")
@@ -104,6 +109,20 @@ class FlightLog:
     def is_telemetry(self) -> bool:
         """Whether it is what the vehicle sent, not what it kept."""
         return isinstance(self.columns, Telemetry)
+
+    @property
+    def notes(self) -> list[str]:
+        """What is wrong with the file, and was passed over."""
+        log, found = self.columns, []
+        if isinstance(log, Telemetry):
+            found += [f"{log.bad} frames with a wrong checksum are left out"] * (log.bad > 0)
+        elif isinstance(log, Columns):
+            found += [f"{log.skipped} bytes are no messages: the log is damaged there"] * (log.skipped > 0)
+            found += ["it is cut off within a message"] * log.truncated
+        found += [f"{log.left_out} messages with times that cannot be are left out"] * (log.left_out > 0)
+        if self.armed and self.armed[-1].end >= self._end:
+            found.append("it ends while the vehicle is armed: it is read up to there")
+        return [f"{self.path.name}: {note}" for note in found]
 
     @property
     def seconds(self) -> float:

@@ -160,12 +160,7 @@ def identify(
     if len(forms) > 1:
         words = ", ".join(f"{log.path.name} ({'telemetry' if log.is_telemetry else 'on-board'})" for log in found)
         raise IdentifyError(f"logs of two forms, which tell different figures: {words}; give those of one form")
-    kind, is_telemetry = found[0].kind, found[0].is_telemetry
-    if kind == "rover":
-        if is_telemetry:
-            raise IdentifyError(
-                f"log {str(paths[0])!r} is telemetry of a rover; rovers are identified by on-board logs (.bin)"
-            )
+    if found[0].kind == "rover":
         begins("drive, steering, battery, sensors")
-    seen = figures(found, begins) if kind == "copter" else rover_figures(found)
+    seen = figures(found, begins) if found[0].kind == "copter" else rover_figures(found)
     return Identification(tuple(found), tuple(judged(seen, found)), mass)

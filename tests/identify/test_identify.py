@@ -60,6 +60,11 @@ def test_a_log_that_ends_in_the_air_still_tells(flown, tmp_path) -> None:
     path = tmp_path / "cut.bin"
     path.write_bytes(data[: int(0.7 * len(data))])
     part = identify(path)
+    assert part.logs[0].notes == [
+        "cut.bin: it is cut off within a message",
+        "cut.bin: it ends while the vehicle is armed: it is read up to there",
+    ]
+    assert identify(flown).logs[0].notes == ["flight.bin: it ends while the vehicle is armed: it is read up to there"]
     assert part["hover_output"].is_observed
     assert part.logs[0].seconds < 0.8 * identify(flown).logs[0].seconds
 
