@@ -277,7 +277,7 @@ def test_plain_python_gives_the_same_bits() -> None:
 
 def test_memory_of_a_vehicle() -> None:
     fleet = Fleet("erle_copter", 1)
-    assert fleet.records.itemsize + fleet.ports.itemsize < 72_000
+    assert fleet.records.itemsize + fleet.ports.itemsize < 76_000
     assert np.all(fleet.time_us == 0)
 
 

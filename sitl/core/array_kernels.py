@@ -21,7 +21,7 @@ from .fingerprint import fingerprint
 from .kernels import Unit, jit_disabled
 from .numba_tuning import COMMON
 from .order import KERNELS_PATH, Order
-from .records import FloatRows, Floats, IntRows, Ints, Records
+from .records import FloatRows, Floats, IntRows, Ints, Record, Records
 from .shipped import library as shipped
 from .shipped.calls import Calls
 from .shipped.identity import identity
@@ -176,19 +176,21 @@ def numba_type_of(hint: Any) -> Any:
     )
 
 
-def _layouts(types: Any) -> Iterator[str]:
-    """Of the records in a signature, as text."""
+def _records(types: Any) -> Iterator[type[Record]]:
+    """Of the arrays in a signature."""
+    from .numba_records import CLASSES
+
     for kind in types:
         if hasattr(kind, "instance_class"):
-            yield from _layouts(kind.types)
-        elif hasattr(getattr(kind, "dtype", None), "values"):
-            yield f"{kind.dtype} {kind.dtype.dtype} {kind.dtype.values}"
+            yield from _records(kind.types)
+        elif (name := getattr(getattr(kind, "dtype", None), "name", None)) in CLASSES:
+            yield CLASSES[name]
 
 
 def _folder(kernel: Kernel[..., Any], signature: Any) -> Path:
     """Where the kernel's current machine code is or will be."""
-    layouts = " ".join(_layouts(signature.args))
-    key = fingerprint(unit_of(kernel), layouts, f"{toolchain()} {signature} {kernel.lets_others_run}")
+    made_by = f"{toolchain()} {signature} {kernel.lets_others_run}"
+    key = fingerprint(unit_of(kernel), _records(signature.args), made_by)
     return cache_folder() / f"{kernel.name}-{key}"
 
 
@@ -207,13 +209,13 @@ def is_shipped(kernel: Kernel[..., Any]) -> bool:
 
 
 def kernels_of(modules: Iterable[str]) -> dict[str, Kernel[..., Any]]:
-    """ "MODULE:NAME" -> a kernel that one of these modules makes."""
-    return {
-        f"{module}:{made.name}": made
-        for module in modules
-        for made in vars(importlib.import_module(module)).values()
-        if isinstance(made, Kernel)
-    }
+    """ "MODULE:NAME" -> a kernel that one of these modules makes, or takes from elsewhere: once each."""
+    found: dict[Kernel[..., Any], str] = {}
+    for module in modules:
+        for made in vars(importlib.import_module(module)).values():
+            if isinstance(made, Kernel):
+                found.setdefault(made, f"{module}:{made.name}")
+    return {task: kernel for kernel, task in found.items()}
 
 
 def missing_kernels(modules: Iterable[str]) -> dict[str, Kernel[..., Any]]:

@@ -28,7 +28,7 @@ import numpy as np
 
 from .build_work import BuildWork, ProgressLines
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
-from .fingerprint import fingerprint, reached
+from .fingerprint import Reached, fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import TRUST, law_options, trust_laws
 from .order import Order
@@ -49,7 +49,7 @@ _fingerprints: dict[tuple[str, str], str] = {}
 _identities: dict[tuple[str, str], str] = {}
 ENTRY_OPTIONS = {"error_model": "numpy", "forceinline": True}
 """Of a unit's entry: its body is compiled into the function with the C signature."""
-_SYMBOLS = "symbols name records by their classes"
+_SYMBOLS = "symbols name records by their classes alone"
 """Machine code made with symbols of another kind cannot be loaded beside it."""
 _jitable: set[int] = set()
 _linked: set[str] = set()
@@ -98,7 +98,7 @@ def unit_folder(unit: Unit, path: str) -> Path:
     key = (unit.name, path)
     if key not in _fingerprints:
         made_by = f"{toolchain()} {TRUST} {path} {unit.inline}"
-        _fingerprints[key] = fingerprint(unit, record_class(path).layout(), made_by)
+        _fingerprints[key] = fingerprint(unit, (record_class(path),), made_by)
     return cache_folder() / f"{unit.name}-{path.rsplit('.', 1)[1].lower()}-{_fingerprints[key]}"
 
 
@@ -311,10 +311,7 @@ def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress)
 
 def _weight(unit: Unit) -> float:
     """A guess at the time that it takes to compile [s], from the source that it reaches."""
-    from .fingerprint import _walk
-
-    lines: list[str] = []
-    _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)  # type: ignore[arg-type]
+    lines = Reached(unit.function, {id(u.function) for u in UNITS.values() if u is not unit}).lines
     return _START_S + sum(len(line) for line in lines) / _BYTES_A_SECOND
 
 

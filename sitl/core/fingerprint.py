@@ -3,15 +3,15 @@
 
 Numba's own cache looks only at the file of the entry point, so an edit to a law in another file would leave
 stale code. Here the hash covers every function and constant that a unit reaches, to the last law (comments and
-docstrings left out), the record layout, and the versions of the compilers. Other units are a border: calling one does
-not depend on its inside.
+docstrings left out), where the fields lie that these mention, and the versions of the compilers. Other units are a
+border: calling one does not depend on its inside.
 """
 
 from __future__ import annotations
 
 import hashlib
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 from functools import cache
 from typing import Any, TypeGuard
 
@@ -97,25 +97,60 @@ def _bytecode(function: Any) -> str:
     return _code(function.__code__, function.__doc__)
 
 
-def _walk(function: Any, seen: set[int], units: set[int], lines: list[str]) -> None:
-    if id(function) in seen:
-        return
-    seen.add(id(function))
-    for item in items(function, _bytecode):
-        if isinstance(item, str):
-            lines.append(item)
-        elif is_record(item[1]):
-            lines.append(f"{item[0]} of {item[1].layout()}")
-        elif item[0] and id(item[1]) in units:
-            lines.append(f"unit {item[0]}")
-        else:
-            _walk(item[1], seen, units, lines)
+class Reached:
+    """What a function uses, with all functions that it reaches up to other units.
+
+    Args:
+        function: a law.
+        units: ids of functions that are a border.
+    """
+
+    def __init__(self, function: Any, units: Container[int] = ()) -> None:
+        self.lines: list[str] = []
+        """Of code and constants, in order."""
+        self.names: set[str] = set()
+        """That the code mentions: a field of another name cannot be read or written by it."""
+        self.records: dict[type[Record], str] = {}
+        """Records that it makes of memory, with the name that it has for each."""
+        self._units, self._seen = units, set[int]()
+        self._walk(function)
+
+    def _walk(self, function: Any) -> None:
+        if id(function) in self._seen:
+            return
+        self._seen.add(id(function))
+        self._note_names(function.__code__)
+        for item in items(function, _bytecode):
+            if isinstance(item, str):
+                self.lines.append(item)
+            elif is_record(item[1]):
+                self.records[item[1]] = item[0]
+            elif item[0] and id(item[1]) in self._units:
+                self.lines.append(f"unit {item[0]}")
+            else:
+                self._walk(item[1])
+
+    def _note_names(self, code: types.CodeType) -> None:
+        self.names.update(code.co_names)
+        for constant in code.co_consts:
+            if isinstance(constant, types.CodeType):
+                self._note_names(constant)
+            elif isinstance(constant, str):  # of a getattr
+                self.names.add(constant)
+
+    def layouts(self, records: Iterable[type[Record]]) -> Iterator[str]:
+        """Of these records, and of those that are made of memory, the fields that are mentioned."""
+        for record in records:
+            yield record.layout(self.names)
+        for record, name in self.records.items():
+            yield f"{name} of {record.layout(self.names)}"
 
 
-def fingerprint(unit: Unit, layout: str, toolchain: str) -> str:
-    """Hash (20 hex digits) of all that ``unit``'s machine code for records of this ``layout`` depends on."""
-    lines: list[str] = [toolchain, layout]
-    _walk(unit.function, set(), {id(u.function) for u in UNITS.values() if u is not unit}, lines)
+def fingerprint(unit: Unit, records: Iterable[type[Record]], toolchain: str) -> str:
+    """Hash (20 hex digits) of all that ``unit``'s machine code for ``records`` depends on: also of where the fields lie
+    that it mentions, and of no others."""
+    found = Reached(unit.function, {id(u.function) for u in UNITS.values() if u is not unit})
+    lines = [toolchain, *found.lines, *found.layouts(records)]
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
 
 

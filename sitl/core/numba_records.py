@@ -9,6 +9,7 @@ class, because Numba prints the name of each type into every symbol.
 from __future__ import annotations
 
 import math
+import sys
 import zlib
 from functools import cache
 from typing import Any, get_type_hints
@@ -52,8 +53,7 @@ class RecordType(types.Record):
         self.values: dict[str, Any] = {f.name: _value_type(f) for f in cls.fields.values() if f.value is not None}
         """Field that reads as a value -> what it reads as."""
         self.properties: dict[str, Any] = cls.properties
-        # Numba takes types of one name for the same: classes that are made by a function may share theirs.
-        self.name = f"{cls.__module__}.{cls.__qualname__}@{zlib.crc32(cls.layout().encode()):08x}"
+        self.name = _name(cls)
 
     def typeof(self, key: str) -> Any:
         """The type of a field.
@@ -80,6 +80,18 @@ class RecordType(types.Record):
         return self.name
 
 
+def _name(cls: type[Record]) -> str:
+    """By which Numba knows the type; also the types in machine code that was kept, of fields in other places.
+
+    It takes types of one name for the same: classes that are made by a function, or again, may share theirs.
+    """
+    found: Any = sys.modules.get(cls.__module__)
+    for part in cls.__qualname__.split("."):
+        found = getattr(found, part, None)
+    alone = f"{cls.__module__}.{cls.__qualname__}"
+    return alone if found is cls else f"{alone}@{zlib.crc32(cls.layout().encode()):08x}"
+
+
 def _memory_type(field: Field) -> Any:
     base = numba_type(field.record) if field.record is not None else _NUMBERS[field.code]
     return types.NestedArray(base, field.shape) if field.shape else base
@@ -95,9 +107,12 @@ def numba_type(cls: type[Record]) -> RecordType:
     """Numba's type of a record class."""
     kind = RecordType(cls)
     _BY_DTYPE.setdefault(cls.dtype, kind)
+    CLASSES[kind.name] = cls
     return kind
 
 
+CLASSES: dict[str, type[Record]] = {}
+"""Name of a type -> its record class."""
 _BY_DTYPE: dict[Any, RecordType] = {}
 _typeof_ndarray = typeof_impl.dispatch(np.ndarray)
 

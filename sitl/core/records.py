@@ -35,7 +35,7 @@ from __future__ import annotations
 import inspect
 import struct
 import sys
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Annotated, Any, ClassVar, Protocol, Self, TypeVar, get_args, get_origin, overload
@@ -182,9 +182,9 @@ class Field:
         base = np.dtype(self.code) if self.record is None else self.record.dtype
         return (base, self.shape) if self.shape else base
 
-    def layout(self) -> str:
-        """What machine code depends on, as text."""
-        inner = self.code if self.record is None else self.record.layout()
+    def layout(self, names: Container[str] | None = None) -> str:
+        """What machine code depends on, as text (``Record.layout``)."""
+        inner = self.code if self.record is None else self.record.layout(names)
         return f"{self.name}:{self.offset}:{inner}{self.shape}{self.value.__name__ if self.value else ''}"
 
 
@@ -245,6 +245,24 @@ _REFERENCES = tuple(f"_reference_{k}" for k in range(64))
 """Where a record keeps its arrays, records and rows of records, in the order of its fields."""
 
 
+_ROOM, _WIDE = 32, 64
+"""Records that are not small have a multiple of so many bytes; of more than one of these, a multiple of so many."""
+
+
+def _with_room(close: np.dtype[Any]) -> np.dtype[Any]:
+    """The type with unused memory at its end."""
+    step = _ROOM if close.itemsize <= _ROOM else _WIDE
+    fields: Any = close.fields
+    described: Any = {
+        "names": close.names,
+        "formats": [fields[name][0] for name in close.names or ()],
+        "offsets": [fields[name][1] for name in close.names or ()],
+        "itemsize": -(-close.itemsize // step) * step,
+    }
+    made: np.dtype[Any] = np.dtype(described, align=True)
+    return made
+
+
 class _RecordMeta(type):
     """Gives record classes no dictionary, so that a misspelt field is an error."""
 
@@ -267,6 +285,9 @@ class Record(metaclass=_RecordMeta):
     """Views of the memory as numbers of one size: (attribute, letter of the numbers)."""
     keeps_places: ClassVar[bool] = True
     """Whether a field that a subclass declares again stays where the base has it; else it goes where it is declared."""
+    _small: ClassVar[int] = 32
+    """Records of no more bytes have no unused memory at their end. The others mostly have some, so that a new field
+    there moves no other record, and units that do not mention it are not compiled again."""
     _bytes: Any
     _f8: Any
     _i8: Any
@@ -291,8 +312,9 @@ class Record(metaclass=_RecordMeta):
         taken = [f.name for f in declared if hasattr(np.void, f.name) or hasattr(Record, f.name)]
         if taken:
             raise TypeError(f"{cls.__name__}: fields {taken} are attributes of records themselves; choose other names")
-        cls.dtype = np.dtype([(f.name, f.numpy) for f in declared], align=True)
-        offsets: Any = cls.dtype.fields or {}
+        close = np.dtype([(f.name, f.numpy) for f in declared], align=True)
+        offsets: Any = close.fields or {}
+        cls.dtype = close if close.itemsize <= cls._small else _with_room(close)
         cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
         own_laws = {name: p.fget for name, p in vars(cls).items() if isinstance(p, property)}
         cls.properties = cls.properties | own_laws
@@ -345,9 +367,14 @@ class Record(metaclass=_RecordMeta):
         return np.zeros(count, cls.dtype)
 
     @classmethod
-    def layout(cls) -> str:
-        """Names, types and places of all fields as text: machine code depends on it."""
-        return "{" + ",".join(field.layout() for field in cls.fields.values()) + "}"
+    def layout(cls, names: Container[str] | None = None) -> str:
+        """The size of the record, and names, types and places of its fields as text: machine code depends on it.
+
+        Args:
+            names: fields of other names, and what is in them, are left out: the code mentions none of them.
+        """
+        fields = [field.layout(names) for name, field in cls.fields.items() if names is None or name in names]
+        return f"{cls.dtype.itemsize}{{{','.join(fields)}}}"
 
     def zero(self, *names: str) -> None:
         """Set the fields named, or all, to zero."""

@@ -57,7 +57,7 @@ import numpy as np
 import toy
 from sitl.core import compile, fingerprint, kernels
 units = {u.function.__name__: u for u in kernels.UNITS.values()}
-prints = {n: fingerprint.fingerprint(u, toy.Pair.layout(), "toolchain") for n, u in units.items()}
+prints = {n: fingerprint.fingerprint(u, (toy.Pair,), "toolchain") for n, u in units.items()}
 fleet = toy.Pair.fleet(2)
 fleet["x"] = 1.0
 built = []
@@ -66,7 +66,7 @@ if len(sys.argv) > 1:
     call(fleet.ctypes.data, 2, 1, 5)
 else:
     toy.entry(fleet.view(np.recarray), 1, 5)
-print(json.dumps({"prints": prints, "fleet": fleet.tolist(), "built": sorted(set(built))}))
+print(json.dumps({"prints": prints, "fleet": fleet[["x", "y"]].tolist(), "built": sorted(set(built))}))
 """
 
 
@@ -75,9 +75,12 @@ class Toy:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        (folder / "toy.py").write_text(ENTRY)
+        self.write_entry(ENTRY)
         (folder / "run.py").write_text(RUN)
         self.write(LAWS)
+
+    def write_entry(self, entry: str) -> None:
+        (self.folder / "toy.py").write_text(entry)
 
     def write(self, laws: str) -> None:
         (self.folder / "toy_laws.py").write_text(laws)
@@ -121,6 +124,37 @@ def test_an_edited_law_rebuilds_only_the_units_that_reach_it(toy: Toy) -> None:
     after = toy.run("compiled")
     assert after["built"] == ["toy.entry"]
     assert after["fleet"][1] == [32.0, 10.0]
+
+
+X, Y, ROOM = "    x: float\n", "    y: float\n", "    others: Floats = array(3)\n"
+WIDE = ENTRY.replace("import Record\n", "import Floats, Record, array\n").replace(Y, Y + ROOM)
+"""With 40 bytes of fields: the record has room for more. Unit ``first`` uses x alone, unit ``entry`` y alone."""
+NEW, BOTH = "    new: float\n", ["toy.entry", "toy.first"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "built"),
+    [
+        (ROOM, ROOM + NEW, []),  # where there was nothing
+        (ROOM, NEW + ROOM, []),  # what it moves is used by nobody
+        (X, X + NEW, ["toy.entry"]),  # it moves y
+        (X, NEW + X, BOTH),
+        (ROOM, ROOM + "    new: Floats = array(4)\n", BOTH),  # more than there is room for: it moves the next record
+        (Y, "    y: int\n", ["toy.entry"]),
+        ("v.y = outer(v.y)", "v.others[0] = outer(v.y)\n        v.y = v.others[0]", ["toy.entry"]),
+    ],
+)  # fmt: skip
+def test_a_changed_record_rebuilds_only_the_units_that_use_what_moved(
+    toy: Toy, old: str, new: str, built: list[str]
+) -> None:
+    toy.write_entry(WIDE)
+    assert toy.run("compiled")["built"] == BOTH
+    assert old in WIDE
+    toy.write_entry(WIDE.replace(old, new))
+    after = toy.run("compiled")
+    assert after["built"] == built
+    assert after["fleet"] == toy.run()["fleet"] == [[1.0, 0.0], [32.0, 5.0]]
+    assert toy.run("compiled")["built"] == [], "what was kept is found again"
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,13 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 from sitl.core.constant_tables import constant_table
-from sitl.core.fingerprint import _walk
+from sitl.core.fingerprint import Reached
+from sitl.core.records import Record
 
 SHOW = """
 import sys
@@ -32,9 +36,7 @@ def test_code_within_code_and_sets_are_written_alike_in_every_process() -> None:
 
 def test_the_numbers_of_a_table_count() -> None:
     def looks_up(*numbers: float) -> list[str]:
-        lines: list[str] = []
-        _walk(constant_table(*numbers), set(), set(), lines)
-        return lines
+        return Reached(constant_table(*numbers)).lines
 
     assert looks_up(1.0, 2.0) == looks_up(1.0, 2.0) != looks_up(1.0, 2.5)
 
@@ -54,3 +56,37 @@ def test_every_kernel_has_one_fingerprint_in_all_processes() -> None:
         printed.add(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
     (names,) = printed
     assert len(names.split()) > 30
+
+
+def test_names_within_code_and_in_texts_count_as_mentioned() -> None:
+    def uses(v: Any) -> Any:
+        return [row.deep for row in v.rows], getattr(v, "by_text"), v.plain  # noqa: B009
+
+    assert {"deep", "rows", "by_text", "plain"} <= Reached(uses).names
+
+
+class Part(Record):
+    a: float
+    b: float
+
+
+class Whole(Record):
+    first: Part
+    second: Part
+    third: float
+
+
+def test_a_layout_has_the_fields_that_are_named_with_the_size_of_each_record() -> None:
+    assert Whole.layout(("second", "b", "elsewhere")) == "64{second:16:16{b:8:f8()float}()}"
+    assert Whole.layout(("first",)) == "64{first:0:16{}()}"
+    part = "16{a:0:f8()float,b:8:f8()float}()"
+    assert Whole.layout() == f"64{{first:0:{part},second:16:{part},third:32:f8()float}}"
+
+
+@pytest.mark.parametrize(("numbers", "size"), [(4, 32), (5, 64), (8, 64), (9, 128)])
+def test_records_that_are_not_small_have_room(numbers: int, size: int) -> None:
+    made = type(
+        "Made", (Record,), {"__annotations__": {f"f{k}": "float" for k in range(numbers)}, "__module__": __name__}
+    )
+    assert made.dtype.itemsize == size
+    assert [field.offset for field in made.fields.values()] == [8 * k for k in range(numbers)]

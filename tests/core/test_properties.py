@@ -66,6 +66,6 @@ def test_laws_read_properties() -> None:
 
 def test_machine_code_depends_on_properties(monkeypatch: pytest.MonkeyPatch) -> None:
     unit = Unit("work", work, 0)
-    before = fingerprint(unit, Dart.layout(), "")
+    before = fingerprint(unit, (Dart,), "")
     monkeypatch.setitem(PROPERTIES, "shaft_length", [*PROPERTIES["shaft_length"], test_laws_read_properties])
-    assert fingerprint(unit, Dart.layout(), "") != before
+    assert fingerprint(unit, (Dart,), "") != before

@@ -103,6 +103,7 @@ class ParameterGroup(Record):
     """
 
     keeps_places: ClassVar[bool] = False
+    _small: ClassVar[int] = 0
 
 
 Change = float | tuple[float, ...] | dict[str, Any]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.border import RC_INPUTS
+from ...core.record_reader import locate
 from ...core.records import Records
 from .avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from .estimator import Ekf3
@@ -17,6 +18,9 @@ from .radio import RcChannel, RcMap
 from .simulation import Simulated
 from .system import Ahrs, Arming, Battery, Compass, Failsafes, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 from .without_gps import Flow, RangeFinder, VisualOdometry
+
+_BYTES = 8
+"""Of a parameter."""
 
 
 class Parameters(ParameterGroup):
@@ -72,9 +76,9 @@ class Parameters(ParameterGroup):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        for k, row in enumerate(rows(cls)):
+        for row in rows(cls):
             if row.name not in cls.fields:
-                setattr(cls, row.name, _by_full_name(k))
+                setattr(cls, row.name, _by_full_name(locate(cls.dtype, row.path)[0] // _BYTES))
 
 
 def _by_full_name(k: int) -> property:
