@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How right ``sitl identify`` is: logs of our own copters, whose figures are known, on seeds that it never saw.
+"""How right ``sitl identify`` is: logs of our own vehicles, whose figures are known, on seeds that it never saw.
 
     python -m benchmarks.identification                          # 5 seeds of each airframe: 3 minutes
     python -m benchmarks.identification --seeds 101..125 --airframes erle_copter
     python -m benchmarks.identification --keep logs --details    # the logs stay; a line for each figure of each log
 
-Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts.
+Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts;
+of a rover, a drive of its mission and by the sticks as ``--plan`` says.
 For each figure and airframe the table has the truth, in how many logs it was observed, in how many of these the
 interval holds the truth, the median error, and the median half of the interval.
 """
@@ -29,33 +30,90 @@ from sitl.errors import SitlError
 from sitl.identify import Identification, identify
 from sitl.identify.drag import SPEED
 from sitl.identify.expected import Copter
-from sitl.identify.model import NOISES
 from sitl.identify.plan import write
+from sitl.identify.rover.expected import expected
+from sitl.identify.shared import NOISES
 from sitl.logs.dataflash.log import attach
+from sitl.logs.tlog import TlogWriter
 from sitl.missions import files
-from sitl.vehicles import CopterAirframe
+from sitl.vehicles import Airframe, CopterAirframe, RoverAirframe
 
-AIRFRAMES = ("ardupilot_quad", "ardupilot_hexa_x", "erle_copter", "erle_copter, 10 mm tail-heavy")
+COPTERS = ("ardupilot_quad", "ardupilot_hexa_x", "erle_copter", "erle_copter, 10 mm tail-heavy")
+ROVERS = {"erle_rover": 1.4, "erle_rover_small": 0.3, "skid_rover": 1.8, "ardupilot_rover": 5.0}
+"""Airframe -> speed of the plan's fastest legs [m/s]."""
+AIRFRAMES = (*COPTERS, *ROVERS)
 _HEAVY_M = 0.01
 _FAST_ATTITUDE = 1
 _TURBULENCE = 0.15
 """Gusts [m/s] by wind."""
 
 
-def airframe_of(name: str) -> CopterAirframe:
+def airframe_of(name: str) -> Airframe:
     """A shipped airframe; with a battery that sags where the shipped one has an ideal source."""
     shipped, _, changed = name.partition(",")
     found = vehicles.load(shipped)
-    assert isinstance(found, CopterAirframe)
     if not found.value("battery_capacity"):
         found = replace(found, figures={**found.figures, "battery_capacity": 5.0})
-    if changed:
+    if changed and isinstance(found, CopterAirframe):
         found = replace(found, rotors=tuple(rotor._replace(x=rotor.x + _HEAVY_M) for rotor in found.rotors))
     return found
 
 
-def fly(name: str, seed: int, path: Path) -> dict[str, float]:
-    """Fly the plan; the wind that blew."""
+def drive(name: str, seed: int, path: Path) -> dict[str, float]:
+    """Drive the plan, and by the sticks as its advice says."""
+    path.unlink(missing_ok=True)
+    simulation = Simulation(airframe_of(name), seed=seed, params={"LOG_DISARMED": 1})
+    try:
+        attach(simulation, path)
+        vehicle = Client(simulation)
+        vehicle.wait_ready()
+        vehicle.delay(30 + seed % 7)
+        plan = path.with_suffix(".waypoints")
+        latitude, longitude, _ = vehicle.home()
+        write(plan, (1e-7 * latitude, 1e-7 * longitude), "rover", ROVERS[name])
+        mission = vehicle.upload(files.load(plan).mission)
+        vehicle.arm()
+        vehicle.start_mission()
+        vehicle.wait_waypoint(len(mission) - 1, timeout=900)
+        drill(vehicle)
+        vehicle.disarm()
+        vehicle.delay(3)
+    finally:
+        simulation.close()
+    return {}
+
+
+def drill(vehicle: Client) -> None:
+    """What the advice says of MANUAL."""
+    ends = {channel: (vehicle.params[f"RC{channel}_MIN"], vehicle.params[f"RC{channel}_MAX"]) for channel in (1, 3)}
+
+    def sticks(steering: float, throttle: float, seconds: float) -> None:
+        pulses = {}
+        for channel, share in ((1, steering), (3, throttle)):
+            low, high = ends[channel]
+            pulses[channel] = round(0.5 * (low + high) + 0.5 * (high - low) * share)
+        vehicle.rc(pulses)
+        vehicle.delay(seconds)
+
+    sticks(0.0, 0.0, 0.1)
+    vehicle.set_mode("MANUAL")
+    sticks(0.0, 0.0, 3.0)
+    for way in (1.0, -1.0):
+        for throttle in (0.3, 0.6, 1.0):
+            sticks(0.0, way * throttle, 5.0)
+            sticks(0.0, 0.0, 3.0)
+    for throttle in (1.0, -1.0):
+        sticks(0.0, throttle, 5.0)
+    sticks(0.0, 0.0, 3.0)
+    for throttle in (0.25, 0.5, -0.25):
+        for steering in (0.25, 0.5, 1.0):
+            for side in (1.0, -1.0):
+                sticks(side * steering, throttle, 3.0)
+    sticks(0.0, 0.0, 6.0)
+
+
+def fly(name: str, seed: int, path: Path, telemetry_hz: int = 0) -> dict[str, float]:
+    """Fly the plan; the wind that blew. With a rate its telemetry (.tlog) is kept, too, each message so often."""
     path.unlink(missing_ok=True)
     draw = random.Random(seed)
     wind, bearing = draw.uniform(0.0, 6.0), draw.uniform(0.0, 360.0)
@@ -72,7 +130,12 @@ def fly(name: str, seed: int, path: Path) -> dict[str, float]:
     simulation = Simulation(airframe_of(name), seed=seed, params=settings)
     try:
         attach(simulation, path)
+        if telemetry_hz:
+            simulation.bridge.taps.append(TlogWriter(path.with_suffix(".tlog"), simulation.bridge.epoch_us))
         vehicle = Client(simulation)
+        if telemetry_hz:
+            vehicle.params.read_all()
+            vehicle.send("REQUEST_DATA_STREAM", req_message_rate=telemetry_hz, start_stop=1)
         vehicle.params["LOG_BITMASK"] = int(vehicle.params["LOG_BITMASK"]) | _FAST_ATTITUDE
         vehicle.wait_ready()
         vehicle.delay(30)
@@ -91,6 +154,9 @@ def fly(name: str, seed: int, path: Path) -> dict[str, float]:
 def truth(name: str, found: Identification, wind: dict[str, float]) -> dict[str, float]:
     """What the figures of this flight were: those of the airframe, at the log's mean voltage and altitude."""
     airframe, log = airframe_of(name), found.logs[0]
+    if isinstance(airframe, RoverAirframe):
+        return {**expected(airframe), **_noises(airframe)}
+    assert isinstance(airframe, CopterAirframe)
     value = lambda figure: float(airframe.value(figure))  # noqa: E731
     copter = Copter(airframe, log.parameters, log.conditions)
     known = {**copter.figures(), **wind}
@@ -108,10 +174,12 @@ def truth(name: str, found: Identification, wind: dict[str, float]) -> dict[str,
     known["dead_time"] = (
         0.0025  # a tick of 2.5 ms: half of it each until the output acts and until the rate is measured
     )
-    for figure in NOISES:
-        if value(figure) > 0.0:
-            known[figure] = value(figure)
-    return known
+    return {**known, **_noises(airframe)}
+
+
+def _noises(airframe: Airframe) -> dict[str, float]:
+    """Of the sensors that have some."""
+    return {name: float(airframe.value(name)) for name in NOISES if float(airframe.value(name)) > 0.0}
 
 
 def seeds(text: str) -> tuple[int, ...]:
@@ -124,11 +192,11 @@ Result = tuple[float, float, float, float]
 """Truth, estimate, ends of the interval; not a number where it was not observed."""
 
 
-def judge(name: str, seed: int, folder: Path) -> dict[str, Result]:
-    """Fly and identify one log."""
+def judge(name: str, seed: int, folder: Path, telemetry_hz: int = 0) -> dict[str, Result]:
+    """Fly and identify one log; with a rate its telemetry."""
     path = folder / f"{name.replace(', ', '-').replace(' ', '-')}-{seed}.bin"
-    winds = fly(name, seed, path)
-    found = identify(path)
+    winds = drive(name, seed, path) if name in ROVERS else fly(name, seed, path, telemetry_hz)
+    found = identify(path.with_suffix(".tlog") if telemetry_hz else path)
     known = truth(name, found, winds)
     return {
         figure.name: (known[figure.name], figure.value, figure.low, figure.high)
@@ -158,7 +226,7 @@ def rows(name: str, results: list[dict[str, Result]]) -> Iterator[str]:
 
 
 _ABSOLUTE = ("balance_forward", "balance_right", "motor_lag", "dead_time", "wind_from", "wind_speed", "thrust_expo") + (
-    "roll_damping", "pitch_damping", "yaw_damping",
+    "roll_damping", "pitch_damping", "yaw_damping", "steering_trim", "side_difference", "rear_axle",
 )  # fmt: skip
 """Figures that may be 0: their errors are in their own unit."""
 
@@ -174,8 +242,11 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--airframes", nargs="+", default=list(AIRFRAMES), metavar="NAME")
     parser.add_argument("--seeds", type=seeds, default=seeds("101..105"), metavar="A..B", help="or 3,7")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the logs there")
+    parser.add_argument("--telemetry", type=int, default=0, metavar="HZ", help="judge telemetry of this rate instead")
     parser.add_argument("--details", action="store_true", help="a line for each figure of each log")
     options = parser.parse_args(argv)
+    if options.telemetry and not {*ROVERS}.isdisjoint(options.airframes):
+        parser.error(f"--telemetry is of copters: --airframes {' '.join(COPTERS[:3])}")
     lines: list[str] = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or Path(temporary)
@@ -184,7 +255,7 @@ def main(argv: list[str] | None = None) -> int:
             results = []
             for seed in tqdm(options.seeds, name, leave=False, disable=None):
                 try:
-                    results.append(judge(name, seed, folder))
+                    results.append(judge(name, seed, folder, options.telemetry))
                 except SitlError as error:
                     print(f"{name}, seed {seed}: {error}")
                     continue

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import cameras, identification
+from benchmarks import cameras, identification, log_readers
 from benchmarks import envs as benchmark
 from sitl import envs
 from sitl.simulation import Core, load_core
@@ -72,3 +72,17 @@ def test_intervals_of_identification_are_counted():
     assert identification.seeds("3..5") == (3, 4, 5) and identification.seeds("3,7") == (3, 7)
     heavy = identification.airframe_of("erle_copter, 10 mm tail-heavy")
     assert heavy.rotors[0].x == 0.141 + 0.01
+
+
+@pytest.mark.slow
+def test_readers_of_logs_are_compared_by_the_same_messages(capsys, tmp_path):
+    path = tmp_path / "flight.bin"
+    log_readers.fly(path, 0.1)
+    named = ["ours", "pymavlink", "pymavlink, rows only", "ours: sitl identify"]
+    assert log_readers.main(["--log", str(path), "--readers", *named]) == 0
+    rows = re.findall(
+        r"^\| (.+?) \(.+\) \| ([\d,]+)(?: figures)? \| ([\d.]+) \| (\d+) \|", capsys.readouterr().out, re.M
+    )
+    assert [row[0] for row in rows] == named
+    counts = [int(row[1].replace(",", "")) for row in rows]
+    assert counts[0] == counts[1] == counts[2] > 100_000 and counts[3] > 10

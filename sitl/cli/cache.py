@@ -52,6 +52,7 @@ KERNEL_MODULES = (
     "sitl.envs.targets.waypoints",
     "sitl.envs.tasks",
     "sitl.fleet",
+    "sitl.identify.rover.courses",
     "sitl.logs.dataflash.derived",
     "sitl.physics.native.traffic",
     "sitl.physics.native.turtlebot.fleet",

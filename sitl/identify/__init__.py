@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The airframe of a copter from its logs, each figure with a 95 % interval (docs/identify.md).
+"""The airframe of a copter or rover from its logs, each figure with a 95 % interval (docs/identify.md).
 
 from sitl.identify import identify
 

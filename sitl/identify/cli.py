@@ -15,31 +15,50 @@ from ..errors import MissingExtra, OptionError
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Declare the command."""
     parser = commands.add_parser("identify")
-    parser.add_argument("logs", nargs="*", type=Path, metavar="LOG", help=".bin logs of flights of one copter")
+    parser.add_argument(
+        "logs", nargs="*", type=Path, metavar="LOG", help="logs of one copter (.bin, .tlog) or rover (.bin)"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the airframe that --frame takes")
     parser.add_argument("--mass", type=float, metavar="KG", help="mass of the vehicle: logs alone tell ratios")
     parser.add_argument(
         "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the figures observable"
     )
     parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
+    parser.add_argument("--vehicle", choices=("copter", "rover"), default="copter", help="that drives --plan (copter)")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="M/S",
+        help="of the fastest legs of a rover's --plan (1.5), whose size follows from it",
+    )
     parser.set_defaults(function=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print what the logs tell; write the airframe or the plan."""
     if options.plan is None and not options.logs:
-        raise OptionError("LOG is missing: a .bin log, or --plan FILE for what to fly")
+        raise OptionError("LOG is missing: a .bin or .tlog log, or --plan FILE for what to fly")
     if options.out is not None and options.out.suffix != ".toml":
         raise OptionError(f"--out {str(options.out)!r} does not end in .toml, by which --frame tells such files")
     if options.plan is not None:
-        from .plan import ADVICE, write
+        from .plan import advice, write
 
-        write(options.plan, _home(options.home))
-        print(ADVICE)
+        speed = _speed(options.vehicle, options.speed)
+        write(options.plan, _home(options.home), options.vehicle, speed)
+        print(advice(options.vehicle, speed))
         print(f"mission: {options.plan}")
     if options.logs:
         _identify(options.logs, options.mass, options.out)
     return 0
+
+
+def _speed(vehicle: str, speed: float | None) -> float:
+    if speed is not None and vehicle != "rover":
+        raise OptionError(f"--speed {speed:g} is of a rover's plan: add --vehicle rover")
+    found = 1.5 if speed is None else speed
+    if not 0.1 <= found <= 30.0:
+        raise OptionError(f"--speed {found:g} m/s is outside 0.1 .. 30")
+    return found
 
 
 def _home(text: str | None) -> tuple[float, float]:
@@ -55,6 +74,7 @@ def _home(text: str | None) -> tuple[float, float]:
 def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> None:
     try:
         from .identification import identify
+        from .telemetry import HOW
     except ModuleNotFoundError as error:
         if error.name != "scipy":
             raise
@@ -67,8 +87,16 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> Non
             bar.total = total
             bar.update(done - bar.n)
 
-        found = identify(logs, mass, progress)
+        def begins(what: str) -> None:
+            bar.bar_format = "{desc} ({elapsed})"
+            bar.set_description_str(f"figures: {what}")
+
+        found = identify(logs, mass, progress, begins)
     print(found.table())
+    for note in (note for log in found.logs for note in log.notes):
+        print(f"note: {note}")
+    if any(log.is_telemetry for log in found.logs):
+        print(f"note: {HOW}")
     if out is not None:
         found.write(out)
         print(f"airframe: {out}")

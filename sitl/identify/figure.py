@@ -4,10 +4,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 NORMAL_95 = 1.959964
 """Half of a 95 % interval by its standard error."""
+Begins = Callable[[str], None]
+"""Called with what is worked on from now on, in words."""
+
+
+def silent(what: str) -> None:
+    """A ``Begins`` that says nothing."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import SitlError
-from ..logs.dataflash.columns import Columns, Progress, Table
+from ..logs import forms
+from ..logs.dataflash.columns import Columns, Progress
+from ..logs.dataflash.tables import Table, Tables
+from ..logs.telemetry import Telemetry
 from .expected import Conditions
 from .signals import Span, increasing, within
 
@@ -24,10 +27,21 @@ _SETTLES_S = 3.0
 """After take-off and before landing [s]."""
 _LOW_M = 2.0
 """Nearer to the ground than this the rotors' air comes back [m]."""
+_DRIVES = 0.1
+"""A rover that never drove faster stood [m/s]."""
+_KINDS = ("copter", "rover")
 _NAMES = (
     "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
     "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
 )  # fmt: skip
+_OLDEST = (4, 0)
+_READ = "logs of ArduPilot are read: on-board ones (.bin, .log), and telemetry (.tlog)"
+_NO_PARAMETERS = (
+    "has no PARM, which say what its outputs mean: it begins in the middle, or its start is damaged",
+    "has no parameters (PARAM_VALUE, or @PARAM/param.pck by FTP), which say what its outputs mean: it began after the "
+    "ground station had got them. Get them again while it is recorded, or take the on-board log (.bin)",
+)
+"""Of a DataFlash log, of telemetry."""
 
 
 class IdentifyError(SitlError, ValueError):
@@ -38,7 +52,7 @@ class FlightLog:
     """A log.
 
     Args:
-        path: of the .bin.
+        path: of a .bin, a .log as text, or a .tlog.
         progress: is told how far it is read.
 
     Raises:
@@ -47,25 +61,68 @@ class FlightLog:
     """
 
     def __init__(self, path: str | Path, progress: Progress | None = None) -> None:
-        self.columns = Columns(path, _NAMES, progress)
         self.path = Path(path)
+        self.columns = self._read(progress)
         self.kind = self.columns.kind
-        if self.kind != "copter":
-            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; only copters are identified as yet")
+        if self.kind not in _KINDS:
+            raise IdentifyError(f"log {str(path)!r} is of a {self.kind}; {' and '.join(_KINDS)}s are identified")
+        if self.columns.helicopter:
+            raise IdentifyError(
+                f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}); copters with rotors of fixed pitch "
+                "are identified"
+            )
+        if (self.columns.version or _OLDEST) < _OLDEST:
+            raise IdentifyError(
+                f"log {str(path)!r} is of {self.columns.firmware}; logs of ArduPilot 4 are identified, older ones have "
+                "other messages and units (sitl twin and sitl view take them)"
+            )
+        if self.is_telemetry and self.kind != "copter":
+            raise IdentifyError(
+                f"log {str(path)!r} is telemetry of a {self.kind}, which tells too little of it; "
+                "take the on-board log (.bin)"
+            )
         self.parameters = self.columns.parameters
         if not self.parameters:
-            raise IdentifyError(
-                f"log {str(path)!r} has no PARM, which say what its outputs mean: "
-                "it begins in the middle, or its start is damaged"
-            )
+            raise IdentifyError(f"log {str(path)!r} {_NO_PARAMETERS[self.is_telemetry]}")
         self.armed = self._armed()
-        self.spans = self._flying()
+        self.spans = self._flying() if self.kind == "copter" else self._driving()
         """When it moved by itself, without failsafe."""
         if not self.spans:
-            raise IdentifyError(
-                f"log {str(path)!r}: the vehicle was never in the air for {4 * _SETTLES_S:.0f} s, {_LOW_M:g} m over "
-                "the ground and without failsafe"
+            where = (
+                f"in the air, {_LOW_M:g} m over the ground"
+                if self.kind == "copter"
+                else f"armed and driving (XKF1 over {_DRIVES:g} m/s)"
             )
+            raise IdentifyError(
+                f"log {str(path)!r}: the vehicle was never {where} for {4 * _SETTLES_S:.0f} s without failsafe"
+            )
+
+    def _read(self, progress: Progress | None) -> Tables:
+        form = forms.of(self.path)
+        if form == forms.TLOG:
+            return Telemetry(self.path, progress)
+        if form != forms.DATAFLASH:
+            raise IdentifyError(f"log {str(self.path)!r} is {form}; {_READ}")
+        return Columns(self.path, _NAMES, progress)
+
+    @property
+    def is_telemetry(self) -> bool:
+        """Whether it is what the vehicle sent, not what it kept."""
+        return isinstance(self.columns, Telemetry)
+
+    @property
+    def notes(self) -> list[str]:
+        """What is wrong with the file, and was passed over."""
+        log, found = self.columns, []
+        if isinstance(log, Telemetry):
+            found += [f"{log.bad} frames with a wrong checksum are left out"] * (log.bad > 0)
+        elif isinstance(log, Columns):
+            found += [f"{log.skipped} bytes are no messages: the log is damaged there"] * (log.skipped > 0)
+            found += ["it is cut off within a message"] * log.truncated
+        found += [f"{log.left_out} messages with times that cannot be are left out"] * (log.left_out > 0)
+        if self.armed and self.armed[-1].end >= self._end:
+            found.append("it ends while the vehicle is armed: it is read up to there")
+        return [f"{self.path.name}: {note}" for note in found]
 
     @property
     def seconds(self) -> float:
@@ -83,7 +140,8 @@ class FlightLog:
     def stream(self, name: str, instance: int | None = None) -> Table:
         """Messages of a name, or of one sensor of these, in the order of their times."""
         table = self.columns[name] if instance is None else self.columns[name].instance(instance)
-        return table.where(increasing(table.time))
+        later = increasing(table.time)
+        return table if later.all() else table.where(later)
 
     def estimate(self) -> Table:
         """XKF1 of the lane that was flown by."""
@@ -138,6 +196,19 @@ class FlightLog:
         spans = _without(spans, self._failsafes())
         spans = _without(spans, self._near_ground(found))
         return [span for span in spans if span.length > 2.0 * _SETTLES_S]
+
+    def _driving(self) -> list[Span]:
+        """Armed, without failsafe: a rover that stands tells that its outputs do not move it."""
+        spans = _without(self.armed, self._failsafes())
+        return [span for span in spans if span.length > 2.0 * _SETTLES_S and self._fastest(span) > _DRIVES]
+
+    def _fastest(self, span: Span) -> float:
+        """Greatest speed over the ground in a span [m/s]."""
+        if not self.has("XKF1"):
+            return 0.0
+        table = self.estimate()
+        table = table.where(within(table.time, [span]))
+        return float(np.hypot(table["VN"], table["VE"]).max()) if len(table) else 0.0
 
     def _near_ground(self, flights: list[Span]) -> list[Span]:
         """When it was near the height at which it took off; all of it when the log has no heights."""

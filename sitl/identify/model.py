@@ -12,17 +12,7 @@ from ..core.constants import GRAVITY
 from ..vehicles import CopterAirframe
 from .expected import Conditions, Copter
 from .figure import Figure
-
-NOISES = (
-    "gyro_noise_density",
-    "acc_noise_density",
-    "baro_noise",
-    "mag_noise",
-    "gps_noise_horizontal",
-    "gps_noise_vertical",
-    "gps_velocity_noise_vertical",
-)
-"""Figures of logs that are figures of airframes."""
+from .shared import NOISES
 
 
 class Model:

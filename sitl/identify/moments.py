@@ -8,12 +8,13 @@ contradict each other by more than chance.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import optimize
+from scipy.linalg import lapack
 
 from .regression import long_run, widening
 
@@ -23,20 +24,25 @@ Array = np.ndarray[Any, Any]
 WEAK = 60.0
 """F statistic below which instruments are weak: neighbours in time are alike, so that chance alone reaches 25."""
 
+_WORK = 64
+"""Columns of a block of LAPACK's."""
+
 
 class Block:
     """One series: y = x b + e, where y and x depend on shared parameters.
 
     Args:
         columns: of the shared parameters -> y (n,), x (n, k).
-        instruments: (n, m), m >= k.
+        instruments: (n, m), m >= k; it is overwritten, which saves half of the memory.
         groups: (n,) stretches within which residuals are correlated.
         lag: over how many samples.
     """
 
     def __init__(self, columns: Callable[[Array], tuple[Array, Array]], instruments: Array, groups: Array, lag: int):
         self.columns, self.groups, self.lag = columns, groups, lag
-        self.q, _ = np.linalg.qr(instruments / np.maximum(instruments.std(0), 1e-300))
+        for column in instruments.T:
+            column /= max(float(column.std()), 1e-300)
+        self.q = _orthonormal(instruments)
         self.weight: Array = np.eye(self.q.shape[1])
 
     def at(self, shared: Array) -> Block:
@@ -62,7 +68,7 @@ class Block:
         """Weigh the moments by the inverse of their covariance."""
         b, _ = self.linear(shared)
         y, x = self.columns(shared)
-        spread = long_run(self.q * (y - x @ b)[:, None], self.groups, self.lag)
+        spread = long_run(self.q, y - x @ b, self.groups, self.lag)
         spread += 1e-9 * np.trace(spread) / len(spread) * np.eye(len(spread))
         self.weight = np.linalg.cholesky(np.linalg.inv(spread)).T
 
@@ -82,6 +88,14 @@ class Block:
         return values, self.q @ (self.q.T @ values)
 
 
+def _orthonormal(columns: Array) -> Array:
+    """Q of the QR decomposition; in the same memory when the columns stand one behind the other."""
+    reflected, tau, _, failed = lapack.dgeqrf(columns, lwork=_WORK * columns.shape[1], overwrite_a=1)
+    q, _, also_failed = lapack.dorgqr(reflected, tau, lwork=_WORK * columns.shape[1], overwrite_a=1)
+    assert not failed and not also_failed
+    return np.asarray(q)
+
+
 class JointFit(NamedTuple):
     """An estimate."""
 
@@ -95,17 +109,18 @@ class JointFit(NamedTuple):
     """Moments' chi-square by its degrees of freedom: about 1 when the model is right."""
 
 
-def fit(blocks: list[Block], start: Array, scale: Array, known: JointFit | None = None) -> JointFit:
+def fit(blocks: Iterable[Block], start: Array, scale: Array, known: JointFit | None = None) -> JointFit:
     """Shared parameters and each block's b, in two steps (weights of the second from the residuals of the first).
 
     Args:
-        blocks: the series.
+        blocks: the series; with ``known`` one is held at a time.
         start: shared parameters to begin with.
         scale: their typical sizes.
         known: a fit that has already found the shared ones; they stay at ``start``, its errors count.
     """
     if known is not None:
         return _with_known(blocks, start, scale, known)
+    blocks = list(blocks)
     shared = start
     for _ in range(2):
         shared = _search(blocks, shared, scale)
@@ -125,7 +140,7 @@ def fit(blocks: list[Block], start: Array, scale: Array, known: JointFit | None 
     return JointFit(shared, errors[: ends[0]], values, [errors[a:b] for a, b in pairwise(ends)], misfit)
 
 
-def _with_known(blocks: list[Block], shared: Array, scale: Array, known: JointFit) -> JointFit:
+def _with_known(blocks: Iterable[Block], shared: Array, scale: Array, known: JointFit) -> JointFit:
     """Each block's b at given shared parameters, whose errors go over to it."""
     values, errors, misfit = [], [], 0.0
     for block in blocks:
@@ -137,6 +152,7 @@ def _with_known(blocks: list[Block], shared: Array, scale: Array, known: JointFi
         values += found.values
         errors.append(np.hypot(found.errors[0], np.linalg.norm(gain * known.shared_errors, axis=1)))
         misfit = max(misfit, found.misfit)
+        del block  # before the next one is made
     return JointFit(shared, known.shared_errors, values, errors, misfit)
 
 

@@ -44,7 +44,7 @@ class Motion(NamedTuple):
 def motion(log: FlightLog, edges: Array) -> Motion:
     """Of a log with ATT and XKF1."""
     attitude, estimate = log.stream("ATT"), log.estimate()
-    turned = np.stack([attitude["Roll"], attitude["Pitch"], np.degrees(np.unwrap(np.radians(attitude["Yaw"])))], -1)
-    roll, pitch, yaw = np.radians(means(attitude.time, turned, edges)).T
+    roll, pitch = (np.radians(means(attitude.time, attitude[name], edges)) for name in ("Roll", "Pitch"))
+    yaw = means(attitude.time, np.unwrap(np.radians(attitude["Yaw"])), edges)
     moved = means(estimate.time, np.stack([estimate[name] for name in ("VN", "VE", "VD", "PD")], -1), edges)
     return Motion(roll, pitch, yaw, moved[:, :3], -moved[:, 3])

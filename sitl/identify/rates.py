@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.constants import GRAVITY
-from .figure import NORMAL_95, Figure, Sought
+from .figure import NORMAL_95, Begins, Figure, Sought, silent
 from .flight import FlightLog
 from .moments import WEAK, Block, JointFit, fit
 from .motion import motion
@@ -108,7 +108,7 @@ class _Stretch(NamedTuple):
     conditions: Array
 
 
-def rates(logs: Sequence[FlightLog]) -> list[Figure]:
+def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
     """All that RATE tells."""
     usable = [log for log in logs if log.has("RATE", "ATT", "IMU", "XKF1") and log.stream("RATE").rate >= _LEAST_HZ]
     if not usable:
@@ -118,19 +118,23 @@ def rates(logs: Sequence[FlightLog]) -> list[Figure]:
         return [sought.hidden(reason) for sought in _all()]
     rate = min(min(round(log.stream("RATE").rate) for log in usable), _MOST_HZ)
     lags: list[Block] = []
-    blocks: dict[str, Block] = {}
+    chosen: dict[str, tuple[list[_Stretch], bool]] = {}
+    """Stretches of an axis, and whether its instrument is the path: a block of all is large, and is made again."""
     weak: dict[str, str] = {}
     seconds, quantum = 0.0, max(resolution(log) for log in usable)
     for axis, letter, angle in AXES:
+        begins(f"{axis} rate")
         stretches = [part for log in usable for part in _stretches(log, letter, angle, rate)]
         seconds = sum(int(part.keep.sum()) for part in stretches) / rate
         if seconds < _LEAST_S:
             reason = f"{seconds:.0f} s in the air with RATE and free outputs; {_LEAST_S:.0f} s are needed"
             return [sought.hidden(reason) for sought in _all()]
-        first, block = (_block(stretches, axis == "yaw", rate, by_path) for by_path in (False, True))
-        if block.moved(1) < _LEAST_QUANTA * quantum or block.strength(1) < WEAK:
-            block = first  # the pilot flies, and the path asks for nothing
-        moved, strength = block.moved(1), block.strength(1)
+        by_path = True
+        moved, strength = _power(_block(stretches, axis == "yaw", rate, by_path))
+        first = _block(stretches, axis == "yaw", rate, by_path=False)
+        if moved < _LEAST_QUANTA * quantum or strength < WEAK:
+            by_path = False  # the pilot flies, and the path asks for nothing
+            moved, strength = _power(first)
         if moved < _LEAST_QUANTA * quantum:
             weak[axis] = (
                 f"what was asked for moves the {axis} output by {moved:.1e} (RMS), less than {_LEAST_QUANTA:g} of a "
@@ -140,14 +144,23 @@ def rates(logs: Sequence[FlightLog]) -> list[Figure]:
             weak[axis] = f"the {axis} rate was moved too little (F {strength:.0f}): fly doublets, or SYSTEMID"
         else:
             lags.append(first)
-            blocks[axis] = block
-    if not blocks:
+            chosen[axis] = (stretches, by_path)
+    if not chosen:
         return [sought.hidden("; ".join(weak.values())) for sought in _all()]
+    begins("lag of the motors")
     found = fit(lags, np.array([0.02, 0.005]), np.array([0.01, 0.005]))
     shared = np.maximum(found.shared, 0.0)
-    found = fit(list(blocks.values()), shared, np.array([0.01, 0.005]), found)
+    lags.clear()
+    begins("effectiveness and damping")
+    blocks = (_block(parts, axis == "yaw", rate, by_path) for axis, (parts, by_path) in chosen.items())
+    found = fit(blocks, shared, np.array([0.01, 0.005]), found)
     data = f"{seconds:.0f} s of RATE, ATT, {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz"
-    return _figures(found, list(blocks), weak, data)
+    return _figures(found, list(chosen), weak, data)
+
+
+def _power(block: Block) -> tuple[float, float]:
+    """How far the instruments move the output (RMS), and their F statistic."""
+    return block.moved(1), block.strength(1)
 
 
 def _figures(found: JointFit, axes: list[str], weak: dict[str, str], data: str) -> list[Figure]:
@@ -202,8 +215,8 @@ def _stretches(log: FlightLog, letter: str, angle: str, rate: float) -> list[_St
         edges = np.arange(span.begin, span.end, 1.0 / rate)
         if len(edges) < (2.0 * _EDGE_S + 4.0) * rate:
             continue
-        columns = np.stack([table[f"{letter}Out"], np.radians(table[letter])], -1)
-        u, p = means(table.time, columns, edges).T
+        u = means(table.time, table[f"{letter}Out"], edges)
+        p = means(table.time, np.radians(table[letter]), edges)
         wanted = means(attitude.time, np.unwrap(np.radians(attitude[f"Des{angle}"])), edges)
         path = _path(log, angle, edges, wanted)
         n = len(u)
@@ -248,30 +261,36 @@ def _path(log: FlightLog, angle: str, edges: Array, otherwise: Array) -> Array:
 
 def _block(stretches: list[_Stretch], spins_up: bool, rate: float, by_path: bool) -> Block:
     """Moments of an axis: angular acceleration, then -rate, output by conditions, and the output's change."""
-    instruments = []
+    count = len(_LAGS_S) + 4 * stretches[0].conditions.shape[1] + (not spins_up)
+    length = sum(int(part.keep.sum()) for part in stretches)
+    instruments = np.empty((length, count), order="F")
+    at = 0
     for part in stretches:
         n = len(part.keep)
+        rows = slice(at, at := at + int(part.keep.sum()))
         z = np.fft.irfft(part.s * (part.path if by_path else part.wanted) * part.band, n)
-        z = np.stack([np.roll(z, round(lag * rate)) for lag in _LAGS_S], -1)
-        by = np.concatenate([z, *(z[:, 1:5] * c[:, None] for c in part.conditions.T)], -1)
+        delayed = [np.roll(z, round(lag * rate)) for lag in _LAGS_S]
+        columns_of = [*delayed, *(z * c for c in part.conditions.T for z in delayed[1:5])]
         if not spins_up:
-            by = np.column_stack([by, np.fft.irfft(part.band * part.gyro * part.aside, n)])
-        instruments.append(by[part.keep])
+            columns_of.append(np.fft.irfft(part.band * part.gyro * part.aside, n))
+        for k, column in enumerate(columns_of):
+            instruments[rows, k] = column[part.keep]
 
     def columns(shared: Array) -> tuple[Array, Array]:
         lag, dead = shared
-        left, right = [], []
+        left, right = np.empty(length), np.empty((length, 3 + stretches[0].conditions.shape[1]))
+        at = 0
         for part in stretches:
             n, keep = len(part.keep), part.keep
+            rows = slice(at, at := at + int(keep.sum()))
             motor = part.band * part.gyro * np.exp(-part.s * dead) / (1.0 + part.s * lag)
-            left.append(np.fft.irfft(part.s * part.band * part.rate, n)[keep])
-            row = [-np.fft.irfft(part.band * part.rate, n), *(np.fft.irfft(motor * u, n) for u in part.outputs)]
-            if spins_up:
-                row.append(np.fft.irfft(part.s * motor * part.outputs[0], n))
-            else:
-                row.append(np.fft.irfft(part.band * part.gyro * part.aside, n))
-            right.append(np.stack(row, -1)[keep])
-        return np.concatenate(left), np.vstack(right)
+            left[rows] = np.fft.irfft(part.s * part.band * part.rate, n)[keep]
+            right[rows, 0] = -np.fft.irfft(part.band * part.rate, n)[keep]
+            for k, u in enumerate(part.outputs, 1):
+                right[rows, k] = np.fft.irfft(motor * u, n)[keep]
+            last = part.s * motor * part.outputs[0] if spins_up else part.band * part.gyro * part.aside
+            right[rows, -1] = np.fft.irfft(last, n)[keep]
+        return left, right
 
     groups = np.concatenate([np.full(int(part.keep.sum()), k) for k, part in enumerate(stretches)])
-    return Block(columns, np.vstack(instruments), groups, int(2.0 * rate))
+    return Block(columns, instruments, groups, int(2.0 * rate))

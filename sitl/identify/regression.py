@@ -20,6 +20,8 @@ Array = np.ndarray[Any, Any]
 
 GUSTS_S = 8.0
 """Residuals of flights are correlated for so long."""
+_WINDOWS = 1 << 14
+"""Sums that are held at once."""
 
 
 class Fit(NamedTuple):
@@ -36,16 +38,27 @@ class Fit(NamedTuple):
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def long_run(scores: Array, groups: Array, lag: int) -> Array:
-    """Sum of the covariances of scores (n, k) over all pairs up to a lag of each other, within the same group."""
-    total = np.zeros((scores.shape[1], scores.shape[1]))
+def long_run(factors: Array, errors: Array, groups: Array, lag: int) -> Array:
+    """Sum of the covariances of scores over all pairs up to a lag of each other, within the same group.
+
+    Scores are factors (n, k), each row times its error (n,).
+
+    A pair j apart has the weight 1 - j / (lag + 1): it is in that share of all windows of lag + 1 samples. So sums over
+    such windows, multiplied once, are the same as a product for each lag.
+    """
+    width = lag + 1
+    total = np.zeros((factors.shape[1], factors.shape[1]))
     for group in np.unique(groups):
-        part = scores[groups == group]
-        total += part.T @ part
-        for j in range(1, min(lag, len(part) - 1) + 1):
-            weight = 1.0 - j / (lag + 1.0)
-            cross = part[j:].T @ part[:-j]
-            total += weight * (cross + cross.T)
+        rows = np.flatnonzero(groups == group)
+        for first in range(0, len(rows) + lag, _WINDOWS):  # the window k ends with row k
+            last = min(first + _WINDOWS, len(rows) + lag)
+            begin, end = max(first - lag, 0), min(last, len(rows))
+            part = rows[begin:end]
+            sums = np.zeros((len(part) + 1, factors.shape[1]))
+            np.cumsum(factors[part] * errors[part, None], axis=0, out=sums[1:])
+            ends = np.arange(first, last)
+            windows = sums[np.minimum(ends + 1, end) - begin] - sums[np.maximum(ends - lag, begin) - begin]
+            total += windows.T @ windows / width
     return total
 
 
@@ -57,7 +70,13 @@ def widening(count: int, used: int, lag: int) -> float:
 
 
 def least_squares(
-    residuals: Callable[[Array], Array], start: Array, groups: Array, lag: int, scale: Array | None = None
+    residuals: Callable[[Array], Array],
+    start: Array,
+    groups: Array,
+    lag: int,
+    scale: Array | None = None,
+    limits: tuple[Array, Array] = (np.array(-np.inf), np.array(np.inf)),
+    slopes: Callable[[Array], Array] | None = None,
 ) -> Fit:
     """Parameters that make residuals small (robust to outliers by Huber's loss).
 
@@ -67,17 +86,20 @@ def least_squares(
         groups: (n,) stretches within which residuals are correlated.
         lag: over how many samples.
         scale: typical size of each parameter.
+        limits: least and greatest that each parameter may be.
+        slopes: of the residuals by the parameters (n, k), where not all need be worked out one by one.
     """
-    first = optimize.least_squares(residuals, start, x_scale=scale if scale is not None else 1.0)
+    ways: Any = {"x_scale": scale if scale is not None else 1.0, "bounds": limits, "jac": slopes or "2-point"}
+    if slopes is not None:  # each evaluation is long
+        ways["ftol"] = 1e-6
+    first = optimize.least_squares(residuals, start, **ways)
     spread = 1.4826 * float(np.median(np.abs(first.fun - np.median(first.fun)))) or 1.0
-    found = optimize.least_squares(
-        residuals, first.x, loss="huber", f_scale=3.0 * spread, x_scale=scale if scale is not None else 1.0
-    )
+    found = optimize.least_squares(residuals, first.x, loss="huber", f_scale=3.0 * spread, **ways)
     error = residuals(found.x)
-    slopes = _slopes(residuals, found.x, scale)
+    by = slopes(found.x) if slopes is not None else _slopes(residuals, found.x, scale)
     weight = np.minimum(1.0, 3.0 * spread / np.maximum(np.abs(error), 1e-300))
-    bread = np.linalg.pinv((slopes * weight[:, None]).T @ slopes)
-    meat = long_run(slopes * (weight * error)[:, None], groups, lag)
+    bread = np.linalg.pinv((by * weight[:, None]).T @ by)
+    meat = long_run(by, weight * error, groups, lag)
     covariance = bread @ meat @ bread * widening(len(error), len(start), lag)
     return Fit(found.x, covariance, error)
 

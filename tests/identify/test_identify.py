@@ -4,44 +4,18 @@
 from __future__ import annotations
 
 import math
+import struct
 from dataclasses import replace
 
 import pytest
 
-from sitl import Simulation, cli, vehicles
-from sitl.client import Client
+from sitl import cli, vehicles
 from sitl.core.constants import GRAVITY
 from sitl.identify import IdentifyError, identify
 from sitl.identify.expected import Copter
-from sitl.logs.dataflash.log import attach
+from sitl.logs.tlog import LogError
 from sitl.missions import files
-
-_SETTINGS = {"LOG_BITMASK": 180223, "LOG_DISARMED": 1, "WPNAV_ACCEL": 400, "WPNAV_JERK": 10, "WP_YAW_BEHAVIOR": 0}
-
-
-@pytest.fixture(scope="session")
-def flown(tmp_path_factory):
-    """Rest, a hover, turns and short fast legs of the Erle-Copter."""
-    path = tmp_path_factory.mktemp("identify") / "flight.bin"
-    simulation = Simulation("erle_copter", seed=1, params=_SETTINGS)
-    attach(simulation, path)
-    vehicle = Client(simulation)
-    vehicle.wait_ready()
-    vehicle.delay(25)
-    vehicle.take_off(8)
-    vehicle.delay(20)
-    places = [(k % 4 in (1, 2), k % 4 in (2, 3)) for k in range(12)]
-    items = [vehicle.item("NAV_WAYPOINT", 0, 0), vehicle.item("NAV_TAKEOFF", altitude=8)]
-    for side in (1, -1, 1):
-        items.append(vehicle.item("NAV_WAYPOINT", 0, 0, altitude=8, hold=4))
-        items.append(vehicle.item("CONDITION_YAW", param1=90, param3=side, param4=1))
-    items += [vehicle.item("NAV_WAYPOINT", 0, 0, altitude=up) for up in (12, 8)]
-    items += [vehicle.item("NAV_WAYPOINT", 15 * north, 15 * east, altitude=8) for north, east in places]
-    vehicle.upload(items)
-    vehicle.start_mission()
-    vehicle.delay(90)
-    simulation.close()
-    return path
+from tests.logs.log_files import V32, binary, old_flight, without_messages
 
 
 @pytest.fixture(scope="session")
@@ -86,6 +60,11 @@ def test_a_log_that_ends_in_the_air_still_tells(flown, tmp_path) -> None:
     path = tmp_path / "cut.bin"
     path.write_bytes(data[: int(0.7 * len(data))])
     part = identify(path)
+    assert part.logs[0].notes == [
+        "cut.bin: it is cut off within a message",
+        "cut.bin: it ends while the vehicle is armed: it is read up to there",
+    ]
+    assert identify(flown).logs[0].notes == ["flight.bin: it ends while the vehicle is armed: it is read up to there"]
     assert part["hover_output"].is_observed
     assert part.logs[0].seconds < 0.8 * identify(flown).logs[0].seconds
 
@@ -111,15 +90,44 @@ def test_logs_of_no_use_are_named(flown, tmp_path) -> None:
     data = flown.read_bytes()
     for name, content, says in (
         ("no_parm.bin", data.replace(b"PARM", b"PXRM"), "has no PARM"),
-        ("rover.bin", data.replace(b"ArduCopter V", b"xArduRover V"), "is of a rover; only copters"),
         ("ground.bin", data[: len(data) // 5], "never in the air"),
+        ("plane.bin", data.replace(b"ArduCopter V", b"MArduPlane V"), "is of a plane"),
+        ("sub.bin", data.replace(b"ArduCopter V", b"MMMArduSub V"), "is of a submarine"),
+        ("heli.bin", data.replace(b"ArduCopter V", b"MMArduHeli V"), "is of a helicopter"),
+        ("heli6.bin", _with_parameter(data, b"FRAME_CLASS", 6.0), r"is of a helicopter \(FRAME_CLASS 6\)"),
+        ("three.bin", data.replace(b"ArduCopter V4.", b"ArduCopter V3."), r"is of ArduCopter V3.* logs of ArduPilot 4"),
+        ("old.bin", binary(old_flight(), V32), r"is of ArduCopter V3.2.1 .* logs of ArduPilot 4"),
+        ("text.bin", b"hello there\n", "is no log but a text: it begins with 'hello there'; logs of ArduPilot are"),
+        ("empty.bin", b"", "is empty; logs of ArduPilot are read"),
+        ("px4.ulg", b"ULog\x01\x12\x35" + bytes(90), r"is a log of PX4 \(.ulg\); logs of ArduPilot are read"),
+        ("packed.bin", b"\x1f\x8b" + bytes(90), r"is a packed file \(.gz\)"),
     ):
         path = tmp_path / name
         path.write_bytes(content)
-        with pytest.raises(IdentifyError, match=says):
+        with pytest.raises((IdentifyError, LogError), match=rf"{name}' {says}|{name}': .*{says}"):
             identify(path)
+    rover = tmp_path / "rover.bin"
+    rover.write_bytes(data.replace(b"ArduCopter V", b"xArduRover V"))
+    with pytest.raises(IdentifyError, match="logs of a copter and a rover: they must be of one vehicle"):
+        identify([flown, rover])
     with pytest.raises(IdentifyError, match="mass -1"):
         identify(flown, mass=-1.0)
+
+
+def _with_parameter(data: bytes, name: bytes, value: float) -> bytes:
+    """A log in which a parameter has another value: it stands behind the name of 16 bytes."""
+    at = data.index(name.ljust(16, b"\0")) + 16
+    return data[:at] + struct.pack("<f", value) + data[at + 4 :]
+
+
+def test_messages_that_a_log_lacks_are_named(flown, tmp_path) -> None:
+    for name, figures in (
+        (b"IMU", ("hover_output", "drag_along")), (b"RCOU", ("hover_output", "balance_right")),
+        (b"XKF1", ("hover_output", "wind_speed")), (b"BAT", ("hover_current", "battery_resistance")),
+    ):  # fmt: skip
+        found = identify(without_messages(flown, tmp_path / "lacks.bin", name))
+        for figure in figures:
+            assert f"the log has no {name.decode()} (LOG_BITMASK" in found[figure].reason, figure
 
 
 def test_the_plan_is_a_mission(tmp_path, capsys) -> None:

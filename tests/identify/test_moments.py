@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sitl.identify.moments import WEAK, Block, fit
+from sitl.identify.regression import long_run
 
 DT, GAIN, LAG, DAMPING = 0.01, 40.0, 0.05, 1.0
 
@@ -61,3 +62,18 @@ def test_instruments_that_move_nothing_are_weak() -> None:
     signals = loop(0, 4_000)
     noise = np.random.default_rng(9).normal(size=4_000)
     assert block(signals, signals[2]).strength(1) > WEAK > block(signals, noise).strength(1)
+
+
+@pytest.mark.parametrize(("count", "lag"), [(500, 20), (10, 50), (50, 49), (300, 0), (40_000, 60)])
+def test_the_long_run_covariance_is_the_sum_over_pairs_with_bartletts_weights(count: int, lag: int) -> None:
+    draw = np.random.default_rng(count)
+    factors, errors = draw.normal(size=(count, 3)), draw.normal(size=count)
+    groups = draw.integers(0, 2, count)
+    expected = np.zeros((3, 3))
+    for group in (0, 1):
+        scores = (factors * errors[:, None])[groups == group]
+        expected += scores.T @ scores
+        for apart in range(1, min(lag, len(scores) - 1) + 1):
+            pairs = scores[apart:].T @ scores[:-apart]
+            expected += (1.0 - apart / (lag + 1.0)) * (pairs + pairs.T)
+    np.testing.assert_allclose(long_run(factors, errors, groups, lag), expected, rtol=0, atol=1e-12 * count)

@@ -124,3 +124,20 @@ def written(path: Path, data: bytes) -> Path:
     """The file's path."""
     path.write_bytes(data)
     return path
+
+
+def without_messages(path: Path, to: Path, name: bytes) -> Path:
+    """A log without the messages of a name."""
+    data, at, out = path.read_bytes(), 0, bytearray()
+    lengths: dict[int, int] = {128: 89}
+    names: dict[int, bytes] = {}
+    while at + 3 <= len(data):
+        kind = data[at + 2]
+        if kind == 128:
+            number, length, label = struct.unpack_from("<BB4s", data, at + 3)
+            lengths[number], names[number] = length, label.rstrip(b"\0")
+        if names.get(kind) != name:
+            out += data[at : at + lengths[kind]]
+        at += lengths[kind]
+    to.write_bytes(bytes(out))
+    return to

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,7 +32,6 @@ _LEAST_S = 3.0
 """A shorter time armed is no flight."""
 _LEAST_WAY_M = 1.0
 """A vehicle that never came farther from where it was armed did not leave the ground, or did not drive."""
-_VERSION = re.compile(r"V(\d+)\.(\d+)")
 
 
 class TwinError(SitlError, ValueError):
@@ -71,9 +69,14 @@ class FlightLog:
         self.path = Path(path)
         form = forms.of(self.path)
         if form != forms.DATAFLASH:
-            raise TwinError(f"log {str(path)!r} is {form}: a twin is made of a DataFlash log (.bin, .log)")
+            raise TwinError(
+                f"log {str(path)!r} is {form}; a twin is made of the on-board log (DataFlash: .bin, .log), which the "
+                "vehicle keeps on its card and ground stations download"
+            )
         self.columns = Columns(self.path, _NAMES)
         self.kind = self.columns.kind
+        if self.columns.helicopter:
+            raise TwinError(f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}), which is not simulated")
         if "PARM" not in self.columns:
             raise TwinError(
                 f"log {str(path)!r} has no PARM: without its parameters the flight cannot be flown again; "
@@ -99,8 +102,7 @@ class FlightLog:
     @property
     def version(self) -> tuple[int, int]:
         """Of its firmware; (4, 7) when the log does not say it."""
-        found = _VERSION.search(self.columns.firmware)
-        return (int(found[1]), int(found[2])) if found else (4, 7)
+        return self.columns.version or (4, 7)
 
     @property
     def began(self) -> float:

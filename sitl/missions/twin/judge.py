@@ -17,6 +17,7 @@ _PUSH = 0.3
 _VOLTS = 0.02
 """Share by which voltages may differ."""
 _AXES = ("roll_rate", "pitch_rate", "yaw_rate")
+_ANGLES = ("asked_roll", "asked_pitch")
 
 
 def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: Sequence[Agreement]) -> list[str]:
@@ -39,6 +40,9 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
             f"model: at the log's motor outputs the model accelerates {abs(push.bias):.2f} m/s^2 more "
             f"{'up' if push.bias > 0.0 else 'down'} than the vehicle did"
         )
+    asked = [one for one in segments if one.quantity.is_asked and _is_bad(one)]
+    turns_elsewhere = any(one.quantity.name in _ANGLES for one in asked)
+    unjudged: list[str] = []
     for name in _AXES:
         closed, alone = of_segments.get(name), of_model.get(name)
         if alone is not None and _is_bad(alone) and (closed is None or _is_bad(closed)):
@@ -46,17 +50,24 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
                 f"model: {alone.quantity.title} at the log's motor outputs accounts for {max(alone.vaf, 0.0):.0f} % of "
                 "its variance: torque over inertia, damping or motor lag differ"
             )
+        elif closed is not None and _is_bad(closed) and turns_elsewhere:
+            unjudged.append(closed.quantity.title)
         elif closed is not None and _is_bad(closed):
             found.append(
                 f"{closed.quantity.title} in open segments accounts for {max(closed.vaf, 0.0):.0f} % of its variance: "
                 "model or rate controller differ"
             )
-    for one in segments:
-        if one.quantity.is_asked and _is_bad(one):
-            found.append(
-                f"autopilot: {one.quantity.title}, from the same state, accounts for {max(one.vaf, 0.0):.0f} % of its "
-                "variance: targets of the mode differ (sticks, path, wind)"
-            )
+    for one in asked:
+        found.append(
+            f"autopilot: {one.quantity.title}, from the same state, accounts for {max(one.vaf, 0.0):.0f} % of its "
+            "variance: targets of the mode differ (sticks, path, wind)"
+        )
+    if unjudged:
+        found.append(
+            f"not judged: {', '.join(unjudged)} in open segments, for the twin was asked for other angles than the "
+            "vehicle. In a mission with gusts one of the two is ahead on its path, and turns at another time: compare "
+            "the whole flight, or a log of calm air"
+        )
     voltage = of_whole.get("voltage")
     if voltage is not None and voltage.logged.mean() > 1.0 and voltage.rms > _VOLTS * float(voltage.logged.mean()):
         found.append(f"model: battery voltage differs by {voltage.rms:.2f} V (RMS): resistance or capacity differ")

@@ -17,10 +17,11 @@ _OWN = re.compile(
     r"AHRS_(TRIM|ORIENT|EKF|GPS_USE)|ARMING_|ARSPD|BARO|BATT\d?_(MONITOR|VOLT_|CURR_|AMP_|I2C|SERIAL|OPTIONS|ESC|SHUNT)"
     r"|BCN_|BRD_|CAN_|CAM|COMPASS_|DEV_|EAHRS_|EK[23]_(ENABLE|SRC|IMU|PRIMARY|GPS|MAG|AFFINITY|DRAG)|ESC_|FFT_"
     r"|FLOW|FORMAT_|FRAME_|FS_GCS_ENABL|GPS|INITIAL_MODE|INS_(ACC\d?_|ACC\d?OFFS|ACC\d?SCAL|ACC_?\d?_?ID|ACCOFFS|ACCSCAL"
-    r"|GYR|USE|ENABLE|POS|TCAL|FAST|RAW|LOG|TRIM|STILL|BODYFIX)|LOG_|MAV\d*_|MNT|NET_|NTF_|OSD|PLND_|PRX|RNGFND|RPM"
+    r"|GYR|USE|ENABLE|POS|TCAL|FAST|RAW|LOG|TRIM|STILL|BODYFIX)|LOG_|MAV\d*_|MIS_TOTAL|MNT|NET_|NTF_|OSD|PLND_|PRX|RNGFND|RPM"
     r"|SCHED_|SCR_|SERIAL|SERVO|SIM_|SR\d_|STAT_|SYSID_|TEMP|VISO|VTX|WENC"
 )
-"""Beginnings of names that tell of the vehicle's hardware, calibration, ports and logs: the twin has its airframe's."""
+"""Beginnings of names that tell of the vehicle's hardware, calibration, ports and logs,
+or that cannot be written: the twin has its airframe's."""
 _WORLD = "SIM_"
 _WIND = re.compile(r"SIM_WIND_")
 _OURS = "gym-sitl"

@@ -18,6 +18,11 @@ from .limits import Verdict
 from .twin import MODEL_S, SEGMENT_S, Twin
 
 _MEANING = (
+    "Whole flight: from arming to disarming; errors add up. "
+    f"Open segments: every {SEGMENT_S:g} s the twin is put into the logged state (position, velocity, attitude, rates, "
+    "motors) and flies on by itself, so that errors do not add up. "
+    f"Model alone: for {MODEL_S:g} s the motors do what the log's did, whatever the autopilot wants. "
+    "Desired: what the autopilot asks for. "
     "RMS: root mean square of twin minus log. VAF: variance accounted for, 100 % when the twin moves exactly as the "
     "log, 0 % when it tells nothing of it; - where what was logged hardly moved. Largest: the largest difference; the "
     "pointer over it shows when."

@@ -13,7 +13,7 @@ from sitl.logs.tlog import LogError
 from .conftest import read_log
 
 
-@pytest.fixture(params=[1 << 23, 5000], ids=["at once", "in pieces"])
+@pytest.fixture(params=[columns._PIECE, 5000], ids=["at once", "in pieces"])
 def piece(request, monkeypatch):
     monkeypatch.setattr(columns, "_PIECE", request.param)
 

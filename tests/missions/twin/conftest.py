@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -103,21 +102,4 @@ def cut(path: Path, to: Path, share: float) -> Path:
     """The beginning of a file."""
     data = path.read_bytes()
     to.write_bytes(data[: int(share * len(data))])
-    return to
-
-
-def without_messages(path: Path, to: Path, name: bytes) -> Path:
-    """A log without the messages of a name."""
-    data, at, out = path.read_bytes(), 0, bytearray()
-    lengths: dict[int, int] = {128: 89}
-    names: dict[int, bytes] = {}
-    while at + 3 <= len(data):
-        kind = data[at + 2]
-        if kind == 128:
-            number, length, label = struct.unpack_from("<BB4s", data, at + 3)
-            lengths[number], names[number] = length, label.rstrip(b"\0")
-        if names.get(kind) != name:
-            out += data[at : at + lengths[kind]]
-        at += lengths[kind]
-    to.write_bytes(bytes(out))
     return to

@@ -14,7 +14,8 @@ from sitl.errors import OptionError
 from sitl.logs.tlog import LogError
 from sitl.missions.twin import inputs, parameters, twin
 from sitl.missions.twin.flight_log import FlightLog, TwinError
-from tests.missions.twin.conftest import Log, cut, without_messages
+from tests.logs.log_files import V32, binary, old_flight, telemetry, without_messages
+from tests.missions.twin.conftest import Log, cut
 
 
 def test_a_flight_is_from_arming_to_disarming_and_begins_where_the_vehicle_stood(written: Log) -> None:
@@ -46,17 +47,30 @@ def test_a_log_that_arming_opened_begins_armed(written: Log) -> None:
         ({"without": ("XKF1",)}, "has none of XKF1"),
         ({"without": ("PARM", "ARM")}, "has no PARM"),
         ({"firmware": "ArduPlane V4.5.7 (abc)"}, "is of a plane"),
+        ({"firmware": "ArduSub V4.5.7 (abc)"}, "is of a submarine"),
+        ({"more": (("PARM", 1_000_000, b"FRAME_CLASS", 6.0, 0.0),)}, r"is of a helicopter \(FRAME_CLASS 6\)"),
     ],
 )
 def test_logs_without_a_flight(written: Log, options: dict[str, Any], text: str) -> None:
     with pytest.raises((TwinError, LogError), match=text):
-        FlightLog(written(**options))
+        FlightLog(written(*options.get("more", ()), **{k: v for k, v in options.items() if k != "more"}))
 
 
-def test_a_file_that_is_no_log(tmp_path: Path) -> None:
-    path = tmp_path / "junk.bin"
-    path.write_bytes(bytes(range(256)) * 100)
-    with pytest.raises(TwinError, match=r"junk.bin.*is made of a DataFlash log"):
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        (bytes(range(256)) * 100, "is no log: it begins with the bytes 00 01"),
+        (b"hello there\n", "is no log but a text: it begins with 'hello there'"),
+        (b"", "is empty"),
+        (telemetry(), "is a .tlog; a twin is made of the on-board log .* which the vehicle keeps on its card"),
+        (b"ULog\x01\x12\x35" + bytes(90), r"is a log of PX4 \(.ulg\)"),
+        (binary(old_flight(), V32), "has no PARM"),
+    ],
+)
+def test_a_file_of_which_no_twin_is_made(tmp_path: Path, data: bytes, text: str) -> None:
+    path = tmp_path / "odd.bin"
+    path.write_bytes(data)
+    with pytest.raises(TwinError, match=rf"odd.bin' {text}"):
         FlightLog(path)
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -24,3 +26,13 @@ def test_throttle_of_segments_tells_of_thrust_where_the_copter_leans_as_the_logs
     segments = [agreement("throttle", (37.4, 40.4)), agreement("roll", (0.0, 0.0), vaf), agreement("pitch", (0.0, 0.0))]
     found = findings(whole, segments, [])
     assert any("the thrust over weight of the airframe is less" in text for text in found) == told
+
+
+@pytest.mark.parametrize(("vaf", "judged"), [(95.0, True), (10.0, False)])
+def test_rates_of_segments_are_judged_only_where_the_twin_wants_the_angles_of_the_log(vaf: float, judged: bool) -> None:
+    segments = [agreement("roll_rate", (0.0, 9.0), 5.0), agreement("asked_roll", (0.0, 9.0), vaf)]
+    segments = [replace(one, rms=9.0) for one in segments]
+    found = findings([], segments, [])
+    assert any("roll rate in open segments accounts for 5 %" in text for text in found) == judged
+    assert any(text.startswith("not judged: roll rate in open segments") for text in found) != judged
+    assert any("desired roll, from the same state" in text for text in found) != judged

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages of a log as NumPy columns, by the names that ArduPilot has for them in DataFlash logs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import firmwares
+from ..tlog import LogError
+from .formats import READ_DIVISORS
+from .reader import FAR_S
+
+Array = np.ndarray[Any, Any]
+
+_VERSION = re.compile(r"V(\d+)\.(\d+)")
+_HELICOPTERS = (6, 11, 13)
+"""FRAME_CLASS: Heli, Heli_Dual, HeliQuad."""
+_INSTANCES = ("I", "C", "IMU", "Instance", "Id")
+
+
+class Table:
+    """The messages of one name.
+
+    Args:
+        name: of the message.
+        raw: as they are in the file, a structured array.
+        letters: field -> letter of its type.
+        units: field -> unit, as far as the log has it.
+    """
+
+    def __init__(self, name: str, raw: Array, letters: dict[str, str], units: dict[str, str]) -> None:
+        self.name, self.raw, self.letters, self.units = name, raw, letters, units
+
+    def __len__(self) -> int:
+        return len(self.raw)
+
+    def __contains__(self, field: object) -> bool:
+        return field in self.letters
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of its fields."""
+        return tuple(self.letters)
+
+    def __getitem__(self, field: str) -> Array:
+        """A column: numbers as float64, degrees for latitudes and longitudes; texts as ``str``.
+
+        Raises:
+            LogError: the messages have no such field.
+        """
+        if field not in self.letters:
+            raise LogError(f"{self.name} of this log has no field {field!r}; it has {', '.join(self.letters)}")
+        column, letter = self.raw[field], self.letters[field]
+        if column.dtype.kind == "S":
+            return np.char.decode(column, "utf-8", "replace")
+        if column.dtype.kind == "U":
+            return column
+        values = column.astype(np.float64)
+        return values / READ_DIVISORS[letter] if letter in READ_DIVISORS else values
+
+    @property
+    def time(self) -> Array:
+        """Since the autopilot's boot [s]; empty when the messages have none."""
+        for name, scale in (("TimeUS", 1e-6), ("TimeMS", 1e-3)):
+            if name in self.letters:
+                return self.raw[name].astype(np.float64) * scale
+        return np.zeros(0)
+
+    def instance(self, number: int = 0) -> Table:
+        """The messages of one sensor, filter ...; all of them when they have no number."""
+        label = next((label for label in _INSTANCES if label in self.letters), None)
+        if label is None or not len(self):
+            return self
+        return self.where(self.raw[label] == number)
+
+    def where(self, which: Array) -> Table:
+        """Those messages that a mask, a slice or numbers say."""
+        return Table(self.name, self.raw[which], self.letters, self.units)
+
+    @property
+    def rate(self) -> float:
+        """Messages a second: the median over the log [Hz]; 0 with less than two."""
+        steps = np.diff(self.time)
+        steps = steps[steps > 0.0]
+        return float(1.0 / np.median(steps)) if len(steps) else 0.0
+
+
+class Tables:
+    """A log: its messages, and what they say of it.
+
+    Args:
+        path: of the file.
+    """
+
+    _tables: dict[str, Table]
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.left_out = 0
+        """Messages whose time cannot be."""
+        self._tables = {}
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._tables and len(self._tables[str(name)]) > 0
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, table in self._tables.items() if len(table))
+
+    def __getitem__(self, name: str) -> Table:
+        """The messages of a name.
+
+        Raises:
+            LogError: the log has none; the message lists those there are.
+        """
+        if name not in self:
+            raise LogError(f"log {str(self.path)!r} has no {name}; it has {', '.join(sorted(self)) or 'nothing'}")
+        return self._tables[name]
+
+    # ------------------------------------------------------------------ what it is of
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The last value of each."""
+        if "PARM" not in self:
+            return {}
+        table = self["PARM"]
+        return dict(zip(table["Name"].tolist(), table["Value"].tolist()))
+
+    @property
+    def texts(self) -> list[tuple[float, str]]:
+        """(Time [s], text) of all MSG; one that was cut into pieces is in pieces."""
+        if "MSG" not in self:
+            return []
+        table = self["MSG"]
+        times = table.time if len(table.time) else np.zeros(len(table))  # ArduPilot 3.2 has none here
+        return list(zip(times.tolist(), table["Message"].tolist()))
+
+    @property
+    def firmware(self) -> str:
+        """As it names itself: "ArduCopter V4.6.3 (3fc7011a)"; "" when the log does not say it."""
+        named = next((text for _, text in self.texts if any(firmwares.of_text(text))), "")
+        if named or "VER" not in self or "FWS" not in self["VER"]:
+            return named
+        return str(self["VER"]["FWS"][0])
+
+    @property
+    def version(self) -> tuple[int, int] | None:
+        """Of the firmware: (4, 6); None when the log does not say it."""
+        found = _VERSION.search(self.firmware)
+        return (int(found[1]), int(found[2])) if found else None
+
+    @property
+    def helicopter(self) -> str:
+        """What says that it is a helicopter, whose rotors have pitch ("FRAME_CLASS 6"): ArduPilot counts it among the
+        copters; "": nothing."""
+        number = int(self.parameters.get("FRAME_CLASS", 0))
+        if number in _HELICOPTERS:
+            return f"FRAME_CLASS {number}"
+        named = re.match(r"\S*heli\w* V\d", self.firmware, re.IGNORECASE)
+        return self.firmware if named else ""
+
+    @property
+    def kind(self) -> str:
+        """Kind of vehicle.
+
+        Raises:
+            LogError: the log does not say it, or it is one that the simulator does not have.
+        """
+        found = [firmwares.of_text(text) for _, text in self.texts]
+        if "VER" in self and "BU" in self["VER"]:
+            found.append(firmwares.of_build(int(self["VER"]["BU"][0])))
+        found += [firmwares.of_parameter(name) for name in self.parameters]
+        kind, other = next((one for one in found if any(one)), ("", ""))
+        if other:
+            raise LogError(f"log {str(self.path)!r} is of {other}; logs of copters and rovers are taken")
+        if not kind:
+            raise LogError(
+                f"log {str(self.path)!r} does not say what vehicle it is of: it has no MSG, VER or PARM of it"
+            )
+        return kind
+
+    def _drop_odd_times(self) -> None:
+        """Leave out messages whose time cannot be: those far from the times of the most frequent message."""
+        timed = [table for table in self._tables.values() if len(table.time)]
+        if not timed:
+            return
+        times = np.sort(max(timed, key=len).time)
+        middle = len(times) // 2
+        gaps = np.flatnonzero(np.diff(times) > FAR_S) + 1
+        begin = times[max([0, *gaps[gaps <= middle]])] - FAR_S
+        end = times[min([len(times), *gaps[gaps > middle]]) - 1] + FAR_S
+        for table in timed:
+            odd = (table.time < begin) | (table.time > end)
+            if odd.any():
+                self.left_out += int(odd.sum())
+                self._tables[table.name] = table.where(~odd)
