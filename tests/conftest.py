@@ -35,3 +35,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def core() -> Core:
     """The compiled core (from the cache; the first process builds what is missing)."""
     return load_core()
+
+
+@pytest.fixture
+def no_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where no library of machine code came with the package, nor was made: all is compiled here."""
+    monkeypatch.setattr("sitl.core.shipped.library.library", lambda: None)

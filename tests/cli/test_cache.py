@@ -23,7 +23,7 @@ def test_every_module_that_makes_kernels_is_listed() -> None:
     assert making == set(KERNEL_MODULES)
 
 
-def test_kernels_are_compiled_beforehand(monkeypatch, tmp_path) -> None:
+def test_kernels_are_compiled_beforehand(no_library, monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
     (task,) = missing_kernels(["sitl.envs.tasks"])
     told = []

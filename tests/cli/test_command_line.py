@@ -316,7 +316,7 @@ def test_the_demo_drives_its_mission_and_draws_it(core: Core, tmp_path: Path) ->
 
 
 def test_cache_lists_all_that_a_run_compiles(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    no_library: None, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
     assert main(["cache", "show"]) == 0

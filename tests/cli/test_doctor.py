@@ -46,7 +46,7 @@ def test_a_port_in_use_is_named(capsys: pytest.CaptureFixture[str], monkeypatch:
     assert ports["state"] == doctor.ABSENT and str(number) in ports["what"] and "--instance" in ports["mend"]
 
 
-def test_units_to_compile_are_counted(monkeypatch, tmp_path, capsys) -> None:
+def test_units_to_compile_are_counted(no_library, monkeypatch, tmp_path, capsys) -> None:
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path / "not" / "yet"))
     core = found(capsys)["core of copter"]
     assert core["state"] == doctor.ABSENT and core["mend"] == "sitl cache build"

@@ -83,8 +83,7 @@ def test_the_law_of_the_number_is_called_or_the_other_one() -> None:
 
 def test_it_is_a_law_and_what_it_calls_belongs_to_its_fingerprint() -> None:
     assert SCALE in LAWS
-    reached: list[str] = []
-    fingerprint._walk(SCALE, set(), set(), reached)
+    reached = fingerprint.Reached(SCALE).lines
     assert {line.split()[1].rsplit(".", 1)[1] for line in reached if line.startswith("def")} == {
         "scale", "twice", "thrice", "same",
     }  # fmt: skip

@@ -128,12 +128,12 @@ def test_id_can_name_the_package():
 
 
 def test_importing_the_package_loads_no_compiler():
-    """And nothing of the simulator but the errors that ours are kinds of."""
+    """And nothing of the simulator but its version, and the errors that ours are kinds of."""
     heavy = "{'numba', 'pygame', 'pymavlink'} & set(sys.modules)"
     code = f"import sys, sitl.envs; print(sorted({heavy}), sorted(m for m in sys.modules if m.startswith('sitl')))"
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     out = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
-    ours = ["sitl", "sitl.envs", "sitl.envs.goals", "sitl.envs.ids", "sitl.envs.options", "sitl.errors"]
+    ours = ["sitl", "sitl.envs", "sitl.envs.goals", "sitl.envs.ids", "sitl.envs.options", "sitl.errors", "sitl.version"]
     assert out.stdout == f"[] {ours}\n", out.stderr
 
 
