@@ -150,4 +150,4 @@ def test_importing_it_loads_nothing_else() -> None:
     code += "print(sorted(set(sys.modules) - before))"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
-    assert done.stdout == "['sitl']\n", done.stderr
+    assert done.stdout == "['sitl', 'sitl.version']\n", done.stderr
