@@ -41,3 +41,4 @@ def core() -> Core:
 def no_library(monkeypatch: pytest.MonkeyPatch) -> None:
     """As where no library of machine code came with the package, nor was made: all is compiled here."""
     monkeypatch.setattr("sitl.core.shipped.library.library", lambda: None)
+    monkeypatch.setenv("SITL_SHIPPED_DIR", "")  # of programs that it starts
