@@ -121,7 +121,9 @@ def test_units_call_what_is_listed(units: dict[tuple[str, str], str]) -> None:
 
 
 def test_no_kernel_allows_other_arithmetic_or_calls_what_is_not_listed() -> None:
-    for name, ir in kernels():
+    found = list(kernels())
+    assert len(found) > 20 or library() is None, "where nothing was compiled beforehand there may be none"
+    for name, ir in found:
         assert (name, freedoms(ir), unknown(declared(ir))) == (name, [], set())
 
 
