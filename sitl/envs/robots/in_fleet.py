@@ -63,9 +63,10 @@ from ..mavlink.setpoints import attitude as copter_attitude
 from ..mavlink.telemetry import PART
 from ..options import EnvOptionError
 from .boots import draw
-from .in_process import MAX_STATES, InProcessVehicles, check_parameters
+from .in_process import InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
+from .starts import Start
 from .truth import true_reports, truth_writer
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
@@ -97,10 +98,8 @@ class FleetVehicles(InProcessVehicles):
         self._origins = np.zeros((count, 3))
         self._all = np.arange(count)
         self._is_open = False
-        self._changed: dict[tuple[int, str, int], tuple[Snapshot, Snapshot]] = {}
-        """(Identity of a start state, kind of set-point, interval) -> (that state, the same ready for these)."""
-        self._begun: list[tuple[Snapshot, int, Move | None] | None] = [None] * count
-        """Start state, seed and move of each vehicle's episode, until its first step."""
+        self._begun: list[tuple[Start, int, Move | None] | None] = [None] * count
+        """Start, seed and move of each vehicle's episode, until its first step."""
         self._prepared: dict[int, Prepared] = {}
         """By the number of the boot."""
         self._failing: dict[int, list[Failure]] = {}
@@ -165,19 +164,19 @@ class FleetVehicles(InProcessVehicles):
         base, world = self.base or self._start, self.worlds[index]
         stays = pose == base and not figures and world is self.setup.world
         if self.options.begin == BOOT or (self.options.boots == 1 and stays):
-            state, move = self._restored(pose, figures, world, self._boot_of(seed)), None
+            start, move = self._start_of(pose, figures, world, self._boot_of(seed)), None
         else:
             boot, walks = draw(self.options.boots, seed)
-            state = self._restored(base, (), self.setup.world, boot)
+            start = self._start_of(base, (), self.setup.world, boot)
             prepared = self._prepared.get(boot)
-            if prepared is None or prepared.state is not state:
-                prepared = self._prepared[boot] = Prepared(state, self.setup, base)
+            if prepared is None or prepared.state is not start.state:
+                prepared = self._prepared[boot] = Prepared(start.state, self.setup, base)
             move = prepared.to(pose, figures, seed, world, walks)
-        ready = self._changed.get((id(state.simulation), *self._used))
-        if ready is not None:  # as the last episodes went on
-            state = EpisodeState(ready[1], state.telemetry, state.origin, state.began_us, *self._used)
+        state = start.state
+        if (ready := start.ready.get(self._used)) is not None:  # as the last episodes went on
+            state = EpisodeState(ready, state.telemetry, state.origin, state.began_us, *self._used)
         self._put(index, state, seed, move)
-        self._begun[index] = (state.simulation if ready is None else ready[0], seed, move)
+        self._begun[index] = start, seed, move
         return state if move is None else self._moved(index, state, pose)
 
     @cached_property
@@ -233,12 +232,9 @@ class FleetVehicles(InProcessVehicles):
             self.fleet.put(index, self._ready(index, self.fleet.snapshot(index), setpoint, interval_us, now))
         else:
             start, seed, move = begun
-            key = (id(start), setpoint, interval_us)
-            if key not in self._changed:
-                if len(self._changed) >= MAX_STATES:
-                    del self._changed[next(iter(self._changed))]
-                self._changed[key] = (start, self._ready(index, start, setpoint, interval_us))
-            ready = self._changed[key][1]
+            ready = start.ready.get(self._used)
+            if ready is None:
+                ready = start.ready[self._used] = self._ready(index, start.state.simulation, setpoint, interval_us)
             if move is None:
                 self.fleet.put(index, ready, seed)
             else:

@@ -30,14 +30,12 @@ from ..options import EnvOptionError
 from .boots import SINGLE, booted, draw
 from .moves import BOOT
 from .robot import Pose
+from .starts import STARTS, Origin, Start
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
 from .wind import wind_and_own
 
 MAX_ELSEWHERE = 8
 """Vehicles that wait in worlds in which no episode is now."""
-MAX_STATES = 2048
-"""Number of start states that are kept, one for each start pose and set of figures: about 40 kB each. Calculating one
-takes about 30 ms."""
 
 
 def check_parameters(simulation: Simulation) -> None:
@@ -55,7 +53,8 @@ class InProcessVehicles(Vehicles):
 
     def __init__(self, setup: VehicleSetup) -> None:
         super().__init__(setup)
-        self._states: dict[Any, EpisodeState] = {}
+        self._from: dict[str, Origin] = {}
+        """World -> what starts in it depend on."""
         self._elsewhere: dict[tuple[int, str], InProcess] = {}
         """(Number, world) -> the vehicle that was flown in a world that its number has left."""
         self._core: Core | None = None
@@ -76,7 +75,7 @@ class InProcessVehicles(Vehicles):
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
         figures = tuple(sorted(self.changed[index].items()))
-        state = self._restored(pose, figures, self.worlds[index], self._boot_of(seed))
+        state = self._start_of(pose, figures, self.worlds[index], self._boot_of(seed)).state
         self.restore(index, state)
         self.simulation(index).reseed(seed)
         return state
@@ -100,23 +99,21 @@ class InProcessVehicles(Vehicles):
         boots = self.options.boots
         return seed if self.options.begin == BOOT and boots > 1 else draw(boots, seed).boot
 
-    def _restored(
+    def _start_of(
         self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int = SINGLE
-    ) -> EpisodeState:
-        """The state after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
-        key = (pose, figures, world.name, boot)
-        state = self._states.get(key)
-        if state is None:
-            simulation = self._simulation(pose, figures, world, boot)
-            link = InProcess(simulation, self.setup.inbox())
-            origin = self.prepare(link, pose)
-            state = EpisodeState(
-                simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US
-            )
-            link.close()
-            if len(self._states) >= MAX_STATES:
-                del self._states[next(iter(self._states))]
-            self._states[key] = state
+    ) -> Start:
+        """The vehicle after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
+        origin = self._from.get(world.name)
+        if origin is None:
+            origin = self._from[world.name] = Origin(self.setup, world)
+        return STARTS.of((origin, pose, figures, boot), lambda: self._started(pose, figures, world, boot))
+
+    def _started(self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int) -> EpisodeState:
+        simulation = self._simulation(pose, figures, world, boot)
+        link = InProcess(simulation, self.setup.inbox())
+        origin = self.prepare(link, pose)
+        state = EpisodeState(simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US)
+        link.close()
         return state
 
     def _simulation(
