@@ -99,9 +99,7 @@ class InProcessVehicles(Vehicles):
         boots = self.options.boots
         return seed if self.options.begin == BOOT and boots > 1 else draw(boots, seed).boot
 
-    def _start_of(
-        self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int = SINGLE
-    ) -> Start:
+    def _start_of(self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int = SINGLE) -> Start:
         """The vehicle after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
         origin = self._from.get(world.name)
         if origin is None:

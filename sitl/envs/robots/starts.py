@@ -53,7 +53,7 @@ class Origin:
         return self is other or (isinstance(other, Origin) and self._hash == other._hash and self._all == other._all)
 
 
-def _scenario(scenario: Scenario) -> tuple[Hashable, ...]:
+def _scenario(scenario: Scenario) -> Hashable:
     """A scenario without its airframe, world, start and seed, which are told apart otherwise."""
     return (
         scenario.home, scenario.estimator, type(scenario.params), tuple(sorted(scenario.parameters.items())),
@@ -61,7 +61,7 @@ def _scenario(scenario: Scenario) -> tuple[Hashable, ...]:
     )  # fmt: skip
 
 
-def _airframe(airframe: Airframe) -> tuple[Hashable, ...]:
+def _airframe(airframe: Airframe) -> Hashable:
     figures = tuple(sorted((name, _plain(value)) for name, value in airframe.figures.items()))
     return type(airframe), airframe.name, figures, tuple(sorted(airframe.parameters.items()))
 
