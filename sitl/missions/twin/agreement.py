@@ -18,10 +18,12 @@ _NEAR_S = 1e-3
 
 
 class Window(NamedTuple):
-    """A stretch of a flight, since arming [s]."""
+    """A stretch of a log's flight, since arming [s]."""
 
     begin: float
     end: float
+    shift: float = 0.0
+    """How much later the twin does the same [s]."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +70,14 @@ def compare(
         return None
     inside = member >= 0
     time, logged, member = then.time[inside], then.values[inside], member[inside]
+    moment = time + np.array([window.shift for window in windows])[member]
     if quantity.is_angle:
-        here = _at(Stream(now.time, np.degrees(np.unwrap(np.radians(now.values), axis=0))), time)
+        here = _at(Stream(now.time, np.degrees(np.unwrap(np.radians(now.values), axis=0))), moment)
         difference = np.mod(here - logged + 180.0, 360.0) - 180.0
         logged = np.degrees(np.unwrap(np.radians(logged), axis=0))
         here = logged + difference
     else:
-        here = _at(now, time)
+        here = _at(now, moment)
         difference = here - logged
     if each and quantity.adds_up:
         first = np.array([np.argmax(member == k) for k in range(len(windows))])
@@ -86,11 +89,13 @@ def compare(
 def _members(time: Array, windows: Sequence[Window], now: Stream) -> Array:
     """Window of each sample; -1: of none."""
     member = np.full(len(time), -1)
-    after = np.clip(np.searchsorted(now.time, time, "left"), 1, len(now.time) - 1)
-    before, after = now.time[after - 1], now.time[after]
     for k, window in enumerate(windows):  # both samples that a value is between are of the same window
         begin, end = window.begin - _NEAR_S, window.end + _NEAR_S
-        member[(time >= begin) & (time <= end) & (before >= begin) & (after <= end)] = k
+        first, last = np.searchsorted(time, (begin, end), "left")
+        moment = time[first:last] + window.shift
+        after = np.clip(np.searchsorted(now.time, moment, "left"), 1, len(now.time) - 1)
+        inside = (now.time[after - 1] >= begin + window.shift) & (now.time[after] <= end + window.shift)
+        member[first:last][inside] = k
     return member
 
 

@@ -25,6 +25,7 @@ from sitl.run.runner import open_dataflash
 from sitl.simulation import Simulation
 
 from ..station import Station, StationError
+from . import legs
 from .agreement import Window
 from .flight_log import FlightLog, TwinError
 from .inputs import Inputs, Message, Mode, Wind
@@ -48,6 +49,33 @@ _STEERED = 4
 _SEVERE = 4
 """MAV_SEVERITY_WARNING"""
 _SHOWN = 4
+_PATIENCE_S = 3.0
+"""So long an open segment waits for a twin that has not come to the log's item of the mission [s]."""
+_STEP_US = 20_000
+_LEAST_SHARE = 0.5
+"""A segment of which less is left is not flown: the twin is ahead of it."""
+
+
+class _Heard:
+    """The vehicle's texts, with the moments at which it said them."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self.texts: list[tuple[int, str]] = []
+        """(Time [us], text)"""
+
+    def said(self, severity: int, text: str) -> None:
+        """A text was sent."""
+        self.texts.append((self._simulation.time_us, text))
+
+    def parameter_set(self, name: str) -> None:
+        """No text."""
+
+    def reached(self, seq: int) -> None:
+        """No text."""
+
+    def commanded(self, fields: Any, frame: int, is_place: bool, sender: Any, result: int) -> None:
+        """No text."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +139,11 @@ class TwinFlight:
         self.station = Station(simulation)
         self.notes: list[str] = []
         """What went otherwise than in the log."""
-        self._armed_us = 0
+        self.opened: list[Window] = []
+        """Open segments as they were flown: a twin that was late or early on its mission began them in step with it."""
+        self._items = legs.begun_in(log) if segments is not None and not segments.driven else []
+        self._heard = _Heard(simulation)
+        self._armed_us = self._shift_us = 0
         self._place = Vec3(0.0, 0.0, 0.0)
         self._state = LoggedState(log) if segments is not None else None
         self._logged = [(time, mode_name(log.kind, number)) for time, number, _ in inputs.modes]
@@ -123,6 +155,8 @@ class TwinFlight:
             TwinError: the twin is never ready, or cannot be armed.
         """
         open_dataflash(self.simulation, self.path)
+        if self._items:
+            self.simulation.bridge.listeners.append(self._heard)
         self.stand_by()
         self._arm()
         for time_us, act in self._timeline():
@@ -207,8 +241,8 @@ class TwinFlight:
     # ------------------------------------------------------------------ in flight
 
     def _until(self, time_us: int) -> None:
-        """Let time pass to a time since arming [us]."""
-        self.station_until(self._armed_us + time_us)
+        """Let time pass to a time since arming [us], as the log's flight counts it."""
+        self.station_until(self._armed_us + self._shift_us + time_us)
 
     def _timeline(self) -> Iterator[tuple[int, Callable[[], None]]]:
         """All that is to be done, in the order of time since arming [us]."""
@@ -321,27 +355,62 @@ class TwinFlight:
 
     # ------------------------------------------------------------------ open segments
 
-    def _segment_times(self) -> list[tuple[float, bool]]:
-        """(Time, whether a segment begins then); between them rotors are driven on."""
+    def _segment_times(self) -> list[tuple[float, Window | None]]:
+        """(Time, the segment that begins then); between them rotors are driven on."""
         if self.segments is None:
             return []
-        found = [(window.begin, True) for window in self.segments.windows]
+        found: list[tuple[float, Window | None]] = [(window.begin, window) for window in self.segments.windows]
         if self.segments.driven:
             begins = np.array([window.begin for window in self.segments.windows])
             end = self.segments.windows[-1].end
             steps = np.arange(begins[0], end, _STICK_S)
             far = np.abs(steps[:, None] - begins[None, :]).min(1) > 0.25 * _STICK_S
-            found += [(float(t), False) for t in steps[far]]
-        return sorted(found)
+            found += [(float(t), None) for t in steps[far]]
+        return sorted(found, key=lambda row: row[0])
 
-    def _segment(self, row: tuple[float, bool]) -> None:
+    def _segment(self, row: tuple[float, Window | None]) -> None:
         assert self._state is not None and self.segments is not None
+        time, window = row
         if not self.station.armed:
             return
-        if row[1]:
-            self._state.put(self.simulation, row[0], self._place, self.segments.driven)
-        else:
-            self._state.drive(self.simulation, row[0])
+        if window is None:
+            self._state.drive(self.simulation, time)
+            return
+        if self._items:
+            self._fall_in_step(time)
+            time = max(time, self._since_arming_s - 1e-6 * self._shift_us)
+        if window.end - time > _LEAST_SHARE * (window.end - window.begin):
+            self._state.put(self.simulation, time, self._place, self.segments.driven)
+            self.opened.append(Window(time, window.end, 1e-6 * self._shift_us))
+
+    @property
+    def _since_arming_s(self) -> float:
+        """Of the twin."""
+        return 1e-6 * (self.simulation.time_us - self._armed_us)
+
+    def _fall_in_step(self, time: float) -> None:
+        """Count time from the item of the mission that both are flying; wait for a twin that is behind.
+
+        Args:
+            time: of the log, since arming [s].
+        """
+        flown = [one.item for one in self._items if one.time <= time]
+        begins = {one.item: one.time for one in self._items}
+        patience = self._since_arming_s + _PATIENCE_S
+        while True:
+            texts = ((1e-6 * (at - self._armed_us), text) for at, text in self._heard.texts)
+            there = [one for one in legs.begun(texts) if one.item in begins]
+            if there:
+                last = there[-1]
+                self._shift_us = round(1e6 * (last.time - begins[last.item]) / TICK_US) * TICK_US
+                if last.item not in flown[:-1]:
+                    break  # the same item, or the twin is ahead
+            elif not flown:
+                break
+            if not self.station.armed or self._since_arming_s >= patience:
+                break
+            self.station_until(self.simulation.time_us + _STEP_US)
+        self._until(round(1e6 * time))
 
     # ------------------------------------------------------------------ the end
 

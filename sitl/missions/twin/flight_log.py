@@ -23,9 +23,9 @@ _ESTIMATES = ("XKF1", "NKF1", "EKF1", "SIM2")
 """The last one is in logs of a vehicle that flies by its true state."""
 _PRIMARY = {"XKF1": "XKF4", "NKF1": "NKF4"}
 _NAMES = (
-    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC", "MODE", "NKF1",
-    "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2", "STER", "THR", "XKF1",
-    "XKF2", "XKF4",
+    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC", "MODE", "MSG",
+    "NKF1", "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2", "STER", "THR",
+    "XKF1", "XKF2", "XKF4",
 )  # fmt: skip
 """Messages that are read."""
 _LEAST_S = 3.0
@@ -166,12 +166,15 @@ class FlightLog:
                 time = self.since_arming(table)
                 place = tuple(self.at_arming(time, table[field]) for field in ("Lat", "Lng", "Alt"))
                 if all(map(math.isfinite, place)) and (place[0] or place[1]):
-                    attitude = self.table("ATT") if self.has("ATT", "Yaw") else None
-                    yaw = 0.0
-                    if attitude is not None:
-                        yaw = self.at_arming(self.since_arming(attitude), attitude["Yaw"]) % 360.0
-                    return (place[0], place[1], place[2], yaw)
+                    return (place[0], place[1], place[2], self._heading())
         raise TwinError(f"log {str(self.path)!r} tells no place (POS, AHR2, GPS): a twin needs one to begin at")
+
+    def _heading(self) -> float:
+        """At arming [deg]; 0: the log does not say it."""
+        if not self.has("ATT", "Yaw"):
+            return 0.0
+        attitude = self.table("ATT")
+        return self.at_arming(self.since_arming(attitude), attitude["Yaw"]) % 360.0
 
     # ------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from .twin import MODEL_S, SEGMENT_S, Twin
 
 _MEANING = (
     "Whole flight: from arming to disarming; errors add up. "
+    "In step: both from the beginning of each item of the mission, whichever of the two comes to it first. "
     f"Open segments: every {SEGMENT_S:g} s the twin is put into the logged state (position, velocity, attitude, rates, "
     "motors) and flies on by itself, so that errors do not add up. "
     f"Model alone: for {MODEL_S:g} s the motors do what the log's did, whatever the autopilot wants. "
@@ -48,6 +49,8 @@ def lines(twin: Twin, verdicts: Sequence[Verdict]) -> list[str]:
     found += [f"  note: {note}" for note in twin.notes]
     found += [f"  twin: {note}" for note in twin.went]
     parts = [("whole flight", twin.whole)]
+    if twin.legs:
+        parts.append(("in step by items", twin.legs))
     if twin.segments:
         parts.append((f"segments of {SEGMENT_S:g} s", twin.segments))
     if twin.difference:
@@ -116,6 +119,8 @@ def _list(heading: str, texts: Iterable[str]) -> str:
 
 def _table(twin: Twin) -> str:
     parts: list[tuple[str, list[Agreement]]] = [("Whole flight", twin.whole)]
+    if twin.legs:
+        parts.append(("In step by mission items", twin.legs))
     if twin.segments:
         parts.append((f"Open segments of {SEGMENT_S:g} s", twin.segments))
     if twin.model:

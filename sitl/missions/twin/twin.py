@@ -25,7 +25,7 @@ from sitl.simulation import Core, Simulation
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
-from . import inputs, parameters, streams
+from . import inputs, legs, parameters, streams
 from .agreement import Agreement, Window, compare
 from .flight import LOG_BITMASK, Change, Segments, TwinFlight
 from .flight_log import FlightLog, TwinError
@@ -41,7 +41,7 @@ MODEL_S = 0.5
 """Length of a segment in which the model alone flies."""
 _ABOVE_M = 1.0
 """Segments are in the air, at least so high above the place of arming."""
-WHOLE, OPEN, MODEL, CHANGED = "", "segments.", "model.", "changed."
+WHOLE, LEGS, OPEN, MODEL, CHANGED = "", "legs.", "segments.", "model.", "changed."
 """Beginnings of the names of figures."""
 
 
@@ -62,14 +62,21 @@ class Twin:
     went_changed: list[str]
     whole: list[Agreement] = field(default_factory=list)
     """Over the whole flight, from arming to disarming."""
+    legs: list[Agreement] = field(default_factory=list)
+    """Over the whole flight, both from the beginning of each item of the mission."""
     segments: list[Agreement] = field(default_factory=list)
     """Of open segments: flown on from the logged state."""
     model: list[Agreement] = field(default_factory=list)
     """Of segments in which the model's motors do what the log's did."""
     difference: list[Agreement] = field(default_factory=list)
     """Of the changed twin from the twin."""
-    begins: tuple[float, ...] = ()
-    """Of open segments, since arming [s]."""
+    opened: tuple[Window, ...] = ()
+    """Open segments as they were flown."""
+
+    @property
+    def begins(self) -> tuple[float, ...]:
+        """Of open segments, since arming by the log's time [s]."""
+        return tuple(window.begin for window in self.opened)
 
     @property
     def findings(self) -> list[str]:
@@ -80,7 +87,8 @@ class Twin:
         """All figures by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
         found: dict[str, float] = {}
         for part, agreements in (
-            (WHOLE, self.whole), (OPEN, self.segments), (MODEL, self.model), (CHANGED, self.difference)
+            (WHOLE, self.whole), (LEGS, self.legs), (OPEN, self.segments), (MODEL, self.model),
+            (CHANGED, self.difference),
         ):  # fmt: skip
             for one in agreements:
                 name = part + one.quantity.name
@@ -173,24 +181,28 @@ class _Twins:
     def fly(self, segments: bool) -> Twin:
         """All of them."""
         then = Change(wind=self.wind)
-        flown, went = self._flown("twin", self.airframe, then)
+        flown, flight = self._flown("twin", self.airframe, then)
+        went = flight.notes
         changed: FlightLog | None = None
         went_changed: list[str] = []
         if self.change.words:
             both = self.change if self.change.wind is not None else replace(self.change, wind=self.wind)
-            changed, went_changed = self._flown("changed", self.heavier, both)
+            changed, flight = self._flown("changed", self.heavier, both)
+            went_changed = flight.notes
         found = Twin(self.log, self.airframe.name, flown, changed, self.change, self._notes(), went, went_changed)
         quantities = streams.QUANTITIES[self.log.kind]
         all_of_it = [Window(0.0, self.log.span.length)]
         found.whole = _compared(quantities, self.log, flown, all_of_it)
+        found.legs = _compared(quantities, self.log, flown, legs.windows(self.log, flown))
+        found.went += legs.late(legs.steps(self.log, flown))
         if changed is not None:
             found.difference = _compared(quantities, flown, changed, all_of_it)
         if segments and not (self.log.kind == "copter" and self.physics == NATIVE):
             found.notes.append("open segments are flown by copters on native physics only")
         elif segments:
-            found.segments = self._segments("segments", SEGMENT_S, False, then)
-            found.model = self._segments("model", MODEL_S, True, then)
-            found.begins = tuple(window.begin for window in self._windows(SEGMENT_S))
+            found.segments, opened = self._segments("segments", SEGMENT_S, False, then)
+            found.model, _ = self._segments("model", MODEL_S, True, then)
+            found.opened = tuple(opened)
             by_motors = _BY_THRUST if self._outputs_hz < RATES_HZ else (*_BY_THRUST, *_BY_TORQUE)
             found.model = [one for one in found.model if one.quantity.name in by_motors]
             if by_motors == _BY_THRUST and found.model:
@@ -231,7 +243,7 @@ class _Twins:
 
     def _flown(
         self, name: str, airframe: Airframe, change: Change, segments: Segments | None = None
-    ) -> tuple[FlightLog, list[str]]:
+    ) -> tuple[FlightLog, TwinFlight]:
         is_open = segments is not None
         params = self.taken.values | {
             "LOG_BITMASK": LOG_BITMASK, "LOG_BACKEND_TYPE": 1.0, "LOG_DISARMED": 0.0, **change.params
@@ -246,7 +258,7 @@ class _Twins:
         finally:
             simulation.close()
         try:
-            return FlightLog(path), flight.notes
+            return FlightLog(path), flight
         except TwinError as error:
             why = "; ".join(flight.notes) or "it says no reason"
             raise TwinError(f"the twin of log {self.log.name!r} does not fly its flight: {error}: {why}") from None
@@ -281,14 +293,17 @@ class _Twins:
         )  # fmt: skip
         return self.home
 
-    def _segments(self, name: str, seconds: float, driven: bool, change: Change) -> list[Agreement]:
-        windows = self._windows(seconds)
-        if not windows:
-            return []
-        flown, _ = self._flown(name, self.airframe, change, Segments(windows, driven))
-        if not driven:
-            windows = tuple(Window(begin + SETTLES_S, end) for begin, end in windows)
-        return _compared(streams.QUANTITIES[self.log.kind], self.log, flown, windows, each=True)
+    def _segments(
+        self, name: str, seconds: float, driven: bool, change: Change
+    ) -> tuple[list[Agreement], list[Window]]:
+        """Agreement within segments, and these as they were flown."""
+        planned = self._windows(seconds)
+        if not planned:
+            return [], []
+        flown, flight = self._flown(name, self.airframe, change, Segments(planned, driven))
+        opened = flight.opened
+        judged = opened if driven else [one._replace(begin=one.begin + SETTLES_S) for one in opened]
+        return _compared(streams.QUANTITIES[self.log.kind], self.log, flown, judged, each=True), opened
 
     @property
     def _outputs_hz(self) -> float:
