@@ -61,6 +61,17 @@ class Among(Waypoints):
         self._ways.aim(index, x, y)
         self._left[index] = self._ways.lengths(self.judged_pose())[index]
 
+    def routes(self, ahead: float, out: Floats, first: int = 0) -> None:
+        """Write where the shortest obstacle-free paths of all robots to their targets lead next, from where their
+        autopilots believe them to be; see ``free_ways.follow_ways``.
+
+        Args:
+            ahead: how far along the path [m].
+            out: forward, left of the robot's heading, and the length of the path [m], shape (count, columns).
+            first: column of the first one.
+        """
+        self._ways.follow(self._from(), ahead, out, first)
+
     def _nearer(self, pose: Floats) -> Floats:
         left = self._ways.lengths(pose)
         np.subtract(self._left, left, self._gain)
