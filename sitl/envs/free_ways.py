@@ -20,6 +20,8 @@ from .robots.robot import Floats, Robot, world_of
 from .starts import ReachableCells
 from .worlds import PerWorld
 
+CLEARANCE, BESIDE = 1.0, 5.0
+"""So far from where a robot can just pass, a route costs no more than its length; there it costs so much more [m]."""
 CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
@@ -70,25 +72,28 @@ def read_ways(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None
 
 
 @law
-def follow_ways(fields: NarrowTable, grids: Table, pose: Table, ahead: float, out: Table, first: int) -> None:
-    """Write to where each robot's way leads next: down the field of lengths, in steps of half a cell.
+def follow_ways(
+    routes: NarrowTable, fields: NarrowTable, grids: Table, pose: Table, ahead: float, out: Table, first: int
+) -> None:
+    """Write to where each robot's route leads next: down the field of its costs, in steps of half a cell.
 
     Args:
+        routes: costs of each robot's routes, as ``fields`` has lengths.
         fields, grids: see ``read_ways``.
         pose: x, y, z [m], yaw [rad] and more, shape (count, 4 or more).
         ahead: how far along the way [m].
-        out: forward, left of the robot's heading, and the length of the way [m], shape (count, columns).
+        out: forward, left of the robot's heading, and the length of the shortest way [m], shape (count, columns).
         first: column of the first one.
     """
     for k in range(out.shape[0]):
         columns, step = int(grids[k, 1]), 0.5 * grids[k, 4]
         x, y, gone = pose[k, 0], pose[k, 1], 0.0
         here = around(grids, k, x, y)
-        length = left = length_at(fields, k, columns, here)
+        length, left = length_at(fields, k, columns, here), length_at(routes, k, columns, here)
         while gone < ahead and step < left < math.inf:
             at, u, v = here.at, here.u, here.v
-            a, b = float(fields[k, at]), float(fields[k, at + 1])
-            c, d = float(fields[k, at + columns]), float(fields[k, at + columns + 1])
+            a, b = float(routes[k, at]), float(routes[k, at + 1])
+            c, d = float(routes[k, at + columns]), float(routes[k, at + columns + 1])
             down, right = (1.0 - v) * (c - a) + v * (d - b), (1.0 - u) * (b - a) + u * (d - c)
             slope = math.sqrt(down * down + right * right)
             if not 0.0 < slope < math.inf:
@@ -96,7 +101,7 @@ def follow_ways(fields: NarrowTable, grids: Table, pose: Table, ahead: float, ou
             far = min(step, ahead - gone)
             x, y, gone = x - far * down / slope, y - far * right / slope, gone + far
             here = around(grids, k, x, y)
-            left = length_at(fields, k, columns, here)
+            left = length_at(routes, k, columns, here)
         s, c = sincos(pose[k, 3])
         x, y = x - pose[k, 0], y - pose[k, 1]
         out[k, first], out[k, first + 1], out[k, first + 2] = x * c + y * s, y * c - x * s, length
@@ -110,8 +115,10 @@ _follow = Kernel(follow_ways)
 class Ground(NamedTuple):
     """A world's grid, seen from above."""
 
-    free: npt.NDArray[np.int64]
+    free: Floats
     """1 where a way can lead, shape (rows, columns)."""
+    costs: Floats
+    """Of a cell of a route, which keeps away from solids where there is room; 0: no way leads there."""
     nearest: npt.NDArray[np.int32]
     """Number of the nearest free cell of each cell."""
     beside: Floats
@@ -142,12 +149,21 @@ class FreeWays:
         self._fields = np.zeros((robot.count, size), np.float32)
         self._out = np.zeros(robot.count)
         self._keys, self._items = np.empty(0), np.empty(0, np.int64)  # room for the heap
+        self._routes: npt.NDArray[np.float32] | None = None
+        """Costs of routes, as ``_fields`` has lengths; None: nothing asks for them."""
 
     def _ground(self, world: World) -> Ground:
         found = ReachableCells(self._robot, self._crash_range, CELLS, world)
         free = np.zeros(found.shape, np.bool_)
         free[found.cells[:, 0], found.cells[:, 1]] = True
-        return Ground(free.astype(np.int64), *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+        room = np.minimum(found.cell * _nearest(~free)[1] / CLEARANCE, 1.0) if not free.all() else np.ones(free.shape)
+        costs = np.where(free, 1.0 + BESIDE * (1.0 - room) ** 2, 0.0)
+        return Ground(free.astype(np.float64), costs, *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+
+    def plan_routes(self) -> None:
+        """``follow`` is going to be called; before the first goal."""
+        if self._routes is None:
+            self._routes = np.zeros_like(self._fields)
 
     def aim(self, index: int, x: float, y: float) -> None:
         """Give a robot its goal, x, y in the frame of its world [m]."""
@@ -158,17 +174,27 @@ class FreeWays:
         beside = float(ground.beside[i, j])
         if beside > 0.0:
             row, column = divmod(int(ground.nearest[i, j]), columns)
+        self._fields = self._marched(self._fields, index, ground, ground.free, float(row), float(column), beside)
+        if self._routes is not None:
+            self._routes = self._marched(self._routes, index, ground, ground.costs, float(row), float(column), beside)
+        self._grids[index] = rows, columns, *ground.low, ground.cell
+
+    def _marched(
+        self, fields: npt.NDArray[np.float32], index: int, ground: Ground, costs: Floats, row: float, column: float,
+        beside: float,
+    ) -> npt.NDArray[np.float32]:  # fmt: skip
+        """``fields`` with the one of a robot's new goal, or a larger array with these."""
         size = ground.free.size
         if len(self._keys) < 4 * size + 9:
             self._keys, self._items = np.empty(4 * size + 9), np.empty(4 * size + 9, np.int64)
         field = np.empty(ground.free.shape)
-        _march(ground.free, float(row), float(column), self._keys, self._items, field)
+        _march(costs, row, column, self._keys, self._items, field)
         lengths = field.ravel()[ground.nearest] + ground.beside + beside
-        if size > self._fields.shape[1]:
-            more = np.zeros((len(self._fields), size - self._fields.shape[1]), np.float32)
-            self._fields = np.concatenate((self._fields, more), axis=1)
-        self._fields[index, :size] = (ground.cell * lengths).ravel()
-        self._grids[index] = rows, columns, *ground.low, ground.cell
+        if size > fields.shape[1]:
+            more = np.zeros((len(fields), size - fields.shape[1]), np.float32)
+            fields = np.concatenate((fields, more), axis=1)
+        fields[index, :size] = (ground.cell * lengths).ravel()
+        return fields
 
     def lengths(self, pose: Floats) -> Floats:
         """Length of each robot's way from a pose (x, y, ...) [m], shape (count,); the array is used again."""
@@ -176,8 +202,9 @@ class FreeWays:
         return self._out
 
     def follow(self, pose: Floats, ahead: float, out: Floats, first: int = 0) -> None:
-        """Write to where each robot's way leads from a pose, ``ahead`` [m] along it; see ``follow_ways``."""
-        _follow.unchecked()(self._fields, self._grids, np.ascontiguousarray(pose), ahead, out, first)
+        """Write to where each robot's route leads from a pose, ``ahead`` [m] along it; see ``follow_ways``."""
+        assert self._routes is not None
+        _follow.unchecked()(self._routes, self._fields, self._grids, np.ascontiguousarray(pose), ahead, out, first)
 
 
 def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:

@@ -341,14 +341,14 @@ class Path:
 
 
 class Route:
-    """Where the shortest obstacle-free path to the target leads next, as a planner with a map tells it: forward and
-    left [m] in the frame of the robot's heading, and the length of the path.
+    """Where the route to the target leads next, as a planner with a map tells it: forward and left [m] in the frame of
+    the robot's heading, and the length of the shortest obstacle-free path.
 
     Args:
         ahead: how far along the path [m].
     """
 
-    columns = ("route ahead [m]", "route to the left [m]", "length of the route [m]")
+    columns = ("route ahead [m]", "route to the left [m]", "length of the shortest path [m]")
     reads_scan = False
 
     def __init__(self, ahead: float = 2.0) -> None:
@@ -359,12 +359,13 @@ class Route:
 
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
-        if not hasattr(session.task, "routes"):
+        if not hasattr(session.task, "plan_routes"):
             raise EnvOptionError(
                 f'observation "route": task {session.task!r} plans no path; Among, and the ids with it, do: '
                 "CopterForest, CopterRooms, RoverLabyrinth"
             )
         self._task = session.task
+        session.task.plan_routes()
         self._table = np.zeros((session.robot.count, 3))
 
     def write(self, out: Narrow) -> None:
