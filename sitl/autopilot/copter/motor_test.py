@@ -13,6 +13,7 @@ from ..arming_checks import BY_MOTOR_TEST
 from ..events import Event, emit
 from ..notes import INFO
 from ..state import Arming
+from .control.spool import DesiredSpoolState
 from .control.state import MotorsState
 from .modes import ground
 from .state import Vehicle
@@ -69,7 +70,7 @@ def run(v: Vehicle) -> None:
     motors = ap.control.motors
     if motors.test_motor == 0:
         return
-    motors.desired_spool = 0
+    motors.desired_spool = DesiredSpoolState.SHUT_DOWN
     ap.arming.auto_armed = False
     ap.arming.idle_us = v.time_us
     if v.time_us >= motors.test_until_us or not ap.arming.landed or not ap.arming.armed:

@@ -122,8 +122,8 @@ class VibrationState(Record):
 class MotorsState(Record):
     """Spool, mixer and motor outputs."""
 
-    desired_spool: int  # 0 SHUT_DOWN, 1 GROUND_IDLE, 2 THROTTLE_UNLIMITED: set by modes
-    spool_state: int  # 0 SHUT_DOWN, 1 GROUND_IDLE, 2 SPOOLING_UP, 3 THROTTLE_UNLIMITED, 4 SPOOLING_DOWN
+    desired_spool: int  # DesiredSpoolState, set by modes
+    spool_state: int  # SpoolState
     spin_up_ratio: float  # 0 .. 1 of MOT_SPIN_MIN, on the ground
     thrust_max: float  # 0 .. 1, ramped by the spool
     roll: float  # demands -1 .. 1

@@ -17,6 +17,7 @@ from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, PAYLOAD_PLACE, RTL, TAKEOFF
 from ...notes import INFO, Text
 from ...state import Arming, Estimate
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import AttitudeState, Control
 from ..navigation import circle, command, waypoint
 from ..navigation.state import CopterNav
@@ -210,7 +211,7 @@ def run_path(v: Vehicle, kind: int) -> bool:
     if not command.follows_path(kind):
         ground.hold(modes.auto_yaw, control, est, p)
         return False
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     done = command.run(modes.nav, control, est, p, v.time_us)
     if kind == kinds.LOITER_TURNS and modes.nav.circle_running:
         tell_circle(modes.nav, ap.events, v.time_us)
@@ -233,11 +234,11 @@ def run_land(v: Vehicle) -> bool:
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     land.finish(v)
-    done = ap.arming.landed and control.motors.spool_state <= ground.IS_GROUND_IDLE
+    done = ap.arming.landed and control.motors.spool_state <= SpoolState.GROUND_IDLE
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return done
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if modes.auto.land_state == DESCENDING:
         precision_land.descend(v)
         return done

@@ -22,9 +22,10 @@ from ...modes import ACCEPTED, INIT_FAILED
 from ...notes import CRITICAL, INFO, NOTICE, EventNote, ParametersFound, Text
 from .. import pilot
 from ..control import attitude
+from ..control.spool import SpoolState
 from ..control.throttle_mix import lean_limit
 from ..state import Vehicle
-from . import alt_hold, ground
+from . import alt_hold
 from . import autotune_gains as gains
 from . import autotune_rules as rules
 from . import autotune_twitch as twitches
@@ -280,7 +281,7 @@ def run(v: Vehicle) -> None:
     alt_hold.set_limits(control.pos_d, p)
     climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
     doing = alt_hold.decide(ap.arming, modes.takeoff, control.motors, climb)
-    flies = doing == alt_hold.FLYING and control.motors.spool_state == ground.IS_UNLIMITED
+    flies = doing == alt_hold.FLYING and control.motors.spool_state == SpoolState.THROTTLE_UNLIMITED
     overridden = is_overridden(v, climb, flies)
     if flies and modes.autotune.phase == TUNING and not overridden:
         tune(v)

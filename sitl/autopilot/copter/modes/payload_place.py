@@ -15,6 +15,7 @@ from ...navigation.state import COMMAND_ARRIVED, NAV_COMMAND, Nav
 from ...notes import INFO, WARNING
 from ...terrain.ground import by_range
 from ..control import altitude, altitude_start
+from ..control.spool import DesiredSpoolState
 from ..navigation import waypoint
 from ..parameters import Parameters
 from ..state import Vehicle
@@ -78,7 +79,7 @@ def run(v: Vehicle) -> bool:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return False
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if ap.arming.landed_maybe and place.stage == DESCENDING:
         say(ap.events, v.time_us, LANDED, 0.0)
         place.stage = RELEASING

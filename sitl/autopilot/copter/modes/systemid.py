@@ -22,6 +22,7 @@ from ...modes import ACCEPTED, INIT_FAILED
 from ...notes import INFO, WARNING, Text
 from .. import pilot
 from ..control import altitude, attitude, position, throttle_mix
+from ..control.spool import DesiredSpoolState
 from ..control.state import DT
 from ..parameters.flight import SystemId
 from ..state import Vehicle
@@ -284,7 +285,7 @@ def run_in_place(v: Vehicle, axis: int, added: float) -> None:
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     is_forward = axis in (POSITION_FORWARD, VELOCITY_FORWARD, SPEED_FORWARD)
     push = turned(Vec2(added, 0.0) if is_forward else Vec2(0.0, added), est.yaw)
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     place = control.pos_ne
     place.disturbed = axis <= VELOCITY_FORWARD
     zero = Vec2(0.0, 0.0)

@@ -19,6 +19,7 @@ from ...events import Event, emit
 from ...navigation.path import request_leg
 from ...notes import INFO, Text
 from ..control import altitude, attitude, position, position_start
+from ..control.spool import DesiredSpoolState
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import ground, loiter
@@ -229,7 +230,7 @@ def run_way(v: Vehicle) -> None:
     """One tick of flying by itself; the yaw stick turns it."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     reached = False
     if modes.nav.request_pending != 0:
         ground.brake(control)
