@@ -25,6 +25,7 @@ from .bridge.services.terrain import TerrainService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
 from .core.constants import TICK_US
+from .core.mavlink import MavSeverity
 from .core.record_reader import RecordReader
 from .errors import OptionError
 from .physics.carried import Carried
@@ -41,8 +42,6 @@ from .vehicles import Airframe, AirframeError
 from .worlds import World, heights
 
 Array = np.ndarray[Any, Any]
-_WARNING = 4
-"""MAV_SEVERITY"""
 ROUNDS = 8
 """So often at once a mission goes on with what came of its own do-commands."""
 
@@ -436,7 +435,7 @@ class Simulation:
 
     def _physics_restarted(self) -> None:
         """A physics elsewhere has begun anew: the autopilot begins anew with it."""
-        self.bridge.get(StatusTextService).say(_WARNING, "Physics began anew: rebooting")
+        self.bridge.get(StatusTextService).say(MavSeverity.WARNING, "Physics began anew: rebooting")
         self._reboot = True
 
     def request_reboot(self) -> None:

@@ -20,6 +20,7 @@ from .battery import is_healthy
 from .events import Event, Events, Row, emit, ev
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
+from .log_events import LogEvent
 from .notes import ChecksFailed
 from .params.parameters import Parameters
 from .params.system import Arming, Compass
@@ -176,8 +177,8 @@ def _arm(v: Any, is_armed: bool, method: float) -> Row:
     return "ARM", (int(is_armed), int(v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF, 0, int(method) & 255)
 
 
-ARMED = Event(1, log=lambda v, a, b: [_arm(v, True, a), ev(10)])  # a: method
-DISARMED = Event(2, log=lambda v, a, b: [_arm(v, False, a), ev(11)])  # a: method
+ARMED = Event(1, log=lambda v, a, b: [_arm(v, True, a), ev(LogEvent.ARMED)])  # a: method
+DISARMED = Event(2, log=lambda v, a, b: [_arm(v, False, a), ev(LogEvent.DISARMED)])  # a: method
 ARMING_REFUSED = Event(20, says=_told_refusal)  # a and b: see ``refusal``
 
 

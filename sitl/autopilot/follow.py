@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ..core.algebra import ZERO, horizontal, norm, norm2, turned, with_down
 from ..core.kernels import law
+from ..core.mavlink import MavSeverity
 from ..core.scalars import wrap_pi
 from ..core.vectors import Vec2, Vec3
 from .control.shaping import (
@@ -25,7 +26,6 @@ from .control.shaping import (
     shape_pos_vel_accel_2d,
 )
 from .events import Event
-from .notes import INFO, WARNING
 from .params.follow import Follow
 from .state import FollowState
 
@@ -35,8 +35,8 @@ RELATIVE = 1
 """FOLL_OFS_TYPE: offsets turn with the lead."""
 _STILL = Vec2(0.0, 0.0)
 
-FOLLOW_OFFSET = Event(42, INFO, {0: "N-E-D follow offset loaded", 1: "Relative follow offset loaded"})
-FOLLOW_OFF = Event(43, WARNING, "Set FOLL_ENABLE = 1")
+FOLLOW_OFFSET = Event(42, MavSeverity.INFO, {0: "N-E-D follow offset loaded", 1: "Relative follow offset loaded"})
+FOLLOW_OFF = Event(43, MavSeverity.WARNING, "Set FOLL_ENABLE = 1")
 
 
 class Report(NamedTuple):

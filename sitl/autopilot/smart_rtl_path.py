@@ -14,10 +14,10 @@ from typing import NamedTuple
 from ..core.algebra import dot, finite_vector
 from ..core.elementary import hypot
 from ..core.kernels import law
+from ..core.mavlink import MavSeverity
 from ..core.scalars import constrain
 from ..core.vectors import Vec3
 from .events import Event, Events, emit
-from .notes import INFO, WARNING
 from .params.system import SmartRtl
 from .state import PATH_POINTS, PathState
 
@@ -36,8 +36,8 @@ BAD_POSITION, FULL = 0, 1
 """Why the path was given up."""
 _LOST = {BAD_POSITION: "SmartRTL deactivated: bad position", FULL: "SmartRTL deactivated: buffer full"}
 
-PATH_LOST = Event(25, WARNING, _LOST)
-PATH_LOW = Event(35, INFO, "SmartRTL Low on space!")
+PATH_LOST = Event(25, MavSeverity.WARNING, _LOST)
+PATH_LOW = Event(35, MavSeverity.INFO, "SmartRTL Low on space!")
 
 
 class Farthest(NamedTuple):

@@ -16,9 +16,10 @@ from ..autopilot.mission.notes import Note
 from ..autopilot.mission.storage import stored_home
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
-from ..autopilot.notes import CRITICAL, Text
+from ..autopilot.notes import Text
 from ..autopilot.radio_checks import PARAMETERS
 from ..autopilot.shell_parameters import MODE_BLOCK, NEED_LOCATION
+from ..core.mavlink import MavSeverity
 from .autopilot_api import Vector, Vehicle
 
 BY_GROUND_STATION = 2
@@ -73,7 +74,7 @@ class BaseAutopilot:
             texts = [*texts, *self._parameter_texts(self._arming.check(self._v) == 0, "Arm: ")]
         elif not force:
             texts = [f"Arm: {each.text}" for each in self._found if not each.forbids]
-        self._say(CRITICAL, self._worded(texts))
+        self._say(MavSeverity.CRITICAL, self._worded(texts))
         return bool(ok)
 
     def disarm(self, force: bool) -> bool:
@@ -81,7 +82,7 @@ class BaseAutopilot:
 
     def run_prearm_checks(self) -> None:
         self.check_parameters()
-        self._say(CRITICAL, self.prearm_texts(self._v, "PreArm: "))
+        self._say(MavSeverity.CRITICAL, self.prearm_texts(self._v, "PreArm: "))
 
     def refusal_texts(self, failed: int) -> list[str]:
         return self._arming_texts(self._v, failed, "Arm: ", arming=True)

@@ -11,8 +11,9 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..autopilot.mission.item import DO_AUX_FUNCTION, MissionItem
+from ..autopilot.mission.item import MissionItem
 from ..core.constants import NEVER
+from ..core.mavlink import MavCmd, MavResult
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -34,7 +35,7 @@ from .services.mission import MissionService
 from .services.outputs import OutputService
 from .services.parameters import ParameterService
 from .services.senders import SenderService
-from .services.service import ACCEPTED, FAILED, Handler, Service
+from .services.service import Handler, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
 from .services.statustext import EventService
@@ -510,9 +511,9 @@ class Bridge:
             The answer: ACCEPTED, or FAILED when there is no message of this number.
         """
         if number not in self.telemetry:
-            return FAILED
+            return MavResult.FAILED
         self._asked.append((channel, number))
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def send_asked(self) -> None:
         """The command has been answered."""
@@ -572,7 +573,7 @@ class Bridge:
 
     def carry_out(self, item: MissionItem) -> None:
         """Do what a mission asks of servo outputs, relays, camera, gimbal, payload and switches."""
-        if item.command == DO_AUX_FUNCTION:
+        if item.command == MavCmd.DO_AUX_FUNCTION:
             run_aux_function(self, item)
             return
         self.get(CARRIED_OUT_BY.get(item.command, OutputService)).carry_out(item)

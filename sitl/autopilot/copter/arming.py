@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from ...core.kernels import inlined, law
+from ...core.mavlink import MavSeverity
 from .. import arming_checks, home, smart_rtl_path
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, MODE, refuse
 from ..events import emit
 from ..fence.checks import switch_on_arming
-from ..notes import INFO
 from ..state import Arming
 from .arming_checks import DOUBTFUL, MANDATORY, TEXTS, arm_checks, check, doubt_text, stick_checks
 from .control.motors import ARMING_DELAY_US
@@ -20,7 +20,7 @@ from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]
 
-ARMED = arming_checks.ARMED.saying(INFO, "Arming motors")
+ARMED = arming_checks.ARMED.saying(MavSeverity.INFO, "Arming motors")
 
 
 @law

@@ -8,10 +8,10 @@ aside. The test ends by itself, or with a disarming.
 from __future__ import annotations
 
 from ...core.kernels import inlined
+from ...core.mavlink import MavSeverity
 from ...core.scalars import constrain
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import Event, emit
-from ..notes import INFO
 from ..state import Arming
 from .control.spool import DesiredSpoolState
 from .control.state import MotorsState
@@ -20,7 +20,7 @@ from .state import Vehicle
 
 LONGEST_S = 600.0
 
-MOTOR_TEST = Event(21, INFO, {0: "finished motor test", 1: "starting motor test"})  # b: motor
+MOTOR_TEST = Event(21, MavSeverity.INFO, {0: "finished motor test", 1: "starting motor test"})  # b: motor
 
 # Answers of start()
 OK = 0

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from ..events import Event, emit
-from ..notes import EMERGENCY, Text
+from ..notes import Text
 from .state import Vehicle
 
 PERIOD = 0.1
@@ -23,7 +24,7 @@ SHARE = 0.75
 TOLD_US = 10_000_000
 _OFF = 2
 
-YAW_IMBALANCE = Event(64, says=lambda v, a, b: [Text(EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")])
+YAW_IMBALANCE = Event(64, says=lambda v, a, b: [Text(MavSeverity.EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")])
 """a: the integrator of the yaw rate loop"""
 
 

@@ -11,10 +11,12 @@ from typing import Any
 
 from ...core.algebra import horizontal, norm2
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from ...core.vectors import Vec2, Vec3
 from ..events import Event, Events, Row, emit, err, ev
+from ..log_events import LogErrorSubsystem, LogEvent
 from ..modes import REASON_FENCE_BREACHED
-from ..notes import INFO, NOTICE, Text
+from ..notes import Text
 from ..params.fence import Fence
 from ..state import Estimate, HomeState, Vehicle
 from .shapes import is_inclusion, place, room
@@ -51,36 +53,48 @@ AUTO_OFF, AUTO_ON, BY_FLOOR, OFF, ON = range(5)
 """How fences were switched, as FENCE_SWITCHED says: by themselves; the least height, as the vehicle is above it; by the
 user."""
 _SWITCHED = {AUTO_OFF: "auto-disabled", AUTO_ON: "auto-enabled", BY_FLOOR: "enabled (auto enable)"}
-_SWITCHED_ON = {MAX_ALT: 76, CIRCLE: 78, MIN_ALT: 80, AREAS: 82}
+_SWITCHED_ON = {
+    MAX_ALT: LogEvent.FENCE_ALT_MAX_ENABLE,
+    CIRCLE: LogEvent.FENCE_CIRCLE_ENABLE,
+    MIN_ALT: LogEvent.FENCE_ALT_MIN_ENABLE,
+    AREAS: LogEvent.FENCE_POLYGON_ENABLE,
+}
 """Number of EV when a fence is switched on; off: the next."""
 
 
 def _told_switch(v: Any, fences: float, how: float) -> list[Text]:
-    return [Text(NOTICE, f"{names(int(fences))} {_SWITCHED[int(how)]}")] if how in _SWITCHED else []
+    return [Text(MavSeverity.NOTICE, f"{names(int(fences))} {_SWITCHED[int(how)]}")] if how in _SWITCHED else []
 
 
 def _logged_switch(v: Any, fences: float, how: float) -> list[Row]:
     off = int(how not in (AUTO_ON, BY_FLOOR, ON))
-    return [ev(41 + off), *(ev(number + off) for bit, number in _SWITCHED_ON.items() if int(fences) & bit)]
+    return [
+        ev(LogEvent.FENCE_ENABLE + off),
+        *(ev(number + off) for bit, number in _SWITCHED_ON.items() if int(fences) & bit),
+    ]
 
 
 def _told_near(v: Any, fences: float, room: float) -> list[Text]:
     how = "cleared margin breach" if room < 0.0 else f"in {room:.1f}m"
-    return [Text(NOTICE, f"{names(int(fences))} {how}")]
+    return [Text(MavSeverity.NOTICE, f"{names(int(fences))} {how}")]
 
 
 # a: bits of fences; b of the first two: 1 the pilot is told
 FENCE_BREACHED = Event(
     44,
-    says=lambda v, a, b: [Text(NOTICE, f"{names(int(a))} breached")] if b != 0.0 else [],
-    log=lambda v, a, b: [err(9, int(a))],
+    says=lambda v, a, b: [Text(MavSeverity.NOTICE, f"{names(int(a))} breached")] if b != 0.0 else [],
+    log=lambda v, a, b: [err(LogErrorSubsystem.FAILSAFE_FENCE, int(a))],
 )
 FENCE_CLEAR = Event(
-    45, says=lambda v, a, b: [Text(NOTICE, "Fence breach cleared")] if b != 0.0 else [], log=err(9, 0)
+    45,
+    says=lambda v, a, b: [Text(MavSeverity.NOTICE, "Fence breach cleared")] if b != 0.0 else [],
+    log=err(LogErrorSubsystem.FAILSAFE_FENCE, 0),
 )  # none is breached any more
 FENCE_SWITCHED = Event(46, says=_told_switch, log=_logged_switch)  # b: how
 FENCE_NEAR = Event(47, says=_told_near)  # b: how far they are [m]; below zero: further than the margin again
-FENCE_RECOVERY = Event(48, INFO, "Manual recovery started")  # the pilot brings the vehicle back behind the fence
+FENCE_RECOVERY = Event(
+    48, MavSeverity.INFO, "Manual recovery started"
+)  # the pilot brings the vehicle back behind the fence
 
 
 @law

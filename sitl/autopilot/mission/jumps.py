@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import MutableMapping
 
+from ...core.mavlink import MavCmd
 from ..navigation.state import Nav
-from .item import DO_JUMP, DO_JUMP_TAG
 from .mission import Mission
 
 LONGEST = 100
@@ -52,9 +52,9 @@ def following(
         item = mission.get(seq)
         if item is None:
             return 0
-        if item.command not in (DO_JUMP, DO_JUMP_TAG):
+        if item.command not in (MavCmd.DO_JUMP, MavCmd.DO_JUMP_TAG):
             return seq
-        place = int(item.p1) if item.command == DO_JUMP else mission.tagged(int(item.p1))
+        place = int(item.p1) if item.command == MavCmd.DO_JUMP else mission.tagged(int(item.p1))
         times, done = int(item.p2), counts.get(seq, 0)
         known = seq in counts or len(counts) < room
         if (times == FOREVER or done < times) and known:

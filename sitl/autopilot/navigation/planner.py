@@ -9,11 +9,11 @@ from typing import Any, Generic, TypeVar
 
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
 from ...core.geodesy import place_e7
+from ...core.mavlink import MavSeverity
 from ...core.sums import separation
 from ...core.vectors import Vec3
 from ..avoidance.shortest_path import find_path
 from ..events import Event, Row, emit
-from ..notes import CRITICAL
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .path import areas_of, set_place
@@ -37,7 +37,7 @@ def _rows(v: Any, is_closed: bool) -> list[Row]:
     return [("OADJ", (*state, *next(places), *next(places)))]
 
 
-NO_WAY = Event(60, CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
+NO_WAY = Event(60, MavSeverity.CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
 """There is no way around the areas of the fence."""
 WAY_LAID = Event(75, log=lambda v, a, b: _rows(v, False))
 """The way around them has turns."""

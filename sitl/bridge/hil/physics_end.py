@@ -15,21 +15,20 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...core.constants import TICK_US
+from ...core.mavlink import MavAutopilot, MavCmd, MavResult, MavSeverity
 from ...physics.carried import Carried
 from ..dialect import message
 from ..frame import Frame, Splitter
-from ..services.service import ACCEPTED, DENIED, UNSUPPORTED
 from . import controls, sticks, truth
 from .controls import ForeignClock
 from .measurements import Measurements
-from .protocol import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
+from .protocol import RESEED, RefusedError
 from .sensor import SENSOR_KIND
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, PARAM_VALUE, TEXT = (
     message(name)
     for name in ("HEARTBEAT", "COMMAND_ACK", "COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "PARAM_VALUE", "STATUSTEXT")
 )
-WARNING = 4
 
 
 class Simulated(Protocol):
@@ -58,7 +57,7 @@ class Simulated(Protocol):
 
 def text_frame(measurements: Measurements, text: str) -> bytes:
     """A STATUSTEXT for an autopilot."""
-    return measurements.sender.frame(TEXT, TEXT.payload(severity=WARNING, text=text.encode()[:50]))
+    return measurements.sender.frame(TEXT, TEXT.payload(severity=MavSeverity.WARNING, text=text.encode()[:50]))
 
 
 class PhysicsEnd:
@@ -190,7 +189,7 @@ class PhysicsEnd:
 
     def _meet(self, heartbeat: Any) -> bytes:
         """Who is there?"""
-        self._is_foreign = self.measurements.is_foreign = heartbeat.autopilot != ARDUPILOTMEGA
+        self._is_foreign = self.measurements.is_foreign = heartbeat.autopilot != MavAutopilot.ARDUPILOTMEGA
         self._is_stranger = not self._is_foreign and bool(self._type) and heartbeat.type != self._type
         if not self._is_stranger:
             return b""
@@ -256,26 +255,26 @@ class PhysicsEnd:
 
     def _command(self, fields: Any, frame: Frame) -> bytes:
         """Answer a command; what it asks for follows the acknowledgement."""
-        number, result, more = fields.command, ACCEPTED, b""
-        if number == REBOOT:
+        number, result, more = fields.command, MavResult.ACCEPTED, b""
+        if number == MavCmd.PREFLIGHT_REBOOT_SHUTDOWN:
             self._simulated.power_on()
             self._now = -1
             self._renew()
             more = self._tick
         elif number == RESEED and frame.kind is COMMAND_INT:
             self._simulated.reseed((fields.x & 0xFFFFFFFF) | (fields.y & 0xFFFFFFFF) << 32)
-        elif number == REQUEST_MESSAGE and fields.param1 == truth.TRUTH_KIND.id:
+        elif number == MavCmd.REQUEST_MESSAGE and fields.param1 == truth.TRUTH_KIND.id:
             more = self._truth()
-        elif number == REQUEST_MESSAGE and fields.param1 == SENSOR_KIND.id:
+        elif number == MavCmd.REQUEST_MESSAGE and fields.param1 == SENSOR_KIND.id:
             more = self.measurements.everything()
-        elif number == SET_MESSAGE_INTERVAL and fields.param1 == truth.TRUTH_KIND.id:
+        elif number == MavCmd.SET_MESSAGE_INTERVAL and fields.param1 == truth.TRUTH_KIND.id:
             if not abs(fields.param2) < 1e12:
-                result = DENIED
+                result = MavResult.DENIED
             else:
                 self._truth_every_us = int(max(fields.param2, 0.0))
-        elif number in (REQUEST_MESSAGE, SET_MESSAGE_INTERVAL):
-            result = DENIED
+        elif number in (MavCmd.REQUEST_MESSAGE, MavCmd.SET_MESSAGE_INTERVAL):
+            result = MavResult.DENIED
         else:
-            result = UNSUPPORTED
+            result = MavResult.UNSUPPORTED
         ack = ACK.payload(command=number, result=result, target_system=frame.system, target_component=frame.component)
         return self._frame(ACK, ack) + more

@@ -19,13 +19,14 @@ from ...autopilot.estimation.alignment import CALIBRATE, initialise
 from ...autopilot.estimation.strapdown import tilt_from_acc
 from ...autopilot.sensor_calibration import ACCELS_DONE, corrected_acc, mounted
 from ...core.constants import GRAVITY, NEVER
+from ...core.mavlink import MavResult, MavSeverity
 from ...core.vectors import Vec3
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from .parameters import ParameterService
-from .service import ACCEPTED, CRITICAL, FAILED, INFO, TEMPORARILY_REJECTED, Handler, Service
+from .service import Handler, Service
 from .statustext import StatusTextService
 
 COMMAND_LONG = message("COMMAND_LONG")
@@ -76,26 +77,26 @@ class CalibrationService(Service):
     def start(self, task: str) -> int:
         """Begin to measure GYROS, LEVEL or SIMPLE. Its MAV_RESULT."""
         if self._task or 0 < self._waits <= len(POSITIONS):
-            return TEMPORARILY_REJECTED
+            return MavResult.TEMPORARILY_REJECTED
         if task == LEVEL and max(map(abs, self._trim(self._shown()[:3]))) > MOST_TRIM:
-            return FAILED
+            return MavResult.FAILED
         self._measure(task)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def start_positions(self) -> int:
         """Begin with the first of six positions. Its MAV_RESULT."""
         if self._task:
-            return TEMPORARILY_REJECTED
+            return MavResult.TEMPORARILY_REJECTED
         self._means = []
         self._ask(1)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def is_in_position(self, number: float) -> int:
         """A client says that the vehicle is in a position. The MAV_RESULT."""
         if self._task or number != self._waits or not 0 < self._waits <= len(POSITIONS):
-            return FAILED
+            return MavResult.FAILED
         self._measure(POSITION)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def _acknowledged(self, channel: Channel, m: Any, sender: Sender) -> None:
         self.is_in_position(self._waits)
@@ -112,7 +113,7 @@ class CalibrationService(Service):
         self.due_us = min(self.due_us, self._tell_us)
         if number <= len(POSITIONS):
             text = f"Place vehicle {POSITIONS[number - 1]} and press any key."
-            self.bridge.get(StatusTextService).say(CRITICAL, text)
+            self.bridge.get(StatusTextService).say(MavSeverity.CRITICAL, text)
 
     def service(self, now_us: int) -> None:
         if self._task:
@@ -144,7 +145,7 @@ class CalibrationService(Service):
             roll, pitch = self._trim(acc)
             self._set("AHRS_TRIM", (roll, pitch))
             text = f"Trim OK: roll={math.degrees(roll):.2f} pitch={math.degrees(pitch):.2f} yaw=0.00"
-            self.bridge.get(StatusTextService).say(INFO, text)
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, text)
         else:
             self._means.append(tuple(acc.tolist()))
             if len(self._means) < len(POSITIONS):
@@ -166,7 +167,7 @@ class CalibrationService(Service):
             self._set("AHRS_TRIM", self._trim(np.array(self._means[0])))
             self._align(np.array(self._means[-1]))
             self.bridge.vehicle.v.autopilot.calibrated.state |= ACCELS_DONE
-        say(CRITICAL, "Calibration successful" if good else "Calibration FAILED")
+        say(MavSeverity.CRITICAL, "Calibration successful" if good else "Calibration FAILED")
         self._ask(SUCCESS if good else FAILURE)
 
     def _trim(self, shown: np.ndarray[Any, Any]) -> tuple[float, float]:

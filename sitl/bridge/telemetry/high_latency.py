@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ...core.mavlink import MavAutopilot
 from ..autopilot_api import Vehicle
 from ..dialect import message
 from ..mavlink_firmware import MavlinkFirmware
@@ -11,7 +12,6 @@ from .plain import told
 from .status import ACCEL, AHRS, BARO, BATTERY, GEOFENCE, GPS, GYRO, MAG, RECEIVER, TERRAIN
 from .units import boot_ms, heading_cdeg, int16, percent, uint8, uint16
 
-ARDUPILOTMEGA = 3
 DIFFERENTIAL_PRESSURE = 0x10
 """Bit of SYS_STATUS; no vehicle has an airspeed sensor."""
 FAILURES = {
@@ -36,7 +36,7 @@ def high_latency(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     return message("HIGH_LATENCY2").payload(
         timestamp=boot_ms(int(v.time_us)),
         type=profile.mav_type,
-        autopilot=ARDUPILOTMEGA,
+        autopilot=MavAutopilot.ARDUPILOTMEGA,
         custom_mode=int(beat.custom_mode) & 0xFFFF,
         latitude=int(here.lat),
         longitude=int(here.lon),

@@ -8,12 +8,11 @@ from collections.abc import Callable
 from typing import Any
 
 from ...bridge.dialect import MessageType, message
+from ...core.mavlink import MavParamType
 from ...plants.local import LocalPlant
 from ...plants.physics_server import SimulatedPlant
 from ...vehicle.sim_parameters import PREFIX
 
-_REAL_32 = 9
-"""MAV_PARAM_TYPE_REAL32"""
 _BY_NAME = 0xFFFF
 """``param_index`` of a value that was asked for by its name."""
 
@@ -34,7 +33,7 @@ class SimParameters:
     def _tell(self, name: str, index: int) -> None:
         kind = message("PARAM_VALUE")
         payload = kind.payload(
-            param_id=name.encode(), param_value=float(self._values[name]), param_type=_REAL_32,
+            param_id=name.encode(), param_value=float(self._values[name]), param_type=MavParamType.REAL32,
             param_count=len(self._names), param_index=index,
         )  # fmt: skip
         self._send(kind, payload)

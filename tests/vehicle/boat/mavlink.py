@@ -14,12 +14,13 @@ from sitl.bridge.services import command_table
 from sitl.bridge.services.rc import rc_channels_override
 from sitl.bridge.services.setpoints import SetpointService
 from sitl.bridge.telemetry.builder import compiled
-from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
+from sitl.bridge.telemetry.heartbeat import Heartbeat, fill_heartbeat
 from sitl.bridge.telemetry.shell import CAPABILITIES
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
 from sitl.bridge.wire.fleet import run_slots
 from sitl.bridge.wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
 from sitl.core.kernels import law, unit
+from sitl.core.mavlink import MavModeFlag, MavState
 from sitl.vehicle.record import Vehicle
 
 from .firmware import AHEAD, MODES
@@ -57,8 +58,8 @@ class BoatAutopilot(BaseAutopilot):
 @law
 def heartbeat(m: Heartbeat, v: Vehicle) -> bool:
     """HEARTBEAT: a boat, its mode, armed or not."""
-    base = CUSTOM_MODE | (ARMED if v.autopilot.arming.armed else 0)
-    return fill_heartbeat(m, v, SURFACE_BOAT, base, ACTIVE)
+    base = MavModeFlag.CUSTOM_MODE_ENABLED | (MavModeFlag.SAFETY_ARMED if v.autopilot.arming.armed else 0)
+    return fill_heartbeat(m, v, SURFACE_BOAT, base, MavState.ACTIVE)
 
 
 BUILDERS = compiled((heartbeat,))

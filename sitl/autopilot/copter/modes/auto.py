@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from ....core.algebra import horizontal
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ...arming_checks import BY_MISSION_EXIT
 from ...events import Event, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, MODE_CHANGED, REASON_AUTO_RTL_EXIT
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, PAYLOAD_PLACE, RTL, TAKEOFF
-from ...notes import INFO, Text
+from ...notes import Text
 from ...state import Arming, Estimate
 from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import AttitudeState, Control
@@ -41,7 +42,7 @@ _NO_PILOT_YAW = 128
 FLYING = 0
 DESCENDING = 1
 
-CIRCLE_BEGINS = Event(59, says=lambda v, a, b: [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")])
+CIRCLE_BEGINS = Event(59, says=lambda v, a, b: [Text(MavSeverity.INFO, f"Mission: starting circle {int(a)}/{int(b)}")])
 """The next circle of a mission's LOITER_TURNS; a: its number, b: how many"""
 
 

@@ -15,11 +15,13 @@ from typing import Any
 from ....core.algebra import horizontal, norm2, quat_from_euler, rotate
 from ....core.elementary import atan2, sincos
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import PI, constrain, wrap_pi
 from ....core.vectors import Euler, Vec3
 from ...events import Row, ev
+from ...log_events import LogEvent
 from ...modes import ACCEPTED, INIT_FAILED
-from ...notes import CRITICAL, INFO, NOTICE, EventNote, ParametersFound, Text
+from ...notes import EventNote, ParametersFound, Text
 from .. import pilot
 from ..control import attitude
 from ..control.spool import SpoolState
@@ -53,13 +55,21 @@ _TEXTS = {
     gains.INCOMPLETE: "must be complete to test gains", gains.D_LIMIT: "Min Rate D limit reached",
 }  # fmt: skip
 _FAILURES = {rules.NO_ROOM: "Twitch Size", rules.NO_D: "Rate D Gain", rules.NO_P: "Rate P Gain"}
-_SEVERITIES = {gains.COMPLETE: NOTICE, gains.SUCCESS: NOTICE, gains.FAILURE: CRITICAL}
+_SEVERITIES = {
+    gains.COMPLETE: MavSeverity.NOTICE,
+    gains.SUCCESS: MavSeverity.NOTICE,
+    gains.FAILURE: MavSeverity.CRITICAL,
+}
 """Of texts; of the others it is INFO."""
 _LOGGED = {
-    gains.STARTED: 30, gains.STOPPED: 31, gains.SUCCESS: 33, gains.FAILURE: 34, gains.D_LIMIT: 35, gains.TRIES: 36,
-    gains.SAVED: 37,
-}  # fmt: skip
-"""Number of EV."""
+    gains.STARTED: LogEvent.AUTOTUNE_INITIALISED,
+    gains.STOPPED: LogEvent.AUTOTUNE_OFF,
+    gains.SUCCESS: LogEvent.AUTOTUNE_SUCCESS,
+    gains.FAILURE: LogEvent.AUTOTUNE_FAILED,
+    gains.D_LIMIT: LogEvent.AUTOTUNE_REACHED_LIMIT,
+    gains.TRIES: LogEvent.AUTOTUNE_PILOT_TESTING,
+    gains.SAVED: LogEvent.AUTOTUNE_SAVEDGAINS,
+}
 
 _PAUSE_US = 500_000  # from the sticks' release to the next twitch
 _LEVEL_US = 250_000
@@ -107,7 +117,7 @@ def parameters(axes: int) -> tuple[str, ...]:
 
 def _told(v: Any, a: float, b: float) -> list[EventNote]:
     did, number = int(a), int(b)
-    severity = _SEVERITIES.get(did, INFO)
+    severity = _SEVERITIES.get(did, MavSeverity.INFO)
     said: list[EventNote] = [
         Text(severity, f"AutoTune: {text}") for text in texts(did, number, v.autopilot.modes.autotune)
     ]

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ... import arming_checks
 from ...events import emit_and_return
 from ...fence.checks import switch_on_disarming
-from ...notes import INFO
 from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start
 from ..control.spool import DesiredSpoolState, SpoolState
@@ -17,7 +17,7 @@ from ..state import Vehicle
 from . import auto_yaw, autotune_gains
 from .state import AutoYaw
 
-DISARMED = arming_checks.DISARMED.saying(INFO, "Disarming motors")
+DISARMED = arming_checks.DISARMED.saying(MavSeverity.INFO, "Disarming motors")
 
 
 @law

@@ -15,11 +15,12 @@ from typing import Any, NamedTuple
 from ....core.algebra import turned
 from ....core.elementary import acos, cos, exp, log, sin
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
 from ...events import Event, Row, emit
 from ...modes import ACCEPTED, INIT_FAILED
-from ...notes import INFO, WARNING, Text
+from ...notes import Text
 from .. import pilot
 from ..control import altitude, attitude, position, throttle_mix
 from ..control.spool import DesiredSpoolState
@@ -92,7 +93,7 @@ def text(did: int, number: float, lean_max: float) -> str:
 
 def _told(v: Any, did: float, number: float) -> list[Text]:
     said = text(int(did), number, v.autopilot.params.ANGLE_MAX * 0.01)
-    return [Text(WARNING if int(did) in REFUSALS else INFO, said)]
+    return [Text(MavSeverity.WARNING if int(did) in REFUSALS else MavSeverity.INFO, said)]
 
 
 def _settings(v: Any, did: float, number: float) -> list[Row]:

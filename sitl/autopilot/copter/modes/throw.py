@@ -13,11 +13,11 @@ from ....core.algebra import norm2, rotate
 from ....core.constants import GRAVITY
 from ....core.elementary import cos
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
 from ...events import Event, emit
 from ...modes import ACCEPTED, INIT_FAILED, REASON_THROW_COMPLETE, ask
-from ...notes import INFO
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
 from ..control.spool import DesiredSpoolState, SpoolState
@@ -52,7 +52,7 @@ _TEXTS = {
     TO_HEIGHT: "uprighted - controlling height",
     STOPPING: "height achieved - controlling position",
 }
-THROW_STAGE = Event(33, INFO, _TEXTS)  # a: stage
+THROW_STAGE = Event(33, MavSeverity.INFO, _TEXTS)  # a: stage
 
 NEXT_MODES = (AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 """THROW_NEXTMODE: any other stays in THROW."""

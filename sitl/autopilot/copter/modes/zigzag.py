@@ -13,11 +13,12 @@ from typing import Any
 
 from ....core.algebra import direction, dot2, norm2, with_down
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...events import Event, emit
 from ...navigation.path import request_leg
-from ...notes import INFO, Text
+from ...notes import Text
 from ..control import altitude, attitude, position, position_start
 from ..control.spool import DesiredSpoolState
 from ..navigation import waypoint
@@ -56,7 +57,7 @@ def text(did: int, line: int, lines: int) -> str:
 
 
 def _told(v: Any, did: float, line: float) -> list[Text]:
-    return [Text(INFO, text(int(did), int(line), int(v.autopilot.params.ZIGZ.LINE_NUM)))]
+    return [Text(MavSeverity.INFO, text(int(did), int(line), int(v.autopilot.params.ZIGZ.LINE_NUM)))]
 
 
 ZIGZAG_DID = Event(34, says=_told)  # a: what, b: line of the sweep, 0 none
