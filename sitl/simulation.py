@@ -485,14 +485,14 @@ class Simulation:
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
-        self.bridge.tell(self.aux.attend())  # first: what switches do makes events of its own
+        self.bridge.report(self.aux.attend())  # first: what switches do makes events of its own
         self.v.autopilot.events.attention = False
         self.bridge.on_events()
         for _ in range(ROUNDS):
             notes = self.sequencer.attend()
             if not notes:
                 break
-            self.bridge.tell(notes)  # what a do-command asks for may make events, too
+            self.bridge.report(notes)  # what a do-command asks for may make events, too
         self._events_seen = int(self._event_count())
 
     def _do_reboot(self) -> None:

@@ -2,7 +2,7 @@
 """The expert "pilot": leads a vehicle by velocities, around what stands in its way; the autopilot flies them in GUIDED.
 
 Where there are places, he knows the world: ways are planned around its solids. Where there are none, as in the paper's
-environments, he sees the lidar only, and turns to where there is room.
+environments, he sees the lidar only, and turns to where there is space.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ APPROACH = 5.0
 SINK, LOW = 0.6, 1.5
 """Down onto a pad [m/s]; below this height the vehicle must be over it [m]."""
 COMFORT, COMFORT_DRIVING = 0.8, 2.0
-"""Room that he likes a copter, a rover to have [m]."""
+"""Clearance that he likes a copter, a rover to have [m]."""
 SIGHT, CONE, SIDE, ROOMY = 5.0, math.radians(15.0), math.radians(100.0), 1.2
 """Readings count up to this [m]; what is beside him, from .. to; half of the lane that he needs, in crash ranges."""
 STRAIGHT = math.radians(12.0)
@@ -236,17 +236,17 @@ class Pilot(Expert):
     # ------------------------------------------------------------------ without places
 
     def _gap(self) -> int:
-        """Where the most room is: 0 straight on, 1 to the left, -1 to the right."""
+        """Where the most space is: 0 straight on, 1 to the left, -1 to the right."""
         angles, robot = self._robot.angles, self._robot
         scan = np.minimum(robot.scan[0], SIGHT).astype(np.float64)
         half = max(ROOMY * robot.crash_range, 1.2 * robot.volume.radius) + 0.1
         tried = np.linspace(-1.6, 1.6, 33)
         turned = angles - tried[:, None]
         forward, aside = scan * arrays.cos(turned), np.abs(scan * arrays.sin(turned))
-        room = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
+        clearance = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
         side = [scan[(way * angles > CONE) & (way * angles < SIDE)].min(initial=SIGHT) for way in (1.0, -1.0)]
         centred = (min(side[0], 2.0 * half) - min(side[1], 2.0 * half)) * tried
-        best = float(tried[int(np.argmax(room - 0.3 * np.abs(tried) + centred))])
+        best = float(tried[int(np.argmax(clearance - 0.3 * np.abs(tried) + centred))])
         return 0 if abs(best) <= STRAIGHT else 1 if best > 0.0 else -1
 
 

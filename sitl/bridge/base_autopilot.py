@@ -89,7 +89,9 @@ class BaseAutopilot:
 
     def prearm_texts(self, v: Any, prefix: str = "") -> list[str]:
         """What keeps a vehicle of this firmware from arming; ``v``: its record, or a copy of one."""
-        return self._arming_texts(v, self._arming.check(v), prefix, told=any(not each.forbids for each in self._found))
+        return self._arming_texts(
+            v, self._arming.check(v), prefix, reported=any(not each.forbids for each in self._found)
+        )
 
     def check_parameters(self) -> None:
         """Make the arming checks of parameters, for the core to know."""
@@ -115,7 +117,9 @@ class BaseAutopilot:
         """What is wrong with parameters, each after ``prefix``; ``arming``: with what counts at that moment."""
         return [prefix + each.text for each in self._found if arming or not each.when_arming]
 
-    def _arming_texts(self, v: Any, failed: int, prefix: str, *, arming: bool = False, told: bool = False) -> list[str]:
+    def _arming_texts(
+        self, v: Any, failed: int, prefix: str, *, arming: bool = False, reported: bool = False
+    ) -> list[str]:
         """Texts of failed checks, each after ``prefix``.
 
         Args:
@@ -126,7 +130,7 @@ class BaseAutopilot:
             told: parameters have something to say that does not forbid arming.
         """
         said = list(self._arming.texts(v, failed, prefix))
-        if failed & PARAMETERS or told:
+        if failed & PARAMETERS or reported:
             said += self._parameter_texts(arming and self._arming.check(v) == 0, prefix)
         return self._worded(said)
 

@@ -307,7 +307,7 @@ class Bridge:
             data = self._signing.received(channel, data)
         if data and self._senders.is_on:
             data = self._senders.received(channel, data)
-        self._hear(channel, data)
+        self._handle(channel, data)
 
     def arrive(self) -> None:
         """Hear, and hand to clients, the frames that arrive now over links with faults."""
@@ -327,21 +327,21 @@ class Bridge:
         board.flush()
         board.faults.look(self.channels)
 
-    def _hear(self, channel: Channel, data: bytes) -> None:
+    def _handle(self, channel: Channel, data: bytes) -> None:
         """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
         channel.port.stops_at_frames = bool(self.taps or self.client_taps)
         if channel.port.in_size:
-            self._hear_port(channel)
+            self._handle_port(channel)
         while data:
             data = channel.feed(data)
-            self._hear_port(channel)
+            self._handle_port(channel)
 
-    def _hear_port(self, channel: Channel) -> None:
+    def _handle_port(self, channel: Channel) -> None:
         """Act on what the port holds; it may have stopped at a frame already."""
         while True:
             if not channel.port.frame_end:
                 events = self._event_count()
-                self.core.hear(channel.address)
+                self.core.receive(channel.address)
                 if self._event_count() != events:  # the law of a message had something to say
                     self.get(EventService).read()
                 if not channel.port.frame_end:
@@ -430,8 +430,8 @@ class Bridge:
             data = channel.peer.take()
             if data and not channel.takes(data):
                 for earlier in channels[: channels.index(channel)]:
-                    self._hear(earlier, b"")
-                self._hear(channel, data)
+                    self._handle(earlier, b"")
+                self._handle(channel, data)
         _write_goal(self._slot_memory, 0, until_us, self.shell_due_us(), events_seen)
         self.core.run_all(self.vehicle.index + 1, self._slots_address, ranging)
         for channel in channels:
@@ -454,7 +454,7 @@ class Bridge:
         port = channel.port
         port.congested = channel.congested
         while True:
-            self.core.tell(channel.address, 1, REGULAR)
+            self.core.transmit(channel.address, 1, REGULAR)
             if port.next_us > now:
                 return
             if port.out_count:  # there was no more room, or it is the shell's turn
@@ -499,7 +499,7 @@ class Bridge:
             while True:
                 if channel.port.out_count:
                     channel.collect()
-                self.core.tell(channel.address, 1, number)
+                self.core.transmit(channel.address, 1, number)
                 if channel.port.part == 0:  # all parts of it are sent: many need the room several times
                     break
         return number in self.telemetry
@@ -565,7 +565,7 @@ class Bridge:
         self.get(EventService).read()
         self.flush()
 
-    def tell(self, notes: list[Any]) -> None:
+    def report(self, notes: list[Any]) -> None:
         """Tell clients what the mission's sequencer gave back."""
         if notes:
             self.get(EventService).notes(notes)

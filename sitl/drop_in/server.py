@@ -126,14 +126,14 @@ class Session:
         if self._line.speedup is not None:
             values["SIM_SPEEDUP"] = self._line.speedup
         strange = [name for name in values if name not in table and name not in of_files]
-        self._tell("parameters that this firmware does not have", strange)
+        self._report("parameters that this firmware does not have", strange)
         known = {name: value for name, value in values.items() if name in table}
         refusals = {name: text for name, value in known.items() if (text := table[name].no_number(value))}
         for text in refusals.values():
             self._say(f"not taken: {text}")
         return {name: value for name, value in known.items() if name not in refusals}
 
-    def _tell(self, what: str, names: Sequence[str]) -> None:
+    def _report(self, what: str, names: Sequence[str]) -> None:
         if names:
             self._say(f"{len(names)} {what}: {', '.join(names)}")
 

@@ -44,7 +44,7 @@ def declared() -> Iterator[tuple[str, str, Event]]:
 def emitted(firmware: str) -> set[Event]:
     """Events that laws of the firmware's core name."""
     core = profile.load(firmware).core
-    waiting: list[Any] = [core.hear, core.tell, core.run]
+    waiting: list[Any] = [core.receive, core.transmit, core.run]
     seen: set[int] = set()
     found: set[Event] = set()
     while waiting:

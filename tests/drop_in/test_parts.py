@@ -43,11 +43,11 @@ def simulation(core: Core) -> Simulation:
 def test_sixteen_sticks_reach_the_radio_and_stay(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0)
     rc = simulation.v.autopilot.rc
-    port.hear(struct.pack("<16H", *range(1200, 1216)))
+    port.receive(struct.pack("<16H", *range(1200, 1216)))
     simulation.advance(30.0)  # no other frame: the receiver repeats the last one
     assert [int(pulse) for pulse in rc.channels] == [*range(1200, 1216), 0, 0]
     assert rc.receiver_ok
-    port.hear(struct.pack("<8H", 0, *range(1301, 1308)))
+    port.receive(struct.pack("<8H", 0, *range(1301, 1308)))
     simulation.advance(0.1)
     assert [int(pulse) for pulse in rc.channels] == [1200, *range(1301, 1308), *range(1208, 1216), 0, 0]
     port.close()
@@ -55,7 +55,7 @@ def test_sixteen_sticks_reach_the_radio_and_stay(simulation: Simulation) -> None
 
 def test_channels_that_were_never_sent_are_at_rest(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0, 1000)
-    port.hear(struct.pack("<16H", *(0,) * 7, 1165, *(0,) * 8))
+    port.receive(struct.pack("<16H", *(0,) * 7, 1165, *(0,) * 8))
     simulation.advance(1.0)
     rc = simulation.v.autopilot.rc
     assert rc.receiver_ok
@@ -65,7 +65,7 @@ def test_channels_that_were_never_sent_are_at_rest(simulation: Simulation) -> No
 
 def test_a_failing_transmitter_is_lost_although_sticks_come(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0)
-    port.hear(struct.pack("<16H", *(1500,) * 16))
+    port.receive(struct.pack("<16H", *(1500,) * 16))
     simulation.advance(1.0)
     assert simulation.v.autopilot.rc.receiver_ok
     simulation.v.autopilot.params.SIM.RC_FAIL = 1

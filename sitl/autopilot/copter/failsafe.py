@@ -117,12 +117,12 @@ def text(which: int, how: int) -> str | None:
     return f"{said} - {_ENDINGS[how]}" if said and how in _ENDINGS else said
 
 
-def _told(v: Any, which: float, how: float) -> list[Text]:
+def _texts(v: Any, which: float, how: float) -> list[Text]:
     said = text(int(which), int(how))
     return [Text(MavSeverity.CRITICAL if int(which) in SEVERE else MavSeverity.WARNING, said)] if said else []
 
 
-FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_told)
+FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_texts)
 
 
 @law

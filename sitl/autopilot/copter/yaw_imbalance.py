@@ -39,6 +39,6 @@ def check(v: Vehicle) -> None:
     motors.yaw_trim += (abs(ap.control.rate.yaw.integrator) - motors.yaw_trim) * SMOOTHED
     if motors.yaw_trim <= SHARE * most or most <= 0.0 or int(ap.params.FLIGHT_OPTIONS) & _OFF:
         return
-    if motors.yaw_trim_told_us == 0 or v.time_us - motors.yaw_trim_told_us >= TOLD_US:
-        motors.yaw_trim_told_us = v.time_us
+    if motors.yaw_trim_reported_us == 0 or v.time_us - motors.yaw_trim_reported_us >= TOLD_US:
+        motors.yaw_trim_reported_us = v.time_us
         emit(ap.events, v.time_us, YAW_IMBALANCE, motors.yaw_trim, 0.0)

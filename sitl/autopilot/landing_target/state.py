@@ -31,7 +31,7 @@ _TEXTS: dict[int, str | tuple[int, str]] = {
 }
 LANDING_TARGET_DID = Event(61, MavSeverity.INFO, _TEXTS)
 
-TOLD_BEACON, TOLD_FRAME = 1, 2
+REPORTED_BEACON, REPORTED_FRAME = 1, 2
 """Bits of what is said once."""
 
 
@@ -46,7 +46,7 @@ class LandingTarget(Record):
     used_us: int  # ``line_us`` of the last one that gave a place
     place: Vec3  # that place [m]
     sees: bool  # the sensor is well, and a beacon in its view
-    told: int  # TOLD_BEACON, TOLD_FRAME
+    reported: int  # TOLD_BEACON, TOLD_FRAME
     # the estimate, as of PLND_LAG ago
     running: bool  # measurements come
     since_us: int  # when the first of them did

@@ -120,8 +120,8 @@ class Planner(ABC, Generic[A]):
             self.begin_leg(ap, time_us, self.stopping_point(ap))
             set_place(detour, 0, target)
             detour.left, detour.blocked_us = 1, time_us
-            if time_us - detour.told_us >= TOLD_US or detour.told_us == 0:
-                detour.told_us = time_us
+            if time_us - detour.reported_us >= TOLD_US or detour.reported_us == 0:
+                detour.reported_us = time_us
                 emit(ap.events, time_us, NO_WAY, 0.0, 0.0)
             return
         places = [with_down(place, target.z) for place in way[:-1]] + [target]

@@ -129,15 +129,15 @@ class PhysicsEnd:
         """(Interval at which the truth is told, when it is due next) [us]; an interval of 0: never."""
         return self._truth_every_us, self._truth_due_us
 
-    def go_on_with(self, ticks: int, is_armed: bool, truth_due_us: int, is_last_untold: bool) -> bytes:
+    def go_on_with(self, ticks: int, is_armed: bool, truth_due_us: int, is_last_unsent: bool) -> bytes:
         """So many ticks were answered elsewhere; gives what the last of them has to tell, unless it was told."""
-        told = ticks - is_last_untold
+        sent = ticks - is_last_unsent
         self._complained = False
-        self._now += told * TICK_US
-        self.ticks += told
+        self._now += sent * TICK_US
+        self.ticks += sent
         self._truth_due_us = truth_due_us
-        self.clock.was_answered(ticks, self._now + is_last_untold * TICK_US, is_armed)
-        return self._tell() if is_last_untold else b""
+        self.clock.was_answered(ticks, self._now + is_last_unsent * TICK_US, is_armed)
+        return self._send() if is_last_unsent else b""
 
     @property
     def unanswered(self) -> int:
@@ -213,9 +213,9 @@ class PhysicsEnd:
 
     def _step(self) -> bytes:
         self._simulated.tick()
-        return self._tell()
+        return self._send()
 
-    def _tell(self) -> bytes:
+    def _send(self) -> bytes:
         """What the next tick, which is done, has to tell."""
         self._now += TICK_US
         self.ticks += 1

@@ -35,7 +35,7 @@ VEHICLE_POS = 42429
 POSITIONS = ("level", "on its LEFT side", "on its RIGHT side", "nose DOWN", "nose UP", "on its BACK")
 SUCCESS, FAILURE = 16777215, 16777216
 """ACCELCAL_VEHICLE_POS"""
-TICK_US, TELL_US = 2_500, 1_000_000
+TICK_US, REPORT_US = 2_500, 1_000_000
 SAMPLES = 400
 """A second of them at each position."""
 MOST_TRIM = math.radians(10.0)
@@ -57,19 +57,19 @@ class CalibrationService(Service):
         """Accelerations at the positions so far."""
         self._waits = 0
         """Number of the position that clients are asked for, or the result that they are told; 0: none."""
-        self._tell_us = NEVER
+        self._report_us = NEVER
 
     def handlers(self) -> dict[str, Handler]:
         return {"COMMAND_ACK": self._acknowledged}
 
     def snapshot(self) -> Any:
         return (
-            self._task, tuple(self._sum.tolist()), self._count, tuple(self._means), self._waits, self._tell_us,
+            self._task, tuple(self._sum.tolist()), self._count, tuple(self._means), self._waits, self._report_us,
             self.due_us,
         )  # fmt: skip
 
     def restore(self, state: Any) -> None:
-        self._task, total, self._count, means, self._waits, self._tell_us, self.due_us = state
+        self._task, total, self._count, means, self._waits, self._report_us, self.due_us = state
         self._sum, self._means = np.array(total), list(means)
 
     # ------------------------------------------------------------------ what it is asked
@@ -109,8 +109,8 @@ class CalibrationService(Service):
 
     def _ask(self, number: int) -> None:
         """Ask for a position, or tell a result."""
-        self._waits, self._tell_us = number, self.bridge.now_us
-        self.due_us = min(self.due_us, self._tell_us)
+        self._waits, self._report_us = number, self.bridge.now_us
+        self.due_us = min(self.due_us, self._report_us)
         if number <= len(POSITIONS):
             text = f"Place vehicle {POSITIONS[number - 1]} and press any key."
             self.bridge.get(StatusTextService).say(MavSeverity.CRITICAL, text)
@@ -121,11 +121,11 @@ class CalibrationService(Service):
             self._count += 1
             if self._count == SAMPLES:
                 self._finish(self._sum / SAMPLES)
-        if now_us >= self._tell_us:
+        if now_us >= self._report_us:
             position = COMMAND_LONG.payload(command=VEHICLE_POS, param1=float(self._waits))
             self.bridge.broadcast(COMMAND_LONG, position)
-            self._tell_us = now_us + TELL_US
-        self.due_us = min(self._tell_us, now_us + TICK_US if self._task else NEVER)
+            self._report_us = now_us + REPORT_US
+        self.due_us = min(self._report_us, now_us + TICK_US if self._task else NEVER)
 
     def _shown(self) -> np.ndarray[Any, Any]:
         """Specific force [m/s^2] and rates [rad/s], as shown."""

@@ -164,7 +164,7 @@ class CameraService(Service):
         off_us = now + self._us("CAM1_DURATION")
         pos, count = self.bridge.vehicle.v.autopilot.estimate.pos, state.pictures + 1
         self._state = state._replace(
-            feedback=self._tell(count), pictures=count, taken_us=now, place=(float(pos.x), float(pos.y)),
+            feedback=self._report(count), pictures=count, taken_us=now, place=(float(pos.x), float(pos.y)),
             off_us=off_us, is_waiting=False,
         )  # fmt: skip
         if self.kind == camera.BY_MAVLINK:
@@ -177,7 +177,7 @@ class CameraService(Service):
     def _us(self, name: str) -> int:
         return round(min(max(self._values[name], 0.0), LONGEST) * 1e6)
 
-    def _tell(self, count: int) -> bytes:
+    def _report(self, count: int) -> bytes:
         v = self.bridge.vehicle.v
         here, euler, home = global_position(v), v.autopilot.estimate.euler, v.autopilot.home
         return FEEDBACK.payload(

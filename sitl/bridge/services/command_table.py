@@ -407,7 +407,7 @@ def set_origin(bridge: Host, channel: Channel, command: Command) -> int:
 def _home_result(bridge: Host, ok: bool) -> int:
     bridge.say_pending()
     if ok:
-        bridge.get(HomeService).tell_changes()
+        bridge.get(HomeService).report_changes()
     return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 

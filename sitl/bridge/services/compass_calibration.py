@@ -38,7 +38,7 @@ SPACING = 0.12
 """Least distance of two samples, of the field's strength: 300 lie so in half of all directions or more."""
 LEAST_RADIUS, MOST_RADIUS = 150.0, 950.0
 """Strength of a field that can be the earth's [mGauss]."""
-LOOK_US, TELL_US = 20_000, 100_000
+LOOK_US, REPORT_US = 20_000, 100_000
 
 
 def _sections() -> np.ndarray[Any, Any]:
@@ -81,14 +81,14 @@ class CompassCalibrationService(Service):
         self._states: dict[int, State] = {}
         """By number of the compass."""
         self._retries = self._saves = self._reboots = False
-        self._start_us = self._tell_us = 0
+        self._start_us = self._report_us = 0
 
     def snapshot(self) -> Any:
         states = tuple((k, *s[:3], s.fit and tuple(s.fit), s.is_saved) for k, s in self._states.items())
-        return (states, self._retries, self._saves, self._reboots, self._start_us, self._tell_us, self.due_us)
+        return (states, self._retries, self._saves, self._reboots, self._start_us, self._report_us, self.due_us)
 
     def restore(self, state: Any) -> None:
-        states, self._retries, self._saves, self._reboots, self._start_us, self._tell_us, self.due_us = state
+        states, self._retries, self._saves, self._reboots, self._start_us, self._report_us, self.due_us = state
         self._states = {
             k: State(status, attempt, samples, fit and CompassFit(*fit), is_saved)
             for k, status, attempt, samples, fit, is_saved in states
@@ -109,7 +109,7 @@ class CompassCalibrationService(Service):
         self._retries, self._saves, self._reboots = retries, saves, reboots
         self._states = {k: State(WAITING) for k in chosen}
         now = self.bridge.now_us
-        self._start_us, self._tell_us, self.due_us = now + round(1e6 * max(delay, 0.0)), now, now
+        self._start_us, self._report_us, self.due_us = now + round(1e6 * max(delay, 0.0)), now, now
         self._mark(COMPASS_RUNNING)
         return MavResult.ACCEPTED
 
@@ -168,10 +168,10 @@ class CompassCalibrationService(Service):
                     self._states[k] = self._sampled(k, state)
         if not any(state.is_running for state in self._states.values()):
             self._unmark()
-        if now_us >= self._tell_us:
-            self._tell_us = now_us + TELL_US
+        if now_us >= self._report_us:
+            self._report_us = now_us + REPORT_US
             for k, state in self._states.items():
-                self._tell(k, state)
+                self._report(k, state)
         if self._reboots and self._states and all(state.is_saved for state in self._states.values()):
             self.bridge.vehicle.request_reboot()
         self.due_us = now_us + LOOK_US if self._states else NEVER
@@ -242,7 +242,7 @@ class CompassCalibrationService(Service):
     def _unmark(self) -> None:
         self.bridge.vehicle.v.autopilot.calibrated.state &= ~COMPASS_RUNNING
 
-    def _tell(self, k: int, state: State) -> None:
+    def _report(self, k: int, state: State) -> None:
         mask = sum(1 << number for number in self._states)
         if state.fit is None or state.is_running:
             percent = 100 * len(state.samples) // SAMPLES

@@ -45,7 +45,7 @@ def take_position(m: GlobalPositionInt, v: Vehicle, sender: int, over_home: bool
     """GLOBAL_POSITION_INT of another vehicle; ``over_home``: its height above home counts, not that above the sea."""
     ap = v.autopilot
     lead, p = ap.modes.follow, ap.params.FOLL
-    if (m.lat == 0 and m.lon == 0) or lead.tells_more or not is_lead(lead, p, sender, v.time_us):
+    if (m.lat == 0 and m.lon == 0) or lead.sends_more or not is_lead(lead, p, sender, v.time_us):
         return
     alt, frame = (m.relative_alt, MavFrame.GLOBAL_RELATIVE_ALT) if over_home else (m.alt, MavFrame.GLOBAL)
     place = local_place(ap, m.lat, m.lon, alt * 1e-3, frame)
@@ -72,7 +72,7 @@ def follow_target(m: FollowTarget, v: Vehicle, sender: int) -> None:
         return
     has_heading = (has & HAS_ATTITUDE) != 0 and body.is_given
     take(lead, p, sender, Report(place.pos, vel, acc, has_heading, yaw_of(body.q), turn), v.time_us)
-    lead.tells_more = True
+    lead.sends_more = True
 
 
 @law

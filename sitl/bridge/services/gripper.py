@@ -47,7 +47,7 @@ class GripperService(PayloadService):
         self._state = State()
         if self._there:
             self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
-            self._tell()
+            self._report()
 
     def snapshot(self) -> Any:
         return (tuple(self._state), self.due_us)
@@ -63,9 +63,9 @@ class GripperService(PayloadService):
 
     def parameter_changed(self, name: str) -> None:
         if name == "GRIP_ENABLE":
-            self._tell()
+            self._report()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         """Tell the autopilot, which waits for it where it places a load."""
         state = self._state
         self.bridge.autopilot.gripper_is(self.is_there, state.action == RELEASE and state.is_done)
@@ -107,13 +107,13 @@ class GripperService(PayloadService):
         say(MavSeverity.INFO, TEXTS[action][0])
         self._state = State(action, now + MOVES_US, False, now if action == RELEASE else state.released_us)
         self.due_us = now + MOVES_US
-        self._tell()
+        self._report()
 
     def service(self, now_us: int) -> None:
         state, self.due_us = self._state, NEVER
         if not state.is_done and now_us >= state.done_us:
             self._state = state._replace(is_done=True)
-            self._tell()
+            self._report()
             if self._is_magnet:
                 self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
             else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...autopilot.events import emit
 from ...autopilot.landing_target.measurement import take
-from ...autopilot.landing_target.state import LANDING_TARGET_DID, LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
+from ...autopilot.landing_target.state import LANDING_TARGET_DID, LEVEL_SENSOR, REPORTED_FRAME, SAID_NO_FRAME, SENSOR
 from ...core.elementary import tan
 from ...core.kernels import law
 from ...core.mavlink import MavFrame
@@ -40,9 +40,9 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
     if p.ENABLED == 0.0 or int(p.TYPE) != BY_MESSAGE:
         return
     if m.frame != MavFrame.BODY_FRD and m.frame != MavFrame.LOCAL_FRD:
-        if (t.told & TOLD_FRAME) == 0:
+        if (t.reported & REPORTED_FRAME) == 0:
             emit(ap.events, v.time_us, LANDING_TARGET_DID, float(SAID_NO_FRAME), 0.0)
-        t.told |= TOLD_FRAME
+        t.reported |= REPORTED_FRAME
         return
     line = Vec3(m.x, m.y, m.z)
     if m.position_valid == 0:

@@ -150,7 +150,7 @@ class MissionService(Service):
         self._lists[MavMissionType.FENCE] = items
         return True
 
-    def _room(self, kind: int) -> int:
+    def _capacity(self, kind: int) -> int:
         """How many items fit into a list."""
         if kind == MavMissionType.MISSION:
             return MAX_ITEMS
@@ -166,7 +166,7 @@ class MissionService(Service):
         taken = [from_int(fields, self._taken[kind]) for fields in rows]
         if (
             self.upload is not None
-            or len(rows) > self._room(kind)
+            or len(rows) > self._capacity(kind)
             or any(result != MavMissionResult.ACCEPTED for _, result in taken)
         ):
             return False
@@ -199,8 +199,8 @@ class MissionService(Service):
             pass
         elif self._may_start(channel, sender, kind):
             self.upload = None
-            if fields.count > (room := self._room(kind)):
-                self.bridge.get(StatusTextService).say(MavSeverity.WARNING, f"Only {room} items are supported")
+            if fields.count > (capacity := self._capacity(kind)):
+                self.bridge.get(StatusTextService).say(MavSeverity.WARNING, f"Only {capacity} items are supported")
                 self._ack(channel, sender, MavMissionResult.NO_SPACE, kind)
             elif fields.count == 0:  # taken while the mission runs, too: the command under way goes on
                 result = self._replace(kind, ())
@@ -368,9 +368,9 @@ class MissionService(Service):
         if kind not in self._taken:
             self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
-            self._tell_count(channel, sender, kind)
+            self._report_count(channel, sender, kind)
 
-    def _tell_count(self, channel: Channel, sender: Sender, kind: int) -> None:
+    def _report_count(self, channel: Channel, sender: Sender, kind: int) -> None:
         target = {"target_system": sender[0], "target_component": sender[1]}
         channel.send(COUNT, COUNT.payload(count=len(self.items(kind)), mission_type=kind, **target))
 
@@ -391,7 +391,7 @@ class MissionService(Service):
         items = self.items(kind) or self.home_alone(kind)
         if fields.seq >= len(items):
             if pack is to_int:
-                self._tell_count(channel, sender, kind)  # what a client may ask for
+                self._report_count(channel, sender, kind)  # what a client may ask for
             self._ack(channel, sender, MavMissionResult.INVALID_SEQUENCE, kind)
         else:
             item = items[fields.seq]

@@ -124,11 +124,11 @@ class EventService(Service):
         ring = self.bridge.vehicle.v.autopilot.events
         for k in range(max(self._seen, count - EVENT_RING), count):
             at = k % EVENT_RING
-            self._tell(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
+            self._report(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
         self._seen = count
-        self.bridge.get(HomeService).tell_changes()
+        self.bridge.get(HomeService).report_changes()
 
-    def _tell(self, code: int, a: float, b: float) -> None:
+    def _report(self, code: int, a: float, b: float) -> None:
         if code in self._acts:
             self._acts[code]()
         if code in self._events:

@@ -95,7 +95,7 @@ class Face:
                 self._due[number] = now_us - now_us % interval + interval
         self._next_us = min(self._due.values())
 
-    def hear_status(self, status: Status, now_us: int) -> None:
+    def receive_status(self, status: Status, now_us: int) -> None:
         """Betaflight has said how it is."""
         self.status = status
         self.telemetry.may_arm = status.armed or not status.arming

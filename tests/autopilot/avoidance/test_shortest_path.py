@@ -63,7 +63,7 @@ def test_a_wall_is_gone_round_on_its_shorter_side_with_the_margin() -> None:
     assert way is not None and way[-1] == end
     places = samples([start, *way])
     assert places[:, 1].min() < -10.0 and places[:, 1].max() < 1.0
-    assert Map(walls, MARGIN).room(places).min() == pytest.approx(MARGIN, abs=0.1)
+    assert Map(walls, MARGIN).clearance(places).min() == pytest.approx(MARGIN, abs=0.1)
     assert length([start, *way]) < 2.0 * math.hypot(18.0, 13.5) + 4.0 + 2.0
 
 
@@ -93,7 +93,7 @@ def test_who_begins_within_a_margin_leaves_it() -> None:
     walls = fence(box(STAY_OUT, 20.0, 0.0, 2.0, 10.0))
     start, end = Vec2(17.0, 0.0), Vec2(23.0, 0.0)  # both a metre from the wall
     way = find_path(walls, start, end, MARGIN)
-    assert way is not None and Map(walls, MARGIN).room(samples([start, *way])).min() > 0.9
+    assert way is not None and Map(walls, MARGIN).clearance(samples([start, *way])).min() > 0.9
 
 
 circles = st.lists(
@@ -108,5 +108,5 @@ def test_a_way_through_a_forest_keeps_its_margin(trees: list[tuple[float, float,
     start, end = Vec2(-10.0, 0.0), Vec2(110.0, 0.0)
     way = find_path(forest, start, end, MARGIN)
     assert way is not None  # one can always go round all of them
-    assert Map(forest, MARGIN).room(samples([start, *way])).min() >= MARGIN - 0.02
+    assert Map(forest, MARGIN).clearance(samples([start, *way])).min() >= MARGIN - 0.02
     assert length([start, *way]) >= 120.0 - 1e-9

@@ -83,14 +83,14 @@ def test_room_is_the_distance_to_the_edge_on_the_allowed_side() -> None:
         at(MavCmd.NAV_FENCE_CIRCLE_EXCLUSION, 50.0, 0.0, 0.0),
     )
     inside, outside = Vec2(150.0, 190.0), Vec2(203.0, 204.0)
-    assert shapes.room(fence, 0, inside) == pytest.approx(10.0, abs=0.02)
-    assert shapes.room(fence, 0, outside) == pytest.approx(-5.0, abs=0.02)  # to the corner
-    assert shapes.room(fence, 1, inside) == pytest.approx(-10.0, abs=0.02)
-    assert shapes.room(fence, 1, outside) == pytest.approx(5.0, abs=0.02)
+    assert shapes.clearance(fence, 0, inside) == pytest.approx(10.0, abs=0.02)
+    assert shapes.clearance(fence, 0, outside) == pytest.approx(-5.0, abs=0.02)  # to the corner
+    assert shapes.clearance(fence, 1, inside) == pytest.approx(-10.0, abs=0.02)
+    assert shapes.clearance(fence, 1, outside) == pytest.approx(5.0, abs=0.02)
     assert shapes.nearest_on_edge(fence, 0, outside) == pytest.approx((200.0, 200.0), abs=0.02)
     for s, sign in ((2, 1.0), (3, -1.0)):
-        assert shapes.room(fence, s, Vec2(30.0, 0.0)) == pytest.approx(sign * 20.0, abs=0.02)
-        assert shapes.room(fence, s, Vec2(0.0, 60.0)) == pytest.approx(-sign * 10.0, abs=0.02)
+        assert shapes.clearance(fence, s, Vec2(30.0, 0.0)) == pytest.approx(sign * 20.0, abs=0.02)
+        assert shapes.clearance(fence, s, Vec2(0.0, 60.0)) == pytest.approx(-sign * 10.0, abs=0.02)
     assert shapes.distance_to_edge(fence, 2, shapes.centre(fence, 2)) == pytest.approx(50.0)
 
 

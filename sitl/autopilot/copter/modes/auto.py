@@ -215,17 +215,17 @@ def run_path(v: Vehicle, kind: int) -> bool:
     control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     done = command.run(modes.nav, control, est, p, v.time_us)
     if kind == kinds.LOITER_TURNS and modes.nav.circle_running:
-        tell_circle(modes.nav, ap.events, v.time_us)
+        report_circle(modes.nav, ap.events, v.time_us)
     ground.fly(modes.auto_yaw, control, est, p)
     return done
 
 
 @law
-def tell_circle(nav: CopterNav, events: Events, time_us: int) -> None:
+def report_circle(nav: CopterNav, events: Events, time_us: int) -> None:
     """Say when the next circle begins, and when the last one is done."""
     number = 1 + int(circle.turned(nav))
-    if number > nav.circle_told:
-        nav.circle_told = number
+    if number > nav.circle_reported:
+        nav.circle_reported = number
         emit(events, time_us, CIRCLE_BEGINS, float(number), float(int(nav.turns)))
 
 

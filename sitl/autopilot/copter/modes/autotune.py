@@ -74,7 +74,7 @@ _LOGGED = {
 _PAUSE_US = 500_000  # from the sticks' release to the next twitch
 _LEVEL_US = 250_000
 _PATIENCE_US = 2_000_000  # after it the limits of what is level are those below; twice that after twice the time
-_TELL_US, _WARN_US = 2_000_000, 1_000_000
+_REPORT_US, _WARN_US = 2_000_000, 1_000_000
 _LEVEL, _STILL, _YAW_STILL = math.radians(2.5), math.radians(5.0), math.radians(7.5)
 _HOLD_LEAN, _HOLD_DISTANCE = math.radians(10.0), 20.0  # [m]
 _HOLD_NEAR, _TURN_FAR = 0.1, 5.0  # [m]
@@ -115,7 +115,7 @@ def parameters(axes: int) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _told(v: Any, a: float, b: float) -> list[EventNote]:
+def _texts(v: Any, a: float, b: float) -> list[EventNote]:
     did, number = int(a), int(b)
     severity = _SEVERITIES.get(did, MavSeverity.INFO)
     said: list[EventNote] = [
@@ -136,7 +136,7 @@ def _rows(v: Any, did: float, number: float) -> list[Row]:
     return [("ATUN", (t.axis, t.step, *measured, *numbers))]
 
 
-AUTOTUNE_DID = gains.AUTOTUNE_DID.saying(says=_told, log=_rows)
+AUTOTUNE_DID = gains.AUTOTUNE_DID.saying(says=_texts, log=_rows)
 
 
 @law
@@ -168,7 +168,7 @@ def start(v: Vehicle) -> int:
     if gains.has_found(t):
         gains.try_gains(v, True)
         return ACCEPTED
-    gains.tell(v, gains.STARTED, 0.0)
+    gains.report(v, gains.STARTED, 0.0)
     if is_new:
         begin(v)
     else:
@@ -208,7 +208,7 @@ def tune_next_axis(v: Vehicle) -> None:
     if axis == gains.AXES:
         t.phase = FOUND
         gains.restore(v)
-        gains.tell(v, gains.SUCCESS, 0.0)
+        gains.report(v, gains.SUCCESS, 0.0)
         return
     t.axis = axis
     g = gains.found(t, axis)
@@ -263,7 +263,7 @@ def is_overridden(v: Vehicle, climb: float, flies: bool) -> bool:
         level_first(v)
     if (by_sticks or flies) and t.overridden_us != 0 and v.time_us - t.warned_us >= _WARN_US:
         t.warned_us = v.time_us
-        gains.tell(v, gains.OVERRIDDEN, 0.0)
+        gains.report(v, gains.OVERRIDDEN, 0.0)
     return t.overridden_us != 0
 
 
@@ -310,10 +310,10 @@ def run(v: Vehicle) -> None:
 def tune(v: Vehicle) -> None:
     """One tick of levelling or of a twitch."""
     t = v.autopilot.modes.autotune
-    if v.time_us - t.told_us >= _TELL_US:
-        t.told_us = v.time_us
+    if v.time_us - t.reported_us >= _REPORT_US:
+        t.reported_us = v.time_us
         percent = 100 * min(t.count, rules.ENOUGH) // rules.ENOUGH
-        gains.tell(v, gains.PROGRESS, float(t.axis * 10000 + t.step * 1000 + percent))
+        gains.report(v, gains.PROGRESS, float(t.axis * 10000 + t.step * 1000 + percent))
     if t.came_to != rules.GOES_ON:
         conclude(v)
     if t.phase == TUNING and t.twitching:
@@ -354,7 +354,7 @@ def fail(v: Vehicle, why: int) -> None:
     t.phase = gains.FAILED
     t.twitching = False
     gains.restore(v)
-    gains.tell(v, gains.FAILURE, float(why))
+    gains.report(v, gains.FAILURE, float(why))
 
 
 @law
@@ -402,7 +402,7 @@ def learn(v: Vehicle) -> None:
         fail(v, came_to)
         return
     if came_to == rules.D_AT_LIMIT:
-        gains.tell(v, gains.D_LIMIT, 0.0)
+        gains.report(v, gains.D_LIMIT, 0.0)
     if t.count < rules.ENOUGH:
         return
     if t.step != rules.ANGLE_P_UP:
@@ -411,7 +411,7 @@ def learn(v: Vehicle) -> None:
     g = gains.found(t, t.axis)
     g.angle_p = max(_ANGLE_BACKOFF * g.angle_p, _ANGLE_P_MIN)
     g.accel = max(_CDEG * t.accel, _ACCEL_MIN if t.axis < YAW else _YAW_ACCEL_MIN)
-    gains.tell(v, gains.COMPLETE, float(t.axis))
+    gains.report(v, gains.COMPLETE, float(t.axis))
     t.done |= 1 << t.axis
     tune_next_axis(v)
 

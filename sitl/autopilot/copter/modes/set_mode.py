@@ -159,8 +159,8 @@ def refusal_texts(number: int, cause: int) -> list[str]:
     return all_modes.refusal_texts(number, cause, failed)
 
 
-def _told(v: Any, number: float, cause: float) -> list[Text]:
+def _texts(v: Any, number: float, cause: float) -> list[Text]:
     return [Text(MavSeverity.WARNING, text) for text in refusal_texts(int(number), int(cause))]
 
 
-MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_told)
+MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_texts)

@@ -56,11 +56,11 @@ def text(did: int, line: int, lines: int) -> str:
     return f"ZIGZAG: moving to {'AB'[did - GOES_TO]}" + (f" (line {line}/{lines})" if 0 < line <= lines else "")
 
 
-def _told(v: Any, did: float, line: float) -> list[Text]:
+def _texts(v: Any, did: float, line: float) -> list[Text]:
     return [Text(MavSeverity.INFO, text(int(did), int(line), int(v.autopilot.params.ZIGZ.LINE_NUM)))]
 
 
-ZIGZAG_DID = Event(34, says=_told)  # a: what, b: line of the sweep, 0 none
+ZIGZAG_DID = Event(34, says=_texts)  # a: what, b: line of the sweep, 0 none
 
 
 @law

@@ -41,7 +41,7 @@ def start(v: Vehicle) -> int:
     waypoint.start(ap.modes.nav, ap.control.position, ap.params)
     guided.submode = STOP
     guided.has_target = False
-    guided.reached_told = True
+    guided.arrival_reported = True
     return ACCEPTED
 
 
@@ -56,8 +56,8 @@ def check_age(guided: GuidedState, events: Events, time_us: int) -> None:
 @law
 def note_arrival(guided: GuidedState, events: Events, time_us: int) -> None:
     """At a position target: say so once."""
-    if not guided.reached_told:
-        guided.reached_told = True
+    if not guided.arrival_reported:
+        guided.arrival_reported = True
         emit(events, time_us, GUIDED_REACHED, 0.0, 0.0)
 
 

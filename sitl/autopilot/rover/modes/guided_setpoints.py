@@ -79,7 +79,7 @@ def set_position(v: Vehicle, point: Vec2) -> int:
         waypoint.set_destination_shaped(ap.modes.nav, ap.estimate, v.time_us, point, ap.params)
     begin(ap.modes.guided, v.time_us, POSITION)
     ap.modes.guided.pos = point
-    ap.modes.guided.reached_told = False
+    ap.modes.guided.arrival_reported = False
     return OK
 
 
