@@ -30,7 +30,7 @@ from sitl.worlds import World
 
 from .errors import AgentError
 from .expert import Expert, Shown, named
-from .ways import Ways
+from .grid_a_star import GridAStar
 
 Floats = npt.NDArray[np.float64]
 GAIN = 1.2
@@ -74,8 +74,8 @@ class Pilot(Expert):
         session = navigate.session
         self._robot: Any = navigate.robot
         self._turns: dict[int, Any] | None = None
-        self._plans_in: PerWorld[Ways] | None = None
-        self._way: Floats = np.zeros((0, 2))
+        self._plans_in: PerWorld[GridAStar] | None = None
+        self._path: Floats = np.zeros((0, 2))
         """x, y [m] of the way that was planned, for the place of number ``_of``; ``_at`` of it he is, ``_since`` so
         many steps it has been there."""
         self._of, self._at, self._since = -1, 0, 0
@@ -95,19 +95,19 @@ class Pilot(Expert):
         if self._robot.world.solids or session.varies or not self._flies:
             self._plans_in = PerWorld(self._planned)
 
-    def _planned(self, world: World) -> Ways:
-        return Ways(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
+    def _planned(self, world: World) -> GridAStar:
+        return GridAStar(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
 
     @property
-    def _plans(self) -> Ways | None:
-        """Ways in the world of the present episode."""
+    def _plans(self) -> GridAStar | None:
+        """Paths in the world of the present episode."""
         return None if self._plans_in is None else self._plans_in(self._robot.world)
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""
         if self._turns is None:
             self._shown.begin()
-            self._way, self._of, self._at, self._since = np.zeros((0, 2)), -1, 0, 0
+            self._path, self._of, self._at, self._since = np.zeros((0, 2)), -1, 0, 0
             self._backs = False
 
     def act(self, observation: Any) -> Any:
@@ -200,24 +200,24 @@ class Pilot(Expert):
         """A place ``look`` [m] ahead on the way over stations; it is planned where there is none that leads there."""
         k = int(self._task.at[0])
         self._since += 1
-        if self._of == k and len(self._way):
-            away = lengths(self._way - here)
+        if self._of == k and len(self._path):
+            away = lengths(self._path - here)
             self._at += int(away[self._at : self._at + 40].argmin())
             is_astray = away[self._at] > ASTRAY
-            is_over = self._at >= len(self._way) - 2 and len(stations) > 1  # and the gate has not been passed
+            is_over = self._at >= len(self._path) - 2 and len(stations) > 1  # and the gate has not been passed
             if self._since < REPLAN or not (is_astray or is_over):
                 return self._beyond(here, look)
         assert self._plans is not None
         legs, last = [], here
         for station in stations:
-            legs.append(self._plans.way(last, station))
+            legs.append(self._plans.path(last, station))
             last = station
-        self._way, self._of, self._at, self._since = np.concatenate(legs), k, 0, 0
+        self._path, self._of, self._at, self._since = np.concatenate(legs), k, 0, 0
         return self._beyond(here, look)
 
     def _beyond(self, here: Floats, look: float) -> Floats:
-        out: Floats = self._way[-1]
-        for place in self._way[self._at :]:
+        out: Floats = self._path[-1]
+        for place in self._path[self._at :]:
             if separation(place.tolist(), here.tolist()) >= look:
                 return np.asarray(place)
         return out

@@ -27,7 +27,7 @@ KERNEL_MODULES = (
     "sitl.agents.tabular.compiled_loop",
     "sitl.agents.tabular.exploration",
     "sitl.agents.tabular.learn",
-    "sitl.agents.ways",
+    "sitl.agents.grid_a_star",
     "sitl.core.elementary_kernels",
     "sitl.foreign.exchange",
     "sitl.foreign.hil_exchange",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The shortest way around the areas of the fence (OA_TYPE 2): from corner to corner, as far as they see each other
-(Dijkstra's search with a straight line as the guess; shell side).
+"""The shortest path around the areas of the fence (OA_TYPE 2): A* from corner to corner, as far as they see each other
+(shell side).
 
 A way keeps a margin from all edges; where it begins or ends nearer to them, it keeps that distance there.
 """
@@ -104,7 +104,7 @@ class Map:
         return found
 
 
-def find_path(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[Vec2] | None:
+def a_star(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[Vec2] | None:
     """Places where the shortest way from ``start`` to ``end`` [m, NE] turns, and its end; None: there is no way."""
     area = Map(fence, margin)
     ends = np.array([start, end])

@@ -12,7 +12,7 @@ from ...core.geodesy import place_e7
 from ...core.mavlink import MavSeverity
 from ...core.sums import separation
 from ...core.vectors import Vec3
-from ..avoidance.shortest_path import find_path
+from ..avoidance.shortest_path import a_star
 from ..events import Event, Row, emit
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
@@ -115,7 +115,7 @@ class Planner(ABC, Generic[A]):
             self.begin_leg(ap, time_us, target)
             return
         origin, _ = self.origin_of_next(ap, time_us)
-        way = find_path(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
+        way = a_star(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
         if way is None or len(way) > DETOUR:
             self.begin_leg(ap, time_us, self.stopping_point(ap))
             set_place(detour, 0, target)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ways around the solids of a world, on a grid: what a pilot who knows the world plans."""
+"""A* on a grid around the solids of a world: what a pilot who knows the world plans."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def write_clearance(solids: Table, first: Vec2, cell: float, robot: Volume, out:
 _clearance = Kernel(write_clearance)
 
 
-class Ways:
-    """Ways of a robot in its world, at the height of its start.
+class GridAStar:
+    """Shortest paths of a robot in its world, at the height of its start, which prefer clearance.
 
     Args:
         robot: with its world and volume.
@@ -83,7 +83,7 @@ class Ways:
             at = cells[np.square(cells - at).sum(axis=1).argmin()]
         return int(at[0]), int(at[1])
 
-    def way(self, here: Floats, there: Floats) -> Floats:
+    def path(self, here: Floats, there: Floats) -> Floats:
         """Places from here to there (x, y [m]), both included, shape (n, 2); a straight line where none is found."""
         start, goal = self._cell_of(here), self._cell_of(there)
         free, costs, rows, columns = self._free, self._costs, *self._free.shape
