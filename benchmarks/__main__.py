@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
 from sitl.core.mavlink import MavFrame
 from sitl.envs.mavlink.compiled import VELOCITY, ClientEnd, read_all, send_all
 from sitl.fleet import Fleet
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 

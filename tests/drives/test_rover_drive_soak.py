@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import ARM
 from sitl.core.mavlink import MavCmd
-from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.drives.rover_driver import AIRFRAMES, AUTO, GUIDED, HOLD, MODES, VELOCITY, Driver
 from tests.pilots.witness import ByDice, Item

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from benchmarks.recorded.pilot import ARM, POSITION_ONLY, VELOCITY_ONLY
 from sitl.autopilot.params.parameter import FLOAT, Parameter
 from sitl.core.mavlink import MavCmd
-from sitl.missions.pilot import ARM, POSITION_ONLY, VELOCITY_ONLY
 from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
 from tests.pilots.witness import Item, Witness

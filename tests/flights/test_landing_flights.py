@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import ARM, VELOCITY_ONLY
 from sitl.core.mavlink import MavCmd
-from sitl.missions.pilot import ARM, VELOCITY_ONLY
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, BRAKE, GUIDED, LAND, LOITER, RTL, Aviator, Item
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY
 from sitl.core import records
 from sitl.core.mavlink import MavCmd
-from sitl.missions.pilot import VELOCITY_ONLY
 from sitl.simulation import Core
 from tests.flights.aviator import (
     ACRO,

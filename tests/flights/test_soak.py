@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import ARM
 from sitl.core.mavlink import MavCmd
-from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
 from tests.pilots.witness import LOW, MIDDLE, ByDice

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import ARM
 from sitl.core.mavlink import MavCmd
-from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.flights.aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, STABILIZE, Aviator
 from tests.pilots.witness import KEEP, LOW, Item

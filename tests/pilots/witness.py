@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from benchmarks.recorded.pilot import ARM, Pilot
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.modes import shown
 from sitl.client import MissionRefusedError
 from sitl.core.geodesy import add_offset
 from sitl.core.mavlink import MavCmd, MavFrame
-from sitl.missions.pilot import ARM, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, Simulation
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
 from sitl.bridge.hil.autopilot_end import TAKEN, AutopilotEnd
@@ -23,7 +24,6 @@ from sitl.client.endpoint import Endpoint
 from sitl.core.mavlink import MavAutopilot
 from sitl.core.records import first_difference
 from sitl.errors import OptionError
-from sitl.missions.pilot import Pilot
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError

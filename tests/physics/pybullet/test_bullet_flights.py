@@ -10,9 +10,9 @@ from sitl.core.mavlink import MavCmd
 
 pytest.importorskip("pybullet")
 
+from benchmarks.recorded.pilot import Pilot
 from sitl import vehicles
 from sitl.core.records import first_difference
-from sitl.missions.pilot import Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Simulation
 from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
