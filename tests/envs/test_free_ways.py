@@ -13,6 +13,7 @@ import pytest
 from sitl.core.algebra import ZERO2
 from sitl.envs.free_ways import FreeWays
 from sitl.envs.options import EnvOptionError
+from sitl.envs.parts import Route
 from sitl.envs.targets.among import Among
 from sitl.worlds.contact import Volume
 from sitl.worlds.making import wall
@@ -78,6 +79,76 @@ def test_places_without_room_are_as_far_as_the_nearest_with_room():
     assert inside == pytest.approx(beside + 0.7, abs=0.15)
     ways.aim(0, -0.3, -5.0)
     assert float(ways.lengths(np.array([[-5.0, -5.0]]))[0]) == pytest.approx(4.7, abs=0.2)
+
+
+def test_the_route_leads_so_far_along_the_way():
+    """To a place from which the way is that much shorter, and which is no farther off than that."""
+    ways = FreeWays(robot_in(TEE))
+    ways.aim(0, 5.0, -5.0)
+    ways.aim(1, 5.0, -5.0)
+    rng, out = np.random.default_rng(1), np.zeros((2, 4))
+    for _ in range(40):
+        pose = np.column_stack(
+            (rng.uniform(-9.0, -0.6, 2), rng.uniform(-9.0, 9.0, 2), (0.0, 0.0), rng.uniform(-3, 3, 2))
+        )
+        ways.follow(pose, 2.0, out, 1)
+        ahead, left = out[:, 1], out[:, 2]
+        c, s = np.cos(pose[:, 3]), np.sin(pose[:, 3])
+        there = pose[:, :2] + np.column_stack((ahead * c - left * s, ahead * s + left * c))
+        length = ways.lengths(pose).copy()
+        assert np.array_equal(out[:, 3], length) and np.all(out[:, 0] == 0.0)
+        assert ways.lengths(there) == pytest.approx(length - 2.0, abs=0.15)
+        assert np.all(np.hypot(ahead, left) <= 2.0 + 1e-9)
+
+
+def test_the_route_ends_at_the_goal_and_no_way_leads_nowhere():
+    ways, out = FreeWays(robot_in(TEE[1:])), np.zeros((2, 3))
+    ways.aim(0, 3.0, 4.0)
+    ways.aim(1, 3.0, 4.0)
+    ways.follow(np.array([[3.0, 3.0, 0.0, 0.0], [3.01, 4.02, 0.0, 0.0]]), 2.0, out)
+    assert np.hypot(out[:, 0], out[:, 1] - (1.0, 0.0)) == pytest.approx((0.0, 0.0), abs=0.25)
+    ways._fields[:] = np.inf
+    ways.follow(np.array([[3.0, 3.0, 0.0, 0.0], [np.nan, 4.02, 0.0, 0.0]]), 2.0, out)
+    assert out[0].tolist() == [0.0, 0.0, np.inf] and np.isnan(out[1, :2]).all()
+
+
+@pytest.mark.parametrize("robots", [1, 3])
+def test_the_observation_is_told_from_the_estimate(robots):
+    many = gym.make_vec(
+        "sitl/RoverLabyrinth-v1", robots, vectorization_mode="vector_entry_point", observation=["goal", "route"]
+    )
+    seen, _ = many.reset(seed=4)
+    task, robot = many.unwrapped.session.task, many.unwrapped.session.robot
+    expected = np.zeros((robots, 3))
+    for _ in range(3):
+        task._ways.follow(robot.state, 2.0, expected)
+        assert np.array_equal(seen[:, 3:], expected.astype(np.float32))
+        assert not np.allclose(robot.state[:, :2], robot.true_state()[:, :2], atol=0.01)
+        seen, *_ = many.step(np.tile(np.array([0.8, 0.3], np.float32), (robots, 1)))
+    slow, part = np.zeros((robots, 3), np.float32), Route()
+    part.prepare(many.unwrapped.session)
+    part.write(slow)
+    assert np.array_equal(slow, seen[:, 3:])
+
+
+def test_a_route_of_another_length():
+    envs = [gym.make("sitl/CopterForest-v1", observation=["route", Route(4.0)]).unwrapped for _ in range(2)]
+    seen = [env.reset(seed=1)[0] for env in envs]
+    assert np.array_equal(*seen)
+    near, far = seen[0][:3], seen[0][3:]
+    assert near[2] == far[2] > 4.0
+    assert np.hypot(*near[:2]) == pytest.approx(2.0, abs=0.1) and np.hypot(*far[:2]) == pytest.approx(4.0, abs=0.3)
+
+
+@pytest.mark.parametrize("ahead", [0.0, -1.0, math.nan, math.inf])
+def test_a_route_of_no_length_is_refused(ahead):
+    with pytest.raises(EnvOptionError, match=rf"Route\(ahead={ahead!r}\); it must be above 0"):
+        Route(ahead)
+
+
+def test_a_task_without_obstacles_has_no_route():
+    with pytest.raises(EnvOptionError, match=r'observation "route": task .* plans no path.*RoverLabyrinth'):
+        gym.make("sitl/CopterHover-v1", observation=["goal", "route"]).reset(seed=0)
 
 
 def make(**options):

@@ -13,6 +13,8 @@ import sitl.envs  # noqa: F401 (registers the environments)
 from sitl.agents.tabular.compiled_loop import CompiledLoop
 from sitl.envs import EnvOptionError
 from sitl.envs.latency import Latency
+from sitl.envs.robots import in_process
+from sitl.envs.robots.starts import Starts
 from sitl.envs.robots.turtlebot import Turtlebot
 from tests.envs.lockstep_vehicle import vehicle
 
@@ -194,14 +196,15 @@ def test_a_drawn_latency_that_cannot_be_is_refused():
         env.reset(seed=1)
 
 
-def test_draws_come_from_a_few_sets_whose_vehicles_stay_prepared():
+def test_draws_come_from_a_few_sets_whose_vehicles_stay_prepared(monkeypatch):
+    monkeypatch.setattr(in_process, "STARTS", Starts())
     env = gym.make(COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}, begin="boot").unwrapped
     found = set()
     for seed in range(6):
         env.reset(seed=seed)
         v = env.robot.view(0)
         found.add((float(v.physics.airframe.mass), float(v.physics.wind.speed)))
-    assert len(found) == len(env.robot._vehicles._states) == 2
+    assert len(found) == len(in_process.STARTS) == 2
     other = gym.make(
         COPTER, randomise={"mass": (1.1, 1.3), "wind_speed": (0.0, 2.0), "draws": 2}, begin="boot"
     ).unwrapped

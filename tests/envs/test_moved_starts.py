@@ -12,6 +12,8 @@ import pytest
 
 import sitl.envs  # noqa: F401
 from sitl.envs.options import EnvOptionError
+from sitl.envs.robots import in_process
+from sitl.envs.robots.starts import Starts
 
 COPTER, ROVER = "GazeboOfficeErleCopterLIDAR-v0", "GazeboMazeErleRoverLIDAR-v0"
 FIGURES = {
@@ -32,6 +34,12 @@ def make(name: str, **options):
 
 def record(env) -> bytes:
     return env.robot._vehicles.fleet.records.tobytes()
+
+
+@pytest.fixture
+def starts(monkeypatch):
+    monkeypatch.setattr(in_process, "STARTS", Starts())
+    return in_process.STARTS
 
 
 @pytest.mark.parametrize("name", (COPTER, ROVER))
@@ -56,7 +64,7 @@ def test_a_start_pose_that_is_given_is_where_the_vehicle_is_prepared(name):
 
 
 @pytest.mark.parametrize("name", (COPTER, ROVER))
-def test_many_robots_are_as_one_each_and_repeat(name):
+def test_many_robots_are_as_one_each_and_repeat(name, starts):
     options = {"start": "random", "randomise": FIGURES[name]}
     many = gym.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", observation="scan", **options)
     singles = [make(name, **options) for _ in range(3)]
@@ -70,7 +78,7 @@ def test_many_robots_are_as_one_each_and_repeat(name):
                 assert np.array_equal(env.step(k % 3)[0], seen[k + 1][i])
         kept.append(seen)
     assert np.array_equal(kept[0], kept[1])
-    assert all(len(env.robot._vehicles._states) == 1 for env in singles)
+    assert len(starts) == 1
 
 
 @pytest.mark.parametrize("name", (COPTER, ROVER))
@@ -102,12 +110,12 @@ def test_a_moved_episode_is_like_one_that_was_booted_there(name):
         assert np.median(np.abs(scans[0][near] - scans[1][near])) < (0.01 if name == ROVER else 0.8)
 
 
-def test_another_pose_costs_no_other_preparation_and_boot_does():
+def test_another_pose_costs_no_other_preparation_and_boot_does(starts):
     moved, booted = make(COPTER), make(COPTER, begin="boot")
-    for env, states in ((moved, 1), (booted, 2)):
+    for env, count in ((moved, 1), (booted, 3)):
         for pose in POSES[COPTER]:
             env.reset(seed=1, options={"pose": pose})
-        assert len(env.robot._vehicles._states) == states
+        assert len(starts) == count
 
 
 def test_snapshots_go_on_from_a_moved_start():

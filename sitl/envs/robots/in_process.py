@@ -104,7 +104,8 @@ class InProcessVehicles(Vehicles):
         origin = self._from.get(world.name)
         if origin is None:
             origin = self._from[world.name] = Origin(self.setup, world)
-        return STARTS.of((origin, pose, figures, boot), lambda: self._started(pose, figures, world, boot))
+        key = origin, tuple(kind.id for kind in self.setup.wanted), pose, figures, boot
+        return STARTS.of(key, lambda: self._started(pose, figures, world, boot))
 
     def _started(self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int) -> EpisodeState:
         simulation = self._simulation(pose, figures, world, boot)

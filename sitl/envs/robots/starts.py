@@ -25,7 +25,8 @@ MOST = 2048
 
 
 class Origin:
-    """All that the start of a vehicle depends on, besides its pose, changed figures and the seed of its boot.
+    """What the start of a vehicle depends on, besides its pose, changed figures, the seed of its boot and the messages
+    that it sends.
 
     Args:
         setup: what the vehicles of an environment are made from.
@@ -42,7 +43,7 @@ class Origin:
         self._kind = setup.kind  # lives as long as its identity counts
         self._all = (
             kind, code, id(setup.kind), _scenario(setup.scenario), _airframe(setup.airframe), world,
-            setup.options.take_off, setup.angles.tobytes(), tuple(kind.id for kind in setup.wanted),
+            setup.options.take_off, setup.angles.tobytes(),
         )  # fmt: skip
         self._hash = hash(self._all)
 
