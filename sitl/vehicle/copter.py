@@ -226,6 +226,11 @@ COPTER = Kind(
     programs={"ardupilot": "arducopter", "px4": "px4"},
     # It arms with a gyro sample each 1 / 1.8 of its loop, and gets one a step: 720 at 400 loops a second.
     ardupilot_parameters={"FRAME_CLASS": 1, "SIM_RATE_HZ": 800},
+    ardupilot_models={
+        "+": "ardupilot_quad", "quad": "ardupilot_quad", "copter": "ardupilot_quad", "x": "ardupilot_x",
+        "hexa": "ardupilot_hexa", "hexax": "ardupilot_hexa_x", "octa": "ardupilot_octa",
+        "octa-quad": "ardupilot_octa_quad", "y6": "ardupilot_y6", "calibration": "calibration_copter",
+    },
     flight_parameters=(
         "WPNAV_", "WP_", "RTL_", "LAND_", "LOIT_", "PILOT_", "TKOFF_", "GUID_", "AUTO_", "MIS_", "CIRCLE_",
     ),

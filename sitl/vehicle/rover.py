@@ -193,6 +193,7 @@ ROVER = Kind(
     engines={"pybullet": "sitl.physics.pybullet.rover:BulletRover", "jsbsim": "sitl.physics.jsbsim.rover:make"},
     demo_script="mavsdk_rover.py",
     programs={"ardupilot": "ardurover", "px4": "px4"},
+    ardupilot_models={"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
     flight_parameters=("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
     parts={
         "mavlink": "sitl.bridge.rover.profile:PROFILE",
