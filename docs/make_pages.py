@@ -10,10 +10,11 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from benchmarks import engines
 from benchmarks.manoeuvres import __main__ as manoeuvres
+from benchmarks.recorded import __main__ as compare
 from benchmarks.recorded.figures import table
 from sitl.bridge import docs as mavlink
-from sitl.missions import compare, engines
 from sitl.physics.engines import BACKENDS
 from sitl.scenario import ESTIMATORS
 

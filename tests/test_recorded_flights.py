@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.recorded import __main__ as compare
 from benchmarks.recorded.figures import Figure, X, crossing, table
 from benchmarks.recorded.recording import RecordingError, recorded
-from sitl.missions import compare
 
 LOOSER = {  # percent, where docs/comparison.md says why
     "take-off: 0.1 m": 10.0,
