@@ -7,8 +7,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))  # benchmarks are no part of the installed package
 
 from benchmarks import engines
 from benchmarks.manoeuvres import __main__ as manoeuvres
