@@ -157,7 +157,8 @@ class FreeWays:
         free = np.zeros(found.shape, np.bool_)
         free[found.cells[:, 0], found.cells[:, 1]] = True
         room = np.minimum(found.cell * _nearest(~free)[1] / CLEARANCE, 1.0) if not free.all() else np.ones(free.shape)
-        costs = np.where(free, 1.0 + BESIDE * (1.0 - room) ** 2, 0.0)
+        lack = 1.0 - room
+        costs = np.where(free, 1.0 + BESIDE * lack * lack, 0.0)
         return Ground(free.astype(np.float64), costs, *_nearest(free), found.low + 0.5 * found.cell, found.cell)
 
     def plan_routes(self) -> None:
