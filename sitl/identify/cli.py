@@ -95,6 +95,8 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> Non
     print(found.table())
     for note in (note for log in found.logs for note in log.notes):
         print(f"note: {note}")
+    for doubt in found.doubts:
+        print(f"note: {doubt}")
     if any(log.is_telemetry for log in found.logs):
         print(f"note: {HOW}")
     if out is not None:

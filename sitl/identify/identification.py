@@ -23,8 +23,11 @@ from .model import Model
 from .rover.airframe import RoverModel
 from .rover.airframe import model_of as rover_model_of
 from .rover.figures import figures as rover_figures
+from .rover.sought import LOAD
 from .telemetry import judged
 
+_LEAST_EFFICIENCY = 0.1
+"""Of motors with gears: with less a mass is a slip of the pen."""
 _CELLS = ("hover_voltage", "battery_voltage")
 """Figures of which the number of cells follows, at whose ends there may be one more."""
 
@@ -95,6 +98,20 @@ class Identification:
             ends = np.clip((middle - np.sqrt(below), middle + np.sqrt(above)), *limits[name])
             intervals[name] = tuple(tuple(end.tolist()) if end.ndim else float(end) for end in ends)
         return replace(airframe, intervals=intervals)
+
+    @property
+    def doubts(self) -> list[str]:
+        """What the logs say against the mass that was given: of a rover the battery tells it by the motors'
+        efficiency."""
+        load = next((figure for figure in self.figures if figure.name == LOAD.name and figure.is_observed), None)
+        if load is None or self.mass is None or _LEAST_EFFICIENCY * load.low <= self.mass <= load.high:
+            return []
+        low, high = (share * load.value for share in (_LEAST_EFFICIENCY, 1.0))
+        return [
+            f"mass {self.mass:g} kg does not go with the battery: what it gave for the motors' work makes {low:.3g} to "
+            f"{high:.3g} kg likely, at an efficiency of {100.0 * _LEAST_EFFICIENCY:.0f} to 100 %; {self.mass:g} kg "
+            f"would be {100.0 * self.mass / load.value:.2g} %"
+        ]
 
     def _model(self) -> Model | RoverModel:
         make = model_of if self.kind == "copter" else rover_model_of

@@ -12,16 +12,18 @@ from typing import Any
 
 from tqdm import tqdm
 
+from sitl.core import code_in_files
 from sitl.envs.robots.boots import check_boots
 
 from ..errors import AgentError
 from ..rehearsal import plan as plans
-from ..rehearsal.airframe_plan import airframe_plan
+from ..rehearsal.airframe_plan import airframe_of, airframe_plan
 from ..rehearsal.change import Change
 from ..rehearsal.plan import Plan
+from ..rehearsal.policies import group_of
 from ..rehearsal.rehearse import EPISODES, Rehearsed, rehearse, trials_of
 from ..rehearsal.report import write_report
-from ..rehearsal.trial import robot_name
+from ..rehearsal.trial import check_kind, robot_name
 from ..report.group import Group, unique_names
 from ..runs.backends import Workers
 from ..runs.config import RunConfig
@@ -39,7 +41,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "changes (other world, physics, vehicle, sensor noise, latency), and reports the share of the reward "
         "that is kept.",
     )
-    parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="run folders, or folders of several seeds")
+    parser.add_argument(
+        "runs", nargs="+", type=Path, metavar="RUN",
+        help="run folders, folders of several seeds, policy files (.npz), or names of baselines (sitl help baselines)",
+    )  # fmt: skip
     parser.add_argument(
         "--plan", metavar="NAME", help=f"list of changes: a .toml file, or {shipped} (default: that of the robot)"
     )
@@ -77,7 +82,9 @@ def run(options: argparse.Namespace) -> int:
     """Run the command."""
     check_report_libraries()
     pool = workers(options)
-    groups = [Group.load(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
+    if options.airframe is not None:  # what was trained on it names it, too
+        code_in_files.allow_options({"frame": options.airframe})
+    groups = [group_of(path, name) for path, name in zip(options.runs, unique_names(options.runs))]
     environments = {group.config.env for group in groups}
     if len(environments) > 1:
         raise AgentError(f"runs in {' and '.join(sorted(environments))} cannot be held side by side; give one of them")
@@ -103,6 +110,7 @@ def _plan(options: argparse.Namespace, config: RunConfig) -> Plan:
     if options.airframe is None:
         return plans.load(options.plan) if options.plan else plans.plan_for(robot_name(config))
     of_airframe = airframe_plan(options.airframe)
+    check_kind(config, airframe_of(options.airframe))
     if not options.plan:
         return of_airframe
     given = plans.load(options.plan)

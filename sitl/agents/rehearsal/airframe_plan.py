@@ -25,16 +25,25 @@ def airframe_plan(path: str | Path) -> Plan:
     Raises:
         AgentError: it cannot be read, or has no intervals.
     """
-    try:
-        airframe = vehicles.load(str(path))
-    except AirframeError as error:
-        raise AgentError(str(error)) from None
+    airframe = airframe_of(path)
     if not airframe.intervals:
         raise AgentError(
             f"{airframe.title} has no intervals, which say how far off its figures may be: `sitl identify` writes them "
             "as a table [intervals]"
         )
     return Plan(Path(str(path)).stem, tuple(_changes(str(path), airframe)), summary=airframe.description)
+
+
+def airframe_of(path: str | Path) -> Airframe:
+    """The airframe of a file, or of a name.
+
+    Raises:
+        AgentError: it cannot be read.
+    """
+    try:
+        return vehicles.load(str(path))
+    except AirframeError as error:
+        raise AgentError(str(error)) from None
 
 
 def _changes(frame: str, airframe: Airframe) -> Iterator[Change]:

@@ -142,7 +142,7 @@ def _about(one: Rehearsed) -> list[str]:
     home = one.home
     seeds, episodes = home.rewards.shape
     return [
-        one.name, config.env, config.algorithm, str(seeds), str(episodes), drawn, f"{home.mean:.0f}", crashes(home),
+        one.name, config.env, config.algorithm, str(seeds), str(episodes), drawn, _reward(home.mean), crashes(home),
     ]  # fmt: skip
 
 
@@ -162,7 +162,7 @@ def _table(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]:
             if its is None:
                 row += ["", "not played", ""]
             else:
-                row += [f"{tried.mean:.0f}", percent(its) + (SEEN if tried.seen else ""), crashes(tried)]
+                row += [_reward(tried.mean), percent(its) + (SEEN if tried.seen else ""), crashes(tried)]
         above = (some[k] for some in advantages)
         rows.append([*row, *("" if its is None else percent(its) for its in above)])
     return head, rows
@@ -188,7 +188,7 @@ def _groups(rehearsed: Sequence[Rehearsed]) -> tuple[list[str], list[list[str]]]
         for one in rehearsed:
             ratios, value = one.transfer_ratios(), float(np.mean([one.tried[k].mean for k in numbers]))
             part = mean_of([ratios[k] for k in numbers])
-            row += [f"{value:.0f}", "-" if math.isnan(part) else f"{_whole(part)} %"]
+            row += [_reward(value), "-" if math.isnan(part) else f"{_whole(part)} %"]
         rows.append(row)
     return head, rows
 
@@ -226,6 +226,11 @@ def _cautions(rehearsed: Sequence[Rehearsed]) -> list[str]:
     if any(tried.seen for one in rehearsed for tried in one.tried):
         out.append(f"{SEEN.strip()}: the randomisation of the training covers the change, so that it was not unseen.")
     return out
+
+
+def _reward(value: float) -> str:
+    """Three digits at least: rewards of 17.26 and 17.32 are not the same."""
+    return f"{value:.{0 if abs(value) >= 100.0 else 1 if abs(value) >= 10.0 else 2}f}"
 
 
 def crashes(tried: Tried) -> str:

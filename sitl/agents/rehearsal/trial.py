@@ -14,16 +14,18 @@ from sitl.core.elementary import cos, sin
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.errors import MissingExtra, OptionError, VehicleError
+from sitl.vehicles import Airframe
 from sitl.worlds.contact import clearance
 from sitl.worlds.shapes import to_ned
 
-from .. import algorithms, environments
+from .. import environments, learnt
 from ..errors import AgentError
 from ..evaluate import Interrupted, Played, evaluate, moved_starts, until_stopped
 from ..runs.config import RunConfig
 from ..runs.folder import RunFolder
 from ..runs.local import SendProgress, Stopped
 from .change import Change, is_covered
+from .policies import run_of
 
 MARGIN = 0.05
 """Distance beyond the crash range from which a crash is a false alarm [m]."""
@@ -75,6 +77,7 @@ class Trial:
     """A run under one change; picklable."""
 
     run: Path
+    """Folder of a run, or file of a policy."""
     change: Change | None
     """None: without a change."""
     episodes: int
@@ -145,13 +148,32 @@ def robot_name(config: RunConfig) -> str:
         env.close()
 
 
+def check_kind(config: RunConfig, airframe: Airframe) -> None:
+    """Whether a run's policy can fly an airframe at all.
+
+    Raises:
+        AgentError: it is of another kind of vehicle than the run's robot, or the environment is none of this package's.
+    """
+    env = environments.make(config, **home_options(config))
+    try:
+        robot = _robot(env)
+        kind = robot.airframe.kind if isinstance(robot, AutopilotRobot) else ""
+    finally:
+        env.close()
+    if kind != airframe.kind:
+        raise AgentError(
+            f"{airframe.title} is a {airframe.kind}; the policy's environment {config.env} has "
+            f"{f'a {kind}' if kind else f'robot {robot.name}, which has no airframe'}"
+        )
+
+
 def attempt(trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result | None:
     """Play a trial; sends 1 after each episode. None when it was stopped.
 
     Raises:
         AgentError: it cannot be played at home.
     """
-    run = RunFolder(trial.run)
+    run = run_of(trial.run)
     config = run.config.with_(max_steps=run.config.evaluation.max_steps or run.config.max_steps)
     try:
         return _play(run, config, trial, send_progress, stopped)
@@ -164,7 +186,7 @@ def attempt(trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Resu
 
 
 def _play(run: RunFolder, config: RunConfig, trial: Trial, send_progress: SendProgress, stopped: Stopped) -> Result:
-    policy = algorithms.policy_of(run)
+    policy = learnt.policy_of(run.path)
     home = home_options(config, trial.boots)
     options = _options(config, home, trial.change)
     env = environments.make(config, **options)

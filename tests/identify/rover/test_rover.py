@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from sitl import Simulation, cli, vehicles
@@ -91,6 +93,13 @@ def test_the_airframe_is_a_file_that_drives(found, tmp_path) -> None:
 
 
 @pytest.mark.slow
+def test_a_mass_that_the_battery_contradicts_is_doubted(found) -> None:
+    assert found.doubts == []
+    (doubt,) = dataclasses.replace(found, mass=1.4).doubts
+    assert doubt.startswith("mass 1.4 kg does not go with the battery: ") and "would be 0.11 %" in doubt
+    assert len(dataclasses.replace(found, mass=3000.0).doubts) == 1, "more than all of the battery's energy"
+
+
 def test_tyres_that_slide_tell_their_grip(tmp_path) -> None:
     airframe = vehicles.load("erle_rover").changed(grip=0.06)
     drive(airframe, tmp_path / "slippery.bin")
