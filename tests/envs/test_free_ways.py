@@ -81,33 +81,52 @@ def test_places_without_room_are_as_far_as_the_nearest_with_room():
     assert float(ways.lengths(np.array([[-5.0, -5.0]]))[0]) == pytest.approx(4.7, abs=0.2)
 
 
-def test_the_route_leads_so_far_along_the_way():
-    """To a place from which the way is that much shorter, and which is no farther off than that."""
-    ways = FreeWays(robot_in(TEE))
-    ways.aim(0, 5.0, -5.0)
-    ways.aim(1, 5.0, -5.0)
-    rng, out = np.random.default_rng(1), np.zeros((2, 4))
+def planned(solids, *goal):
+    ways = FreeWays(robot_in(solids))
+    ways.plan_routes()
+    for index in range(2):
+        ways.aim(index, *goal)
+    return ways
+
+
+def ends(pose, out):
+    """Where routes lead, in the world."""
+    c, s = np.cos(pose[:, 3]), np.sin(pose[:, 3])
+    return pose[:, :2] + np.column_stack((out[:, 0] * c - out[:, 1] * s, out[:, 0] * s + out[:, 1] * c))
+
+
+def test_the_route_leads_so_far_along_a_way_that_keeps_clear_of_walls():
+    ways, rng, out = planned(TEE, 5.0, -5.0), np.random.default_rng(1), np.zeros((2, 4))
     for _ in range(40):
         pose = np.column_stack(
-            (rng.uniform(-9.0, -0.6, 2), rng.uniform(-9.0, 9.0, 2), (0.0, 0.0), rng.uniform(-3, 3, 2))
+            (rng.uniform(-8.5, -1.6, 2), rng.uniform(-8.5, 8.5, 2), (0.0, 0.0), rng.uniform(-3.0, 3.0, 2))
         )
         ways.follow(pose, 2.0, out, 1)
-        ahead, left = out[:, 1], out[:, 2]
-        c, s = np.cos(pose[:, 3]), np.sin(pose[:, 3])
-        there = pose[:, :2] + np.column_stack((ahead * c - left * s, ahead * s + left * c))
         length = ways.lengths(pose).copy()
         assert np.array_equal(out[:, 3], length) and np.all(out[:, 0] == 0.0)
-        assert ways.lengths(there) == pytest.approx(length - 2.0, abs=0.15)
-        assert np.all(np.hypot(ahead, left) <= 2.0 + 1e-9)
+        there = ends(pose, out[:, 1:])
+        assert np.all(np.hypot(out[:, 1], out[:, 2]) <= 2.0 + 1e-9)
+        assert np.all(ways.lengths(there) < length - 1.3)
+        assert np.all(there[:, 0] < -1.0) or np.all(there[there[:, 0] >= -1.0, 1] > 5.0)
+
+
+def test_a_route_passes_the_end_of_a_wall_in_the_middle_of_the_passage_and_the_shortest_way_close_by():
+    ways, out = planned(TEE, 5.0, -5.0), np.zeros((2, 3))
+    pose, passed = np.array([[-5.0, -5.0, 0.0, 0.0], [5.0, 5.0, 0.0, 0.0]]), []
+    for _ in range(400):
+        ways.follow(pose, 0.1, out)
+        pose[:, :2] = ends(pose, out)
+        if abs(pose[0, 0]) < 0.1:
+            passed.append(pose[0, 1])
+    assert np.allclose(pose[:, :2], (5.0, -5.0), atol=0.3)
+    assert 5.0 < min(passed) < 9.0  # the shortest way: 4.05 m + 0.4 m
 
 
 def test_the_route_ends_at_the_goal_and_no_way_leads_nowhere():
-    ways, out = FreeWays(robot_in(TEE[1:])), np.zeros((2, 3))
-    ways.aim(0, 3.0, 4.0)
-    ways.aim(1, 3.0, 4.0)
+    ways, out = planned(TEE[1:], 3.0, 4.0), np.zeros((2, 3))
     ways.follow(np.array([[3.0, 3.0, 0.0, 0.0], [3.01, 4.02, 0.0, 0.0]]), 2.0, out)
     assert np.hypot(out[:, 0], out[:, 1] - (1.0, 0.0)) == pytest.approx((0.0, 0.0), abs=0.25)
-    ways._fields[:] = np.inf
+    ways._fields[:] = ways._routes[:] = np.inf
     ways.follow(np.array([[3.0, 3.0, 0.0, 0.0], [np.nan, 4.02, 0.0, 0.0]]), 2.0, out)
     assert out[0].tolist() == [0.0, 0.0, np.inf] and np.isnan(out[1, :2]).all()
 
