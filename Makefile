@@ -16,9 +16,9 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(VENV)/demo.stamp
 	$(BIN)/sitl demo copter
 
-# Slow tests come last (tests/conftest.py).
+# Slow tests come last (tests/conftest.py). TESTS: which, as options of pytest.
 test: core
-	SITL_SHIPPED_DIR="$(CORE)" $(BIN)/python -m pytest -n $(WORKERS)
+	SITL_SHIPPED_DIR="$(CORE)" $(BIN)/python -m pytest -n $(WORKERS) $(TESTS)
 
 # The autopilot's laws, bytes on the wire and the client, in less than a minute. Without the library: a new field would compile all of that
 # again, and in the cache only what uses the field.

@@ -17,11 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.bridge.dialect import message
+from sitl.core.mavlink import MavFrame
 from sitl.envs.mavlink.compiled import VELOCITY, ClientEnd, read_all, send_all
 from sitl.fleet import Fleet
-from sitl.missions.pilot import LOCAL_NED, VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
@@ -118,7 +119,7 @@ def streaming(pilot: Pilot, rate_hz: int, messages: tuple[str, ...]) -> Callable
         nonlocal got
         for k in range(steps):
             velocity = SPEED if k % (4 * rate_hz) < 2 * rate_hz else -SPEED
-            client.send_payload(kind, kind.pack(0, *place, velocity, *others, VELOCITY_ONLY, 1, 1, LOCAL_NED))
+            client.send_payload(kind, kind.pack(0, *place, velocity, *others, VELOCITY_ONLY, 1, 1, MavFrame.LOCAL_NED))
             simulation.advance_to(simulation.time_us + period_us)
             got += len(client.receive())
         return steps / rate_hz

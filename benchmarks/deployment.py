@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.baselines.shipped import share
+from benchmarks.manoeuvres import executable
 from sitl import vehicles
 from sitl.agents import baselines, environments, learnt
 from sitl.agents.deploy import Deployed, deploy, fly, neutral
@@ -29,7 +30,6 @@ from sitl.agents.report.statistics import Z
 from sitl.client import Client
 from sitl.client.connection import connect
 from sitl.foreign.process import free_tcp_run
-from sitl.missions.manoeuvres import executable
 
 HOME_PLACE = (-35.363262, 149.165237, 584.0, 0.0)
 FRAMES = {"copter": "ardupilot_quad", "rover": "ardupilot_rover"}

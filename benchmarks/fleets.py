@@ -17,11 +17,11 @@ from collections.abc import Callable
 
 import gymnasium as gym
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.client import Client
 from sitl.fleet import Fleet
-from sitl.missions.pilot import VELOCITY_ONLY
 from sitl.simulation import Simulation, Snapshot, load_core
 from sitl.turtlebots.native import Turtlebots
 from sitl.vehicle.kinds import KINDS

@@ -12,7 +12,7 @@ import statistics
 import time
 from collections.abc import Callable
 
-from sitl.missions.pilot import Pilot
+from benchmarks.recorded.pilot import Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 

@@ -18,9 +18,9 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 
+from benchmarks.engines import FLIGHTS
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl.errors import MissingExtra
-from sitl.missions.engines import FLIGHTS
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.engine import EngineError
 from sitl.physics.engines import BACKENDS
 from sitl.simulation import Simulation

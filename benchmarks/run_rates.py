@@ -25,6 +25,7 @@ from pathlib import Path
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.frame import Splitter
+from sitl.core.mavlink import ARM_FORCED
 from sitl.vehicle.core_entry import load_core
 from sitl.vehicle.kinds import KINDS
 
@@ -34,8 +35,6 @@ GUIDED = {"copter": 4, "rover": 15}
 STAYS_ARMED = {"copter": "DISARM_DELAY 0\n", "rover": ""}
 MODEL = {"copter": "quad", "rover": "rover"}
 """Of ArduPilot's physics."""
-FORCE = 21196
-"""Of the command to arm: checks (an ArduPilot's calibrations) do not count."""
 HEIGHT = 10.0
 """Of the copter [m]."""
 
@@ -81,7 +80,11 @@ class Client:
 
     def fly(self, vehicle: str) -> None:
         """Arm in GUIDED, and a copter takes off: asked for anew with every HEARTBEAT until it is so."""
-        asks = self.command(176, 1, GUIDED[vehicle]), self.command(400, 1, FORCE), self.command(22, *6 * [0], HEIGHT)
+        asks = (
+            self.command(176, 1, GUIDED[vehicle]),
+            self.command(400, 1, ARM_FORCED),
+            self.command(22, *6 * [0], HEIGHT),
+        )
 
         def is_armed(m: object) -> bool:
             if m.base_mode & 128:  # type: ignore[attr-defined]

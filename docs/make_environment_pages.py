@@ -212,8 +212,11 @@ def judged(preset: str, task: Any) -> list[str]:
     elif not getattr(task, "is_sparse", False):
         lines += ["`goal` and `path` are told from the estimate: its error is the agent's."]
     if preset in RECEIVERS:
+        why = "There are no satellites in a house" if RECEIVERS[preset] == "uwb" else (
+            "Success is finer than what an ordinary GPS tells"
+        )  # fmt: skip
         lines += [
-            f'Success is finer than what an ordinary GPS tells, so the robot has another receiver: `sensors="'
+            f'{why}, so the robot has another receiver: `sensors="'
             f'{RECEIVERS[preset]}"` ([sensor sets](../vehicles.md#sensor-sets)); `sensors="gps"` is the ordinary one.',
         ]
     elif not isinstance(task, Gates | Land):

@@ -7,13 +7,17 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))  # benchmarks are no part of the installed package
+
+from benchmarks import engines
+from benchmarks.manoeuvres import __main__ as manoeuvres
+from benchmarks.recorded import __main__ as compare
+from benchmarks.recorded.figures import table
 from sitl.bridge import docs as mavlink
-from sitl.missions import compare, engines
-from sitl.missions.figures import table
-from sitl.missions.manoeuvres import __main__ as manoeuvres
 from sitl.physics.engines import BACKENDS
 from sitl.scenario import ESTIMATORS
 
@@ -22,7 +26,7 @@ HERE = Path(__file__).parent
 COMPARISON = """# Compared with a real ArduPilot
 
 This page compares the flights of our autopilot with those of a real ArduPilot SITL.
-`python docs/make_pages.py comparison` generates it (`python -m sitl.missions.compare` prints the first tables).
+`python docs/make_pages.py comparison` generates it (`python -m benchmarks.recorded` prints the first tables).
 
 The first tables use recordings of ArduPilot 4.7-dev of July 2025 (unmodified, default frames and SITL parameters,
 no wind):
@@ -33,7 +37,7 @@ no wind):
 - a rover: 2 m/s north for 10 s in GUIDED, no set-points, positions 20 m east and back, a 20 m square in AUTO, 2 m/s
   again, HOLD, RTL.
 
-The recordings are in `sitl/missions/reference/`. gym-sitl gets the same MAVLink commands at the same times, with
+The recordings are in `benchmarks/reference/`. gym-sitl gets the same MAVLink commands at the same times, with
 the airframes `ardupilot_quad` and `ardupilot_rover` and seed 0. All figures are from the autopilot's own estimate
 (LOCAL_POSITION_NED, ATTITUDE).
 

@@ -90,8 +90,8 @@ class _Worlds:
         self.of = [plant.surroundings] * count
         """Where each vehicle is."""
         self._rangings: Array = Ranging.fleet(count)
-        self.room = self._rangings.itemsize
-        for k, (address, keeper) in enumerate(fleet._rooms):
+        self.ranging_size = self._rangings.itemsize
+        for k, (address, keeper) in enumerate(fleet._workspaces):
             if address:
                 own = slice(count * k // threads, count * (k + 1) // threads)
                 _, memory, _ = cast(Any, keeper)
@@ -103,7 +103,7 @@ class _Worlds:
 
     def ranging(self, row: int) -> int:
         """Address of a vehicle's ``Ranging``."""
-        return self.address + self.room * row
+        return self.address + self.ranging_size * row
 
     def enter(self, row: int, world: World) -> None:
         """Put a vehicle into a world."""
@@ -123,7 +123,7 @@ class _Worlds:
             found = self._parts[around.world.name] = around.world, one.view("u1")[:_WORLD_PART].copy()
         return found[1]
 
-    def tell_solids(self, row: int) -> None:
+    def write_solids(self, row: int) -> None:
         """Tell a vehicle's record whether there are solids in its world."""
         self._has_solids[row] = len(self.of[row].world.geometry) > 0
 
@@ -217,7 +217,7 @@ class Fleet:
         unit = shell.bridge.profile.core.run_all
         run: Callable[..., None] = bind_fleet_unit(unit, shell.kind, self.records, progress)
         rangers = shell.plant.rangers if isinstance(shell.plant, LocalPlant) else None
-        self._rooms = [(0, None) if rangers is None else rangers.with_own_room() for _ in range(threads)]
+        self._workspaces = [(0, None) if rangers is None else rangers.with_own_workspace() for _ in range(threads)]
         """What each thread needs to measure in the world: its address, and what keeps it alive."""
         integer: Callable[[int], Any] = int if jit_disabled() else c_int64  # converted once
         parts = [count * k // threads for k in range(threads + 1)]
@@ -225,8 +225,8 @@ class Fleet:
         self._slots["ports"] = ports.ctypes.data + ports.itemsize * np.arange(count)
         self._slots["clients"] = 1
         self._parts = [
-            partial(run, *map(integer, (first, last, slots, room[0])))
-            for (first, last), room in zip(pairwise(parts), self._rooms, strict=True)
+            partial(run, *map(integer, (first, last, slots, workspace[0])))
+            for (first, last), workspace in zip(pairwise(parts), self._workspaces, strict=True)
             if first < last
         ]
         """Each advances the vehicles of one thread."""
@@ -235,7 +235,7 @@ class Fleet:
         self._run_alone: Callable[[int], bool] | None = None
         """Advances all vehicles in this thread; says whether any needs the shell."""
         if threads == 1 and not jit_disabled():
-            numbers = self.records.ctypes.data, self.records.itemsize, count, slots, self._rooms[0][0]
+            numbers = self.records.ctypes.data, self.records.itemsize, count, slots, self._workspaces[0][0]
             self._run_alone = run_fleet.bind(unit_address(unit, shell.kind), *numbers)
         self._pool = ThreadPoolExecutor(threads, "sitl-fleet") if threads > 1 and not jit_disabled() else None
         self.threads = threads
@@ -297,7 +297,7 @@ class Fleet:
     def _part_ways(self) -> _Worlds:
         """Let each vehicle measure by itself from now on."""
         worlds, count, threads = _Worlds(self), len(self), self.threads
-        size, at = self.records.itemsize, (self._slots_at, worlds.address, worlds.room)
+        size, at = self.records.itemsize, (self._slots_at, worlds.address, worlds.ranging_size)
         parts = [count * k // threads for k in range(threads + 1)]
         if jit_disabled():
             run, slots = self._run_unit, self._slots_at
@@ -407,7 +407,7 @@ class Fleet:
             if move.seed is not None:
                 rng.seed(v.rng, move.seed)
         if self._worlds is None:
-            self._move_all(0, len(rows), self._orders.ctypes.data, self._rooms[0][0])
+            self._move_all(0, len(rows), self._orders.ctypes.data, self._workspaces[0][0])
         else:
             self._move_each(self._worlds, orders, rows, came_from)
         for order, row, move in zip(orders, rows, moves):
@@ -421,7 +421,7 @@ class Fleet:
         for k, (order, row) in enumerate(zip(orders, rows)):
             world = worlds.of[row].world
             order.other_world = came_from is not None and came_from != world.name
-            worlds.tell_solids(row)
+            worlds.write_solids(row)
             self._move_all(0, 1, self._orders.ctypes.data + k * size, worlds.ranging(row))
 
     def _refusal(self, row: int, move: Move, result: int) -> str:

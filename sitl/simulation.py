@@ -25,6 +25,7 @@ from .bridge.services.terrain import TerrainService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
 from .core.constants import TICK_US
+from .core.mavlink import MavSeverity
 from .core.record_reader import RecordReader
 from .errors import OptionError
 from .physics.carried import Carried
@@ -41,8 +42,6 @@ from .vehicles import Airframe, AirframeError
 from .worlds import World, heights
 
 Array = np.ndarray[Any, Any]
-_WARNING = 4
-"""MAV_SEVERITY"""
 ROUNDS = 8
 """So often at once a mission goes on with what came of its own do-commands."""
 
@@ -436,7 +435,7 @@ class Simulation:
 
     def _physics_restarted(self) -> None:
         """A physics elsewhere has begun anew: the autopilot begins anew with it."""
-        self.bridge.get(StatusTextService).say(_WARNING, "Physics began anew: rebooting")
+        self.bridge.get(StatusTextService).say(MavSeverity.WARNING, "Physics began anew: rebooting")
         self._reboot = True
 
     def request_reboot(self) -> None:
@@ -486,14 +485,14 @@ class Simulation:
 
     def _follow_events(self) -> None:
         """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
-        self.bridge.tell(self.aux.attend())  # first: what switches do makes events of its own
+        self.bridge.report(self.aux.attend())  # first: what switches do makes events of its own
         self.v.autopilot.events.attention = False
         self.bridge.on_events()
         for _ in range(ROUNDS):
             notes = self.sequencer.attend()
             if not notes:
                 break
-            self.bridge.tell(notes)  # what a do-command asks for may make events, too
+            self.bridge.report(notes)  # what a do-command asks for may make events, too
         self._events_seen = int(self._event_count())
 
     def _do_reboot(self) -> None:

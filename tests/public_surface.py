@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import inspect
 from collections.abc import Iterator
+from enum import IntEnum
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -92,6 +93,8 @@ class _Shown:
         self._value = value
 
     def __repr__(self) -> str:
+        if isinstance(self._value, IntEnum):
+            return repr(int(self._value))  # versions of Python name choices in ways of their own
         return repr(self._value) if isinstance(self._value, bool | int | float | str | None) else "..."
 
 

@@ -37,16 +37,15 @@ EXCEPTIONS = [
     Exception_("sitl/examples", "*", "programs of users, which may depend on nothing of ours"),
     Exception_("sitl/physics/pybullet", "*", "Bullet computes by the C library, too; its flights have tolerances"),
     Exception_("sitl/physics/jsbsim", "*", "JSBSim computes by the C library, too; its flights have tolerances"),
-    Exception_("sitl/missions/engines.py", "*", "figures of flights on these engines beside ours"),
     Exception_("sitl/agents/report", "*", "tables and intervals of trainings, by SciPy"),
     Exception_("sitl/identify", "*", "figures of an airframe from its logs, by SciPy: an estimate, kept as a file"),
     Exception_("sitl/agents/deep/checkpoint.py", "*", "training by torch, which repeats on one machine"),
     Exception_("sitl/agents/deep/onnx_file.py", "*", "a file for runtimes that compute as they like"),
     Exception_("sitl/envs/noise.py", ".standard_normal()", "where its tails are drawn anew"),
     Exception_("sitl/envs/noise.py", ".standard_exponential()", "where its tails are drawn anew"),
-    Exception_("sitl/missions/manoeuvres/table.py", "statistics", "a median, which is one of the numbers"),
     Exception_("sitl/bridge/wire/choose.py", "hash()", "a file's name in tracebacks"),
     Exception_("sitl/missions/testing/factory.py", "hash()", "whether there is one"),
+    Exception_("sitl/envs/robots/starts.py", "hash()", "a key of a dictionary whose order nothing depends on"),
     *(
         Exception_(where, "sum()", "of whole numbers")
         for where in (
@@ -59,8 +58,6 @@ EXCEPTIONS = [
             "sitl/core/device.py",
             "sitl/missions/cli/replay.py",
             "sitl/missions/comparison/report.py",
-            "sitl/missions/manoeuvres/__main__.py",
-            "sitl/missions/manoeuvres/table.py",
             "sitl/missions/testing/factory.py",
         )
     ),

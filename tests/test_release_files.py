@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import tomllib
 from pathlib import Path
@@ -33,6 +34,47 @@ def read_yaml(path: str) -> Any:
 def test_the_scripts_are_whole_and_can_be_run(name: str) -> None:
     assert os.access(ROOT / name, os.X_OK)
     subprocess.run(["bash", "-n", name], cwd=ROOT, check=True)
+
+
+SITE = "tests/test_site.py::test_the_site_builds_without_warnings"
+STUB = '#!/bin/sh\nname=${0##*/}\n[ "$name" = pip ] || { printf "%s|" "$name" "$@"; echo; } >> "$WORDS"\n'
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        ((), ["make|lint|", "sitl|cache|ship|--here|--folder|build/core|", "make|test|WORKERS=3|TESTS=|"]),
+        (("lint",), ["make|lint|", f"python|-m|pytest|{SITE}|"]),
+        (("fast",), ["sitl|cache|ship|--here|--folder|build/core|", 'make|test|WORKERS=3|TESTS=-m "not slow"|']),
+        (("slow",), ["sitl|cache|ship|--here|--folder|build/core|",
+                     f"make|test|WORKERS=3|TESTS=-m slow --deselect {SITE}|"]),
+    ],
+)  # fmt: skip
+def test_parts_of_continuous_integration_do_together_what_it_does(
+    part: tuple[str, ...], words: list[str], tmp_path: Path
+) -> None:
+    for name in ("make", "chromium", ".venv/bin/python", ".venv/bin/pip", ".venv/bin/sitl"):
+        program = tmp_path / name
+        program.parent.mkdir(parents=True, exist_ok=True)
+        program.write_text(STUB)
+        program.chmod(0o755)
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci/run", tmp_path / ".ci/run")
+    environment = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}", "WORDS": str(tmp_path / "words")}
+    subprocess.run(["bash", ".ci/run", *part], cwd=tmp_path, env=environment, check=True)
+    assert (tmp_path / "words").read_text().splitlines() == ["make|.venv/docs.stamp|", *words]
+
+
+def test_a_part_that_continuous_integration_does_not_have_is_refused() -> None:
+    done = subprocess.run(["bash", ".ci/run", "quick"], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 2 and "quick: a part is lint, fast or slow" in done.stderr
+
+
+def test_the_workflow_runs_every_part() -> None:
+    matrix = read_yaml(".github/workflows/ci.yml")["jobs"]["checks"]["strategy"]["matrix"]
+    assert (
+        matrix["part"] == ["lint", "fast", "slow"] and SITE.split("::")[1] in (ROOT / "tests/test_site.py").read_text()
+    )
 
 
 def test_the_commands_of_the_release_are_understood() -> None:

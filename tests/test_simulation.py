@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl import vehicles
 from sitl.core import records
 from sitl.core.constants import TICK_US
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.vehicle.copter import Copter

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from . import entries
+from . import entries, shipped
 from .conditions import AUTOPILOTS, MAIN, NOMINAL, ROBUST, Program, named, of_group, program_of
 from .entries import Entry
 from .records import Record, Records
 from .references import References
-from .shipped import kept
 from .work import Job
 
 STEP_S = {"ppo": 2.2e-4, "sac": 5e-3, "dqn": 2.5e-3}
@@ -100,9 +99,11 @@ class Campaign:
             if missing:
                 train = seed is not None and self.training(entry, seed) is None
                 env = self.references.digest(entry.plain)
-                jobs.append(
-                    Job(entry.name, seed, missing, train, env, self.runs, programs=self.programs, steps=entry.steps)
-                )
+                job = Job(entry.name, seed, missing, train, env, self.runs, programs=self.programs, steps=entry.steps)
+                if seed is not None and not train and not job.policy.exists() and shipped.key_of(entry.name) != job.key:
+                    again = tuple(dict.fromkeys((*missing, *_all(entry))))
+                    job = replace(job, whats=again)  # trained again, it may be another policy on this machine
+                jobs.append(job)
         return sorted(jobs, key=lambda job: sum(self.seconds(job)))
 
     # ------------------------------------------------------------------ times
@@ -129,7 +130,7 @@ class Campaign:
         for one in self.records.all():
             if one["kind"] == "training" and one["name"] == entry.name and one["steps"]:
                 return float(one["took_s"]) * steps / float(one["steps"])
-        row = kept().get(entry.plain, {})
+        row = shipped.kept().get(entry.plain, {})
         if row.get("learnt_s") and row.get("steps"):
             return float(row["learnt_s"]) * steps / float(row["steps"])
         return steps * STEP_S.get(entry.recipe.algorithm, STEP_S["ppo"])

@@ -66,7 +66,8 @@ class Entry:
 @cache
 def _playing(plain: str) -> RunConfig:
     recipe, env = baselines.recipe_of(plain)
-    return RunConfig(env, recipe.algorithm, dict(recipe.options), steps=1, max_steps=recipe.max_steps)
+    options = {**recipe.options, **recipe.evaluation.options}
+    return RunConfig(env, recipe.algorithm, options, steps=1, max_steps=recipe.max_steps)
 
 
 def names() -> tuple[str, ...]:

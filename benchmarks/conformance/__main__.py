@@ -19,7 +19,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from sitl.missions.manoeuvres.executable import enter_namespace
+from benchmarks.manoeuvres.executable import enter_namespace
 
 from . import processes, table
 from .scans import TABLES

@@ -9,8 +9,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
+from sitl.core.mavlink import MavCmd
+
 from . import tree
-from .pilot import ARM, DRAWN, MODES, START, TAKEOFF, Item, Pilot
+from .pilot import DRAWN, MODES, Item, Pilot
 
 KEEP = 65535
 OVER_TERRAIN = (10, 11)
@@ -87,7 +89,7 @@ PROGRAMMES = {
             (1600, KEEP, 1300),
         ),
         arming=("MANUAL", (2000, KEEP, 1500), (1600, KEEP, 1700)),
-        commands=((178, 1, 0.7), (194, 1), (194, 0), (213, 60, 0.5, 0, 0), (ARM, 1)),
+        commands=((178, 1, 0.7), (194, 1), (194, 0), (213, 60, 0.5, 0, 0), (MavCmd.COMPONENT_ARM_DISARM, 1)),
         tunable={
             "ATC_STR_RAT_P": (0, 1), "WP_SPEED": (1, 4), "TURN_RADIUS": (1, 4), "CRUISE_SPEED": (1, 4),
             "SIM_GPS1_ENABLE": (0, 1), "SIM_RC_FAIL": (0, 1),
@@ -227,7 +229,7 @@ def stop_motors() -> Pilot:
     """Forced to disarm in the air: a crash."""
     pilot = Pilot("erle_copter", "copter", seed=6)
     pilot.set_out(6.0)
-    pilot.command(ARM, 0, 21196.0)
+    pilot.command(MavCmd.COMPONENT_ARM_DISARM, 0, 21196.0)
     pilot.fly(5.0)
     return pilot
 
@@ -239,7 +241,7 @@ def on_ground(frame: str, kind: str) -> Pilot:
     for motor in range(1, 5):
         pilot.command(209, motor, 0, 25.0, 1.0, 0, 2 if kind == "copter" else 0)
         pilot.fly(1.5)
-    pilot.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0)
+    pilot.command(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0)
     pilot.send("PARAM_REQUEST_LIST")
     pilot.fly(8.0)
     gain, speed, other = list(PROGRAMMES[kind].tunable)[:3]
@@ -249,7 +251,7 @@ def on_ground(frame: str, kind: str) -> Pilot:
         pilot.command(512, message)
     pilot.command(179, 1)
     pilot.set_mode("RTL")
-    pilot.command(ARM, 1)
+    pilot.command(MavCmd.COMPONENT_ARM_DISARM, 1)
     pilot.fly(1.0)
     pilot.reboot()
     name, arming, moving = PROGRAMMES[kind].arming
@@ -309,7 +311,10 @@ def by_dice(frame: str, kind: str, seed: int, seconds: float = 100.0) -> Pilot:
             name = dice.choice(list(programme.tunable)[1:])
             pilot.set_parameter(name, dice.randint(*programme.tunable[name]))
         elif deed == 5:
-            items = [Item(16, lat, lon, 584.0, frame=0), *([Item(TAKEOFF, z=8.0)] if kind == "copter" else [])]
+            items = [
+                Item(16, lat, lon, 584.0, frame=0),
+                *([Item(MavCmd.NAV_TAKEOFF, z=8.0)] if kind == "copter" else []),
+            ]
             for command in dice.choices(programme.items, k=6):
                 x, y = (at + dice.randint(-programme.spread, programme.spread) for at in (lat, lon))
                 z = dice.uniform(5, 20)
@@ -318,13 +323,13 @@ def by_dice(frame: str, kind: str, seed: int, seconds: float = 100.0) -> Pilot:
                 items.append(Item(command, x, y, z, p1, p2) if is_place else Item(command, p1=p1, p2=p2))
             pilot.upload(items, or_refused=True)
             pilot.set_mode("AUTO")
-            pilot.command(START)
+            pilot.command(MavCmd.MISSION_START)
         else:
             repair(pilot)
             pilot.set_mode("GUIDED")
-            pilot.command(ARM, 1)
+            pilot.command(MavCmd.COMPONENT_ARM_DISARM, 1)
             pilot.fly(0.5)
-            pilot.command(TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)
+            pilot.command(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0)
         pilot.fly(dice.uniform(0.5, 5.0))
     pilot.come_to_rest()
     return pilot

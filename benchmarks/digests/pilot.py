@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from sitl.core.mavlink import MavCmd
+
 from . import tree
 from .leaves import leaves
 from .tape import Tape
@@ -27,7 +29,6 @@ STREAMED = (
     "POSITION_TARGET_GLOBAL_INT", "SCALED_IMU", "EKF_STATUS_REPORT", "SYS_STATUS",
 )  # fmt: skip
 """Sent at 2 Hz, besides all stream groups at 4 Hz."""
-ARM, SET_MODE, TAKEOFF, START, REBOOT = 400, 176, 22, 300, 246
 MODES = {
     "copter": {
         "STABILIZE": 0, "ACRO": 1, "ALT_HOLD": 2, "AUTO": 3, "GUIDED": 4, "LOITER": 5, "RTL": 6, "CIRCLE": 7, "LAND": 9,
@@ -151,7 +152,7 @@ class Pilot:
 
     def set_mode(self, name: str, wait: float = 0.1) -> None:
         """Ask for a mode."""
-        self.command(SET_MODE, 1, MODES[self.kind][name])
+        self.command(MavCmd.DO_SET_MODE, 1, MODES[self.kind][name])
         self.fly(wait)
 
     def set_parameter(self, name: str, value: float) -> None:
@@ -232,7 +233,7 @@ class Pilot:
 
     def arm(self) -> None:
         """Arm."""
-        self.command(ARM, 1)
+        self.command(MavCmd.COMPONENT_ARM_DISARM, 1)
         self.need(self.fly(2.0, lambda: self.armed), f"not armed: result {self.last('COMMAND_ACK', 'result')}")
 
     def set_out(self, height: float = 10.0) -> None:
@@ -240,7 +241,7 @@ class Pilot:
         self.boot()
         self.arm()
         if self.kind == "copter":
-            self.command(TAKEOFF, 0, 0, 0, 0, 0, 0, height)
+            self.command(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height)
             self.fly(6.0 + height)
 
     def come_to_rest(self) -> None:
@@ -256,7 +257,7 @@ class Pilot:
 
     def reboot(self) -> None:
         """Reboot, and boot again."""
-        self.command(REBOOT, 1)
+        self.command(MavCmd.PREFLIGHT_REBOOT_SHUTDOWN, 1)
         self.fly(0.5)
         self._listen()
         self.boot()
@@ -276,7 +277,7 @@ class Pilot:
         self.arm()
         self.set_mode("AUTO")
         if self.kind == "copter":
-            self.command(START)
+            self.command(MavCmd.MISSION_START)
         is_rover = self.kind == "rover"
         self.fly(limit, lambda: not self.armed or (is_rover and self.last("MISSION_CURRENT", "mission_state") == 5))
         self.fly(5.0)

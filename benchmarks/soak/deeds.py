@@ -8,11 +8,12 @@ import struct
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from sitl.autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT
+from sitl.autopilot.mission.item import FENCE_COMMANDS
 from sitl.autopilot.params.table import Table
 from sitl.bridge import dialect
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import encode_v1, encode_v2
+from sitl.core.mavlink import MavCmd
 
 from .tables import FAULTS, NUMBERS, PARTS, WHOLE
 
@@ -180,7 +181,7 @@ class Dice:
         """An upload, right or with a mistake, and perhaps AUTO."""
         d = self._dice
         count, kind = d.randint(0, 6), d.choice((0, 0, 0, 1, 1, 2, 7))
-        commands = {1: FENCE_COMMANDS, 2: (RALLY_POINT,)}.get(kind, self._items)
+        commands = {1: FENCE_COMMANDS, 2: (MavCmd.NAV_RALLY_POINT,)}.get(kind, self._items)
         corners = float(d.randint(3, 6))
         found = self._deed(
             f"mission of {count}", self._message("MISSION_COUNT", count=count, mission_type=kind), seconds=0.0

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links import InProcessLink, LinkFaults
+from sitl.core.mavlink import MavResult
 from sitl.simulation import Simulation, Snapshot
 
 from .deeds import Deed
@@ -28,8 +29,6 @@ PERIOD_S = 0.02
 HANG_S = 60.0
 """Wall time that a deed may take [s]."""
 COMMANDS = {"COMMAND_LONG", "COMMAND_INT"}
-IN_PROGRESS = 5
-"""MAV_RESULT: another answer will follow."""
 
 
 class BrokenError(Exception):
@@ -56,7 +55,7 @@ class Traffic:
             fields: Any = frame.kind.decode(frame.payload)
             is_own = frame.system in self._systems and frame.component == 1
             if name == "COMMAND_ACK" and is_own:
-                self.answered[fields.command] += fields.result != IN_PROGRESS
+                self.answered[fields.command] += fields.result != MavResult.IN_PROGRESS
             elif name != "COMMAND_ACK" and not is_own and fields.target_system in (0, system):
                 self.heard[fields.command if name in COMMANDS else frame.kind.id] += 1
 

@@ -100,7 +100,8 @@ def save(run: RunFolder, path: Path) -> None:
             "folder itself"
         )
     about = {
-        "env": config.env, "algorithm": config.algorithm, "options": dict(config.env_options),
+        "env": config.env, "algorithm": config.algorithm,
+        "options": {**config.env_options, **config.evaluation.options},
         "max_steps": config.max_steps, "step_time": _step_time(config), "versions": dict(config.versions),
     }  # fmt: skip
     kinds[path.suffix](path, policy, about)

@@ -2,7 +2,7 @@
 """The expert "pilot": leads a vehicle by velocities, around what stands in its way; the autopilot flies them in GUIDED.
 
 Where there are places, he knows the world: ways are planned around its solids. Where there are none, as in the paper's
-environments, he sees the lidar only, and turns to where there is room.
+environments, he sees the lidar only, and turns to where there is space.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from sitl.worlds import World
 
 from .errors import AgentError
 from .expert import Expert, Shown, named
-from .ways import Ways
+from .grid_a_star import GridAStar
 
 Floats = npt.NDArray[np.float64]
 GAIN = 1.2
@@ -54,7 +54,7 @@ APPROACH = 5.0
 SINK, LOW = 0.6, 1.5
 """Down onto a pad [m/s]; below this height the vehicle must be over it [m]."""
 COMFORT, COMFORT_DRIVING = 0.8, 2.0
-"""Room that he likes a copter, a rover to have [m]."""
+"""Clearance that he likes a copter, a rover to have [m]."""
 SIGHT, CONE, SIDE, ROOMY = 5.0, math.radians(15.0), math.radians(100.0), 1.2
 """Readings count up to this [m]; what is beside him, from .. to; half of the lane that he needs, in crash ranges."""
 STRAIGHT = math.radians(12.0)
@@ -74,8 +74,8 @@ class Pilot(Expert):
         session = navigate.session
         self._robot: Any = navigate.robot
         self._turns: dict[int, Any] | None = None
-        self._plans_in: PerWorld[Ways] | None = None
-        self._way: Floats = np.zeros((0, 2))
+        self._plans_in: PerWorld[GridAStar] | None = None
+        self._path: Floats = np.zeros((0, 2))
         """x, y [m] of the way that was planned, for the place of number ``_of``; ``_at`` of it he is, ``_since`` so
         many steps it has been there."""
         self._of, self._at, self._since = -1, 0, 0
@@ -95,19 +95,19 @@ class Pilot(Expert):
         if self._robot.world.solids or session.varies or not self._flies:
             self._plans_in = PerWorld(self._planned)
 
-    def _planned(self, world: World) -> Ways:
-        return Ways(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
+    def _planned(self, world: World) -> GridAStar:
+        return GridAStar(self._robot, REACH, COMFORT if self._flies else COMFORT_DRIVING)
 
     @property
-    def _plans(self) -> Ways | None:
-        """Ways in the world of the present episode."""
+    def _plans(self) -> GridAStar | None:
+        """Paths in the world of the present episode."""
         return None if self._plans_in is None else self._plans_in(self._robot.world)
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""
         if self._turns is None:
             self._shown.begin()
-            self._way, self._of, self._at, self._since = np.zeros((0, 2)), -1, 0, 0
+            self._path, self._of, self._at, self._since = np.zeros((0, 2)), -1, 0, 0
             self._backs = False
 
     def act(self, observation: Any) -> Any:
@@ -200,24 +200,24 @@ class Pilot(Expert):
         """A place ``look`` [m] ahead on the way over stations; it is planned where there is none that leads there."""
         k = int(self._task.at[0])
         self._since += 1
-        if self._of == k and len(self._way):
-            away = lengths(self._way - here)
+        if self._of == k and len(self._path):
+            away = lengths(self._path - here)
             self._at += int(away[self._at : self._at + 40].argmin())
             is_astray = away[self._at] > ASTRAY
-            is_over = self._at >= len(self._way) - 2 and len(stations) > 1  # and the gate has not been passed
+            is_over = self._at >= len(self._path) - 2 and len(stations) > 1  # and the gate has not been passed
             if self._since < REPLAN or not (is_astray or is_over):
                 return self._beyond(here, look)
         assert self._plans is not None
         legs, last = [], here
         for station in stations:
-            legs.append(self._plans.way(last, station))
+            legs.append(self._plans.path(last, station))
             last = station
-        self._way, self._of, self._at, self._since = np.concatenate(legs), k, 0, 0
+        self._path, self._of, self._at, self._since = np.concatenate(legs), k, 0, 0
         return self._beyond(here, look)
 
     def _beyond(self, here: Floats, look: float) -> Floats:
-        out: Floats = self._way[-1]
-        for place in self._way[self._at :]:
+        out: Floats = self._path[-1]
+        for place in self._path[self._at :]:
             if separation(place.tolist(), here.tolist()) >= look:
                 return np.asarray(place)
         return out
@@ -236,17 +236,17 @@ class Pilot(Expert):
     # ------------------------------------------------------------------ without places
 
     def _gap(self) -> int:
-        """Where the most room is: 0 straight on, 1 to the left, -1 to the right."""
+        """Where the most space is: 0 straight on, 1 to the left, -1 to the right."""
         angles, robot = self._robot.angles, self._robot
         scan = np.minimum(robot.scan[0], SIGHT).astype(np.float64)
         half = max(ROOMY * robot.crash_range, 1.2 * robot.volume.radius) + 0.1
         tried = np.linspace(-1.6, 1.6, 33)
         turned = angles - tried[:, None]
         forward, aside = scan * arrays.cos(turned), np.abs(scan * arrays.sin(turned))
-        room = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
+        clearance = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
         side = [scan[(way * angles > CONE) & (way * angles < SIDE)].min(initial=SIGHT) for way in (1.0, -1.0)]
         centred = (min(side[0], 2.0 * half) - min(side[1], 2.0 * half)) * tried
-        best = float(tried[int(np.argmax(room - 0.3 * np.abs(tried) + centred))])
+        best = float(tried[int(np.argmax(clearance - 0.3 * np.abs(tried) + centred))])
         return 0 if abs(best) <= STRAIGHT else 1 if best > 0.0 else -1
 
 

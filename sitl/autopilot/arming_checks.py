@@ -20,11 +20,12 @@ from .battery import is_healthy
 from .events import Event, Events, Row, emit, ev
 from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
+from .log_events import LogEvent
 from .notes import ChecksFailed
 from .params.parameters import Parameters
 from .params.system import Arming, Compass
 from .radio_checks import RC_MISSING, THROTTLE_FAILSAFE
-from .sensor_calibration import differs, is_heard, shown_field
+from .sensor_calibration import differs, is_received, shown_field
 from .state import Arming as ArmingState
 from .state import BatteryState, Sensors, Vehicle
 
@@ -167,7 +168,7 @@ def refusal(a: float, b: float) -> tuple[int, int]:
     return int(b) >> _METHOD_BITS << _LOW_BITS | int(a), int(b) & ((1 << _METHOD_BITS) - 1)
 
 
-def _told_refusal(v: Any, a: float, b: float) -> list[ChecksFailed]:
+def _refusal_notes(v: Any, a: float, b: float) -> list[ChecksFailed]:
     failed, method = refusal(a, b)
     return [] if method == BY_MAVLINK else [ChecksFailed(failed)]  # a command tells of its own
 
@@ -176,9 +177,9 @@ def _arm(v: Any, is_armed: bool, method: float) -> Row:
     return "ARM", (int(is_armed), int(v.autopilot.params.ARMING.CHECK) & 0xFFFFFFFF, 0, int(method) & 255)
 
 
-ARMED = Event(1, log=lambda v, a, b: [_arm(v, True, a), ev(10)])  # a: method
-DISARMED = Event(2, log=lambda v, a, b: [_arm(v, False, a), ev(11)])  # a: method
-ARMING_REFUSED = Event(20, says=_told_refusal)  # a and b: see ``refusal``
+ARMED = Event(1, log=lambda v, a, b: [_arm(v, True, a), ev(LogEvent.ARMED)])  # a: method
+DISARMED = Event(2, log=lambda v, a, b: [_arm(v, False, a), ev(LogEvent.DISARMED)])  # a: method
+ARMING_REFUSED = Event(20, says=_refusal_notes)  # a and b: see ``refusal``
 
 
 @law
@@ -249,11 +250,11 @@ def sensor_checks(v: Vehicle) -> int:
     params = p.ARMING
     if time_us < _READY_US:
         failed |= NOT_INITIALISED
-    heard_us = ap.ekf.baro_us  # by the filter; 0 never
-    silent = heard_us > 0 and time_us - heard_us > _BARO_US
+    received_us = ap.ekf.baro_us  # by the filter; 0 never
+    silent = received_us > 0 and time_us - received_us > _BARO_US
     if (sensors.baro_count == 0 or silent) and wants(params, CHECK_BARO):
         failed |= BAROMETER
-    if not is_heard(0, sensors, time_us) and wants(params, CHECK_COMPASS):
+    if not is_received(0, sensors, time_us) and wants(params, CHECK_COMPASS):
         failed |= COMPASS
     elif wants(params, CHECK_COMPASS):
         failed |= compass_checks(sensors, p.COMPASS)

@@ -12,18 +12,19 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..core.geodesy import add_offset
+from ..core.mavlink import MavCmd, MavFrame, MavSeverity
 from . import payload
 from .arming_checks import BY_SWITCH
 from .aux_switch import AUX_SWITCH, HIGH, LOW, MIDDLE
 from .estimation.sources import choose_set
 from .events import EVENT_RING
 from .fence.checks import ALL, switch_by_user
-from .mission.item import NAV_WAYPOINT, RELATIVE, MissionItem, home_item
+from .mission.item import MissionItem, home_item
 from .mission.mission import Mission
 from .mission.notes import Note
 from .mission.sequencer import Sequencer
 from .modes import REASON_RC, shown
-from .notes import INFO, Switched, Text
+from .notes import Switched, Text
 
 POSITIONS = {LOW: "LOW", MIDDLE: "MIDDLE", HIGH: "HIGH"}
 
@@ -84,7 +85,7 @@ class AuxFunctions:
             return []
         notes: list[Note] = []
         if function.name:
-            notes.append(Text(INFO, f"RC{channel}: {function.name} {POSITIONS[abs(position)]}"))
+            notes.append(Text(MavSeverity.INFO, f"RC{channel}: {function.name} {POSITIONS[abs(position)]}"))
         return notes + function.act(self._holder, abs(position))
 
     def run(self, number: int, position: int) -> tuple[bool, list[Note]]:
@@ -96,7 +97,7 @@ class AuxFunctions:
 
 
 def _unknown(number: int) -> Note:
-    return Text(INFO, f"Invalid channel option ({number})")
+    return Text(MavSeverity.INFO, f"Invalid channel option ({number})")
 
 
 def by_number(functions: tuple[AuxFunction, ...]) -> dict[int, AuxFunction]:
@@ -195,12 +196,14 @@ def _clear_mission(holder: Holder, position: int) -> list[Note]:
     return []
 
 
-def item_here(holder: Holder, command: int = NAV_WAYPOINT) -> MissionItem:
+def item_here(holder: Holder, command: int = MavCmd.NAV_WAYPOINT) -> MissionItem:
     """A mission item of where the vehicle is, its height above home."""
     ap = holder.v.autopilot
     estimate = ap.estimate
     lat, lon = add_offset(estimate.origin_lat, estimate.origin_lon, estimate.pos.x, estimate.pos.y)
-    return MissionItem(command, RELATIVE, x=round(lat), y=round(lon), z=ap.home.pos.z - estimate.pos.z)
+    return MissionItem(
+        command, MavFrame.GLOBAL_RELATIVE_ALT, x=round(lat), y=round(lon), z=ap.home.pos.z - estimate.pos.z
+    )
 
 
 def append_items(holder: Holder, items: list[MissionItem]) -> None:
@@ -223,7 +226,7 @@ def _avoid_obstacles(holder: Holder, position: int) -> list[Note]:
 
 def _choose_sources(holder: Holder, position: int) -> list[Note]:
     choose_set(holder.v.autopilot, position - LOW)
-    return [Text(INFO, f"Using EKF Source Set {position - LOW + 1}")]
+    return [Text(MavSeverity.INFO, f"Using EKF Source Set {position - LOW + 1}")]
 
 
 def _nothing(holder: Holder, position: int) -> list[Note]:
@@ -234,7 +237,7 @@ def without_effect(names: Mapping[int, str]) -> list[AuxFunction]:
     """Functions that are taken and told to do nothing, by number, with their names in texts."""
 
     def function(number: int, name: str) -> AuxFunction:
-        note = Text(INFO, f"Aux function {number} has no effect in this simulator")
+        note = Text(MavSeverity.INFO, f"Aux function {number} has no effect in this simulator")
         return AuxFunction(number, lambda holder, position: [note], "taken, without effect", name)
 
     return [function(number, name) for number, name in names.items()]

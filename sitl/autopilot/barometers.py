@@ -20,7 +20,7 @@ class Barometers(Record):
     looked_us: int  # at both of them, last
     seen: Ints = array(2, stored="i8")  # counts of samples
     pressure: Floats = array(2, stored="f4")  # [hPa], and the temperature [degC] on top: it changes with either
-    heard_us: Ints = array(2, stored="i8")  # last sample
+    received_us: Ints = array(2, stored="i8")  # last sample
     changed_us: Ints = array(2, stored="i8")  # last one that was another
 
 
@@ -30,7 +30,7 @@ def _look(baros: Barometers, k: int, count: int, pressure: float, now_us: int) -
     if count == baros.seen[k]:
         return
     baros.seen[k] = count
-    baros.heard_us[k] = now_us
+    baros.received_us[k] = now_us
     before = float(baros.pressure[k])
     baros.pressure[k] = pressure
     if float(baros.pressure[k]) != before:  # at the precision at which it is kept
@@ -40,7 +40,7 @@ def _look(baros: Barometers, k: int, count: int, pressure: float, now_us: int) -
 @law
 def is_healthy(baros: Barometers, k: int, now_us: int) -> bool:
     """Whether barometer ``k`` is heard, and not frozen."""
-    return now_us - baros.heard_us[k] <= SILENCE_US and now_us - baros.changed_us[k] <= FROZEN_US
+    return now_us - baros.received_us[k] <= SILENCE_US and now_us - baros.changed_us[k] <= FROZEN_US
 
 
 @law
@@ -48,7 +48,7 @@ def choose(baros: Barometers, sensors: Sensors, wanted: float, now_us: int) -> N
     """Each tick in which the barometers differ; ``wanted``: BARO_PRIMARY."""
     if now_us - baros.looked_us > TICK_US:  # until now they did not
         for k in range(2):
-            baros.heard_us[k] = now_us
+            baros.received_us[k] = now_us
             baros.changed_us[k] = now_us
     baros.looked_us = now_us
     _look(baros, 0, sensors.baro_count, sensors.abs_pressure + sensors.temperature, now_us)

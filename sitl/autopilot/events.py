@@ -12,9 +12,10 @@ from itertools import pairwise
 from typing import Any
 
 from ..core.kernels import law
+from ..core.mavlink import MavSeverity
 from ..core.places import ExtensionError, Places
 from ..core.records import Floats, Ints, Record, array
-from .notes import INFO, EventNote, Text
+from .notes import EventNote, Text
 
 EVENT_RING = 64
 _PLACES = Places("SITL_EVENTS", "event")
@@ -28,7 +29,7 @@ Log = Row | Callable[[Any, float, float], Sequence[Row]]
 class Event(int):
     """A code that laws emit with two numbers, ``a`` and ``b``::
 
-        THRUST_LOST = Event(40, EMERGENCY, "Potential Thrust Loss ({a:.0f})", log=err(25, 1))
+        LOST = Event(40, MavSeverity.EMERGENCY, "Potential Thrust Loss ({a:.0f})", log=err(THRUST_LOSS_CHECK, 1))
 
     Args:
         code: its number in the ring; no other event of the firmware has it.
@@ -43,12 +44,12 @@ class Event(int):
     says: Says
     log: Log | None
 
-    def __new__(cls, code: int, severity: int = INFO, says: Says = "", log: Log | None = None) -> Event:
+    def __new__(cls, code: int, severity: int = MavSeverity.INFO, says: Says = "", log: Log | None = None) -> Event:
         self = super().__new__(cls, code)
         self.severity, self.says, self.log = severity, says, log
         return self
 
-    def saying(self, severity: int = INFO, says: Says = "", log: Log | None = None) -> Event:
+    def saying(self, severity: int = MavSeverity.INFO, says: Says = "", log: Log | None = None) -> Event:
         """The same event in a firmware that has its own words for it, and (``log``) its own messages."""
         return Event(self, severity, says, log or self.log)
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.kernels import law
+from ..core.mavlink import MavSeverity
 from ..core.scalars import TWO_PI
 from .events import Event, Events, Row, emit, err
-from .notes import WARNING
+from .log_events import LogErrorSubsystem
 from .params.radio import RcMap
 from .params.system import Battery, Failsafes
 from .radio import THROTTLE, stick_pulse
@@ -57,8 +58,14 @@ def text(which: int, on: bool) -> str | None:
     return (_ON if on else _OFF).get(which)
 
 
-_SUBSYSTEMS = {RADIO: 5, BATTERY_LOW: 6, BATTERY_CRITICAL: 6, GCS: 8, EKF: 17, TERRAIN: 23}
-"""Of ERR."""
+_SUBSYSTEMS = {
+    RADIO: LogErrorSubsystem.FAILSAFE_RADIO,
+    BATTERY_LOW: LogErrorSubsystem.FAILSAFE_BATT,
+    BATTERY_CRITICAL: LogErrorSubsystem.FAILSAFE_BATT,
+    GCS: LogErrorSubsystem.FAILSAFE_GCS,
+    EKF: LogErrorSubsystem.FAILSAFE_EKFINAV,
+    TERRAIN: LogErrorSubsystem.FAILSAFE_TERRAIN,
+}
 
 
 def _logged(v: Any, which: float, on: float) -> list[Row]:
@@ -69,9 +76,9 @@ FAILSAFE = Event(18, log=_logged)  # a: which, b: 1 on (or what follows), 0 off
 
 MISSING = 3
 """Of ``report_battery``, which emits these three by their order; a: voltage, b: charge used [mAh]."""
-EVENT_BATTERY_LOW = Event(80, WARNING, "Battery 1 is low {a:.2f}V used {b:.0f} mAh")
-EVENT_BATTERY_CRITICAL = Event(81, WARNING, "Battery 1 is critical {a:.2f}V used {b:.0f} mAh")
-EVENT_BATTERY_MISSING = Event(82, WARNING, "Battery 1 is missing, last: {a:.2f}V used {b:.0f} mAh")
+EVENT_BATTERY_LOW = Event(80, MavSeverity.WARNING, "Battery 1 is low {a:.2f}V used {b:.0f} mAh")
+EVENT_BATTERY_CRITICAL = Event(81, MavSeverity.WARNING, "Battery 1 is critical {a:.2f}V used {b:.0f} mAh")
+EVENT_BATTERY_MISSING = Event(82, MavSeverity.WARNING, "Battery 1 is missing, last: {a:.2f}V used {b:.0f} mAh")
 
 
 @law

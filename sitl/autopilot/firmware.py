@@ -24,7 +24,7 @@ class Firmware:
     mode_names: Mapping[int, str]
     """ArduPilot's custom mode number -> name."""
     power_on: Callable[[Any], None]
-    """Starts its rooms on the cleared record of a vehicle whose parameters are set."""
+    """Starts its parts on the cleared record of a vehicle whose parameters are set."""
     commands: Commands
     """What its missions may hold and how that is run."""
     aux_functions: Mapping[int, AuxFunction] = field(default_factory=dict)

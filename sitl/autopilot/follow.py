@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ..core.algebra import ZERO, horizontal, norm, norm2, turned, with_down
 from ..core.kernels import law
+from ..core.mavlink import MavSeverity
 from ..core.scalars import wrap_pi
 from ..core.vectors import Vec2, Vec3
 from .control.shaping import (
@@ -25,7 +26,6 @@ from .control.shaping import (
     shape_pos_vel_accel_2d,
 )
 from .events import Event
-from .notes import INFO, WARNING
 from .params.follow import Follow
 from .state import FollowState
 
@@ -35,8 +35,8 @@ RELATIVE = 1
 """FOLL_OFS_TYPE: offsets turn with the lead."""
 _STILL = Vec2(0.0, 0.0)
 
-FOLLOW_OFFSET = Event(42, INFO, {0: "N-E-D follow offset loaded", 1: "Relative follow offset loaded"})
-FOLLOW_OFF = Event(43, WARNING, "Set FOLL_ENABLE = 1")
+FOLLOW_OFFSET = Event(42, MavSeverity.INFO, {0: "N-E-D follow offset loaded", 1: "Relative follow offset loaded"})
+FOLLOW_OFF = Event(43, MavSeverity.WARNING, "Set FOLL_ENABLE = 1")
 
 
 class Report(NamedTuple):
@@ -66,13 +66,13 @@ def take(lead: FollowState, p: Follow, sender: int, report: Report, time_us: int
     if p.OFS_TYPE == RELATIVE and not report.has_heading:
         return
     if sender != lead.sender or time_us - lead.update_us > FORGET_US:
-        lead.is_known = lead.tells_more = False
+        lead.is_known = lead.sends_more = False
     lead.sender, lead.update_us = sender, time_us
-    lead.told_pos, lead.told_vel, lead.told_acc = report.pos, report.vel, report.acc
+    lead.received_pos, lead.received_vel, lead.received_acc = report.pos, report.vel, report.acc
     if report.has_heading:
-        lead.told_heading, lead.told_heading_rate = report.heading, report.heading_rate
+        lead.received_heading, lead.received_heading_rate = report.heading, report.heading_rate
     else:
-        lead.told_heading_rate = 0.0
+        lead.received_heading_rate = 0.0
     if lead.is_known and is_far(lead, p):
         lead.is_known = False
 
@@ -91,7 +91,7 @@ def is_far(lead: FollowState, p: Follow) -> bool:
     """Whether the motion that is followed is too far from the last report to come to it soon."""
     if not is_shaped(p):
         return False
-    pos, vel = lead.pos - lead.told_pos, lead.vel - lead.told_vel
+    pos, vel = lead.pos - lead.received_pos, lead.vel - lead.received_vel
     time = 0.5 * p.TIMEOUT
     if norm2(horizontal(pos)) > p.ACCEL_NE * time * time or abs(pos.z) > p.ACCEL_D * time * time:
         return True
@@ -113,17 +113,17 @@ def follow(lead: FollowState, p: Follow, pos: Vec3, time_us: int, dt: float) -> 
         lead.is_known = False
         return False
     age = (time_us - lead.update_us) * 1e-6
-    told_pos = lead.told_pos + (lead.told_vel + 0.5 * lead.told_acc * age) * age
-    told_vel = lead.told_vel + lead.told_acc * age
-    heading = lead.told_heading + lead.told_heading_rate * age
+    received_pos = lead.received_pos + (lead.received_vel + 0.5 * lead.received_acc * age) * age
+    received_vel = lead.received_vel + lead.received_acc * age
+    heading = lead.received_heading + lead.received_heading_rate * age
     if lead.is_known and is_shaped(p):
-        shape(lead, p, Motion2(horizontal(told_pos), horizontal(told_vel), horizontal(lead.told_acc)), dt)
-        shape_height(lead, p, Motion(told_pos.z, told_vel.z, lead.told_acc.z), dt)
+        shape(lead, p, Motion2(horizontal(received_pos), horizontal(received_vel), horizontal(lead.received_acc)), dt)
+        shape_height(lead, p, Motion(received_pos.z, received_vel.z, lead.received_acc.z), dt)
         shape_heading(lead, p, heading, dt)
     else:
-        lead.pos, lead.vel, lead.acc = told_pos, told_vel, lead.told_acc
-        lead.heading, lead.heading_rate, lead.heading_acc = wrap_pi(heading), lead.told_heading_rate, 0.0
-    lead.is_known = p.DIST_MAX <= 0.0 or norm(lead.told_pos - pos) <= p.DIST_MAX
+        lead.pos, lead.vel, lead.acc = received_pos, received_vel, lead.received_acc
+        lead.heading, lead.heading_rate, lead.heading_acc = wrap_pi(heading), lead.received_heading_rate, 0.0
+    lead.is_known = p.DIST_MAX <= 0.0 or norm(lead.received_pos - pos) <= p.DIST_MAX
     return lead.is_known
 
 
@@ -150,7 +150,7 @@ def shape_height(lead: FollowState, p: Follow, told: Motion, dt: float) -> None:
 def shape_heading(lead: FollowState, p: Follow, heading: float, dt: float) -> None:
     """Heading."""
     now = advance(Motion(lead.heading, lead.heading_rate, lead.heading_acc), dt, 0.0, 0.0, 0.0)
-    told = Motion(now.pos + wrap_pi(heading - now.pos), lead.told_heading_rate, 0.0)
+    told = Motion(now.pos + wrap_pi(heading - now.pos), lead.received_heading_rate, 0.0)
     accel_max, jerk_max = math.radians(p.ACCEL_H), math.radians(p.JERK_H)
     acc = shape_pos_vel_accel(told, now, Limits(0.0, 0.0, -accel_max, accel_max, jerk_max), dt)
     lead.heading, lead.heading_rate, lead.heading_acc = wrap_pi(now.pos), now.vel, acc
@@ -170,7 +170,7 @@ def keep_distance(lead: FollowState, p: Follow, pos: Vec3) -> bool:
     """Without offsets, the place beside the lead is where the vehicle at ``pos`` [m] is now; True: it has become so."""
     if lead.keeps_distance or p.OFS_X != 0.0 or p.OFS_Y != 0.0 or p.OFS_Z != 0.0:
         return False
-    away = pos - lead.told_pos
+    away = pos - lead.received_pos
     turns = p.OFS_TYPE == RELATIVE
     lead.distance = with_down(turned(horizontal(away), -lead.heading), away.z) if turns else away
     lead.keeps_distance = True

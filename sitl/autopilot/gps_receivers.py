@@ -12,13 +12,13 @@ from ..core.border import GpsReading, Sensors
 from ..core.elementary import hypot
 from ..core.geodesy import offset_ne
 from ..core.kernels import law
+from ..core.mavlink import GpsFixType
 from ..core.records import Record
 from ..core.vectors import Vec3
 from .params.parameters import Parameters
 
 USE_PRIMARY, USE_BEST, BLEND, USE_PRIMARY_IF_3D = 0, 1, 2, 4
 """GPS_AUTO_SWITCH"""
-FIX_3D = 3
 SILENCE_US = 4_000_000
 """A receiver that has not been heard for longer is none."""
 ONE_MORE_US, TWO_MORE_US = 20_000_000, 5_000_000
@@ -93,7 +93,7 @@ def is_better(other: int, choice: GpsChoice, sensors: Sensors, now_us: int) -> b
 def wanted(choice: GpsChoice, sensors: Sensors, params: Parameters, now_us: int) -> int:
     """The receiver that GPS_AUTO_SWITCH asks for now."""
     how, first = int(params.GPS_AUTO_SWITCH), int(params.GPS_PRIMARY)
-    if how == USE_PRIMARY or (how == USE_PRIMARY_IF_3D and status(first, sensors, now_us) >= FIX_3D):
+    if how == USE_PRIMARY or (how == USE_PRIMARY_IF_3D and status(first, sensors, now_us) >= GpsFixType.FIX_3D):
         return first
     other = 1 - choice.primary
     return other if is_better(other, choice, sensors, now_us) else choice.primary
@@ -119,4 +119,4 @@ def distance(sensors: Sensors) -> float:
 @law
 def has_fix(receiver: int, sensors: Sensors) -> bool:
     """Whether the last message of a receiver is a 3D fix."""
-    return fix_of(receiver, sensors).gps_fix >= FIX_3D
+    return fix_of(receiver, sensors).gps_fix >= GpsFixType.FIX_3D

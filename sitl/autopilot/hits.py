@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+from ..core.mavlink import MavSeverity
 from .events import Event
-from .notes import INFO
 
-HIT_GROUND = Event(17, INFO, "SIM Hit ground at {a:f} m/s")
-HIT_OBSTACLE = Event(28, INFO, "SIM Hit obstacle at {a:f} m/s")
+HIT_GROUND = Event(17, MavSeverity.INFO, "SIM Hit ground at {a:f} m/s")
+HIT_OBSTACLE = Event(28, MavSeverity.INFO, "SIM Hit obstacle at {a:f} m/s")

@@ -17,6 +17,7 @@ from ..core.kernels import law
 from ..core.places import ExtensionError, Places
 from ..core.records import Record
 from .events import Event, Events, emit, err
+from .log_events import LogErrorSubsystem
 from .state import Modes
 
 # Why a mode changed (ArduPilot's ModeReason, the number that its logs carry)
@@ -55,7 +56,7 @@ GCS_BLOCKED = 13
 
 MODE_CHANGED = Event(3, log=lambda v, a, b: [("MODE", (int(a) & 255, int(a) & 255, int(b) & 255))])
 """a: number, b: reason"""
-MODE_REFUSED = Event(19, log=lambda v, a, b: [err(10, int(a) & 255)])
+MODE_REFUSED = Event(19, log=lambda v, a, b: [err(LogErrorSubsystem.FLIGHT_MODE, int(a) & 255)])
 """a: number, b: cause"""
 
 _NO_SEQUENCE = "Unable to start landing sequence"

@@ -5,9 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-EMERGENCY, CRITICAL, WARNING, NOTICE, INFO = 0, 2, 4, 5, 6
-"""MAV_SEVERITY"""
-
 
 @dataclass(frozen=True, slots=True)
 class Text:

@@ -67,7 +67,7 @@ def field_of(k: int, sensors: Sensors, params: Parameters) -> Vec3:
 
 
 @law
-def is_heard(k: int, sensors: Sensors, now_us: int) -> bool:
+def is_received(k: int, sensors: Sensors, now_us: int) -> bool:
     """Whether compass ``k`` sends samples."""
     if k == 0 and sensors.mag_us[0] == 0:
         return sensors.mag_count > 0  # behind a link that does not say when

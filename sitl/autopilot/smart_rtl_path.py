@@ -14,10 +14,10 @@ from typing import NamedTuple
 from ..core.algebra import dot, finite_vector
 from ..core.elementary import hypot
 from ..core.kernels import law
+from ..core.mavlink import MavSeverity
 from ..core.scalars import constrain
 from ..core.vectors import Vec3
 from .events import Event, Events, emit
-from .notes import INFO, WARNING
 from .params.system import SmartRtl
 from .state import PATH_POINTS, PathState
 
@@ -36,8 +36,8 @@ BAD_POSITION, FULL = 0, 1
 """Why the path was given up."""
 _LOST = {BAD_POSITION: "SmartRTL deactivated: bad position", FULL: "SmartRTL deactivated: buffer full"}
 
-PATH_LOST = Event(25, WARNING, _LOST)
-PATH_LOW = Event(35, INFO, "SmartRTL Low on space!")
+PATH_LOST = Event(25, MavSeverity.WARNING, _LOST)
+PATH_LOW = Event(35, MavSeverity.INFO, "SmartRTL Low on space!")
 
 
 class Farthest(NamedTuple):
@@ -87,7 +87,7 @@ def begin(path: PathState, place: Vec3, position_ok: bool, time_us: int, params:
     path.simplified = 0
     path.active = False
     path.home_saved = False
-    path.told_us = 0
+    path.reported_us = 0
     if not position_ok or capacity(params) == 0 or params.ACCURACY <= 0.0:
         return
     path.good_us = time_us
@@ -118,8 +118,8 @@ def record(path: PathState, place: Vec3, position_ok: bool, events: Events, time
     elif time_us - path.saved_us > TIMEOUT_US:
         give_up(path, events, time_us, FULL)
     keep_room(path, params)
-    if is_tight(path, params) and (path.told_us == 0 or time_us - path.told_us >= TOLD_US):
-        path.told_us = time_us
+    if is_tight(path, params) and (path.reported_us == 0 or time_us - path.reported_us >= TOLD_US):
+        path.reported_us = time_us
         emit(events, time_us, PATH_LOW, 0.0, 0.0)
 
 

@@ -178,11 +178,11 @@ class FollowState(Record):
 
     sender: int  # its system id; 0 none heard so far
     update_us: int  # its last report
-    told_pos: Vec3  # of that report [m]
-    told_vel: Vec3  # [m/s]
-    told_acc: Vec3  # [m/s^2]
-    told_heading: float  # [rad]
-    told_heading_rate: float  # [rad/s]
+    received_pos: Vec3  # of that report [m]
+    received_vel: Vec3  # [m/s]
+    received_acc: Vec3  # [m/s^2]
+    received_heading: float  # [rad]
+    received_heading_rate: float  # [rad/s]
     is_known: bool  # the motion that is followed:
     pos: Vec3  # [m]
     vel: Vec3  # [m/s]
@@ -190,7 +190,7 @@ class FollowState(Record):
     heading: float  # [rad]
     heading_rate: float  # [rad/s]
     heading_acc: float  # [rad/s^2]
-    tells_more: bool  # it sends FOLLOW_TARGET: its GLOBAL_POSITION_INT is not needed
+    sends_more: bool  # it sends FOLLOW_TARGET: its GLOBAL_POSITION_INT is not needed
     keeps_distance: bool  # no offsets are given:
     distance: Vec3  # the place beside it is this, as FOLL_OFS_TYPE says [m]
 
@@ -227,7 +227,7 @@ class PathState(Record):
     simplified: int  # so many from the start need no second look
     good_us: int  # last good position
     saved_us: int  # last point that found room
-    told_us: int  # when it was last said that there is little room
+    reported_us: int  # when it was last said that there is little room
     n: Floats = array(PATH_POINTS, stored="f4")  # NED [m]
     e: Floats = array(PATH_POINTS, stored="f4")
     d: Floats = array(PATH_POINTS, stored="f4")

@@ -16,9 +16,10 @@ from ..autopilot.mission.notes import Note
 from ..autopilot.mission.storage import stored_home
 from ..autopilot.mission.validate import check_all
 from ..autopilot.navigation.state import RUNNING
-from ..autopilot.notes import CRITICAL, Text
+from ..autopilot.notes import Text
 from ..autopilot.radio_checks import PARAMETERS
 from ..autopilot.shell_parameters import MODE_BLOCK, NEED_LOCATION
+from ..core.mavlink import MavSeverity
 from .autopilot_api import Vector, Vehicle
 
 BY_GROUND_STATION = 2
@@ -73,7 +74,7 @@ class BaseAutopilot:
             texts = [*texts, *self._parameter_texts(self._arming.check(self._v) == 0, "Arm: ")]
         elif not force:
             texts = [f"Arm: {each.text}" for each in self._found if not each.forbids]
-        self._say(CRITICAL, self._worded(texts))
+        self._say(MavSeverity.CRITICAL, self._worded(texts))
         return bool(ok)
 
     def disarm(self, force: bool) -> bool:
@@ -81,14 +82,16 @@ class BaseAutopilot:
 
     def run_prearm_checks(self) -> None:
         self.check_parameters()
-        self._say(CRITICAL, self.prearm_texts(self._v, "PreArm: "))
+        self._say(MavSeverity.CRITICAL, self.prearm_texts(self._v, "PreArm: "))
 
     def refusal_texts(self, failed: int) -> list[str]:
         return self._arming_texts(self._v, failed, "Arm: ", arming=True)
 
     def prearm_texts(self, v: Any, prefix: str = "") -> list[str]:
         """What keeps a vehicle of this firmware from arming; ``v``: its record, or a copy of one."""
-        return self._arming_texts(v, self._arming.check(v), prefix, told=any(not each.forbids for each in self._found))
+        return self._arming_texts(
+            v, self._arming.check(v), prefix, reported=any(not each.forbids for each in self._found)
+        )
 
     def check_parameters(self) -> None:
         """Make the arming checks of parameters, for the core to know."""
@@ -114,7 +117,9 @@ class BaseAutopilot:
         """What is wrong with parameters, each after ``prefix``; ``arming``: with what counts at that moment."""
         return [prefix + each.text for each in self._found if arming or not each.when_arming]
 
-    def _arming_texts(self, v: Any, failed: int, prefix: str, *, arming: bool = False, told: bool = False) -> list[str]:
+    def _arming_texts(
+        self, v: Any, failed: int, prefix: str, *, arming: bool = False, reported: bool = False
+    ) -> list[str]:
         """Texts of failed checks, each after ``prefix``.
 
         Args:
@@ -125,7 +130,7 @@ class BaseAutopilot:
             told: parameters have something to say that does not forbid arming.
         """
         said = list(self._arming.texts(v, failed, prefix))
-        if failed & PARAMETERS or told:
+        if failed & PARAMETERS or reported:
             said += self._parameter_texts(arming and self._arming.check(v) == 0, prefix)
         return self._worded(said)
 

@@ -11,8 +11,9 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..autopilot.mission.item import DO_AUX_FUNCTION, MissionItem
+from ..autopilot.mission.item import MissionItem
 from ..core.constants import NEVER
+from ..core.mavlink import MavCmd, MavResult
 from ..core.record_reader import RecordReader
 from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
@@ -34,7 +35,7 @@ from .services.mission import MissionService
 from .services.outputs import OutputService
 from .services.parameters import ParameterService
 from .services.senders import SenderService
-from .services.service import ACCEPTED, FAILED, Handler, Service
+from .services.service import Handler, Service
 from .services.setpoints import SetpointService
 from .services.signing import SigningService
 from .services.statustext import EventService
@@ -306,7 +307,7 @@ class Bridge:
             data = self._signing.received(channel, data)
         if data and self._senders.is_on:
             data = self._senders.received(channel, data)
-        self._hear(channel, data)
+        self._handle(channel, data)
 
     def arrive(self) -> None:
         """Hear, and hand to clients, the frames that arrive now over links with faults."""
@@ -326,21 +327,21 @@ class Bridge:
         board.flush()
         board.faults.look(self.channels)
 
-    def _hear(self, channel: Channel, data: bytes) -> None:
+    def _handle(self, channel: Channel, data: bytes) -> None:
         """Act on bytes from a client; the core does so, and stops at each frame that is for the shell."""
         channel.port.stops_at_frames = bool(self.taps or self.client_taps)
         if channel.port.in_size:
-            self._hear_port(channel)
+            self._handle_port(channel)
         while data:
             data = channel.feed(data)
-            self._hear_port(channel)
+            self._handle_port(channel)
 
-    def _hear_port(self, channel: Channel) -> None:
+    def _handle_port(self, channel: Channel) -> None:
         """Act on what the port holds; it may have stopped at a frame already."""
         while True:
             if not channel.port.frame_end:
                 events = self._event_count()
-                self.core.hear(channel.address)
+                self.core.receive(channel.address)
                 if self._event_count() != events:  # the law of a message had something to say
                     self.get(EventService).read()
                 if not channel.port.frame_end:
@@ -429,8 +430,8 @@ class Bridge:
             data = channel.peer.take()
             if data and not channel.takes(data):
                 for earlier in channels[: channels.index(channel)]:
-                    self._hear(earlier, b"")
-                self._hear(channel, data)
+                    self._handle(earlier, b"")
+                self._handle(channel, data)
         _write_goal(self._slot_memory, 0, until_us, self.shell_due_us(), events_seen)
         self.core.run_all(self.vehicle.index + 1, self._slots_address, ranging)
         for channel in channels:
@@ -453,7 +454,7 @@ class Bridge:
         port = channel.port
         port.congested = channel.congested
         while True:
-            self.core.tell(channel.address, 1, REGULAR)
+            self.core.transmit(channel.address, 1, REGULAR)
             if port.next_us > now:
                 return
             if port.out_count:  # there was no more room, or it is the shell's turn
@@ -498,7 +499,7 @@ class Bridge:
             while True:
                 if channel.port.out_count:
                     channel.collect()
-                self.core.tell(channel.address, 1, number)
+                self.core.transmit(channel.address, 1, number)
                 if channel.port.part == 0:  # all parts of it are sent: many need the room several times
                     break
         return number in self.telemetry
@@ -510,9 +511,9 @@ class Bridge:
             The answer: ACCEPTED, or FAILED when there is no message of this number.
         """
         if number not in self.telemetry:
-            return FAILED
+            return MavResult.FAILED
         self._asked.append((channel, number))
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def send_asked(self) -> None:
         """The command has been answered."""
@@ -564,7 +565,7 @@ class Bridge:
         self.get(EventService).read()
         self.flush()
 
-    def tell(self, notes: list[Any]) -> None:
+    def report(self, notes: list[Any]) -> None:
         """Tell clients what the mission's sequencer gave back."""
         if notes:
             self.get(EventService).notes(notes)
@@ -572,7 +573,7 @@ class Bridge:
 
     def carry_out(self, item: MissionItem) -> None:
         """Do what a mission asks of servo outputs, relays, camera, gimbal, payload and switches."""
-        if item.command == DO_AUX_FUNCTION:
+        if item.command == MavCmd.DO_AUX_FUNCTION:
             run_aux_function(self, item)
             return
         self.get(CARRIED_OUT_BY.get(item.command, OutputService)).carry_out(item)

@@ -17,11 +17,11 @@ from .wire.choose import Builder, Taker, message_of
 class CoreUnits(NamedTuple):
     """Units of a firmware that hear and tell clients (``wire/link.py``), and the laws that they are made of."""
 
-    hear: Callable[..., None]
-    tell: Callable[..., None]
+    receive: Callable[..., None]
+    transmit: Callable[..., None]
     run: Callable[..., None]
     run_all: Callable[..., None]
-    """``hear`` and ``run`` of one vehicle or many (``wire/fleet.py``)."""
+    """``receive`` and ``run`` of one vehicle or many (``wire/fleet.py``)."""
     builders: tuple[Builder, ...]
     takers: tuple[Taker, ...]
 
@@ -39,7 +39,7 @@ class CoreLink:
     def load(self, runs_in_core: bool, progress: Progress | None = None) -> None:
         """Compile what is needed now: ``run_all`` only for a vehicle whose physics is in the core, too."""
         kind, units = KINDS[self._vehicle.firmware.name], self._units
-        needed = (units.run_all, units.hear) if runs_in_core else (units.tell, units.hear)
+        needed = (units.run_all, units.receive) if runs_in_core else (units.transmit, units.receive)
         compiler.build_missing(needed, kind.record_path, progress)
         for unit in needed:
             compiler.load(unit, kind.record_path)
@@ -49,14 +49,14 @@ class CoreLink:
         return bind_unit(unit, KINDS[vehicle.firmware.name], vehicle.fleet, vehicle.index)
 
     @cached_property
-    def hear(self) -> Callable[[int], None]:
-        """``hear(address of a port)``: act on what its client sent, up to a frame that is the shell's."""
-        return self._bind(self._units.hear)
+    def receive(self) -> Callable[[int], None]:
+        """``receive(address of a port)``: act on what its client sent, up to a frame that is the shell's."""
+        return self._bind(self._units.receive)
 
     @cached_property
-    def tell(self) -> Callable[[int, int, int], None]:
-        """``tell(address of ports, count, number)``: send the message ``number``, or all that is due (REGULAR)."""
-        return self._bind(self._units.tell)
+    def transmit(self) -> Callable[[int, int, int], None]:
+        """``transmit(address of ports, count, number)``: send the message ``number``, or all that is due (REGULAR)."""
+        return self._bind(self._units.transmit)
 
     @cached_property
     def run(self) -> Callable[[int, int, int, int, int, int], None]:

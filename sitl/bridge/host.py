@@ -106,7 +106,7 @@ class Host(Protocol):
         """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""
         ...
 
-    def tell(self, notes: list[Any]) -> None:
+    def report(self, notes: list[Any]) -> None:
         """Tell clients what the mission's sequencer gave back."""
         ...
 

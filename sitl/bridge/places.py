@@ -10,14 +10,14 @@ from ..autopilot.state import Autopilot, Estimate
 from ..core.algebra import ZERO
 from ..core.geodesy import offset_ne
 from ..core.kernels import law
+from ..core.mavlink import MavFrame
 from ..core.scalars import finite
 from ..core.vectors import Vec3
 from .autopilot_api import Vector
 
-GLOBAL, LOCAL_NED, MISSION, GLOBAL_RELATIVE_ALT = 0, 1, 2, 3
-FRAMES_AMSL = (0, 5)
-FRAMES_RELATIVE = (3, 6)
-FRAMES_TERRAIN = (10, 11)
+FRAMES_AMSL = (MavFrame.GLOBAL, MavFrame.GLOBAL_INT)
+FRAMES_RELATIVE = (MavFrame.GLOBAL_RELATIVE_ALT, MavFrame.GLOBAL_RELATIVE_ALT_INT)
+FRAMES_TERRAIN = (MavFrame.GLOBAL_TERRAIN_ALT, MavFrame.GLOBAL_TERRAIN_ALT_INT)
 GLOBAL_FRAMES = FRAMES_AMSL + FRAMES_RELATIVE + FRAMES_TERRAIN
 """MAV_FRAME numbers with latitude and longitude."""
 

@@ -27,7 +27,7 @@ KERNEL_MODULES = (
     "sitl.agents.tabular.compiled_loop",
     "sitl.agents.tabular.exploration",
     "sitl.agents.tabular.learn",
-    "sitl.agents.ways",
+    "sitl.agents.grid_a_star",
     "sitl.core.elementary_kernels",
     "sitl.foreign.exchange",
     "sitl.foreign.hil_exchange",
@@ -151,7 +151,7 @@ def entries(kind: Kind) -> tuple[Callable[..., None], ...]:
     from ..bridge.profile import load as load_profile
 
     units = load_profile(kind.name).core
-    return units.run, units.hear
+    return units.run, units.receive
 
 
 def all_entries(kind: Kind) -> tuple[Callable[..., None], ...]:
@@ -166,5 +166,5 @@ def all_entries(kind: Kind) -> tuple[Callable[..., None], ...]:
         from ..bridge.profile import load as load_profile
 
         units = load_profile(kind.name).core
-        found += [units.tell, units.run_all]
+        found += [units.transmit, units.run_all]
     return tuple(dict.fromkeys(unit for unit in found if unit is not None))

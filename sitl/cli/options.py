@@ -140,8 +140,8 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
     airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
     check_kind(options.frame, airframe, vehicle)
     airframe = equipped(airframe, getattr(options, "sensors", AS_IT_IS))
-    if isinstance(params, files.FileValues) and not params.is_told:
-        params.is_told = True
+    if isinstance(params, files.FileValues) and not params.is_reported:
+        params.is_reported = True
         for text in files.notes(KINDS[airframe.kind].firmware.table, params):
             print(f"sitl: {text}", file=sys.stderr)
     return Scenario(

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 from ..bridge.dialect import MessageType
 from ..bridge.links.inprocess import InProcessLink
 from ..bridge.services.commands import GRANT, RESEED
+from ..core.mavlink import MavResult
 from ..errors import LinkLostError
 from ..warp.page import CLOCK_PAGE
 from . import proof
 from .byte_socket import ByteSocket, ByteStream, open_stream
 from .commands import arguments, command_number
-from .endpoint import ACCEPTED, AUTOPILOT, HEARTBEAT, Endpoint, Inbox
+from .endpoint import AUTOPILOT, HEARTBEAT, Endpoint, Inbox
 from .proof import REQUEST_MESSAGE
 
 if TYPE_CHECKING:
@@ -418,7 +419,7 @@ class Lockstep(Remote):
 
     def _reached(self, goal: int) -> bool:
         ack = self.inbox.acks.get(GRANT)
-        if ack is None or ack.result != ACCEPTED or ack.result_param2 < goal:
+        if ack is None or ack.result != MavResult.ACCEPTED or ack.result_param2 < goal:
             return False
         self.time_ms = ack.result_param2
         return True
@@ -482,7 +483,7 @@ def connect(
     inbox.system = target
 
     def can_be_held() -> bool:
-        return GRANT in acks and acks[GRANT].result == ACCEPTED
+        return GRANT in acks and acks[GRANT].result == MavResult.ACCEPTED
 
     try:
         probe.find()

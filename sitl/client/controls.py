@@ -9,8 +9,6 @@ from functools import partial
 
 from ..bridge.services.setpoints import (
     ACCELERATION_IGNORED,
-    BODY_OFFSET_NED,
-    LOCAL_NED,
     POSITION_IGNORED,
     VELOCITY_IGNORED,
     YAW_IGNORED,
@@ -18,6 +16,7 @@ from ..bridge.services.setpoints import (
     YAWS_IGNORED,
 )
 from ..core.geodesy import add_offset, offset_ne
+from ..core.mavlink import ARM_FORCED, MavCmd, MavFrame, MavModeFlag
 from ..errors import OptionError
 from . import px4
 from .errors import UnknownNameError
@@ -26,13 +25,7 @@ from .waits import AT_REST, SURE_S, Waits
 
 __tracebackhide__ = True
 
-CUSTOM_MODE_ENABLED = 1
-"""MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
-FORCED = 21196
-"""Second parameter of arming: without checks."""
-GLOBAL_INT, RELATIVE_INT, BODY_NED = 5, 6, 8
-"""MAV_FRAME_GLOBAL_INT, MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, MAV_FRAME_BODY_NED"""
-_REPOSITION, _CHANGE_MODE = 192, 1.0
+_CHANGE_MODE = 1.0
 """MAV_CMD_DO_REPOSITION, MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
 OFFBOARD_S = 1.0
 """So long PX4 gets set-points before it is asked into OFFBOARD."""
@@ -83,16 +76,16 @@ class Controls(Waits):
 
     def _ask_mode(self, number: int, subject: str) -> None:
         numbers = px4.mode_parameters(number) if self.telemetry.is_px4 else (number,)
-        self.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, *numbers, subject=subject)
+        self.command("DO_SET_MODE", MavModeFlag.CUSTOM_MODE_ENABLED, *numbers, subject=subject)
 
     def arm(self, force: bool = False) -> None:
         """Arm; ``force``: without its checks."""
-        self.command("COMPONENT_ARM_DISARM", 1, FORCED if force else 0, subject="arming")
+        self.command("COMPONENT_ARM_DISARM", 1, ARM_FORCED if force else 0, subject="arming")
         self.wait_armed(2.0)
 
     def disarm(self, force: bool = False) -> None:
         """Disarm; ``force``: even in the air."""
-        self.command("COMPONENT_ARM_DISARM", 0, FORCED if force else 0, subject="disarming")
+        self.command("COMPONENT_ARM_DISARM", 0, ARM_FORCED if force else 0, subject="disarming")
         self.wait_disarmed(5.0)  # heartbeats, of which a bad link loses some
 
     def reboot(self) -> None:
@@ -170,13 +163,14 @@ class Controls(Waits):
         if self.telemetry.is_px4:
             height = self.telemetry.altitude if altitude is None else altitude
             self.send(
-                "COMMAND_INT", frame=GLOBAL_INT, command=_REPOSITION, x=lat, y=lon, z=self.home()[2] + height,
+                "COMMAND_INT", frame=MavFrame.GLOBAL_INT, command=MavCmd.DO_REPOSITION, x=lat, y=lon,
+                z=self.home()[2] + height,
                 param1=-1.0, param2=_CHANGE_MODE, param4=math.nan if yaw is None else math.radians(yaw),
             )  # fmt: skip
             return
         self.send(
             "SET_POSITION_TARGET_GLOBAL_INT",
-            coordinate_frame=RELATIVE_INT,
+            coordinate_frame=MavFrame.GLOBAL_RELATIVE_ALT_INT,
             type_mask=POSITION_ONLY & ~(YAW_IGNORED if yaw is not None else 0),
             lat_int=lat, lon_int=lon, alt=self.telemetry.altitude if altitude is None else altitude,
             yaw=math.radians(yaw or 0.0),
@@ -251,8 +245,9 @@ class Controls(Waits):
         check_finite(north=north, east=east, down=down, yaw=yaw, yaw_rate=yaw_rate)
         mask = VELOCITY_ONLY
         mask &= ~(YAW_IGNORED if yaw is not None else 0) & ~(YAW_RATE_IGNORED if yaw_rate is not None else 0)
+        of_body = MavFrame.BODY_NED if self.telemetry.is_px4 else MavFrame.BODY_OFFSET_NED
         self._keep_sending(_VELOCITY, "SET_POSITION_TARGET_LOCAL_NED", {
-            "coordinate_frame": (BODY_NED if self.telemetry.is_px4 else BODY_OFFSET_NED) if body else LOCAL_NED,
+            "coordinate_frame": of_body if body else MavFrame.LOCAL_NED,
             "type_mask": mask,
             "vx": north, "vy": east, "vz": down,
             "yaw": math.radians(yaw or 0.0), "yaw_rate": math.radians(yaw_rate or 0.0),

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Protocol
 from ..bridge.dialect import FieldError, MessageType, message
 from ..bridge.frame import Splitter, encode_v2
 from ..bridge.links.inprocess import InProcessLink
+from ..core.mavlink import MavAutopilot, MavResult, MavType
 
 
 class Received(NamedTuple):
@@ -95,12 +96,6 @@ class Endpoint:
 HEARTBEAT, ACK, TEXT, PARAMETER = (message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "STATUSTEXT", "PARAM_VALUE"))
 AUTOPILOT = 1
 """MAV_COMP_ID_AUTOPILOT1: messages of other components do not count."""
-ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED"""
-GROUND_STATION, NO_AUTOPILOT = 6, 8
-"""MAV_TYPE and MAV_AUTOPILOT of a HEARTBEAT that is not a vehicle's, whatever ids it has."""
-ACCEPTED, BUSY, IN_PROGRESS = 0, 1, 5
-"""MAV_RESULT of a command that is carried out, that is to be sent again later, whose last answer is still to come."""
 KEPT_TEXTS = 10
 
 
@@ -166,7 +161,7 @@ class Inbox:
         """Whether a message of the vehicle counts, by what it says: no heartbeat that is not an autopilot's, and no
         answer to another client. A target of 0 is everybody, or of an autopilot that does not tell."""
         if kind is HEARTBEAT:
-            return fields.autopilot != NO_AUTOPILOT and fields.type != GROUND_STATION
+            return fields.autopilot != MavAutopilot.INVALID and fields.type != MavType.GCS
         if self.own is None or not hasattr(fields, "target_system"):
             return True
         component = getattr(fields, "target_component", 0)
@@ -182,7 +177,7 @@ class Inbox:
         else:
             self.count += 1
             if kind is ACK:
-                if fields.result != IN_PROGRESS:
+                if fields.result != MavResult.IN_PROGRESS:
                     self.acks[int(fields.command)] = fields
             elif kind is PARAMETER:
                 self.parameters[fields.param_id.decode("ascii", "replace")] = float(fields.param_value)

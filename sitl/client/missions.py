@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from ..autopilot.mission.item import RELATIVE, MissionItem, home_item
+from ..autopilot.mission.item import MissionItem, home_item
 from ..autopilot.mission.mission import RESULT_NAMES, Mission
+from ..core.mavlink import MavFrame, MavMissionType
 from . import px4
 from .commands import arguments, command_number, entry_name
 from .controls import Controls
@@ -16,8 +17,6 @@ from .errors import MissionRefusedError, WaitTimeoutError
 
 __tracebackhide__ = True
 
-MISSION, FENCE, RALLY = 0, 1, 2
-"""MAV_MISSION_TYPE"""
 SILENCE_S = 1.0
 """When nothing was asked for so long, what was sent last is sent again."""
 AT_ONCE = 10
@@ -32,7 +31,7 @@ class Missions(Controls):
     _upload: Sequence[MissionItem] = ()
     _last_item = -1
     """The last one that the vehicle asked for."""
-    _list = MISSION
+    _list: int = MavMissionType.MISSION
     """Which list it goes to (MAV_MISSION_TYPE)."""
     _asked = 0
     """How often it has asked for one."""
@@ -53,7 +52,7 @@ class Missions(Controls):
         number = command_number(name)
         p1, p2, p3, p4, *_ = [*arguments(number, (), named), 0.0, 0.0, 0.0, 0.0]
         x, y = self.location_of(north, east) if north is not None and east is not None else (0, 0)
-        return MissionItem(number, RELATIVE, p1, p2, p3, p4, x, y, altitude)
+        return MissionItem(number, MavFrame.GLOBAL_RELATIVE_ALT, p1, p2, p3, p4, x, y, altitude)
 
     def upload(self, mission: Mission | Sequence[MissionItem]) -> Mission:
         """Upload a mission, home first; a home without a place becomes the vehicle's own.
@@ -77,7 +76,7 @@ class Missions(Controls):
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
-        self.transfer(items, FENCE)
+        self.transfer(items, MavMissionType.FENCE)
 
     def upload_rally_points(self, items: Sequence[MissionItem]) -> None:
         """Upload places to return to, as NAV_RALLY_POINT items; none clears them.
@@ -85,7 +84,7 @@ class Missions(Controls):
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
-        self.transfer(items, RALLY)
+        self.transfer(items, MavMissionType.RALLY)
 
     def download(self) -> tuple[MissionItem, ...]:
         """The mission that the vehicle has, home first.
@@ -106,11 +105,11 @@ class Missions(Controls):
             return min(len(which or ()), AT_ONCE)
 
         def take_count(m: Any) -> None:
-            if m.mission_type == MISSION:  # another client may ask for the fence
+            if m.mission_type == MavMissionType.MISSION:  # another client may ask for the fence
                 counts.append(m.count)
 
         def take(m: Any) -> None:
-            if m.mission_type == MISSION:
+            if m.mission_type == MavMissionType.MISSION:
                 found[m.seq] = MissionItem(
                     m.command, m.frame, m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.autocontinue
                 )
@@ -136,13 +135,13 @@ class Missions(Controls):
         if self.flies:
             self.command("MISSION_START", subject="the start of the mission")
 
-    def transfer(self, items: Sequence[MissionItem], kind: int = MISSION) -> None:
+    def transfer(self, items: Sequence[MissionItem], kind: int = MavMissionType.MISSION) -> None:
         """Send items as they are, a mission's with home first, by the mission protocol; ``kind``: MAV_MISSION_TYPE.
 
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.
         """
-        if kind == MISSION and self.telemetry.is_px4:
+        if kind == MavMissionType.MISSION and self.telemetry.is_px4:
             items = px4.mission(items)
         begin = progress = self.now
         self._upload, self._list, self._last_item, self._result = items, kind, -1, None

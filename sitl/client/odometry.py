@@ -6,12 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..core.algebra import rotate_inverse
+from ..core.mavlink import MavFrame
 from ..core.vectors import Vec3
 from .companion import Companion
 from .session import Session
 
-LOCAL_FRD, BODY_FRD = 20, 12
-"""MAV_FRAME"""
 UNKNOWN = [float("nan")] * 21
 PARAMETERS: dict[str, float] = {
     "EK3_SRC1_POSXY": 6, "EK3_SRC1_VELXY": 6, "EK3_SRC1_POSZ": 6, "EK3_SRC1_VELZ": 6, "VISO_TYPE": 1, "GPS1_TYPE": 0,
@@ -60,7 +59,8 @@ class Odometry(Companion):
         pos = body.pos - self._from + self.offset + Vec3(north, east, 0.0) + at * Vec3(*draw(size=3).tolist())
         vel = rotate_inverse(body.q, body.vel) + speed * Vec3(*draw(size=3).tolist())
         self.client.send(
-            "ODOMETRY", frame_id=LOCAL_FRD, child_frame_id=BODY_FRD, x=pos.x, y=pos.y, z=pos.z, q=list(body.q),
+            "ODOMETRY", frame_id=MavFrame.LOCAL_FRD, child_frame_id=MavFrame.BODY_FRD, x=pos.x, y=pos.y, z=pos.z,
+            q=list(body.q),
             vx=vel.x, vy=vel.y, vz=vel.z, pose_covariance=UNKNOWN, velocity_covariance=UNKNOWN,
             reset_counter=self.resets % 256, estimator_type=2, quality=100,
         )  # fmt: skip

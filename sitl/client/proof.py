@@ -25,8 +25,9 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 from ..bridge.dialect import MessageType, message
+from ..core.mavlink import MavResult
 from .commands import command_number
-from .endpoint import ACCEPTED, ACK, AUTOPILOT, BUSY, HEARTBEAT, IN_PROGRESS, PARAMETER, Endpoint
+from .endpoint import ACK, AUTOPILOT, HEARTBEAT, PARAMETER, Endpoint
 from .voices import Voices
 
 PARAMETER_NAME = "SIM_WIND_SPD"
@@ -169,14 +170,14 @@ class Signs:
     def _answered(self, fields: Any) -> None:
         own = self._link.endpoint
         if (fields.target_system, fields.target_component) != (own.system, own.component):
-            if fields.result not in (ACCEPTED, BUSY, IN_PROGRESS):
+            if fields.result not in (MavResult.ACCEPTED, MavResult.TEMPORARILY_REJECTED, MavResult.IN_PROGRESS):
                 self._refused(fields.result)
             return  # an answer to everybody may be to anybody
-        if fields.result in (BUSY, IN_PROGRESS):
+        if fields.result in (MavResult.TEMPORARILY_REJECTED, MavResult.IN_PROGRESS):
             self._asked -= 1  # and is not counted
             return
         self._answers += 1
-        if fields.result == ACCEPTED:
+        if fields.result == MavResult.ACCEPTED:
             self._accepted += 1
         else:
             self._refused(fields.result)

@@ -11,11 +11,10 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..autopilot.mission.item import NAV_LAND, NAV_RETURN_TO_LAUNCH, NAV_TAKEOFF, NAV_WAYPOINT, MissionItem
+from ..autopilot.mission.item import MissionItem
+from ..core.mavlink import MavCmd, MavFrame, MavParamType
 from ..errors import OptionError
 
-AUTOPILOT = 12
-"""MAV_AUTOPILOT_PX4"""
 _AUTO = 4
 _MAIN = {1: "MANUAL", 2: "ALTCTL", 3: "POSCTL", 5: "ACRO", 6: "OFFBOARD", 7: "STABILIZED"}
 _SUB = {2: "TAKEOFF", 3: "LOITER", 4: "MISSION", 5: "RTL", 6: "LAND", 8: "FOLLOWME", 9: "PRECLAND"}
@@ -33,9 +32,7 @@ MISSION_ENDS = (MISSION, READY, "RTL", "LAND")
 """Modes in which a mission that was flown ends: an item that returns or lands changes the mode."""
 REPEAT_US = 200_000
 """Between two set-points: it leaves OFFBOARD when they come less than twice a second."""
-_INT_32 = 6
-_FRAME_MISSION = 2
-_PLACED = (NAV_TAKEOFF, NAV_LAND, NAV_WAYPOINT)
+_PLACED = (MavCmd.NAV_TAKEOFF, MavCmd.NAV_LAND, MavCmd.NAV_WAYPOINT)
 """Commands whose items PX4 takes with a place only."""
 
 
@@ -46,7 +43,7 @@ def mode_parameters(number: int) -> tuple[int, int]:
 
 def value_of(fields: Any) -> float:
     """Of a PARAM_VALUE: the bytes of a whole number are in the place of the float's."""
-    if fields.param_type == _INT_32:
+    if fields.param_type == MavParamType.INT32:
         return float(struct.unpack("<i", struct.pack("<f", fields.param_value))[0])
     return float(fields.param_value)
 
@@ -57,7 +54,7 @@ def encoded(name: str, value: float, param_type: int) -> float:
     Raises:
         OptionError: a whole number is needed.
     """
-    if param_type != _INT_32:
+    if param_type != MavParamType.INT32:
         return value
     if value != int(value) or not -(1 << 31) <= value < 1 << 31:
         raise OptionError(f"{name} = {value:g}; PX4 has a whole number there")
@@ -71,8 +68,8 @@ def mission(items: Sequence[MissionItem]) -> list[MissionItem]:
     for item in items[1:]:
         if item.command in _PLACED and item.no_place:
             item = item._replace(x=x, y=y)
-        elif item.command == NAV_RETURN_TO_LAUNCH:
-            item = item._replace(frame=_FRAME_MISSION)
+        elif item.command == MavCmd.NAV_RETURN_TO_LAUNCH:
+            item = item._replace(frame=MavFrame.MISSION)
         if not item.no_place:
             x, y = item.x, item.y
         made.append(item)

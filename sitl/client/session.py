@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 from ..bridge.dialect import message
+from ..core.mavlink import MavAutopilot
 from ..errors import OptionError, did_you_mean
 from . import px4
 from .commands import arguments, command_name, command_number, constant, entry_name
@@ -51,8 +52,6 @@ _OURS, _PX4S = "EKF_STATUS_REPORT", "ESTIMATOR_STATUS"
 """Which of its estimates are good, by ArduPilot and by PX4."""
 _HEARTBEAT, _SET_INTERVAL = "heartbeat", command_number("SET_MESSAGE_INTERVAL")
 _REQUEST, _MODES = command_number("REQUEST_MESSAGE"), message("AVAILABLE_MODES")
-GENERIC = 0
-"""MAV_AUTOPILOT of a firmware that MAVLink has no number for, such as Betaflight."""
 Repeated = tuple[str, dict[str, Any]]
 """A message that is sent again and again: its name, its fields."""
 
@@ -275,7 +274,7 @@ class Session:
         if name == "COMMAND_ACK" and fields.command == _SET_INTERVAL:
             self._unanswered = max(self._unanswered - 1, 0)
         elif name == "HEARTBEAT" and not self.telemetry.mode_names:
-            if fields.autopilot == GENERIC:  # its modes are its own: it is asked for their names
+            if fields.autopilot == MavAutopilot.GENERIC:  # its modes are its own: it is asked for their names
                 self.connection.endpoint.command(_REQUEST, _MODES.id, target=self.connection.system)
             else:
                 self.telemetry.mode_names = px4.MODE_NAMES if self.telemetry.is_px4 else mode_names(fields.type)

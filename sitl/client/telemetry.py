@@ -9,18 +9,15 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from ..core.geodesy import offset_ne
+from ..core.mavlink import MavAutopilot, MavModeFlag
 from . import px4
 
-ARMED = 0x80
-"""HEARTBEAT.base_mode: MAV_MODE_FLAG_SAFETY_ARMED."""
 READY_BITS = 0x10 | 0x01
 """EKF_STATUS_REPORT: attitude, absolute position."""
 PREARM_BIT = 0x10000000
 """SYS_STATUS: MAV_SYS_STATUS_PREARM_CHECK."""
 NO_MISSION = 1
 """MISSION_CURRENT: MISSION_STATE_NO_MISSION."""
-ON_GROUND = 1
-"""EXTENDED_SYS_STATE: MAV_LANDED_STATE_ON_GROUND."""
 
 
 class Position(NamedTuple):
@@ -135,7 +132,7 @@ class Telemetry:
     @property
     def is_px4(self) -> bool:
         """Whether the autopilot is PX4, which does some things otherwise (``px4``)."""
-        return self.autopilot == px4.AUTOPILOT
+        return self.autopilot == MavAutopilot.PX4
 
     @property
     def before_first(self) -> int:
@@ -184,7 +181,11 @@ class Telemetry:
         elif name == "ATTITUDE":
             self.attitude = Attitude(m.roll, m.pitch, m.yaw)
         elif name == "HEARTBEAT":
-            self.mode_number, self.armed, self.heartbeat_at = int(m.custom_mode), bool(m.base_mode & ARMED), time
+            self.mode_number, self.armed, self.heartbeat_at = (
+                int(m.custom_mode),
+                bool(m.base_mode & MavModeFlag.SAFETY_ARMED),
+                time,
+            )
             self.autopilot = int(m.autopilot)
             if self.armed:
                 self.disarmed_since = math.nan

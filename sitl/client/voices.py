@@ -11,7 +11,8 @@ from collections import OrderedDict
 from typing import Any
 
 from ..bridge.dialect import MessageType
-from .endpoint import ARMED, HEARTBEAT
+from ..core.mavlink import MavModeFlag
+from .endpoint import HEARTBEAT
 
 REMEMBERED = 128
 """Frames among which a repeated one is looked for. A number comes again after 256."""
@@ -81,7 +82,7 @@ class Voices:
             self._doubts("its frames have two series of numbers")
 
     def _state(self, fields: Any) -> None:
-        state = fields.type, fields.autopilot, fields.base_mode & ARMED, fields.custom_mode
+        state = fields.type, fields.autopilot, fields.base_mode & MavModeFlag.SAFETY_ARMED, fields.custom_mode
         if self._states and state == self._states[-1]:
             return
         if state in self._states or (self._states and state[:2] != self._states[-1][:2]):

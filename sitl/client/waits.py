@@ -7,12 +7,13 @@ import math
 import re
 from collections.abc import Callable
 
+from sitl.core.mavlink import MavLandedState
 from sitl.core.sums import separation
 
 from ..bridge.dialect import message
 from ..errors import OptionError
 from .session import Session
-from .telemetry import ON_GROUND, Telemetry, Text
+from .telemetry import Telemetry, Text
 
 __tracebackhide__ = True
 
@@ -77,7 +78,8 @@ class Waits(Session):
     def wait_landed(self, timeout: float = 120.0) -> None:
         """Until it stands on the ground (EXTENDED_SYS_STATE) [simulated s]; a copter disarms a little later."""
         with self.messages("EXTENDED_SYS_STATE", 5.0) as states:
-            self.wait(lambda _: states and states[-1].landed_state == ON_GROUND, timeout, f"the {self.kind} to land",
+            self.wait(lambda _: states and states[-1].landed_state == MavLandedState.ON_GROUND, timeout,
+            f"the {self.kind} to land",
                       lambda: f"{self.telemetry.altitude:.2f} m")  # fmt: skip
 
     def wait_altitude(self, low: float, high: float = math.inf, timeout: float = 60.0, hold: float = 0.0) -> None:

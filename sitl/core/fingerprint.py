@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import types
 from collections.abc import Callable, Container, Iterable, Iterator
+from enum import IntEnum
 from functools import cache
 from typing import Any, TypeGuard
 
@@ -78,6 +79,12 @@ def items(
     for name, value in _referenced(function):
         if isinstance(value, types.FunctionType):
             yield name, value
+        elif isinstance(value, IntEnum):  # its ``repr`` differs between versions of Python
+            yield f"{name} = {int(value)}"
+        elif isinstance(value, type) and issubclass(value, IntEnum):  # of its members, those that the law names
+            for member in value:
+                if member.name in function.__code__.co_names:
+                    yield f"{name}.{member.name} = {int(member)}"
         elif isinstance(value, (bool, int, float, str, tuple)):
             yield f"{name} = {constant(value)}"
         elif isinstance(value, type) and issubclass(value, tuple):  # a named tuple, or a vector

@@ -24,7 +24,7 @@ class ExtensionError(SitlError, ValueError):
 
 
 class Places:
-    """The parts of one sort.
+    """The parts of one kind.
 
     Args:
         variable: name of the environment variable: "OWNER=package.module:NAME ...".

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,22 +34,7 @@ from .sticks import AT_REST, LEAST_THROTTLE, StickPort
 from .storage import Storage
 
 PROGRAMS = {"arducopter": "copter", "ardurover": "rover"}
-MODELS = {
-    "copter": {
-        "+": "ardupilot_quad",
-        "quad": "ardupilot_quad",
-        "copter": "ardupilot_quad",
-        "x": "ardupilot_x",
-        "hexa": "ardupilot_hexa",
-        "hexax": "ardupilot_hexa_x",
-        "octa": "ardupilot_octa",
-        "octa-quad": "ardupilot_octa_quad",
-        "y6": "ardupilot_y6",
-        "calibration": "calibration_copter",
-    },
-    "rover": {"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
-}
-"""ArduPilot's names of simulated frames -> our airframes; the first is taken when none is given."""
+"""ArduPilot's executables -> the kinds that they run."""
 JSON = "JSON"
 HIGH_LATENCY = 43.0
 MAVLINK_PROTOCOLS = (1.0, 2.0, HIGH_LATENCY)
@@ -126,14 +111,14 @@ class Session:
         if self._line.speedup is not None:
             values["SIM_SPEEDUP"] = self._line.speedup
         strange = [name for name in values if name not in table and name not in of_files]
-        self._tell("parameters that this firmware does not have", strange)
+        self._report("parameters that this firmware does not have", strange)
         known = {name: value for name, value in values.items() if name in table}
         refusals = {name: text for name, value in known.items() if (text := table[name].no_number(value))}
         for text in refusals.values():
             self._say(f"not taken: {text}")
         return {name: value for name, value in known.items() if name not in refusals}
 
-    def _tell(self, what: str, names: Sequence[str]) -> None:
+    def _report(self, what: str, names: Sequence[str]) -> None:
         if names:
             self._say(f"{len(names)} {what}: {', '.join(names)}")
 
@@ -242,7 +227,7 @@ class Session:
 
 def _model(kind: str, line: CommandLine) -> tuple[str, str]:
     """Airframe and physics."""
-    models: Mapping[str, str] = MODELS[kind]
+    models = KINDS[kind].ardupilot_models
     first = next(iter(models.values()))
     name, _, address = line.model.partition(":")
     if name == JSON:

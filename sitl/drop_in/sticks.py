@@ -63,9 +63,9 @@ class StickPort(Link):
             if len(data) >= 2 * FEWEST:
                 frame = data
         if frame:
-            self.hear(frame)
+            self.receive(frame)
 
-    def hear(self, frame: bytes) -> None:
+    def receive(self, frame: bytes) -> None:
         """Put a frame into the receiver: pulses [us], little-endian; channels that it does not have, or as 0, stay."""
         sensors, count = self._v.sensors, min(len(frame) // 2, RC_INPUTS)
         for k, pulse in enumerate(struct.unpack_from(f"<{count}H", frame)):

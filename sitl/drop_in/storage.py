@@ -9,9 +9,10 @@ from typing import Any
 
 from ..autopilot.fence import items as fence
 from ..autopilot.fence.state import FenceState
-from ..autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, MissionItem
+from ..autopilot.mission.item import FENCE_COMMANDS, MissionItem
 from ..bridge.signing import KEY_BYTES, LAST, OFF, SigningState
 from ..core import documents
+from ..core.mavlink import MavCmd
 from ..core.whole_file import write_whole
 from ..errors import SitlError
 
@@ -71,7 +72,7 @@ class Storage:
         self.parameters = {name: _number(value) for name, value in kept["parameters"].items()}
         self.mission = _items(kept["mission"])
         self.fence, self.rally = _items(kept.get("fence", [])), _items(kept.get("rally", []))
-        for items, commands in ((self.fence, FENCE_COMMANDS), (self.rally, (RALLY_POINT,))):
+        for items, commands in ((self.fence, FENCE_COMMANDS), (self.rally, (MavCmd.NAV_RALLY_POINT,))):
             for item in items:
                 if item.command not in commands or not abs(item.z) <= _HIGHEST:
                     raise ValueError(f"{item} is no such place")

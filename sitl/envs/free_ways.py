@@ -10,100 +10,55 @@ import numpy as np
 import numpy.typing as npt
 
 from sitl.core import elementary_arrays as arrays
-from sitl.core.array_kernels import IntLine, IntTable, Kernel, Line, NarrowTable, Table
+from sitl.core.array_kernels import Kernel, Line, NarrowTable, Table
+from sitl.core.elementary import sincos
 from sitl.core.kernels import law
 from sitl.worlds import World
 
+from .marching import march
 from .robots.robot import Floats, Robot, world_of
 from .starts import ReachableCells
 from .worlds import PerWorld
 
+CLEARANCE, BESIDE = 1.0, 5.0
+"""So far from where a robot can just pass, a route costs no more than its length; there it costs so much more [m]."""
 CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
-@law
-def push(keys: Line, items: IntLine, count: int, key: float, item: int) -> int:
-    """Put an item into a heap of ``count`` items, the least key first; returns how many there are then."""
-    at = count
-    while at > 0 and keys[(at - 1) // 2] > key:
-        keys[at], items[at] = keys[(at - 1) // 2], items[(at - 1) // 2]
-        at = (at - 1) // 2
-    keys[at], items[at] = key, item
-    return count + 1
+class Around(NamedTuple):
+    """Where a place lies in a robot's grid."""
+
+    at: int
+    """Number of the cell before it along both axes."""
+    u: float
+    v: float
+    """How far it is from that cell's middle, along rows and columns [cells]."""
 
 
 @law
-def pop(keys: Line, items: IntLine, count: int) -> int:
-    """Take the first item out of a heap of ``count`` items, at least one; returns how many are left."""
-    last = count - 1
-    key, item = keys[last], items[last]
-    at, child = 0, 1
-    while child < last:
-        if child + 1 < last and keys[child + 1] < keys[child]:
-            child += 1
-        if keys[child] >= key:
-            break
-        keys[at], items[at] = keys[child], items[child]
-        at, child = child, 2 * child + 1
-    keys[at], items[at] = key, item
-    return last
+def around(grids: Table, k: int, x: float, y: float) -> Around:
+    """Where x, y [m] lies in the grid of robot ``k``; places outside count as at its edge."""
+    rows, columns, cell = int(grids[k, 0]), int(grids[k, 1]), grids[k, 4]
+    row = min(max((x - grids[k, 2]) / cell, 0.0), rows - 1.0)
+    column = min(max((y - grids[k, 3]) / cell, 0.0), columns - 1.0)
+    i, j = min(int(row), rows - 2), min(int(column), columns - 2)
+    return Around(i * columns + j, row - i, column - j)
 
 
 @law
-def reach(a: float, b: float) -> float:
-    """Distance of a cell whose neighbours along the two axes have the distances ``a`` and ``b``, in cells: where the
-    distance grows by 1 a cell. inf: no way leads over that neighbour."""
-    low, high = min(a, b), max(a, b)
-    if high - low >= 1.0:
-        return low + 1.0
-    return 0.5 * (low + high + math.sqrt(2.0 - (high - low) * (high - low)))
-
-
-@law
-def march(free: IntTable, row: float, column: float, keys: Line, items: IntLine, out: Table) -> None:
-    """Write the length of the shortest way over free cells from each cell to a place.
-
-    Source: Sethian, "A fast marching level set method for monotonically advancing fronts", PNAS 93, 1996.
-
-    Args:
-        free: 1 where a way can lead, shape (rows, columns).
-        row, column: the place; the middle of the first cell is 0, 0.
-        keys, items: room for the heap, shape (4 * rows * columns + 9,).
-        out: in cells, shape (rows, columns); inf where no way leads.
-    """
-    rows, columns, count = free.shape[0], free.shape[1], 0
-    for i in range(rows):
-        for j in range(columns):
-            out[i, j] = math.inf
-    first, second = int(row + 0.5), int(column + 0.5)
-    for i in range(max(first - 1, 0), min(first + 2, rows)):
-        for j in range(max(second - 1, 0), min(second + 2, columns)):
-            if free[i, j] != 0:
-                out[i, j] = math.sqrt((i - row) * (i - row) + (j - column) * (j - column))
-                count = push(keys, items, count, out[i, j], i * columns + j)
-    while count > 0:
-        key, row_now, column_now = keys[0], items[0] // columns, items[0] % columns
-        count = pop(keys, items, count)
-        if key > out[row_now, column_now]:
-            continue
-        for side in range(4):
-            i = row_now + (1 if side == 0 else -1 if side == 1 else 0)
-            j = column_now + (1 if side == 2 else -1 if side == 3 else 0)
-            if i < 0 or j < 0 or i >= rows or j >= columns or free[i, j] == 0 or out[i, j] <= key:
-                continue  # no way there, or as short as one over this cell can be
-            a = min(out[i - 1, j] if i > 0 else math.inf, out[i + 1, j] if i + 1 < rows else math.inf)
-            b = min(out[i, j - 1] if j > 0 else math.inf, out[i, j + 1] if j + 1 < columns else math.inf)
-            there = reach(a, b)
-            if there < out[i, j]:
-                out[i, j] = there
-                count = push(keys, items, count, there, i * columns + j)
+def length_at(fields: NarrowTable, k: int, columns: int, here: Around) -> float:
+    """Length of the way of robot ``k`` from a place, between the middles of cells in proportion [m]."""
+    at, u, v = here.at, here.u, here.v
+    below = (1.0 - v) * float(fields[k, at]) + v * float(fields[k, at + 1])
+    above = (1.0 - v) * float(fields[k, at + columns]) + v * float(fields[k, at + columns + 1])
+    return (1.0 - u) * below + u * above
 
 
 @law
 def read_ways(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None:
-    """Read the length of the way of each robot, between the middles of cells in proportion.
+    """Read the length of the way of each robot.
 
     Args:
         fields: lengths [m] of each robot's ways, row after row of its grid, shape (count, rows * columns or more).
@@ -113,25 +68,57 @@ def read_ways(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None
         out: [m], shape (count,).
     """
     for k in range(out.shape[0]):
-        rows, columns, cell = int(grids[k, 0]), int(grids[k, 1]), grids[k, 4]
-        x = min(max((pose[k, 0] - grids[k, 2]) / cell, 0.0), rows - 1.0)
-        y = min(max((pose[k, 1] - grids[k, 3]) / cell, 0.0), columns - 1.0)
-        i, j = min(int(x), rows - 2), min(int(y), columns - 2)
-        u, v, at = x - i, y - j, i * columns + j
-        below = (1.0 - v) * float(fields[k, at]) + v * float(fields[k, at + 1])
-        above = (1.0 - v) * float(fields[k, at + columns]) + v * float(fields[k, at + columns + 1])
-        out[k] = (1.0 - u) * below + u * above
+        out[k] = length_at(fields, k, int(grids[k, 1]), around(grids, k, pose[k, 0], pose[k, 1]))
+
+
+@law
+def follow_ways(
+    routes: NarrowTable, fields: NarrowTable, grids: Table, pose: Table, ahead: float, out: Table, first: int
+) -> None:
+    """Write to where each robot's route leads next: down the field of its costs, in steps of half a cell.
+
+    Args:
+        routes: costs of each robot's routes, as ``fields`` has lengths.
+        fields, grids: see ``read_ways``.
+        pose: x, y, z [m], yaw [rad] and more, shape (count, 4 or more).
+        ahead: how far along the way [m].
+        out: forward, left of the robot's heading, and the length of the shortest way [m], shape (count, columns).
+        first: column of the first one.
+    """
+    for k in range(out.shape[0]):
+        columns, step = int(grids[k, 1]), 0.5 * grids[k, 4]
+        x, y, gone = pose[k, 0], pose[k, 1], 0.0
+        here = around(grids, k, x, y)
+        length, left = length_at(fields, k, columns, here), length_at(routes, k, columns, here)
+        while gone < ahead and step < left < math.inf:
+            at, u, v = here.at, here.u, here.v
+            a, b = float(routes[k, at]), float(routes[k, at + 1])
+            c, d = float(routes[k, at + columns]), float(routes[k, at + columns + 1])
+            down, right = (1.0 - v) * (c - a) + v * (d - b), (1.0 - u) * (b - a) + u * (d - c)
+            slope = math.sqrt(down * down + right * right)
+            if not 0.0 < slope < math.inf:
+                break  # as far from the goal along two ways, or none leads from here
+            far = min(step, ahead - gone)
+            x, y, gone = x - far * down / slope, y - far * right / slope, gone + far
+            here = around(grids, k, x, y)
+            left = length_at(routes, k, columns, here)
+        s, c = sincos(pose[k, 3])
+        x, y = x - pose[k, 0], y - pose[k, 1]
+        out[k, first], out[k, first + 1], out[k, first + 2] = x * c + y * s, y * c - x * s, length
 
 
 _march = Kernel(march)
 _read = Kernel(read_ways)
+_follow = Kernel(follow_ways)
 
 
 class Ground(NamedTuple):
     """A world's grid, seen from above."""
 
-    free: npt.NDArray[np.int64]
+    free: Floats
     """1 where a way can lead, shape (rows, columns)."""
+    costs: Floats
+    """Of a cell of a route, which keeps away from solids where there is room; 0: no way leads there."""
     nearest: npt.NDArray[np.int32]
     """Number of the nearest free cell of each cell."""
     beside: Floats
@@ -162,12 +149,22 @@ class FreeWays:
         self._fields = np.zeros((robot.count, size), np.float32)
         self._out = np.zeros(robot.count)
         self._keys, self._items = np.empty(0), np.empty(0, np.int64)  # room for the heap
+        self._routes: npt.NDArray[np.float32] | None = None
+        """Costs of routes, as ``_fields`` has lengths; None: nothing asks for them."""
 
     def _ground(self, world: World) -> Ground:
         found = ReachableCells(self._robot, self._crash_range, CELLS, world)
         free = np.zeros(found.shape, np.bool_)
         free[found.cells[:, 0], found.cells[:, 1]] = True
-        return Ground(free.astype(np.int64), *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+        room = np.minimum(found.cell * _nearest(~free)[1] / CLEARANCE, 1.0) if not free.all() else np.ones(free.shape)
+        lack = 1.0 - room
+        costs = np.where(free, 1.0 + BESIDE * lack * lack, 0.0)
+        return Ground(free.astype(np.float64), costs, *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+
+    def plan_routes(self) -> None:
+        """``follow`` is going to be called; before the first goal."""
+        if self._routes is None:
+            self._routes = np.zeros_like(self._fields)
 
     def aim(self, index: int, x: float, y: float) -> None:
         """Give a robot its goal, x, y in the frame of its world [m]."""
@@ -178,22 +175,37 @@ class FreeWays:
         beside = float(ground.beside[i, j])
         if beside > 0.0:
             row, column = divmod(int(ground.nearest[i, j]), columns)
+        self._fields = self._marched(self._fields, index, ground, ground.free, float(row), float(column), beside)
+        if self._routes is not None:
+            self._routes = self._marched(self._routes, index, ground, ground.costs, float(row), float(column), beside)
+        self._grids[index] = rows, columns, *ground.low, ground.cell
+
+    def _marched(
+        self, fields: npt.NDArray[np.float32], index: int, ground: Ground, costs: Floats, row: float, column: float,
+        beside: float,
+    ) -> npt.NDArray[np.float32]:  # fmt: skip
+        """``fields`` with the one of a robot's new goal, or a larger array with these."""
         size = ground.free.size
         if len(self._keys) < 4 * size + 9:
             self._keys, self._items = np.empty(4 * size + 9), np.empty(4 * size + 9, np.int64)
         field = np.empty(ground.free.shape)
-        _march(ground.free, float(row), float(column), self._keys, self._items, field)
+        _march(costs, row, column, self._keys, self._items, field)
         lengths = field.ravel()[ground.nearest] + ground.beside + beside
-        if size > self._fields.shape[1]:
-            more = np.zeros((len(self._fields), size - self._fields.shape[1]), np.float32)
-            self._fields = np.concatenate((self._fields, more), axis=1)
-        self._fields[index, :size] = (ground.cell * lengths).ravel()
-        self._grids[index] = rows, columns, *ground.low, ground.cell
+        if size > fields.shape[1]:
+            more = np.zeros((len(fields), size - fields.shape[1]), np.float32)
+            fields = np.concatenate((fields, more), axis=1)
+        fields[index, :size] = (ground.cell * lengths).ravel()
+        return fields
 
     def lengths(self, pose: Floats) -> Floats:
         """Length of each robot's way from a pose (x, y, ...) [m], shape (count,); the array is used again."""
         _read.unchecked()(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
         return self._out
+
+    def follow(self, pose: Floats, ahead: float, out: Floats, first: int = 0) -> None:
+        """Write to where each robot's route leads from a pose, ``ahead`` [m] along it; see ``follow_ways``."""
+        assert self._routes is not None
+        _follow.unchecked()(self._routes, self._fields, self._grids, np.ascontiguousarray(pose), ahead, out, first)
 
 
 def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:

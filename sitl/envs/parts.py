@@ -340,6 +340,44 @@ class Path:
         plan.compute(width, maker)
 
 
+class Route:
+    """Where the route to the target leads next, as a planner with a map tells it: forward and left [m] in the frame of
+    the robot's heading, and the length of the shortest obstacle-free path.
+
+    Args:
+        ahead: how far along the path [m].
+    """
+
+    columns = ("route ahead [m]", "route to the left [m]", "length of the shortest path [m]")
+    reads_scan = False
+
+    def __init__(self, ahead: float = 2.0) -> None:
+        if not 0.0 < ahead < FAR:
+            raise EnvOptionError(f"Route(ahead={ahead!r}); it must be above 0 and below {FAR:g} m")
+        self.ahead = float(ahead)
+        self.low, self.high = (-self.ahead, -self.ahead, 0.0), (self.ahead, self.ahead, 3.0 * FAR)
+
+    def prepare(self, session: Surroundings) -> None:
+        """See ``Part``."""
+        if not hasattr(session.task, "plan_routes"):
+            raise EnvOptionError(
+                f'observation "route": task {session.task!r} plans no path; Among, and the ids with it, do: '
+                "CopterForest, CopterRooms, RoverLabyrinth"
+            )
+        self._task = session.task
+        session.task.plan_routes()
+        self._table = np.zeros((session.robot.count, 3))
+
+    def write(self, out: Narrow) -> None:
+        """See ``Part``."""
+        self._task.routes(self.ahead, self._table, 0)
+        out[:] = self._table
+
+    def gather(self, plan: Gathering) -> None:
+        """See ``Part``."""
+        plan.compute(3, lambda table, first: lambda: self._task.routes(self.ahead, table, first))
+
+
 class GoalHeading:
     """Difference between the heading that the task wants and the robot's."""
 
@@ -379,6 +417,7 @@ PARTS: dict[str, Callable[[], Part]] = {
     "last_action": LastAction,
     "goal": lambda: Path(1),
     "path": Path,
+    "route": Route,
     "goal_heading": GoalHeading,
 }
 """By name."""

@@ -100,13 +100,22 @@ MADE: dict[str, Callable[[], Task]] = {
 """By the name of the preset."""
 
 
-RECEIVERS = dict.fromkeys(
-    (
-        "copter-hover", "copter-reach-goal", "rover-reach-goal", "copter-trajectory", "copter-follow", "rover-parking",
-    ), "rtk",
-)  # fmt: skip
+RECEIVERS = {
+    **dict.fromkeys(
+        (
+            "copter-hover",
+            "copter-reach-goal",
+            "rover-reach-goal",
+            "copter-trajectory",
+            "copter-follow",
+            "rover-parking",
+        ),
+        "rtk",
+    ),
+    "copter-rooms": "uwb",
+}
 """Receivers (option ``sensors``) of tasks whose success is finer than what an ordinary GPS tells: 0.4 to 1 m, for
-seconds or on average."""
+seconds or on average; and in a house, where there are no satellites."""
 
 
 def worst_of(task: Any, seconds: float) -> float:

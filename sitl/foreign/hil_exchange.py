@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from ..bridge.hil.controls import OUTPUTS
-from ..bridge.hil.protocol import ARMED, BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDATED
+from ..bridge.hil.protocol import BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDATED
 from ..bridge.hil.sensor import DITHER_BARO, DITHER_MAG, pressure_altitude
 from ..bridge.telemetry.units import uint16
 from ..bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
@@ -21,6 +21,7 @@ from ..bridge.wire.tables import PAYLOAD_MAX
 from ..core.array_kernels import Kernel
 from ..core.border import Actuators, Sensors
 from ..core.kernels import law
+from ..core.mavlink import MavModeFlag
 from ..core.memory import bytes_at, call_unit, ints_at, record_at
 from ..core.records import Floats, Ints, Record, array
 from ..core.system_call import call_system
@@ -243,7 +244,7 @@ def judge(x: HilExchange) -> bool:
     span = x.highest - x.lowest
     for k in range(OUTPUTS):
         actuators.controls[k] = x.lowest + span * given.controls[k]
-    x.is_armed = given.mode & ARMED != 0
+    x.is_armed = given.mode & MavModeFlag.SAFETY_ARMED != 0
     actuators.armed = x.is_armed
     return True
 

@@ -79,14 +79,14 @@ class HilTicks:
         """Take over what has been told so far."""
         x, end = self.exchange, self.end
         x.began_us, x.sequence = end.clock.began_us, end.measurements.sender.sequence
-        x.mag, x.baro, x.altitude = end.measurements.imu.told
+        x.mag, x.baro, x.altitude = end.measurements.imu.sent
         x.truth_every_us, x.truth_due_us = end.truth_due
 
     def keep_state(self) -> None:
         """Hand over what has been told."""
         x, end = self.exchange, self.end
         end.measurements.sender.sequence = int(x.sequence)
-        end.measurements.imu.told = int(x.mag), int(x.baro), float(x.altitude)
+        end.measurements.imu.sent = int(x.mag), int(x.baro), float(x.altitude)
 
     def go_on(self, connection: socket.socket, until_us: int, answers: int) -> bytes:
         """Wait for answers and step, up to a time and to so many answers; gives what came that is for ``end.feed``.

@@ -12,6 +12,7 @@ from collections import deque
 from ..bridge.dialect import message
 from ..bridge.frame import MARK_V1, MARK_V2, Splitter, encode_v2
 from ..client.byte_socket import ByteStream
+from ..core.mavlink import MavParamType
 from ..plants.local import LocalPlant
 from ..plants.physics_server import SimulatedPlant
 from ..vehicle.sim_parameters import PREFIX
@@ -19,7 +20,7 @@ from ..vehicle.sim_parameters import PREFIX
 _SET, _READ, _VALUE = (message(name) for name in ("PARAM_SET", "PARAM_REQUEST_READ", "PARAM_VALUE"))
 _ASKED = {kind.wire_id: kind for kind in (_SET, _READ)}
 _ASKED_V1 = {kind.id: kind for kind in (_SET, _READ)}
-_REAL_32, _NOT_LISTED = 9, 65535
+_NOT_LISTED = 65535
 
 
 class SimParameterPort:
@@ -54,7 +55,7 @@ class SimParameterPort:
                     self._wanted.append((name, value))
             self._sequence = self._sequence + 1 & 0xFF
             payload = _VALUE.payload(
-                param_id=fields.param_id, param_value=value, param_type=_REAL_32, param_count=0,
+                param_id=fields.param_id, param_value=value, param_type=MavParamType.REAL32, param_count=0,
                 param_index=_NOT_LISTED,
             )  # fmt: skip
             out += encode_v2(_VALUE, payload, self._sequence, fields.target_system, 1)

@@ -14,7 +14,9 @@ from pathlib import Path
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from ..autopilot.log_events import LogErrorSubsystem, LogEvent
 from ..core.constants import GRAVITY
+from ..core.mavlink import MavAutopilot, MavLandedState, MavModeFlag, MavState
 from .dataflash.tables import Array, Table, Tables
 from .kind import kind_of_mav_type, logs_of
 from .telemetry_frames import Rows, read
@@ -54,12 +56,6 @@ _OTHERS = (
     "STATUSTEXT",
 )
 _WANTED = frozenset((*SOURCES.values(), *_OTHERS))
-_ARDUPILOT, _NO_AUTOPILOT, _SAFETY_ARMED, _CRITICAL = 3, 8, 128, 5
-"""MAV_AUTOPILOT_ARDUPILOTMEGA, _INVALID; MAV_MODE_FLAG_SAFETY_ARMED; MAV_STATE_CRITICAL"""
-_ON_GROUND, _NOT_KNOWN = 1, 0
-"""MAV_LANDED_STATE"""
-_LANDED, _NOT_LANDED, _RADIO = 18, 28, 5
-"""EV.Id, EV.Id, ERR.Subsys"""
 _UNKNOWN_MV = 65535
 _REBOOT_S = 1.0
 
@@ -110,9 +106,9 @@ class Telemetry(Tables):
                 continue
             for autopilot, kind in dict.fromkeys(zip(rows["autopilot"].tolist(), rows["type"].tolist())):
                 found = kind_of_mav_type(int(kind))
-                if autopilot == _ARDUPILOT and found is not None:
+                if autopilot == MavAutopilot.ARDUPILOTMEGA and found is not None:
                     return system, found
-                if autopilot != _NO_AUTOPILOT:
+                if autopilot != MavAutopilot.INVALID:
                     words = _word("MAV_TYPE", kind), _word("MAV_AUTOPILOT", autopilot)
                     others.append(f"system {system} is a {words[0]} with autopilot {words[1]}")
         what = "; ".join(others) or "it has no HEARTBEAT of an autopilot"
@@ -169,20 +165,20 @@ class Telemetry(Tables):
     def _states(self, raw: dict[str, Rows]) -> None:
         """ARM, ERR of HEARTBEAT; EV of EXTENDED_SYS_STATE: when they changed."""
         rows = raw["HEARTBEAT"]
-        rows = rows.where(rows["autopilot"] == _ARDUPILOT)
-        time, armed = self._times(rows), (rows["base_mode"].astype(int) & _SAFETY_ARMED) > 0
-        fails = armed & (rows["system_status"] == _CRITICAL)
+        rows = rows.where(rows["autopilot"] == MavAutopilot.ARDUPILOTMEGA)
+        time, armed = self._times(rows), (rows["base_mode"].astype(int) & MavModeFlag.SAFETY_ARMED) > 0
+        fails = armed & (rows["system_status"] == MavState.CRITICAL)
         for name, label, values, first in (("ARM", "ArmState", armed, True), ("ERR", "ECode", fails, False)):
             changed = np.diff(values.astype(int), prepend=-1 if first else 0) != 0
             columns = {label: values[changed].astype(float)}
             if name == "ERR":
-                columns["Subsys"] = np.full(int(changed.sum()), float(_RADIO))
+                columns["Subsys"] = np.full(int(changed.sum()), float(LogErrorSubsystem.FAILSAFE_RADIO))
             self._add(name, time[changed], columns)
         if (landed := raw.get("EXTENDED_SYS_STATE")) is not None:
-            landed = landed.where(landed["landed_state"] != _NOT_KNOWN)
-            flies = landed["landed_state"] != _ON_GROUND
+            landed = landed.where(landed["landed_state"] != MavLandedState.UNDEFINED)
+            flies = landed["landed_state"] != MavLandedState.ON_GROUND
             changed = np.diff(flies.astype(int), prepend=0) != 0
-            identifiers = np.where(flies[changed], float(_NOT_LANDED), float(_LANDED))
+            identifiers = np.where(flies[changed], float(LogEvent.NOT_LANDED), float(LogEvent.LAND_COMPLETE))
             self._add("EV", self._times(landed)[changed], {"Id": identifiers})
 
     def _parameters(self, raw: dict[str, Rows]) -> None:

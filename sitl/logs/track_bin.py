@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from ..autopilot.log_events import LogEvent
+from ..core.mavlink import MavSeverity
 from . import firmwares
 from .dataflash.reader import DataFlash, Row
 from .kind import mode_name
@@ -30,8 +32,8 @@ _PRIMARY = {"XKF4": "XKF1", "NKF4": "NKF1"}
 _NAMES = (
     *_PLACES, *_FILTERS, *_PRIMARY, "ATT", "BAT", "CURR", "MODE", "ARM", "EV", "MSG", "ORGN", "CMD", "VER", "PARM",
 )  # fmt: skip
-_ARMED, _DISARMED, _HOME = 10, 11, 1
-_INFO, _FIX_3D = 6, 3
+_HOME = 1
+_FIX_3D = 3
 _REACHED = re.compile(r"Reached (?:command|waypoint) #(\d+)")
 _STARTED = re.compile(r"Mission: (\d+) (\S+)")
 _WHOLE = "bBhHiI"
@@ -115,8 +117,8 @@ class _Reader:
             self._armed(bool(f["ArmState"]))
 
     def _ev(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        if f.get("Id") in (_ARMED, _DISARMED):
-            self._armed(f["Id"] == _ARMED)
+        if f.get("Id") in (LogEvent.ARMED, LogEvent.DISARMED):
+            self._armed(f["Id"] == LogEvent.ARMED)
 
     def _armed(self, state: bool) -> None:
         track = self.track
@@ -145,7 +147,7 @@ class _Reader:
             self._has_name = found != ("", "")
             if self._has_name:
                 self.kinds.insert(0, found)
-        self.track.texts.append((self._time, _INFO, text))
+        self.track.texts.append((self._time, MavSeverity.INFO, text))
         reached, started = _REACHED.match(text), _STARTED.match(text)
         if started is not None:
             if self._takes_off:

@@ -11,16 +11,13 @@ from typing import Any
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from ..core.mavlink import MavAutopilot, MavModeFlag
 from .kind import kind_of_mav_type, mode_name
 from .tlog import LogError, read_steady
 from .track import Track
 from .track_columns import STEP_US, TrackError
 from .track_rows import complete, integrated, place_row
 
-_ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED"""
-_NO_AUTOPILOT = 8
-"""MAV_AUTOPILOT_INVALID"""
 _STEP = STEP_US * 1e-6
 _PIECE = 50
 """Bytes of a STATUSTEXT."""
@@ -66,7 +63,7 @@ class _Reader:
     def take(self, logged_us: int, message: Any) -> None:
         """One message of an autopilot."""
         name = message.get_type()
-        if name == "HEARTBEAT" and message.autopilot != _NO_AUTOPILOT and not self.kind:
+        if name == "HEARTBEAT" and message.autopilot != MavAutopilot.INVALID and not self.kind:
             kind = kind_of_mav_type(message.type)
             if self.system in (None, message.get_srcSystem()):
                 if kind is not None:
@@ -110,7 +107,7 @@ class _Reader:
         self.rows["home"] += [place] if place is not None else []
 
     def _heartbeat(self, t: float, m: Any) -> None:
-        armed, mode = bool(m.base_mode & _ARMED), mode_name(self.kind, m.custom_mode)
+        armed, mode = bool(m.base_mode & MavModeFlag.SAFETY_ARMED), mode_name(self.kind, m.custom_mode)
         track = self.track
         if not track.armed or track.armed[-1][1] != armed:
             track.armed.append((t, armed))

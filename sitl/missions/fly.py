@@ -7,13 +7,14 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from sitl.autopilot.mission.item import COMMANDS, NAV_LAND, NAV_RETURN_TO_LAUNCH, MissionItem, home_item
+from sitl.autopilot.mission.item import COMMANDS, MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.navigation.state import COMPLETE
 from sitl.client import Text
 from sitl.client.session import STEP_US
 from sitl.core.elementary import hypot
 from sitl.core.geodesy import offset_ne
+from sitl.core.mavlink import MavCmd
 from sitl.errors import OptionError
 from sitl.simulation import Simulation
 
@@ -214,7 +215,10 @@ class _Flight:
         """Decide whether the mission was completed."""
         outcome, station = self.outcome, self.station
         crash = next((text for _, _, text in station.texts if "Crash" in text), None)
-        came_down = self._current == self.last and self.items[self.last].command in (NAV_LAND, NAV_RETURN_TO_LAUNCH)
+        came_down = self._current == self.last and self.items[self.last].command in (
+            MavCmd.NAV_LAND,
+            MavCmd.NAV_RETURN_TO_LAUNCH,
+        )
         at = f"at item {self._current} {self.items[self._current].name} of {len(self.items) - 1}"
         if crash is not None:
             outcome.reason = f"{crash} ({at})"

@@ -10,15 +10,15 @@ from typing import cast
 
 from sitl.autopilot.copter.navigation import spline
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.mission import item as commands
 from sitl.autopilot.mission.place import down, point
 from sitl.core.algebra import dot
 from sitl.core.elementary import hypot
+from sitl.core.mavlink import MavCmd
 from sitl.core.sums import separation
 from sitl.core.vectors import Vec3
 from sitl.simulation import Simulation
 
-LEGS = (commands.NAV_WAYPOINT, commands.NAV_LOITER_TIME, commands.NAV_LOITER_UNLIM)
+LEGS = (MavCmd.NAV_WAYPOINT, MavCmd.NAV_LOITER_TIME, MavCmd.NAV_LOITER_UNLIM)
 """Commands flown on a straight line from the end of the command before."""
 PIECES = 32
 """Straight pieces as which a curve is looked at."""
@@ -90,14 +90,14 @@ class PathWatch:
         if item.command in LEGS:
             self._end = self._in_plane(point(ap, item, start))
             self._legs = [*before, (start, self._end)]
-        elif item.command == commands.NAV_SPLINE_WAYPOINT:
+        elif item.command == MavCmd.NAV_SPLINE_WAYPOINT:
             curve = cast("CopterNav", ap.modes.nav).spline
             marks = [spline.place(curve, k / PIECES) for k in range(PIECES + 1)]
             self._end = marks[-1]
             self._legs = [*before, *pairwise(marks)]
-        elif item.command == commands.NAV_TAKEOFF:
+        elif item.command == MavCmd.NAV_TAKEOFF:
             self._end = here.replace(z=down(ap, item))
-        elif item.command == commands.NAV_DELAY:
+        elif item.command == MavCmd.NAV_DELAY:
             self._end = start
             self._legs = [*before, (start, start)]
 

@@ -9,11 +9,10 @@ from typing import NoReturn
 from sitl.autopilot.modes import shown
 from sitl.client import Client, ClientError, CommandRefusedError, InProcess, MissionRefusedError, WaitTimeoutError
 from sitl.client.waits import READY
+from sitl.core.mavlink import MavSeverity
 from sitl.errors import SitlError
 from sitl.simulation import Simulation
 
-_SEVERE = 4
-"""MAV_SEVERITY_WARNING: what is this grave may be a reason."""
 _READY_MESSAGES = ("EKF_STATUS_REPORT", "SYS_STATUS")
 
 
@@ -55,7 +54,7 @@ class Station(Client):
 
     def why(self, since: float = 0.0) -> str:
         """The last two texts since a time [s] that sound like reasons; "" when it said nothing of the kind."""
-        severe = [text for time, severity, text in self.texts if severity <= _SEVERE and time >= since]
+        severe = [text for time, severity, text in self.texts if severity <= MavSeverity.WARNING and time >= since]
         return ": " + "; ".join(severe[-2:]) if severe else ""
 
     def wait_ready(self, timeout: float = 120.0) -> None:

@@ -106,7 +106,7 @@ class Rangers:
         """When to measure next [us since boot]."""
         self.find_due()
 
-    def with_own_room(self) -> tuple[int, Any]:
+    def with_own_workspace(self) -> tuple[int, Any]:
         """(Address of a ``Ranging`` of the same world and sensors with other room to work in, what keeps it alive): for
         vehicles that another thread advances."""
         memory = self._memory.copy()

@@ -166,7 +166,7 @@ class PhysicsServer:
                 wait_s = end.wait_s
                 if wait_s is not None and not select.select([connection], [], [], wait_s)[0]:
                     send(end.go_on())
-                    self._tell()
+                    self._send()
                     continue
                 try:
                     data = receive(READ_BYTES)
@@ -182,7 +182,7 @@ class PhysicsServer:
                 if silence.waits:
                     silence.is_over()
                 if end.notes:
-                    self._tell()
+                    self._send()
                 exchanges += 1
                 if exchanges % LOOK_EXCHANGES == 0:
                     self._refuse_others()
@@ -211,12 +211,12 @@ class PhysicsServer:
                 answer = end.feed(data)
                 if answer:
                     connection.sendall(answer)
-            self._tell()
+            self._send()
             self._refuse_others()
         if not end.freewheels:
             self._say(f"from {self._time()} on every tick waits for the autopilot")
 
-    def _tell(self) -> None:
+    def _send(self) -> None:
         for text in self.end.notes:
             self._say(text)
         self.end.notes.clear()

@@ -19,7 +19,7 @@ from ..vehicle.kind import Kind
 from ..version import __version__
 from ..worlds import World
 
-ROOMS = ("autopilot", "bridge", "core", "physics", "plants", "vehicle", "vehicles")
+PACKAGES = ("autopilot", "bridge", "core", "physics", "plants", "vehicle", "vehicles")
 """Packages whose sources decide what a vehicle does and says, besides ``simulation.py``."""
 _ROOT = Path(__file__).parents[1]
 
@@ -33,11 +33,11 @@ def _digest(parts: list[bytes]) -> str:
 
 @cache
 def sources() -> dict[str, str]:
-    """Room of the program -> digest of its source files."""
+    """Package of the program -> digest of its source files."""
     found = {}
-    for room in ROOMS:
-        files = sorted((_ROOT / room).rglob("*.py"))
-        found[room] = _digest([b for f in files for b in (f.relative_to(_ROOT).as_posix().encode(), f.read_bytes())])
+    for package in PACKAGES:
+        files = sorted((_ROOT / package).rglob("*.py"))
+        found[package] = _digest([b for f in files for b in (f.relative_to(_ROOT).as_posix().encode(), f.read_bytes())])
     found["simulation"] = _digest([(_ROOT / "simulation.py").read_bytes()])
     return found
 
@@ -88,11 +88,11 @@ def differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
 def code_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     """Differences between two versions of the code, in words."""
     found = []
-    rooms = [name for name in now["sources"] if then["sources"].get(name) != now["sources"][name]]
-    if rooms:
-        found.append(f"sources of {', '.join(rooms)}")
+    packages = [name for name in now["sources"] if then["sources"].get(name) != now["sources"][name]]
+    if packages:
+        found.append(f"sources of {', '.join(packages)}")
     if then["compiled core"] != now["compiled core"]:
-        found.append("another compiled core" + ("" if rooms else " (modes or parameters of other packages)"))
+        found.append("another compiled core" + ("" if packages else " (modes or parameters of other packages)"))
     for name in sorted({*then, *now} - {"sources", "compiled core"}):
         if then.get(name) != now.get(name):
             found.append(f"{name} {then.get(name)} then, {now.get(name)} now")

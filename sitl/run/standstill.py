@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..bridge.services.statustext import StatusTextService
+from ..core.mavlink import MavSeverity
 from ..plants.plant import PhysicsLostError
 from ..simulation import Simulation
 
 _WAIT_S = 0.2
 _WAITS_A_HEARTBEAT = 5
-_CRITICAL, _INFO = 2, 6
-"""MAV_SEVERITY"""
 
 
 class Standstill:
@@ -48,12 +47,12 @@ class Patience:
             self._simulation.advance_to(time_us)
         except PhysicsLostError as error:
             if not self._is_lost:
-                self._say(_CRITICAL, str(error))
+                self._say(MavSeverity.CRITICAL, str(error))
             self._is_lost = True
             self._standstill.wait()
             return False
         if self._is_lost and self._simulation.time_us > before:  # a call that only hears clients tells nothing
-            self._say(_INFO, "Physics is back")
+            self._say(MavSeverity.INFO, "Physics is back")
             self._is_lost = False
         return True
 

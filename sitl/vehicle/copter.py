@@ -19,6 +19,7 @@ from ..core.algebra import rotate
 from ..core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER
 from ..core.displacement import Displacement
 from ..core.kernels import inlined, law, unit
+from ..core.mavlink import MavType
 from ..core.memory import record_at
 from ..core.vectors import Vec2, Vec3
 from ..physics.native.copter import pieces
@@ -38,9 +39,13 @@ from .move import DONE, IN_SOLID, NO_HOVER, ORDER_SIZE, MoveOrder, displace, is_
 from .record import Vehicle
 from .traffic import show, take_push
 
-QUADROTOR, HEXAROTOR, OCTOROTOR = 2, 13, 14
-OTHER_MULTIROTORS = (HEXAROTOR, OCTOROTOR, 15, 29, 35)
-"""MAV_TYPE of hexarotor, octorotor, tricopter, dodecarotor, decarotor."""
+OTHER_MULTIROTORS = (
+    MavType.HEXAROTOR,
+    MavType.OCTOROTOR,
+    MavType.TRICOPTER,
+    MavType.DODECAROTOR,
+    MavType.DECAROTOR,
+)
 
 
 class Copter(Vehicle):
@@ -211,7 +216,7 @@ COPTER = Kind(
     apply_sim_parameters=apply_sim_parameters,
     outputs=lambda airframe: range(1, len(airframe.rotors) + 1),
     default_frame="erle_copter",
-    mav_type=QUADROTOR,
+    mav_type=MavType.QUADROTOR,
     other_mav_types=OTHER_MULTIROTORS,
     flies=True,
     has_reversible_outputs=False,
@@ -221,6 +226,11 @@ COPTER = Kind(
     programs={"ardupilot": "arducopter", "px4": "px4"},
     # It arms with a gyro sample each 1 / 1.8 of its loop, and gets one a step: 720 at 400 loops a second.
     ardupilot_parameters={"FRAME_CLASS": 1, "SIM_RATE_HZ": 800},
+    ardupilot_models={
+        "+": "ardupilot_quad", "quad": "ardupilot_quad", "copter": "ardupilot_quad", "x": "ardupilot_x",
+        "hexa": "ardupilot_hexa", "hexax": "ardupilot_hexa_x", "octa": "ardupilot_octa",
+        "octa-quad": "ardupilot_octa_quad", "y6": "ardupilot_y6", "calibration": "calibration_copter",
+    },
     flight_parameters=(
         "WPNAV_", "WP_", "RTL_", "LAND_", "LOIT_", "PILOT_", "TKOFF_", "GUID_", "AUTO_", "MIS_", "CIRCLE_",
     ),

@@ -78,6 +78,8 @@ class Kind:
     """Foreign autopilot -> usual name of its program for this kind."""
     ardupilot_parameters: Mapping[str, float] = field(default_factory=dict)
     """What ArduPilot's own firmware has to be told besides the airframe's parameters."""
+    ardupilot_models: Mapping[str, str] = field(default_factory=dict)
+    """ArduPilot SITL's names of frames (``--model``) -> our airframes; the first is taken when none is given."""
     flight_parameters: tuple[str, ...] = ()
     """Beginnings of the parameters that say how missions and commands are flown: those are taken over from logs. Gains,
     sensors and failsafes are the airframe's."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..autopilot.events import emit
 from ..autopilot.landing_target.measurement import take
 from ..autopilot.landing_target.orientation import axis
-from ..autopilot.landing_target.state import BODY, LANDING_TARGET_DID, SAID_NO_BEACON, TOLD_BEACON
+from ..autopilot.landing_target.state import BODY, LANDING_TARGET_DID, REPORTED_BEACON, SAID_NO_BEACON
 from ..autopilot.params.simulation import LandingBeacon
 from ..core.algebra import dot, norm, rotate_inverse, with_down
 from ..core.geodesy import offset_ne
@@ -54,9 +54,9 @@ def look(v: Vehicle) -> None:
     if p.ENABLE == 0.0 or (kind != WITHOUT_DISTANCE and kind != WITH_DISTANCE):
         return
     if p.LAT == 0.0 and p.LON == 0.0 and p.HEIGHT == 0.0:
-        if (t.told & TOLD_BEACON) == 0:
+        if (t.reported & REPORTED_BEACON) == 0:
             emit(ap.events, v.time_us, LANDING_TARGET_DID, float(SAID_NO_BEACON), 0.0)
-        t.told |= TOLD_BEACON
+        t.reported |= REPORTED_BEACON
         return
     if v.time_us - t.line_us < 1e6 / max(p.RATE, 1.0):
         return

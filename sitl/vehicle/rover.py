@@ -17,6 +17,7 @@ from ..core.constants import TICK_S
 from ..core.displacement import Displacement, speed_along
 from ..core.elementary import tan
 from ..core.kernels import law, unit
+from ..core.mavlink import MavType
 from ..core.memory import record_at
 from ..core.records import Floats
 from ..core.vectors import Vec2
@@ -38,8 +39,6 @@ from .move import DONE, IN_SOLID, ORDER_SIZE, MoveOrder, displace, look_around
 from .record import Vehicle
 from .traffic import show, take_push
 
-GROUND_ROVER, BOAT = 10, 11
-"""MAV_TYPE"""
 SIMULATED_ENCODER = 10
 """WENC_TYPE"""
 DEFAULT_SERVO_SPEED = float(np.float32(0.14))
@@ -186,14 +185,15 @@ ROVER = Kind(
     outputs=lambda airframe: (STEERING_OUTPUT + 1, THROTTLE_OUTPUT + 1),
     idle_parameters=idle_parameters,
     default_frame="erle_rover",
-    mav_type=GROUND_ROVER,
-    other_mav_types=(BOAT,),
+    mav_type=MavType.GROUND_ROVER,
+    other_mav_types=(MavType.SURFACE_BOAT,),
     flies=False,
     has_reversible_outputs=True,
     motor_output=motor_output,
     engines={"pybullet": "sitl.physics.pybullet.rover:BulletRover", "jsbsim": "sitl.physics.jsbsim.rover:make"},
     demo_script="mavsdk_rover.py",
     programs={"ardupilot": "ardurover", "px4": "px4"},
+    ardupilot_models={"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
     flight_parameters=("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
     parts={
         "mavlink": "sitl.bridge.rover.profile:PROFILE",

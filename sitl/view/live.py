@@ -20,6 +20,7 @@ from ..autopilot.modes import shown
 from ..bridge.base_autopilot import BaseAutopilot
 from ..client.commands import command_name
 from ..core.geodesy import offset_ne
+from ..core.mavlink import MavCmd
 from ..core.vectors import Vec3
 from ..simulation import Simulation
 from .frame import Frame, Mark, Plan, Points, Text, Told
@@ -27,8 +28,6 @@ from .record import Array, RecordSource
 
 _CORNERS = 48
 """Of the outline of a circle."""
-_NAV_LAST = 95
-"""MAV_CMD_NAV_LAST: commands from here on are not flown to."""
 _FENCES = ("greatest height", "circle", "areas", "least height")
 _GLITCH = "GPS glitch"
 
@@ -144,7 +143,7 @@ class AutopilotSource(RecordSource):
         if not ap.estimate.origin_set:
             return ()
         for number, item in enumerate(mission.items):
-            if number == 0 or item.command >= _NAV_LAST or (item.no_place and item.z == 0.0):
+            if number == 0 or item.command >= MavCmd.NAV_LAST or (item.no_place and item.z == 0.0):
                 continue
             at = point(ap, item, at)
             name = command_name(item.command).removeprefix("NAV_").replace("_", " ").lower()

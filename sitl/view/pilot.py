@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..client.commands import command_name, command_number, entry_name
-from ..client.controls import CUSTOM_MODE_ENABLED, FORCED, POSITION_ONLY, RELATIVE_INT
+from ..client.controls import POSITION_ONLY
 from ..client.endpoint import Endpoint
 from ..client.parameters import REAL_32
 from ..core.geodesy import add_offset
+from ..core.mavlink import ARM_FORCED, MavFrame, MavModeFlag, MavResult
 from ..errors import OptionError, did_you_mean
 from ..recording.recorder import Recorder
 from ..simulation import Simulation, Snapshot
@@ -24,8 +25,6 @@ SYSTEM, COMPONENT = 254, 190
 """MAVLink ids of the page: a second ground station, so that no link of another one is taken for its own."""
 GUIDED = "GUIDED"
 _REAL_32_MAX = float(np.finfo(np.float32).max)
-IN_PROGRESS = 5
-"""MAV_RESULT"""
 FARTHEST = 100_000.0
 """From the scene's origin to where a vehicle can be sent [m]."""
 _STICKS_US = 100_000
@@ -95,7 +94,7 @@ class Pilot:
         if self._endpoint is None:
             return
         for name, fields in self._endpoint.receive():
-            if name == "COMMAND_ACK" and fields.result not in (0, IN_PROGRESS):
+            if name == "COMMAND_ACK" and fields.result not in (0, MavResult.IN_PROGRESS):
                 result = entry_name("MAV_RESULT", int(fields.result))
                 self._tell(f"{command_name(int(fields.command))}: {result}")
 
@@ -113,14 +112,14 @@ class Pilot:
 
     def disarm(self, force: bool = False) -> None:
         """Disarm; ``force``: even in the air."""
-        self._command("COMPONENT_ARM_DISARM", 0, FORCED if force else 0)
+        self._command("COMPONENT_ARM_DISARM", 0, ARM_FORCED if force else 0)
 
     def set_mode(self, name: str) -> None:
         """Choose a mode by its name."""
         numbers = {mode: number for number, mode in self._simulation.firmware.mode_names.items()}
         if name not in numbers:
             raise OptionError(f"there is no mode {name!r}{did_you_mean(name, numbers)}")
-        self._command("DO_SET_MODE", CUSTOM_MODE_ENABLED, numbers[name])
+        self._command("DO_SET_MODE", MavModeFlag.CUSTOM_MODE_ENABLED, numbers[name])
 
     def take_off(self, height: float) -> None:
         """GUIDED, armed if need be, to a height above home [m].
@@ -149,7 +148,8 @@ class Pilot:
             self.set_mode(GUIDED)
         lat, lon = add_offset(v.physics.place.lat, v.physics.place.lon, north, east)
         self._send(
-            "SET_POSITION_TARGET_GLOBAL_INT", coordinate_frame=RELATIVE_INT, type_mask=POSITION_ONLY,
+            "SET_POSITION_TARGET_GLOBAL_INT", coordinate_frame=MavFrame.GLOBAL_RELATIVE_ALT_INT,
+            type_mask=POSITION_ONLY,
             lat_int=round(lat), lon_int=round(lon), alt=v.autopilot.home.pos.z - v.autopilot.estimate.pos.z,
         )  # fmt: skip
 

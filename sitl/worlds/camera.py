@@ -69,8 +69,8 @@ class Camera(NamedTuple):
     """Depths beyond it read as it [m]."""
 
 
-class Room(NamedTuple):
-    """Room to work in, for n pixels."""
+class Workspace(NamedTuple):
+    """Memory to work in, for n pixels."""
 
     rays: Table
     """(1, u, v): forward, right, down on the camera, shape (3, n): a range along such a ray is a depth."""
@@ -139,12 +139,12 @@ def window_of(rows: Table, j: int, eye: Vec3, q: Quat, camera: Camera) -> Window
 
 
 @law
-def see(solids: Solids, eye: Vec3, q: Quat, camera: Camera, room: Room) -> None:
+def see(solids: Solids, eye: Vec3, q: Quat, camera: Camera, workspace: Workspace) -> None:
     """Cast the rays of a camera at ``eye`` (NED [m]) of attitude ``q`` (camera, forward right down, to NED): fills
-    ``room.depths`` (inf: nothing) and ``room.met``."""
-    turn_rays(q, room.rays, room.directions)
-    norths, easts, downs = room.directions[0], room.directions[1], room.directions[2]
-    depths, met, rows = room.depths, room.met, solids.rows
+    ``workspace.depths`` (inf: nothing) and ``workspace.met``."""
+    turn_rays(q, workspace.rays, workspace.directions)
+    norths, easts, downs = workspace.directions[0], workspace.directions[1], workspace.directions[2]
+    depths, met, rows = workspace.depths, workspace.met, solids.rows
     floor = solids.grid[FLOOR] - eye.z
     for k in range(depths.shape[0]):
         depths[k] = to_floor(floor, downs[k])
@@ -244,7 +244,7 @@ def attitude_of(places: Table, i: int) -> Quat:
 
 
 @law
-def write_depths(solids: Solids, places: Table, camera: Camera, room: Room, out: NarrowLine) -> None:
+def write_depths(solids: Solids, places: Table, camera: Camera, workspace: Workspace, out: NarrowLine) -> None:
     """Depths [m] of many cameras, one picture after another.
 
     Args:
@@ -254,23 +254,25 @@ def write_depths(solids: Solids, places: Table, camera: Camera, room: Room, out:
         room: to work in.
         out: shape (m * height * width,).
     """
-    n = room.depths.shape[0]
+    n = workspace.depths.shape[0]
     for i in range(places.shape[0]):
-        see(solids, eye_of(places, i), attitude_of(places, i), camera, room)
+        see(solids, eye_of(places, i), attitude_of(places, i), camera, workspace)
         for k in range(n):
-            out[i * n + k] = min(room.depths[k], camera.reach)
+            out[i * n + k] = min(workspace.depths[k], camera.reach)
 
 
 @law
-def write_colours(solids: Solids, paint: Paint, places: Table, camera: Camera, room: Room, out: ByteLine) -> None:
+def write_colours(
+    solids: Solids, paint: Paint, places: Table, camera: Camera, workspace: Workspace, out: ByteLine
+) -> None:
     """Colours of many cameras, 0 to 255, one picture after another; arguments as of ``write_depths``, ``out`` of shape
     (m * height * width * 3,): red, green, blue."""
-    n = room.depths.shape[0]
+    n = workspace.depths.shape[0]
     for i in range(places.shape[0]):
         eye = eye_of(places, i)
-        see(solids, eye, attitude_of(places, i), camera, room)
+        see(solids, eye, attitude_of(places, i), camera, workspace)
         for k in range(n):
-            seen = colour_of(solids, paint, eye, ray(room.directions, k), room.depths[k], room.met[k])
+            seen = colour_of(solids, paint, eye, ray(workspace.directions, k), workspace.depths[k], workspace.met[k])
             first = 3 * (i * n + k)
             out[first] = int(255.0 * min(seen.x, 1.0) + 0.5)
             out[first + 1] = int(255.0 * min(seen.y, 1.0) + 0.5)
@@ -303,7 +305,7 @@ class Photographer:
         below = camera.slope * (2.0 * (np.arange(height) + 0.5) - height) / width
         v, u = np.meshgrid(below, across, indexing="ij")
         rays = np.ascontiguousarray(np.stack([np.ones(u.size), u.ravel(), v.ravel()]))
-        self._room = Room(rays, np.empty_like(rays), np.zeros(u.size), np.zeros(u.size, np.int64))
+        self._workspace = Workspace(rays, np.empty_like(rays), np.zeros(u.size), np.zeros(u.size, np.int64))
 
     def in_world(self, world: World) -> Photographer:
         """The same cameras in another world. They share room to work in: one takes pictures after the other."""
@@ -315,14 +317,14 @@ class Photographer:
         """Depths along the camera's axis [m], shape (m, height, width), of cameras at ``places`` (``write_depths``)."""
         out = np.empty((len(places), self.camera.height, self.camera.width), np.float32)
         for some, solids, _ in self._looks(len(places), discs):
-            _depths(solids, places[some], self.camera, self._room, out[some].reshape(-1))
+            _depths(solids, places[some], self.camera, self._workspace, out[some].reshape(-1))
         return out
 
     def colours(self, places: Floats, discs: Floats | None = None) -> npt.NDArray[np.uint8]:
         """Red, green, blue, shape (m, height, width, 3)."""
         out = np.empty((len(places), self.camera.height, self.camera.width, 3), np.uint8)
         for some, solids, paint in self._looks(len(places), discs):
-            _colours(solids, paint, places[some], self.camera, self._room, out[some].reshape(-1))
+            _colours(solids, paint, places[some], self.camera, self._workspace, out[some].reshape(-1))
         return out
 
     def _looks(self, count: int, discs: Floats | None) -> Iterator[tuple[slice, Solids, Paint]]:

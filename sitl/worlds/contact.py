@@ -132,7 +132,7 @@ def nearest_of(solids: Table, count: int, volume: Volume) -> Contact:
 @law
 def gather(solids: Table, place: Vec2, reach: float, rows: Table) -> Listed:
     """Copy the rows of the solids near a place, the nearest first, into ``rows``; see ``near``."""
-    room, count, complete = rows.shape[0], 0, INF
+    capacity, count, complete = rows.shape[0], 0, INF
     for k in range(solids.shape[0]):
         distance = beside(solids, k, place).distance
         if distance > reach:
@@ -141,11 +141,11 @@ def gather(solids: Table, place: Vec2, reach: float, rows: Table) -> Listed:
         row = count
         while row > 0 and beside(rows, row - 1, place).distance > distance:
             row -= 1
-        if count == room:  # the last falls out, or the new one does not get in
-            complete = min(complete, beside(rows, room - 1, place).distance if row < room else distance)
+        if count == capacity:  # the last falls out, or the new one does not get in
+            complete = min(complete, beside(rows, capacity - 1, place).distance if row < capacity else distance)
         else:
             count += 1
-        if row < room:
+        if row < capacity:
             for below in range(count - 1, row, -1):
                 for figure in range(SOLID_FIGURES):
                     rows[below, figure] = rows[below - 1, figure]

@@ -29,7 +29,7 @@ def made(
     """The world, whose name is the text that makes it.
 
     Args:
-        name: of the sort of world.
+        name: of the kind of world.
         figures: seed, difficulty, size [m], scale.
         solids: in it.
         description: a line for people.

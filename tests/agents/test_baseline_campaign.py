@@ -307,6 +307,19 @@ def test_shipping_takes_the_medians_file_and_figures(few, tmp_path, monkeypatch)
     assert work._shipped(job) and path.read_bytes() == b"p"  # it is not trained again
 
 
+def test_a_policy_that_is_not_there_is_trained_and_evaluated_as_a_whole(few, trained, tmp_path):
+    """It may be another one on this machine: results of the one before do not stand beside its own."""
+    found = made(tmp_path, seeds=1, checked=False)
+    fill(found, ["1111"])
+    path = work.policy_file(found.runs, NAME, 0, found.training(found.chosen[0], 0)["key"])
+    make_folder(path.parent)
+    path.write_bytes(b"p")
+    stages = dict(found.stages())
+    assert stages["robustness, seed 0"][0].whats == ("mass-120",)
+    path.unlink()
+    assert dict(found.stages())["robustness, seed 0"][0].whats == ("mass-120", NOMINAL, "estimate")
+
+
 def test_a_training_that_has_not_learnt_is_not_shipped(few, tmp_path, monkeypatch):
     monkeypatch.setattr(shipped, "FILE", tmp_path / "baselines.json")
     found, said = made(tmp_path, seeds=1, checked=False), []
@@ -390,7 +403,7 @@ def test_the_plan_lists_and_makes_nothing(few, tmp_path, capsys):
 
 
 def test_lines_say_how_long_the_rest_takes(few, tmp_path, monkeypatch):
-    monkeypatch.setattr(campaigns, "kept", dict)
+    monkeypatch.setattr(shipped, "kept", dict)
     found, said, now = made(tmp_path, checked=False), [], [0.0]
     monkeypatch.setattr(running.time, "monotonic", lambda: now[0])
     job = dict(found.stages())["training, seed 0"][0]

@@ -9,8 +9,8 @@ import pytest
 
 from sitl.agents.errors import AgentError
 from sitl.agents.experts import AUTOPILOTS
+from sitl.agents.grid_a_star import GridAStar
 from sitl.agents.pilot import Pilot
-from sitl.agents.ways import Ways
 from sitl.envs.actions import VELOCITY, Continuous, Discrete, Normalised
 from sitl.envs.starts import ReachableCells
 from sitl.worlds.contact import distance
@@ -114,10 +114,10 @@ def test_the_pilot_drives_by_lidar_where_there_are_no_places():
 def test_ways_lead_around_solids_with_room_to_spare():
     env = gym.make("sitl/CopterRooms-v0")
     robot = env.unwrapped.robot
-    ways, cells, rng = Ways(robot, 10.0, 0.8), ReachableCells(robot, 0.0), np.random.default_rng(1)
+    ways, cells, rng = GridAStar(robot, 10.0, 0.8), ReachableCells(robot, 0.0), np.random.default_rng(1)
     for _ in range(5):
         here, there = np.array(cells.draw(rng)), np.array(cells.draw(rng))
-        way = ways.way(here, there)
+        way = ways.path(here, there)
         assert np.array_equal(way[0], here) and np.array_equal(way[-1], there)
         assert np.hypot(*np.diff(way, axis=0).T).max() < 0.5, "no jumps"
         assert all(_room(robot, *place) > 0.0 for place in way)

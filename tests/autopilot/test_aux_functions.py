@@ -82,7 +82,7 @@ def test_relays(number: int, relay: int) -> None:
     vehicle.parameters.update({f"RELAY{relay}_FUNCTION": 1.0, f"RELAY{relay}_PIN": 3.0, f"RELAY{relay}_DEFAULT": 0.0})
     b = Bench(vehicle)
     for position, pins in ((HIGH, 8.0), (MIDDLE, 8.0), (LOW, 0.0)):
-        b.bridge.tell(move(vehicle, number, position))
+        b.bridge.report(move(vehicle, number, position))
         assert vehicle.parameters["SIM_PIN_MASK"] == pins
 
 

@@ -17,11 +17,12 @@ from sitl.autopilot import events as own
 from sitl.autopilot.arming_checks import ARMED
 from sitl.autopilot.copter.events import EVENTS as COPTER
 from sitl.autopilot.events import Event, err, ev, register_event, with_registered
-from sitl.autopilot.notes import CRITICAL, INFO, EventNote, Text
+from sitl.autopilot.notes import EventNote, Text
 from sitl.autopilot.rover.events import EVENTS as ROVER
 from sitl.bridge import profile
 from sitl.bridge.dialect import message_by_id
 from sitl.core.fingerprint import _referenced
+from sitl.core.mavlink import MavSeverity
 from sitl.core.places import ExtensionError
 from sitl.logs.dataflash import formats
 from sitl.logs.dataflash.common import EVENT_MESSAGES
@@ -43,7 +44,7 @@ def declared() -> Iterator[tuple[str, str, Event]]:
 def emitted(firmware: str) -> set[Event]:
     """Events that laws of the firmware's core name."""
     core = profile.load(firmware).core
-    waiting: list[Any] = [core.hear, core.tell, core.run]
+    waiting: list[Any] = [core.receive, core.transmit, core.run]
     seen: set[int] = set()
     found: set[Event] = set()
     while waiting:
@@ -113,30 +114,30 @@ def test_ignored_set_points_are_named_as_mavlink_does() -> None:
 
 
 def test_an_event_is_its_code() -> None:
-    lost = Event(40, CRITICAL, "Potential Thrust Loss ({a:.0f})", log=err(25, 1))
+    lost = Event(40, MavSeverity.CRITICAL, "Potential Thrust Loss ({a:.0f})", log=err(25, 1))
     assert lost == 40 and lost + 1 == 41 and repr(lost) == "40" and f"{lost}" == "40"
-    assert lost.notes(None, 3.0, 0.0) == [Text(CRITICAL, "Potential Thrust Loss (3)")]
+    assert lost.notes(None, 3.0, 0.0) == [Text(MavSeverity.CRITICAL, "Potential Thrust Loss (3)")]
     assert lost.rows(None, 3.0, 0.0) == [("ERR", (25, 1))]
     assert Event(4).notes(None, 0.0, 0.0) == [] == Event(4).rows(None, 0.0, 0.0)
 
 
 def test_what_is_said_may_depend_on_the_numbers() -> None:
-    by_number = Event(61, INFO, {0: "found", 1: (CRITICAL, "lost at {b:.1f}")})
+    by_number = Event(61, MavSeverity.INFO, {0: "found", 1: (MavSeverity.CRITICAL, "lost at {b:.1f}")})
     assert [by_number.notes(None, a, 2.5) for a in (0.0, 1.0)] == [
-        [Text(INFO, "found")],
-        [Text(CRITICAL, "lost at 2.5")],
+        [Text(MavSeverity.INFO, "found")],
+        [Text(MavSeverity.CRITICAL, "lost at 2.5")],
     ]
     with pytest.raises(KeyError):
         by_number.notes(None, 2.0, 0.0)
-    counted = Event(5, says=lambda v, a, b: [Text(INFO, v)] * int(a), log=lambda v, a, b: [ev(int(b))])
-    assert counted.notes("again", 2.0, 0.0) == [Text(INFO, "again")] * 2
+    counted = Event(5, says=lambda v, a, b: [Text(MavSeverity.INFO, v)] * int(a), log=lambda v, a, b: [ev(int(b))])
+    assert counted.notes("again", 2.0, 0.0) == [Text(MavSeverity.INFO, "again")] * 2
     assert counted.rows("again", 0.0, 18.0) == [("EV", (18,))]
 
 
 def test_a_firmware_has_its_own_words() -> None:
     assert COPTER[1] == ROVER[1] == ARMED
-    assert COPTER[1].notes(None, 0.0, 0.0) == [Text(INFO, "Arming motors")]
-    assert ROVER[1].notes(None, 0.0, 0.0) == [Text(INFO, "Throttle armed")]
+    assert COPTER[1].notes(None, 0.0, 0.0) == [Text(MavSeverity.INFO, "Arming motors")]
+    assert ROVER[1].notes(None, 0.0, 0.0) == [Text(MavSeverity.INFO, "Throttle armed")]
     assert COPTER[1].log is ROVER[1].log is ARMED.log
 
 

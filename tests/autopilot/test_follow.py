@@ -57,7 +57,7 @@ def test_how_long_a_lead_may_be_silent(p):
     p.TIMEOUT = 1.5
     assert follow.follow(lead, p, HERE, 2_500_000, DT) and not follow.follow(lead, p, HERE, 2_502_500, DT)
     p.TIMEOUT = 0.1
-    lead.pos, lead.vel = lead.told_pos + Vec3(1.0, 0.0, 0.0), lead.told_vel
+    lead.pos, lead.vel = lead.received_pos + Vec3(1.0, 0.0, 0.0), lead.received_vel
     assert follow.is_far(lead, p)
     p.TIMEOUT = 3.0
     assert not follow.is_far(lead, p)

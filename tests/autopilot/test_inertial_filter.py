@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import Pilot
 from sitl.autopilot.inertial_filter import LowPass, filtered
 from sitl.core.vectors import Vec3
-from sitl.missions.pilot import Pilot
 from sitl.simulation import Core, Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 from tests.flights.aviator import ALT_HOLD, Aviator

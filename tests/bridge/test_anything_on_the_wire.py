@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from benchmarks.recorded.pilot import Pilot, items
 from sitl.autopilot.copter.modes.table import is_known as is_copter_mode
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.autopilot.rover.modes.auto import AUTO
@@ -25,7 +26,6 @@ from sitl.bridge.copter.commands import COMMANDS as COPTER_COMMANDS
 from sitl.bridge.rover.commands import COMMANDS as ROVER_COMMANDS
 from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
-from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation, Snapshot
 
 DO_SET_MODE, LAND, ARM_DISARM = 176, 21, 400

@@ -146,7 +146,7 @@ def test_a_mission_is_kept_flown_and_cleared(copter: FirmwareBench) -> None:
                 ))  # fmt: skip
     assert result == 0 and len(copter.vehicle.mission) == 3
     assert copter.command(176, 1, 3) == 0
-    copter.bridge.tell(copter.vehicle.sequencer.attend())
+    copter.bridge.report(copter.vehicle.sequencer.attend())
     copter.bridge.flush()
     assert "Mission: 1 Takeoff" in [m.text for m in client.receive("STATUSTEXT")]
     (ack,) = copter.ask(mavlink.MAVLink_mission_clear_all_message(1, 1), "MISSION_ACK")

@@ -62,7 +62,7 @@ def test_a_mode_change_is_told_by_a_heartbeat_at_once(bench: Bench) -> None:
 
 
 def test_progress_of_a_mission(bench: Bench) -> None:
-    bench.bridge.tell([ItemReached(3), Text(6, "Reached command #3"), CurrentChanged(4)])
+    bench.bridge.report([ItemReached(3), Text(6, "Reached command #3"), CurrentChanged(4)])
     bench.bridge.flush()
     found = bench.client.receive()
     assert [m.get_type() for m in found] == ["MISSION_ITEM_REACHED", "STATUSTEXT", "MISSION_CURRENT"]

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
+from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Euler, Vec3
 from tests.bridge.fakes import Bench, Client, FakeRover
 
 ACCEPTED, DENIED, UNSUPPORTED, FAILED = 0, 2, 3, 4
-CONFIGURE, CONTROL, DISTANCE = c.DO_DIGICAM_CONFIGURE, c.DO_DIGICAM_CONTROL, c.DO_SET_CAM_TRIGG_DIST
-START, STOP = c.IMAGE_START_CAPTURE, c.IMAGE_STOP_CAPTURE
+CONFIGURE, CONTROL, DISTANCE = MavCmd.DO_DIGICAM_CONFIGURE, MavCmd.DO_DIGICAM_CONTROL, MavCmd.DO_SET_CAM_TRIGG_DIST
+START, STOP = MavCmd.IMAGE_START_CAPTURE, MavCmd.IMAGE_STOP_CAPTURE
 REQUEST, SET_INTERVAL, FEEDBACK = 512, 511, 180
 SHOT = (0.0, 0.0, 0.0, 0.0, 1.0)
 

@@ -10,8 +10,8 @@ from collections.abc import Callable
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl.client.endpoint import Endpoint
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.simulation import Core, Simulation
 from tests.bridge.fakes import Bench
 

@@ -13,8 +13,9 @@ import pytest
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services.ftp import FtpService
-from sitl.bridge.services.mission import FENCE, MissionService
+from sitl.bridge.services.mission import MissionService
 from sitl.bridge.services.parameters import ParameterService
+from sitl.core.mavlink import MavMissionType
 from tests.bridge.fakes import Bench
 from tests.bridge.test_parameters import ACK, BURST, NAK, OPEN, READ, fetch, request, unpack
 
@@ -162,11 +163,13 @@ def test_missions_are_read_as_files(bench: Bench) -> None:
         MissionItem(POLYGON, 0, 3.0, 0.0, 0.0, 0.0, lat, 1491652370, 0.0, 1)
         for lat in (-353632620, -353630000, -353620000)
     )
-    bench.bridge.get(MissionService)._replace(FENCE, items)
+    bench.bridge.get(MissionService)._replace(MavMissionType.FENCE, items)
     fence = fetch(bench, b"@MISSION/fence.dat")
-    assert head.unpack_from(fence) == (0x763D, FENCE, 0, 0, 3) and len(fence) == head.size + 3 * 38
+    assert head.unpack_from(fence) == (0x763D, MavMissionType.FENCE, 0, 0, 3) and len(fence) == head.size + 3 * 38
     fields = [struct.unpack_from("<4fiifHHBBBBBB", fence, head.size + 38 * k) for k in range(3)]
-    assert [(f[4], f[7], f[8], f[13]) for f in fields] == [(item.x, k, POLYGON, FENCE) for k, item in enumerate(items)]
+    assert [(f[4], f[7], f[8], f[13]) for f in fields] == [
+        (item.x, k, POLYGON, MavMissionType.FENCE) for k, item in enumerate(items)
+    ]
     assert fetch(bench, b"@MISSION/rally.dat") == head.pack(0x763D, 2, 0, 0, 0)
 
 

@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import HIGH, LOW
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.core.algebra import euler_of
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.core.vectors import Euler, Quat, Vec3
 from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
 
 ACCEPTED, FAILED = 0, 4
-CONFIGURE, CONTROL, PITCH_YAW, GIVE = 204, c.DO_MOUNT_CONTROL, c.DO_GIMBAL_MANAGER_PITCHYAW, 1001
-ROI, NO_ROI, REQUEST = c.DO_SET_ROI_LOCATION, c.DO_SET_ROI_NONE, 512
+CONFIGURE, CONTROL, PITCH_YAW, GIVE = 204, MavCmd.DO_MOUNT_CONTROL, MavCmd.DO_GIMBAL_MANAGER_PITCHYAW, 1001
+ROI, NO_ROI, REQUEST = MavCmd.DO_SET_ROI_LOCATION, MavCmd.DO_SET_ROI_NONE, 512
 RETRACT, NEUTRAL, LEVEL, YAW_LOCK, FROM_NOSE = 1, 2, 12, 16, 32
 NAN = math.nan
 
@@ -140,7 +140,7 @@ def test_a_region_of_interest() -> None:
     b = bench()
     estimate = b.vehicle.v.autopilot.estimate
     estimate.pos, estimate.euler = Vec3(0.0, 0.0, -30.0), Euler(0.0, 0.0, math.radians(45.0))
-    there = MissionItem(ROI, c.RELATIVE_INT, x=HOME[0] + 1797, y=HOME[1], z=10.0)
+    there = MissionItem(ROI, MavFrame.GLOBAL_RELATIVE_ALT_INT, x=HOME[0] + 1797, y=HOME[1], z=10.0)
     b.bridge.carry_out(there)
     b.run(0.1)
     assert told(b)[1] == pytest.approx((0.0, -45.0, -45.0), abs=0.2)

@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.mission.item import FENCE_INCLUSION, FENCE_RETURN_POINT, MissionItem
+from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services.mission import MissionService
+from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import Bench
 
 PLACES = ((1.0, 2.0), (1.1, 2.0), (1.1, 2.2), (1.0, 2.2))
@@ -37,7 +38,9 @@ def test_points_may_come_in_any_order(bench: Bench, order: tuple[int, ...]) -> N
         put(bench, k, 6, *points[k])
         got = fetch(bench, k)
         assert (got.lat, got.lng, got.count) == (*(pytest.approx(x, abs=1e-6) for x in points[k]), 6)
-    assert [item.command for item in fence(bench)] == [FENCE_RETURN_POINT] + 4 * [FENCE_INCLUSION]
+    assert [item.command for item in fence(bench)] == [MavCmd.NAV_FENCE_RETURN_POINT] + 4 * [
+        MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION
+    ]
     assert [(item.x, item.y) for item in fence(bench)][1:] == [
         (pytest.approx(lat * 1e7, abs=2), pytest.approx(lon * 1e7, abs=2)) for lat, lon in PLACES
     ]

@@ -9,13 +9,18 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services.outputs import OutputService
+from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import Bench, FakeRover
 
 ACCEPTED, DENIED, FAILED = 0, 2, 4
-SET_RELAY, REPEAT_RELAY, SET_SERVO, REPEAT_SERVO = c.DO_SET_RELAY, c.DO_REPEAT_RELAY, c.DO_SET_SERVO, c.DO_REPEAT_SERVO
+SET_RELAY, REPEAT_RELAY, SET_SERVO, REPEAT_SERVO = (
+    MavCmd.DO_SET_RELAY,
+    MavCmd.DO_REPEAT_RELAY,
+    MavCmd.DO_SET_SERVO,
+    MavCmd.DO_REPEAT_SERVO,
+)
 
 
 def bench(**params: float) -> Bench:

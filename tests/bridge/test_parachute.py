@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
-from sitl.autopilot.mission import item as c
 from sitl.bridge.services.parachute import ParachuteService
 from sitl.bridge.services.parameters import ParameterService
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.bridge.fakes import FakeRover
 from tests.bridge.test_payload import Fitted, bench, pulse
@@ -46,7 +46,7 @@ def servo(p: Aviator) -> int:
 def test_released_by_command(core: Core) -> None:
     p = packed(core, 20.0)
     assert servo(p) == 1100
-    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     released = p.texts[-1].time
     assert (said(p), turns(p)) == (["Parachute: Released", "Disarming motors"], False)
     pulses = []
@@ -64,24 +64,24 @@ def test_released_by_command(core: Core) -> None:
 
 def test_neither_on_the_ground_nor_low(core: Core) -> None:
     p = Aviator(core, "ardupilot_quad", **CHUTE).ready()
-    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     p.arm()
-    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     assert said(p) == ["Parachute: Landed", "Parachute: Landed"]
     p.take_off(5.0)
-    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     assert turns(p) and said(p)[2:] == ["Parachute: Too low"]
 
 
 def test_enabled_and_disabled(core: Core) -> None:
     p = packed(core, 15.0)
-    assert p.ask(c.DO_PARACHUTE, DISABLE) == ACCEPTED
-    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, DISABLE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     assert (turns(p), p.simulation.parameters["CHUTE_ENABLED"]) == (True, 0.0)
-    assert p.ask(c.DO_PARACHUTE, 7) == FAILED
-    assert p.ask(c.DO_PARACHUTE, ENABLE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, 7) == FAILED
+    assert p.ask(MavCmd.DO_PARACHUTE, ENABLE) == ACCEPTED
     assert p.simulation.parameters["CHUTE_ENABLED"] == 1.0
-    assert p.ask(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert p.ask(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     assert not turns(p)
 
 
@@ -116,8 +116,8 @@ def test_sinking_too_fast_releases_it_after_a_second(core: Core) -> None:
 
 def test_a_mission_releases_it(core: Core) -> None:
     p = Aviator(core, "ardupilot_quad", **CHUTE).ready()
-    way = Item(c.NAV_WAYPOINT, (20.0, 0.0), 15.0)
-    p.start_mission(Item(c.NAV_TAKEOFF, None, 15.0), Item(c.DO_PARACHUTE, p=(2.0,)), way)
+    way = Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 15.0)
+    p.start_mission(Item(MavCmd.NAV_TAKEOFF, None, 15.0), Item(MavCmd.DO_PARACHUTE, p=(2.0,)), way)
     p.wait_disarmed(40.0)
     assert p.said("Mission: 2 Parachute") and "Parachute: Released" in said(p)
 
@@ -195,7 +195,7 @@ def test_relay_held_open_with_the_motors_on() -> None:
         CHUTE_ENABLED=1.0, CHUTE_TYPE=0.0, CHUTE_OPTIONS=3.0, CHUTE_DELAY_MS=1000.0, RELAY1_FUNCTION=1.0, RELAY1_PIN=9.0
     )
     answers = flying(b)
-    assert b.command(c.DO_PARACHUTE, RELEASE) == ACCEPTED
+    assert b.command(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED
     assert answers["released"] == [False]
     state = b.bridge.get(ParachuteService).snapshot()
     b.run(30.0)
@@ -206,5 +206,5 @@ def test_relay_held_open_with_the_motors_on() -> None:
 
 def test_a_rover_has_none() -> None:
     b = bench(FakeRover())
-    assert b.command(c.DO_PARACHUTE, RELEASE) == UNSUPPORTED
+    assert b.command(MavCmd.DO_PARACHUTE, RELEASE) == UNSUPPORTED
     assert pulse(b) is None

@@ -9,13 +9,13 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
+from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3
 from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
 
 ACCEPTED, UNSUPPORTED, FAILED = 0, 3, 4
-GRIPPER, SPRAYER, WINCH, REQUEST = c.DO_GRIPPER, c.DO_SPRAYER, c.DO_WINCH, 512
+GRIPPER, SPRAYER, WINCH, REQUEST = MavCmd.DO_GRIPPER, MavCmd.DO_SPRAYER, MavCmd.DO_WINCH, 512
 
 
 class Fitted(Bench):

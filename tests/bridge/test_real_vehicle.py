@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot, items
 from sitl.client.endpoint import Endpoint
-from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Core, Simulation
 
 DO_SET_MODE = 176

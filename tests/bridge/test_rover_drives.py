@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot, items
 from sitl.client.endpoint import Endpoint
-from sitl.missions.pilot import Pilot, items
 from sitl.simulation import Simulation
 
 DO_SET_MODE = 176

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from sitl.autopilot.mission.item import NAV_WAYPOINT, MissionItem, home_item
+from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.terrain.grid import PARTS, around, block_of
 from sitl.bridge.dialect import message
 from sitl.bridge.services.terrain import TerrainService
+from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import HOME, Bench, FakeRover, mavlink
 
 REPORT, INTERVAL = message("TERRAIN_REPORT").id, 511
@@ -100,8 +101,8 @@ def test_the_way_of_the_mission_is_asked_for() -> None:
     far = HOME[0] + 900_000, HOME[1]  # 10 km
     bench.autopilot.items = (
         home_item(HOME[0], HOME[1], 0.0),
-        MissionItem(NAV_WAYPOINT, x=HOME[0], y=HOME[1], z=10.0),
-        MissionItem(NAV_WAYPOINT, x=far[0], y=far[1], z=10.0),
+        MissionItem(MavCmd.NAV_WAYPOINT, x=HOME[0], y=HOME[1], z=10.0),
+        MissionItem(MavCmd.NAV_WAYPOINT, x=far[0], y=far[1], z=10.0),
     )
     blocks = {(m.lat, m.lon) for m in bench.requests(40.0)}
     assert {block_of(HOME[0] + k * 100_000, HOME[1], 100.0) for k in range(10)} <= blocks

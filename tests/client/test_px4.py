@@ -9,6 +9,7 @@ from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.bridge.dialect import message
 from sitl.client import px4
 from sitl.client.telemetry import Telemetry
+from sitl.core.mavlink import MavAutopilot
 from sitl.errors import OptionError
 
 HEARTBEAT, VALUE, REACHED = (message(name) for name in ("HEARTBEAT", "PARAM_VALUE", "MISSION_ITEM_REACHED"))
@@ -53,7 +54,7 @@ def test_a_mission_has_no_home_and_every_place_is_given():
 
 
 def test_its_items_are_counted_as_uploaded_and_told_once():
-    for autopilot, expected in ((3, [0, 0, 1]), (px4.AUTOPILOT, [1, 2])):
+    for autopilot, expected in ((3, [0, 0, 1]), (MavAutopilot.PX4, [1, 2])):
         telemetry = Telemetry()
         telemetry.take(0.0, "HEARTBEAT", fields(HEARTBEAT, autopilot=autopilot, type=2))
         for seq in (0, 0, 1):
@@ -64,7 +65,7 @@ def test_its_items_are_counted_as_uploaded_and_told_once():
 def test_its_estimate_says_when_its_position_is_good():
     status = message("ESTIMATOR_STATUS")
     telemetry = Telemetry()
-    telemetry.take(0.0, "HEARTBEAT", fields(HEARTBEAT, autopilot=px4.AUTOPILOT, type=2))
+    telemetry.take(0.0, "HEARTBEAT", fields(HEARTBEAT, autopilot=MavAutopilot.PX4, type=2))
     telemetry.take(0.0, "ESTIMATOR_STATUS", fields(status, flags=px4.VALID & ~16))
     assert not telemetry.has_position
     telemetry.take(0.0, "ESTIMATOR_STATUS", fields(status, flags=px4.VALID | 8))

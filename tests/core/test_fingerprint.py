@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,20 @@ def test_the_numbers_of_a_table_count() -> None:
         return Reached(constant_table(*numbers)).lines
 
     assert looks_up(1.0, 2.0) == looks_up(1.0, 2.0) != looks_up(1.0, 2.5)
+
+
+def test_the_numbers_of_choices_count_where_they_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def looks_up(**numbers: int) -> list[str]:
+        monkeypatch.setitem(globals(), "Choice", IntEnum("Choice", numbers))
+        return Reached(_is_on).lines
+
+    assert looks_up(ON=1, OFF=0) == looks_up(ON=1, OFF=2) != looks_up(ON=3, OFF=0)
+    monkeypatch.setitem(globals(), "Choice", IntEnum("Other", {"ON": 1}).ON)
+    assert "Choice = 1" in Reached(_is_on).lines, "a member by itself, without the name that Python gives it"
+
+
+def _is_on(number: int) -> bool:
+    return number == Choice.ON  # type: ignore[name-defined]  # noqa: F821  the test puts it there
 
 
 def test_every_kernel_has_one_fingerprint_in_all_processes() -> None:

@@ -52,8 +52,8 @@ SLOW = (
     "autopilot.copter.modes.update.update",
     "autopilot.estimation.update.step",
     "autopilot.rover.modes.update.update",
-    "bridge.copter.core.hear",
-    "bridge.copter.core.tell",
+    "bridge.copter.core.receive",
+    "bridge.copter.core.transmit",
     "physics.native.rover.step.step",
     "vehicle.copter.move",
 )

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from sitl.autopilot.mission import item as c
 from sitl.client import Moment
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
 
@@ -165,7 +165,7 @@ def drive_along(core: Core, frame: str, places: list[tuple[float, float]], estim
     """What a mission through these places drove."""
     d = Driver(core, frame, estimator=estimator).armed_in()
     start = d.now
-    d.start_mission(*(Item(c.NAV_WAYPOINT, place) for place in places))
+    d.start_mission(*(Item(MavCmd.NAV_WAYPOINT, place) for place in places))
     d.finish_mission(60.0 + 3.0 * sum(map(math.dist, places, places[1:])) / d.cruise)
     d.wait_until_it_stands()
     return d.since(start)

@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
-from sitl.missions.pilot import ARM
+from benchmarks.recorded.pilot import ARM
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.drives.rover_driver import (
     ACRO,
@@ -101,7 +101,7 @@ def test_throttle_below_the_failsafe_pulse(core: Core, choice: int, mode: int) -
 def test_missions_go_on_without_radio_when_told(core: Core, options: int, mode: int) -> None:
     """FS_THR_ENABLE 2."""
     d = Driver(core, "erle_rover", FS_THR_ENABLE=options).armed_in()
-    d.start_mission(Item(c.NAV_LOITER_UNLIM, (30.0, 0.0)))
+    d.start_mission(Item(MavCmd.NAV_LOITER_UNLIM, (30.0, 0.0)))
     d.fly(5.0)
     d.set_parameter("SIM_RC_FAIL", 1)
     d.fly(4.0)

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.simulation import Core
 from tests.drives.rover_driver import GUIDED, HOLD, LOITER, POSITION, RTL, SMART_RTL, Driver, Item
 
@@ -51,7 +51,9 @@ def test_what_follows_a_breach_of_the_circle(core: Core, action: int, mode: int,
 def test_it_comes_home_from_a_polygon(core: Core) -> None:
     p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, FENCE_ENABLE=1).ready()
     corners = [p.location_of(*corner) for corner in ((-20.0, -20.0), (-20.0, 20.0), (25.0, 20.0), (25.0, -20.0))]
-    p.upload_fence([MissionItem(c.FENCE_INCLUSION, c.GLOBAL, 4, x=x, y=y) for x, y in corners])
+    p.upload_fence(
+        [MissionItem(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, MavFrame.GLOBAL, 4, x=x, y=y) for x, y in corners]
+    )
     p.arm(0.2)
     assert drive_north(p) == pytest.approx(25.3, abs=0.7)
     assert p.mode == RTL and p.fly(40.0, lambda: np.hypot(*p.place) < 3.0)
@@ -68,8 +70,8 @@ def test_a_hundred_metres_beyond_it_holds(core: Core) -> None:
 
 def test_a_mission_switches_fences(core: Core) -> None:
     p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0).armed_in(GUIDED)
-    first, last = (Item(c.NAV_WAYPOINT, (north, 0.0)) for north in (10.0, 20.0))
-    p.start_mission(Item(c.DO_FENCE_ENABLE, p=(1.0,)), first, Item(c.DO_FENCE_ENABLE), last)
+    first, last = (Item(MavCmd.NAV_WAYPOINT, (north, 0.0)) for north in (10.0, 20.0))
+    p.start_mission(Item(MavCmd.DO_FENCE_ENABLE, p=(1.0,)), first, Item(MavCmd.DO_FENCE_ENABLE), last)
     assert p.said("Circle and Polygon fences enabled") and p.ap.fence.on == CIRCLE | AREAS
     p.finish_mission(30.0)
     assert p.said("Circle and Polygon fences disabled") and p.ap.fence.on == 0
@@ -78,7 +80,7 @@ def test_a_mission_switches_fences(core: Core) -> None:
 def test_rtl_goes_to_the_rally_point(core: Core) -> None:
     p = Driver(core, "ardupilot_rover", AVOID_ENABLE=0, RALLY_INCL_HOME=0).ready()
     x, y = p.location_of(10.0, 20.0)
-    p.upload_rally_points([MissionItem(c.RALLY_POINT, c.RELATIVE, x=x, y=y)])
+    p.upload_rally_points([MissionItem(MavCmd.NAV_RALLY_POINT, MavFrame.GLOBAL_RELATIVE_ALT, x=x, y=y)])
     p.arm(0.2)
     assert p.set_mode(RTL)
     assert p.fly(40.0, lambda: p.said("Reached destination"))

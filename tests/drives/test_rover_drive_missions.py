@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
 from sitl.core.geodesy import METRES_PER_DEGE7
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.drives import rover_driver as rover
 from tests.drives.rover_driver import Driver, outside, path_error, square
@@ -27,7 +27,7 @@ def corners(frame: str) -> list[tuple[float, float]]:
 
 
 def way(*places: tuple[float, float]) -> list[Item]:
-    return [Item(c.NAV_WAYPOINT, place) for place in places]
+    return [Item(MavCmd.NAV_WAYPOINT, place) for place in places]
 
 
 def driver(core: Core, frame: str, **params: float) -> Driver:
@@ -97,7 +97,7 @@ def test_backwards(core: Core, frame: str) -> None:
     side = rover.SIDE[frame]
     d = driver(core, frame)
     start = d.now
-    d.start_mission(Item(c.DO_SET_REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
+    d.start_mission(Item(MavCmd.DO_SET_REVERSE, None, 0.0, (1,)), *way((-side, 0.0), (-side, side)))
     d.finish_mission(100.0 + 4.0 * side / d.cruise)
     d.wait_until_it_stands()
     rows = d.since(start)
@@ -115,7 +115,7 @@ def test_backwards(core: Core, frame: str) -> None:
 def test_delay_at_a_waypoint(core: Core, frame: str) -> None:
     side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(c.NAV_WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
+    d.start_mission(Item(MavCmd.NAV_WAYPOINT, (side, 0.0), 0.0, (5.0,)), *way((2.0 * side, 0.0)))
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Reached waypoint #1. Loiter for 5 seconds"))
     d.fly(4.9)
     assert abs(d.speed) < 0.05 and d.said("Mission: 1") and not d.said("Mission: 2")
@@ -129,8 +129,9 @@ def test_stays(core: Core, frame: str) -> None:
     """NAV_DELAY, LOITER_TIME, then LOITER_UNLIMITED for good."""
     side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(c.NAV_DELAY, None, 0.0, (4.0, -1, -1, -1)), Item(c.NAV_LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
-                    Item(c.NAV_LOITER_UNLIM, (side, side)), *way((0.0, 0.0)))  # fmt: skip
+    d.start_mission(Item(MavCmd.NAV_DELAY, None, 0.0, (4.0, -1, -1, -1)),
+                    Item(MavCmd.NAV_LOITER_TIME, (side, 0.0), 0.0, (6.0,)),
+                    Item(MavCmd.NAV_LOITER_UNLIM, (side, side)), *way((0.0, 0.0)))  # fmt: skip
     d.fly(3.8)
     assert d.stands() and np.hypot(*d.place) < 0.01
     assert d.fly(60.0 + 3.0 * side / d.cruise, lambda: d.said("Finished active loiter"))
@@ -145,7 +146,7 @@ def test_turns(core: Core, frame: str, side: float) -> None:
     """LOITER_TURNS: a negative radius goes anticlockwise."""
     radius = 0.25 * rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(Item(c.NAV_LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
+    d.start_mission(Item(MavCmd.NAV_LOITER_TURNS, (0.0, 2.0 * radius), 0.0, (2.0, 0.0, side * radius)))
     assert d.fly(60.0 + 30.0 * radius / d.cruise, lambda: d.said("Mission Complete"))
     rows = d.since(d.now - 2.0 * math.pi * radius / d.cruise)
     distance = np.hypot(rows[:, 1], rows[:, 2] - 2.0 * radius)
@@ -159,9 +160,10 @@ def test_speed_and_conditions(core: Core, frame: str) -> None:
     side = rover.SIDE[frame]
     d = driver(core, frame)
     d.start_mission(
-        *way((side, 0.0)), Item(c.CONDITION_DELAY, None, 0.0, (6.0,)),
-        Item(c.DO_CHANGE_SPEED, None, 0.0, (1, 0.5 * d.cruise)), Item(c.CONDITION_DISTANCE, None, 0.0, (0.4 * side,)),
-        Item(c.DO_CHANGE_SPEED, None, 0.0, (1, d.cruise)), *way((3.0 * side, 0.0)),
+        *way((side, 0.0)), Item(MavCmd.CONDITION_DELAY, None, 0.0, (6.0,)),
+        Item(MavCmd.DO_CHANGE_SPEED, None, 0.0, (1, 0.5 * d.cruise)),
+        Item(MavCmd.CONDITION_DISTANCE, None, 0.0, (0.4 * side,)),
+        Item(MavCmd.DO_CHANGE_SPEED, None, 0.0, (1, d.cruise)), *way((3.0 * side, 0.0)),
     )  # fmt: skip
     d.finish_mission(100.0 + 8.0 * side / d.cruise)
     assert d.reached_at(3) - d.reached_at(1) == pytest.approx(6.0, abs=0.3)
@@ -180,7 +182,7 @@ def test_jump(core: Core, frame: str) -> None:
     """Twice back to the first of two places."""
     side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(*way((side, 0.0), (side, side)), Item(c.DO_JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
+    d.start_mission(*way((side, 0.0), (side, side)), Item(MavCmd.DO_JUMP, None, 0.0, (1, 2)), *way((0.0, 0.0)))
     d.finish_mission(200.0 + 16.0 * side / d.cruise)
     assert list(d.reached) == [1, 2, 1, 2, 1, 2, 4]
 
@@ -189,7 +191,7 @@ def test_jump(core: Core, frame: str) -> None:
 def test_heading_and_speed_item(core: Core, frame: str) -> None:
     """NAV_SET_YAW_SPEED turns while it drives, and is done at the heading."""
     d = driver(core, frame)
-    d.start_mission(Item(c.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.6 * d.cruise, 0.0)))
+    d.start_mission(Item(MavCmd.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.6 * d.cruise, 0.0)))
     d.finish_mission(60.0)
     d.wait_until_it_stands()
     assert d.heading == pytest.approx(90.0, abs=12.0)
@@ -198,7 +200,7 @@ def test_heading_and_speed_item(core: Core, frame: str) -> None:
 @ALL
 def test_return_item(core: Core, frame: str) -> None:
     d = driver(core, frame)
-    d.start_mission(*way((rover.SIDE[frame], 0.0)), Item(c.NAV_RETURN_TO_LAUNCH))
+    d.start_mission(*way((rover.SIDE[frame], 0.0)), Item(MavCmd.NAV_RETURN_TO_LAUNCH))
     d.finish_mission(100.0 + 4.0 * rover.SIDE[frame] / d.cruise)
     d.wait_until_it_stands()
     home = np.array(d.ap.home.pos)[:2]
@@ -210,8 +212,8 @@ def test_guided_within_a_mission(core: Core, frame: str) -> None:
     """GUIDED_ENABLE takes set-points until DO_GUIDED_LIMITS ends it; then the mission goes on."""
     side = rover.SIDE[frame]
     d = driver(core, frame)
-    d.start_mission(*way((side, 0.0)), Item(c.DO_GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
-                    Item(c.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
+    d.start_mission(*way((side, 0.0)), Item(MavCmd.DO_GUIDED_LIMITS, None, 0.0, (8.0, 0, 0, 0)),
+                    Item(MavCmd.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), *way((side, side)))  # fmt: skip
     assert d.fly(60.0 + 2.0 * side / d.cruise, lambda: d.said("Mission: 3"))
     start = d.now
     while not d.said("Mission: 4"):
@@ -251,9 +253,9 @@ def test_a_mission_goes_on_where_it_was_left(core: Core) -> None:
 
 def test_what_only_copters_fly_is_taken_and_passed_over(core: Core) -> None:
     d = driver(core, "erle_rover")
-    assert d.upload(Item(c.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) == 0
-    assert d.upload(*way((10.0, 0.0)), Item(c.NAV_LAND)) == 0
-    assert d.upload(Item(c.DO_SET_ROI_LOCATION, (5.0, 5.0)), *way((10.0, 0.0))) == 0
+    assert d.upload(Item(MavCmd.NAV_TAKEOFF, None, 10.0), *way((10.0, 0.0))) == 0
+    assert d.upload(*way((10.0, 0.0)), Item(MavCmd.NAV_LAND)) == 0
+    assert d.upload(Item(MavCmd.DO_SET_ROI_LOCATION, (5.0, 5.0)), *way((10.0, 0.0))) == 0
     assert d.mode == rover.GUIDED
 
 
@@ -273,9 +275,10 @@ def test_servo_outputs_and_relays(core: Core) -> None:
     d = driver(core, "ardupilot_rover", RELAY1_PIN=1.0)
     actuators, values = d.simulation.v.actuators, d.simulation.parameters
     d.start_mission(
-        Item(c.DO_SET_SERVO, None, 0.0, (9.0, 1600.0)), Item(c.DO_SET_RELAY, None, 0.0, (0.0, 1.0)), *way((5.0, 0.0)),
-        Item(c.DO_REPEAT_SERVO, None, 0.0, (10.0, 1900.0, 3.0, 1.0)), Item(c.NAV_DELAY, None, 0.0, (3.0,)),
-        Item(c.DO_REPEAT_RELAY, None, 0.0, (0.0, 2.0, 1.0)), Item(c.NAV_DELAY, None, 0.0, (3.0,)),
+        Item(MavCmd.DO_SET_SERVO, None, 0.0, (9.0, 1600.0)), Item(MavCmd.DO_SET_RELAY, None, 0.0, (0.0, 1.0)),
+        *way((5.0, 0.0)),
+        Item(MavCmd.DO_REPEAT_SERVO, None, 0.0, (10.0, 1900.0, 3.0, 1.0)), Item(MavCmd.NAV_DELAY, None, 0.0, (3.0,)),
+        Item(MavCmd.DO_REPEAT_RELAY, None, 0.0, (0.0, 2.0, 1.0)), Item(MavCmd.NAV_DELAY, None, 0.0, (3.0,)),
     )  # fmt: skip
     d.fly(1.0)
     assert (actuators.pwm[8], values["SIM_PIN_MASK"]) == (1600, 2.0)
@@ -299,9 +302,10 @@ def test_pictures_on_the_way(core: Core, frame: str) -> None:
     pwm, pulses = d.simulation.v.actuators.pwm, set()
     with d.messages("CAMERA_FEEDBACK") as pictures:
         d.start_mission(
-            *way((4.0, 0.0)), Item(c.DO_SET_CAM_TRIGG_DIST, None, 0.0, (2.0,)), *way((24.0, 0.0)),
-            Item(c.DO_SET_CAM_TRIGG_DIST, None, 0.0, (5.0,)), *way((49.0, 0.0)),
-            Item(c.DO_SET_CAM_TRIGG_DIST, None, 0.0, (0.0,)), Item(c.IMAGE_START_CAPTURE, None, 0.0, (0.0, 0.0, 1.0)),
+            *way((4.0, 0.0)), Item(MavCmd.DO_SET_CAM_TRIGG_DIST, None, 0.0, (2.0,)), *way((24.0, 0.0)),
+            Item(MavCmd.DO_SET_CAM_TRIGG_DIST, None, 0.0, (5.0,)), *way((49.0, 0.0)),
+            Item(MavCmd.DO_SET_CAM_TRIGG_DIST, None, 0.0, (0.0,)),
+            Item(MavCmd.IMAGE_START_CAPTURE, None, 0.0, (0.0, 0.0, 1.0)),
             *way((54.0, 0.0)),
         )  # fmt: skip
         while d.now < 300.0 and not d.said("Mission Complete"):

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from sitl.autopilot.mission import item as c
 from sitl.core import records
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.drives import rover_driver as rover
 from tests.drives.rover_driver import Driver
@@ -78,7 +78,9 @@ def motor_test(d: Driver) -> None:
 
 
 def corner(d: Driver) -> None:
-    d.start_mission(Item(c.NAV_WAYPOINT, (6.0 * d.cruise, 0.0)), Item(c.NAV_WAYPOINT, (6.0 * d.cruise, 6.0 * d.cruise)))
+    d.start_mission(
+        Item(MavCmd.NAV_WAYPOINT, (6.0 * d.cruise, 0.0)), Item(MavCmd.NAV_WAYPOINT, (6.0 * d.cruise, 6.0 * d.cruise))
+    )
     assert d.fly(40.0, lambda: d.said("Mission: 2"))
     d.fly(0.5)
 
@@ -99,12 +101,12 @@ PHASES: dict[str, Callable[[Driver], None]] = {
     "guided, timed out": timed_out,
     "guided, backwards": backwards,
     "auto, corner": corner,
-    "auto, circling": mission(Item(c.NAV_LOITER_TURNS, (0.0, 0.0), 0.0, (3.0, 0.0, 5.0)), seconds=8.0),
+    "auto, circling": mission(Item(MavCmd.NAV_LOITER_TURNS, (0.0, 0.0), 0.0, (3.0, 0.0, 5.0)), seconds=8.0),
     "auto, backwards": mission(
-        Item(c.DO_SET_REVERSE, None, 0.0, (1,)), Item(c.NAV_WAYPOINT, (-20.0, 5.0)), seconds=6.0
+        Item(MavCmd.DO_SET_REVERSE, None, 0.0, (1,)), Item(MavCmd.NAV_WAYPOINT, (-20.0, 5.0)), seconds=6.0
     ),
-    "auto, heading": mission(Item(c.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.2, 0.0)), seconds=1.0),
-    "auto, delay": mission(Item(c.NAV_DELAY, None, 0.0, (9.0, -1, -1, -1)), seconds=1.0),
+    "auto, heading": mission(Item(MavCmd.NAV_SET_YAW_SPEED, None, 0.0, (90.0, 0.2, 0.0)), seconds=1.0),
+    "auto, delay": mission(Item(MavCmd.NAV_DELAY, None, 0.0, (9.0, -1, -1, -1)), seconds=1.0),
     "without gps": without_gps,
     "motor test": motor_test,
 }

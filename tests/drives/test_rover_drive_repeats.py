@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core, load_core
 from sitl.vehicle.kinds import KINDS
 from tests.drives import rover_driver as rover
@@ -29,7 +29,7 @@ def act(d: Driver) -> bytes:
         d.sticks(3.0, steering=1400 + 50 * k, throttle=1600)
         d.let_go()
         d.set_mode(rover.GUIDED)
-    d.start_mission(Item(c.NAV_WAYPOINT, (side, 0.0)), Item(c.NAV_WAYPOINT, (side, side)))
+    d.start_mission(Item(MavCmd.NAV_WAYPOINT, (side, 0.0)), Item(MavCmd.NAV_WAYPOINT, (side, side)))
     d.fly(20.0)
     return repr((d.rows, d.texts, d.acks)).encode() + d.simulation.fleet.tobytes()
 
@@ -57,7 +57,9 @@ def test_in_another_process() -> None:
 def test_from_a_snapshot(core: Core, frame: str) -> None:
     """Restored, the vehicle and its telemetry go on as if nothing had been in between."""
     d = Driver(core, frame, seed=5).armed_in()
-    d.start_mission(Item(c.NAV_WAYPOINT, (10.0 * d.cruise, 0.0)), Item(c.NAV_WAYPOINT, (0.0, 10.0 * d.cruise)))
+    d.start_mission(
+        Item(MavCmd.NAV_WAYPOINT, (10.0 * d.cruise, 0.0)), Item(MavCmd.NAV_WAYPOINT, (0.0, 10.0 * d.cruise))
+    )
     d.fly(8.0)
     snapshot = d.simulation.snapshot()
     record, mission = d.simulation.fleet.tobytes(), d.simulation.mission
@@ -102,7 +104,7 @@ NO_RADIO = {"SIM_RC_FAIL": 1.0, "FS_THR_ENABLE": 0.0}
 
 def test_a_stored_mission_may_start_with_the_vehicle(core: Core) -> None:
     d = Driver(core, "ardupilot_rover", **NO_RADIO).ready()
-    assert d.upload(Item(c.NAV_WAYPOINT, (10.0, 0.0)), Item(c.NAV_WAYPOINT, (10.0, 10.0))) == 0
+    assert d.upload(Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0)), Item(MavCmd.NAV_WAYPOINT, (10.0, 10.0))) == 0
     d.set_parameter("INITIAL_MODE", rover.AUTO)
     d.simulation.request_reboot()
     d.simulation.advance(5.0)

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
-from sitl.missions.pilot import ARM
+from benchmarks.recorded.pilot import ARM
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.drives.rover_driver import AIRFRAMES, AUTO, GUIDED, HOLD, MODES, VELOCITY, Driver
 from tests.pilots.witness import ByDice, Item
@@ -141,8 +141,8 @@ class RoverSoak(ByDice, Driver):
     def command(self) -> None:
         d, v = self.dice, self.cruise
         number, params = d.choice(
-            ((c.DO_CHANGE_SPEED, (d.choice((0, 1, 2)), d.uniform(-0.5, 2.0 * v))),
-             (c.DO_SET_REVERSE, (d.choice((0, 1)),)),
+            ((MavCmd.DO_CHANGE_SPEED, (d.choice((0, 1, 2)), d.uniform(-0.5, 2.0 * v))),
+             (MavCmd.DO_SET_REVERSE, (d.choice((0, 1)),)),
              (ARM, (d.choice((0, 1, 1)),)),
              (MISSION_CURRENT, (d.randint(0, 5),)),
              (MOTOR_TEST, (d.randint(0, 5), 0, d.uniform(-20, 20), d.uniform(0, 2))),
@@ -153,7 +153,7 @@ class RoverSoak(ByDice, Driver):
         self.send_command(number, *params)
 
     def load_mission(self) -> None:
-        items = [Item(c.NAV_WAYPOINT, (self.dice.uniform(0.0, self.size), 0.0))]
+        items = [Item(MavCmd.NAV_WAYPOINT, (self.dice.uniform(0.0, self.size), 0.0))]
         count = self.dice.randint(1, 8)
         items += [self.item(1 + count) for _ in range(count)]
         assert self.upload(*items) == 0, self.story()
@@ -165,19 +165,20 @@ class RoverSoak(ByDice, Driver):
         d, v, far = self.dice, self.cruise, self.size
         place = (d.uniform(-far, far), d.uniform(-far, far))
         return d.choice(
-            (Item(c.NAV_WAYPOINT, place), Item(c.NAV_WAYPOINT, place),
-             Item(c.NAV_WAYPOINT, place, 0, (d.randint(0, 3),)),
-             Item(c.NAV_WAYPOINT, (0.0, 0.0)), Item(c.NAV_LOITER_TIME, place, 0, (d.randint(0, 5),)),
-             Item(c.NAV_LOITER_TURNS, place, 0, (d.randint(1, 2), 0, 0.3 * d.uniform(-far, far))),
-             Item(c.NAV_LOITER_UNLIM, place), Item(c.NAV_DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
-             Item(c.DO_CHANGE_SPEED, None, 0, (1, d.uniform(0.1, 2 * v))),
-             Item(c.NAV_SET_YAW_SPEED, None, 0, (d.uniform(0, 360), d.uniform(-v, v), d.choice((0, 1)))),
-             Item(c.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
-             Item(c.CONDITION_DISTANCE, None, 0, (d.uniform(0, far),)),
-             Item(c.DO_SET_REVERSE, None, 0, (d.choice((0, 1)),)), Item(c.DO_SET_ROI_LOCATION, place),
-             Item(c.NAV_GUIDED_ENABLE, None, 0, (d.choice((0, 1)),)),
-             Item(c.DO_GUIDED_LIMITS, None, 0, (d.uniform(1, 9),)),
-             Item(c.DO_JUMP, None, 0, (min(d.randint(1, 3), last), d.randint(1, 2))), Item(c.NAV_RETURN_TO_LAUNCH))
+            (Item(MavCmd.NAV_WAYPOINT, place), Item(MavCmd.NAV_WAYPOINT, place),
+             Item(MavCmd.NAV_WAYPOINT, place, 0, (d.randint(0, 3),)),
+             Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0)), Item(MavCmd.NAV_LOITER_TIME, place, 0, (d.randint(0, 5),)),
+             Item(MavCmd.NAV_LOITER_TURNS, place, 0, (d.randint(1, 2), 0, 0.3 * d.uniform(-far, far))),
+             Item(MavCmd.NAV_LOITER_UNLIM, place), Item(MavCmd.NAV_DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
+             Item(MavCmd.DO_CHANGE_SPEED, None, 0, (1, d.uniform(0.1, 2 * v))),
+             Item(MavCmd.NAV_SET_YAW_SPEED, None, 0, (d.uniform(0, 360), d.uniform(-v, v), d.choice((0, 1)))),
+             Item(MavCmd.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
+             Item(MavCmd.CONDITION_DISTANCE, None, 0, (d.uniform(0, far),)),
+             Item(MavCmd.DO_SET_REVERSE, None, 0, (d.choice((0, 1)),)), Item(MavCmd.DO_SET_ROI_LOCATION, place),
+             Item(MavCmd.NAV_GUIDED_ENABLE, None, 0, (d.choice((0, 1)),)),
+             Item(MavCmd.DO_GUIDED_LIMITS, None, 0, (d.uniform(1, 9),)),
+             Item(MavCmd.DO_JUMP, None, 0, (min(d.randint(1, 3), last), d.randint(1, 2))),
+             Item(MavCmd.NAV_RETURN_TO_LAUNCH))
         )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.drives.rover_driver import AUTO, HOLD, LOITER, MANUAL, STEERING, Driver
 from tests.pilots.witness import KEEP, LOW, Item
@@ -64,7 +64,7 @@ def test_a_mission_is_saved_by_switch(core: Core) -> None:
     d = with_switch(core, 7)
     move_switch(d, 7, HIGH)
     assert d.said("SaveWP: Mission cleared!")
-    assert [item.command for item in d.simulation.mission.items] == [c.NAV_WAYPOINT], "home"
+    assert [item.command for item in d.simulation.mission.items] == [MavCmd.NAV_WAYPOINT], "home"
     assert d.set_mode(MANUAL)
     d.arm()
     for _ in range(2):
@@ -90,8 +90,8 @@ def test_a_mission_moves_switches(core: Core) -> None:
     """DO_AUX_FUNCTION 54: HOLD; the mission stops there."""
     d = Driver(core, "ardupilot_rover").ready()
     d.arm()
-    here, there = Item(c.NAV_WAYPOINT, (3.0, 0.0)), Item(c.NAV_WAYPOINT, (30.0, 0.0))
-    d.start_mission(here, Item(c.DO_AUX_FUNCTION, p=(54.0, 2.0)), there)
+    here, there = Item(MavCmd.NAV_WAYPOINT, (3.0, 0.0)), Item(MavCmd.NAV_WAYPOINT, (30.0, 0.0))
+    d.start_mission(here, Item(MavCmd.DO_AUX_FUNCTION, p=(54.0, 2.0)), there)
     d.fly(15.0)
     assert d.said("Mission: 2 AuxFunction")
     assert d.mode == HOLD

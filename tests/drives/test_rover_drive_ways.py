@@ -43,7 +43,7 @@ def room_until(driver: Client, north: float, east: float, seconds: float) -> flo
         n, e, _ = driver.position
         places.append((n, e))
         if np.hypot(n - north, e - east) < 2.5:
-            return float(Map(driver.simulation.v.autopilot.fence, MARGIN).room(np.array(places)).min())
+            return float(Map(driver.simulation.v.autopilot.fence, MARGIN).clearance(np.array(places)).min())
     raise AssertionError(f"not at {north}, {east} after {seconds} s, but at {driver.position}")
 
 

@@ -14,9 +14,10 @@ from pathlib import Path
 import pytest
 
 from sitl import vehicles
-from sitl.autopilot.mission.item import FENCE_INCLUSION, NAV_WAYPOINT, RALLY_POINT, MissionItem, home_item
+from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.bridge.services.parameters import ParameterService
 from sitl.bridge.signing import SigningState
+from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3
 from sitl.drop_in import server
 from sitl.drop_in.command_line import parse
@@ -42,11 +43,11 @@ def simulation(core: Core) -> Simulation:
 def test_sixteen_sticks_reach_the_radio_and_stay(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0)
     rc = simulation.v.autopilot.rc
-    port.hear(struct.pack("<16H", *range(1200, 1216)))
+    port.receive(struct.pack("<16H", *range(1200, 1216)))
     simulation.advance(30.0)  # no other frame: the receiver repeats the last one
     assert [int(pulse) for pulse in rc.channels] == [*range(1200, 1216), 0, 0]
     assert rc.receiver_ok
-    port.hear(struct.pack("<8H", 0, *range(1301, 1308)))
+    port.receive(struct.pack("<8H", 0, *range(1301, 1308)))
     simulation.advance(0.1)
     assert [int(pulse) for pulse in rc.channels] == [1200, *range(1301, 1308), *range(1208, 1216), 0, 0]
     port.close()
@@ -54,7 +55,7 @@ def test_sixteen_sticks_reach_the_radio_and_stay(simulation: Simulation) -> None
 
 def test_channels_that_were_never_sent_are_at_rest(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0, 1000)
-    port.hear(struct.pack("<16H", *(0,) * 7, 1165, *(0,) * 8))
+    port.receive(struct.pack("<16H", *(0,) * 7, 1165, *(0,) * 8))
     simulation.advance(1.0)
     rc = simulation.v.autopilot.rc
     assert rc.receiver_ok
@@ -64,7 +65,7 @@ def test_channels_that_were_never_sent_are_at_rest(simulation: Simulation) -> No
 
 def test_a_failing_transmitter_is_lost_although_sticks_come(simulation: Simulation) -> None:
     port = StickPort(simulation.v, "127.0.0.1", 0)
-    port.hear(struct.pack("<16H", *(1500,) * 16))
+    port.receive(struct.pack("<16H", *(1500,) * 16))
     simulation.advance(1.0)
     assert simulation.v.autopilot.rc.receiver_ok
     simulation.v.autopilot.params.SIM.RC_FAIL = 1
@@ -79,11 +80,11 @@ def test_storage_keeps_and_forgets(tmp_path: Path) -> None:
     storage = Storage(path)
     storage.write()
     assert not path.exists(), "nothing to keep"
-    items = (home_item(1, 2, 3.0), MissionItem(NAV_WAYPOINT, x=5, y=6, z=7.5))
+    items = (home_item(1, 2, 3.0), MissionItem(MavCmd.NAV_WAYPOINT, x=5, y=6, z=7.5))
     storage.keep("WPNAV_SPEED", 450.0)
     storage.keep_mission(items)
-    fence = tuple(MissionItem(FENCE_INCLUSION, 0, 3.0, x=k, y=k * k) for k in range(3))
-    points = (MissionItem(RALLY_POINT, x=5, y=6, z=7.0),)
+    fence = tuple(MissionItem(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, 0, 3.0, x=k, y=k * k) for k in range(3))
+    points = (MissionItem(MavCmd.NAV_RALLY_POINT, x=5, y=6, z=7.0),)
     storage.keep_places(fence, points)
     storage.write()
     again = Storage(path)
@@ -121,9 +122,9 @@ def test_storage_with_any_damage_is_read_or_named(tmp_path: Path) -> None:
     path = tmp_path / "kept.json"
     storage = Storage(path)
     storage.keep("WPNAV_SPEED", 450.0)
-    storage.keep_mission((home_item(1, 2, 3.0), MissionItem(NAV_WAYPOINT, x=5, y=6, z=7.5)))
-    fence = tuple(MissionItem(FENCE_INCLUSION, 0, 3.0, x=k, y=k * k) for k in range(3))
-    storage.keep_places(fence, (MissionItem(RALLY_POINT, x=5, y=6, z=7.0),))
+    storage.keep_mission((home_item(1, 2, 3.0), MissionItem(MavCmd.NAV_WAYPOINT, x=5, y=6, z=7.5)))
+    fence = tuple(MissionItem(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, 0, 3.0, x=k, y=k * k) for k in range(3))
+    storage.keep_places(fence, (MissionItem(MavCmd.NAV_RALLY_POINT, x=5, y=6, z=7.0),))
     storage.keep_signing(SigningState(bytes(32), 7))
     storage.write()
     content = path.read_bytes()

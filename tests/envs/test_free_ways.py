@@ -13,6 +13,7 @@ import pytest
 from sitl.core.algebra import ZERO2
 from sitl.envs.free_ways import FreeWays
 from sitl.envs.options import EnvOptionError
+from sitl.envs.parts import Route
 from sitl.envs.targets.among import Among
 from sitl.worlds.contact import Volume
 from sitl.worlds.making import wall
@@ -78,6 +79,95 @@ def test_places_without_room_are_as_far_as_the_nearest_with_room():
     assert inside == pytest.approx(beside + 0.7, abs=0.15)
     ways.aim(0, -0.3, -5.0)
     assert float(ways.lengths(np.array([[-5.0, -5.0]]))[0]) == pytest.approx(4.7, abs=0.2)
+
+
+def planned(solids, *goal):
+    ways = FreeWays(robot_in(solids))
+    ways.plan_routes()
+    for index in range(2):
+        ways.aim(index, *goal)
+    return ways
+
+
+def ends(pose, out):
+    """Where routes lead, in the world."""
+    c, s = np.cos(pose[:, 3]), np.sin(pose[:, 3])
+    return pose[:, :2] + np.column_stack((out[:, 0] * c - out[:, 1] * s, out[:, 0] * s + out[:, 1] * c))
+
+
+def test_the_route_leads_so_far_along_a_way_that_keeps_clear_of_walls():
+    ways, rng, out = planned(TEE, 5.0, -5.0), np.random.default_rng(1), np.zeros((2, 4))
+    for _ in range(40):
+        pose = np.column_stack(
+            (rng.uniform(-8.5, -1.6, 2), rng.uniform(-8.5, 8.5, 2), (0.0, 0.0), rng.uniform(-3.0, 3.0, 2))
+        )
+        ways.follow(pose, 2.0, out, 1)
+        length = ways.lengths(pose).copy()
+        assert np.array_equal(out[:, 3], length) and np.all(out[:, 0] == 0.0)
+        there = ends(pose, out[:, 1:])
+        assert np.all(np.hypot(out[:, 1], out[:, 2]) <= 2.0 + 1e-9)
+        assert np.all(ways.lengths(there) < length - 1.3)
+        assert np.all(there[:, 0] < -1.0) or np.all(there[there[:, 0] >= -1.0, 1] > 5.0)
+
+
+def test_a_route_passes_the_end_of_a_wall_in_the_middle_of_the_passage_and_the_shortest_way_close_by():
+    ways, out = planned(TEE, 5.0, -5.0), np.zeros((2, 3))
+    pose, passed = np.array([[-5.0, -5.0, 0.0, 0.0], [5.0, 5.0, 0.0, 0.0]]), []
+    for _ in range(400):
+        ways.follow(pose, 0.1, out)
+        pose[:, :2] = ends(pose, out)
+        if abs(pose[0, 0]) < 0.1:
+            passed.append(pose[0, 1])
+    assert np.allclose(pose[:, :2], (5.0, -5.0), atol=0.3)
+    assert 5.0 < min(passed) < 9.0  # the shortest way: 4.05 m + 0.4 m
+
+
+def test_the_route_ends_at_the_goal_and_no_way_leads_nowhere():
+    ways, out = planned(TEE[1:], 3.0, 4.0), np.zeros((2, 3))
+    ways.follow(np.array([[3.0, 3.0, 0.0, 0.0], [3.01, 4.02, 0.0, 0.0]]), 2.0, out)
+    assert np.hypot(out[:, 0], out[:, 1] - (1.0, 0.0)) == pytest.approx((0.0, 0.0), abs=0.25)
+    ways._fields[:] = ways._routes[:] = np.inf
+    ways.follow(np.array([[3.0, 3.0, 0.0, 0.0], [np.nan, 4.02, 0.0, 0.0]]), 2.0, out)
+    assert out[0].tolist() == [0.0, 0.0, np.inf] and np.isnan(out[1, :2]).all()
+
+
+@pytest.mark.parametrize("robots", [1, 3])
+def test_the_observation_is_told_from_the_estimate(robots):
+    many = gym.make_vec(
+        "sitl/RoverLabyrinth-v1", robots, vectorization_mode="vector_entry_point", observation=["goal", "route"]
+    )
+    seen, _ = many.reset(seed=4)
+    task, robot = many.unwrapped.session.task, many.unwrapped.session.robot
+    expected = np.zeros((robots, 3))
+    for _ in range(3):
+        task._ways.follow(robot.state, 2.0, expected)
+        assert np.array_equal(seen[:, 3:], expected.astype(np.float32))
+        assert not np.allclose(robot.state[:, :2], robot.true_state()[:, :2], atol=0.01)
+        seen, *_ = many.step(np.tile(np.array([0.8, 0.3], np.float32), (robots, 1)))
+    slow, part = np.zeros((robots, 3), np.float32), Route()
+    part.prepare(many.unwrapped.session)
+    part.write(slow)
+    assert np.array_equal(slow, seen[:, 3:])
+
+
+def test_a_route_of_another_length():
+    envs = [gym.make("sitl/CopterForest-v1", observation=["route", Route(4.0)]).unwrapped for _ in range(2)]
+    seen = [env.reset(seed=1)[0] for env in envs]
+    assert np.array_equal(*seen)
+    near, far = seen[0][:3], seen[0][3:]
+    assert near[2] == far[2] > 4.0
+    assert np.hypot(*near[:2]) == pytest.approx(2.0, abs=0.1) and np.hypot(*far[:2]) == pytest.approx(4.0, abs=0.3)
+
+
+@pytest.mark.parametrize("ahead", [0.0, -1.0, math.nan, math.inf])
+def test_a_route_of_no_length_is_refused(ahead):
+    with pytest.raises(EnvOptionError, match=rf"Route\(ahead={ahead!r}\); it must be above 0"):
+        Route(ahead)
+
+
+def test_a_task_without_obstacles_has_no_route():
+    with pytest.raises(EnvOptionError, match=r'observation "route": task .* plans no path.*RoverLabyrinth'):
+        gym.make("sitl/CopterHover-v1", observation=["goal", "route"]).reset(seed=0)
 
 
 def make(**options):

@@ -11,11 +11,11 @@ import gymnasium as gym
 import pytest
 
 import sitl.envs  # noqa: F401
+from benchmarks.recorded.pilot import Pilot
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
 from sitl.client.endpoint import Endpoint
 from sitl.envs import EnvOptionError, NotASimulatorError
-from sitl.missions.pilot import Pilot
 from sitl.simulation import Simulation
 
 ROVER, COPTER = "GazeboMazeErleRoverLIDAR-v0", "GazeboOfficeErleCopterLIDAR-v0"

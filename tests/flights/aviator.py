@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.pilots.witness import MIDDLE, Item, Witness
@@ -46,7 +46,7 @@ class Aviator(Witness):
 
     def take_off(self, height: float) -> None:
         """Take off, armed in GUIDED."""
-        assert self.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
+        assert self.ask(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, height) == 0
         assert self.fly(30.0 + height, lambda: self.height > height - 0.5), f"at {self.height} m, {self.texts}"
         self.fly(4.0)
 

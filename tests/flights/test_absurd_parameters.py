@@ -11,9 +11,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from sitl.autopilot.mission import item as c
+from benchmarks.recorded.pilot import ARM, POSITION_ONLY, VELOCITY_ONLY
 from sitl.autopilot.params.parameter import FLOAT, Parameter
-from sitl.missions.pilot import ARM, POSITION_ONLY, VELOCITY_ONLY
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
 from tests.pilots.witness import Item, Witness
@@ -31,14 +31,14 @@ def _moving(kind: str) -> tuple[Witness, Any]:
     p = Witness(load_core(KINDS[kind]), FRAMES[kind])
     p.boot()
     places = (
-        Item(c.NAV_WAYPOINT, (20.0, 0.0), 12.0),
-        Item(c.NAV_WAYPOINT, (20.0, 20.0), 12.0),
-        Item(c.NAV_WAYPOINT, (0.0, 20.0), 12.0),
+        Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 12.0),
+        Item(MavCmd.NAV_WAYPOINT, (20.0, 20.0), 12.0),
+        Item(MavCmd.NAV_WAYPOINT, (0.0, 20.0), 12.0),
     )
-    assert p.upload(*([Item(c.NAV_TAKEOFF, None, 10.0)] if kind == "copter" else []), *places) == 0
+    assert p.upload(*([Item(MavCmd.NAV_TAKEOFF, None, 10.0)] if kind == "copter" else []), *places) == 0
     assert p.ask(ARM, 1, wait=2.0) == 0, p.texts
     if kind == "copter":
-        assert p.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0) == 0
+        assert p.ask(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 5.0) == 0
         p.fly(8.0)
     p.stream(3.0, VELOCITY_ONLY, vx=2.0)
     assert p.vel[0] > 1.0

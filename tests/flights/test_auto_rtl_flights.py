@@ -5,19 +5,19 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import AUTO, AUTO_RTL, GUIDED, LOITER, POSITION, RTL, Aviator
 from tests.pilots.witness import Item
 
-LAND_START, PATH_START = Item(c.DO_LAND_START), Item(c.DO_RETURN_PATH_START)
-TAKE_OFF, LAND = Item(c.NAV_TAKEOFF, z=20.0), Item(c.NAV_LAND, (0.0, 0.0))
+LAND_START, PATH_START = Item(MavCmd.DO_LAND_START), Item(MavCmd.DO_RETURN_PATH_START)
+TAKE_OFF, LAND = Item(MavCmd.NAV_TAKEOFF, z=20.0), Item(MavCmd.NAV_LAND, (0.0, 0.0))
 RETURN, LANDING = 188, 189
 """MAV_CMDs"""
 
 
 def leg(north: float, east: float = 0.0, up: float = 20.0) -> Item:
-    return Item(c.NAV_WAYPOINT, (north, east), up)
+    return Item(MavCmd.NAV_WAYPOINT, (north, east), up)
 
 
 WITH_PATH = (
@@ -70,7 +70,7 @@ def test_flies_the_landing_sequence_and_is_told_as_a_mode_of_its_own(core: Core)
     assert p.ask(RETURN) == 0 and p.said("Landing sequence active")
     assert tried(p, AUTO) == (True, AUTO, 4, ["Mission: 4 WP"])
     assert tried(p, AUTO_RTL) == (True, AUTO_RTL, 4, [*sequence, "Landing sequence start"])
-    assert p.ask(c.DO_LAND_START) == 0 and p.mode == AUTO_RTL
+    assert p.ask(MavCmd.DO_LAND_START) == 0 and p.mode == AUTO_RTL
     assert p.ask(224, 2) == 0
     p.fly(0.1)
     assert p.mode == AUTO, "item 2 is no part of the way back"
@@ -105,7 +105,7 @@ def test_distances_of_return_paths_count_height_and_those_of_landings_do_not(cor
     assert p.upload(TAKE_OFF, leg(60), LAND_START, leg(30, up=80.0), LAND_START, leg(50), LAND) == 0
     assert tried(p, AUTO_RTL)[2] == 4
     assert p.set_mode(GUIDED)
-    begin = Item(c.DO_RETURN_PATH_START, (10.0, 0.0), 20.0)
+    begin = Item(MavCmd.DO_RETURN_PATH_START, (10.0, 0.0), 20.0)
     assert p.upload(TAKE_OFF, begin, leg(0, 100), leg(0, -100), LAND) == 0
     p.setpoint(POSITION, position=(10.0, 0.0, -20.0))
     p.fly(8.0)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sitl.missions.pilot import POSITION_ONLY, VELOCITY_ONLY
+from benchmarks.recorded.pilot import POSITION_ONLY, VELOCITY_ONLY
 from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.flights.aviator import Aviator

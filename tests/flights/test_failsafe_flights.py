@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
-from sitl.missions.pilot import ARM
+from benchmarks.recorded.pilot import ARM
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import (
     AIRFRAMES,
@@ -81,7 +81,7 @@ def test_throttle_below_the_failsafe_pulse(core: Core, choice: int, mode: int) -
 def test_mission_goes_on_without_radio_when_told(core: Core) -> None:
     for options, mode in ((0, RTL), (1, AUTO)):
         p = Aviator(core, FS_OPTIONS=options).ready()
-        p.start_mission(Item(c.NAV_TAKEOFF, None, 10.0), Item(c.NAV_LOITER_UNLIM, (10.0, 0.0), 10.0))
+        p.start_mission(Item(MavCmd.NAV_TAKEOFF, None, 10.0), Item(MavCmd.NAV_LOITER_UNLIM, (10.0, 0.0), 10.0))
         p.fly(12.0)
         p.set_parameter("SIM_RC_FAIL", 1)
         p.fly(3.0)

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.simulation import Core
 from tests.flights.aviator import BRAKE, GUIDED, LAND, LOITER, POSITION, RTL, SMART_RTL, STABILIZE, Aviator
 
@@ -26,7 +26,7 @@ GEOFENCE = 0x100000
 def area(p: Aviator, command: int, *corners: tuple[float, float], p1: float | None = None) -> list[MissionItem]:
     """Items of an area, places in metres from home."""
     places = [p.location_of(*corner) for corner in corners]
-    return [MissionItem(command, c.GLOBAL, p1 or len(corners), x=x, y=y) for x, y in places]
+    return [MissionItem(command, MavFrame.GLOBAL, p1 or len(corners), x=x, y=y) for x, y in places]
 
 
 def square(p: Aviator, command: int, north: float, east: float, half: float) -> list[MissionItem]:
@@ -95,9 +95,9 @@ def test_a_hundred_metres_beyond_it_lands_there(core: Core) -> None:
 def test_areas_to_stay_in_and_out_of(core: Core, by_area: bool) -> None:
     """A square around home; a circle to stay out of to the north is nearer, when it is there."""
     p = Aviator(core, AVOID_ENABLE=0, FENCE_TYPE=AREAS).ready()
-    items = square(p, c.FENCE_INCLUSION, 0.0, 0.0, 40.0)
+    items = square(p, MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, 0.0, 0.0, 40.0)
     if not by_area:
-        items += area(p, c.FENCE_CIRCLE_OUT, (35.0, 0.0), p1=10.0)
+        items += area(p, MavCmd.NAV_FENCE_CIRCLE_EXCLUSION, (35.0, 0.0), p1=10.0)
     p.upload_fence(items)
     p.set_parameter("FENCE_ENABLE", 1)
     p.arm()
@@ -177,7 +177,7 @@ def test_parameters_that_keep_it_on_the_ground(core: Core, params: dict[str, flo
 
 def test_who_stands_in_a_breach_is_not_armed(core: Core) -> None:
     p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1).ready()
-    p.upload_fence(square(p, c.FENCE_EXCLUSION, 0.0, 0.0, 20.0))
+    p.upload_fence(square(p, MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION, 0.0, 0.0, 20.0))
     p.fly(0.2)
     assert p.ask(400, 1) == 4
     assert p.said("Arm: Vehicle breaching Polygon fence")
@@ -227,7 +227,7 @@ def test_the_margins_of_two_fences_are_told_as_they_are_reached(core: Core) -> N
     """Texts of a real ArduPilot on the same flight, but for tenths."""
     params = {"FENCE_RADIUS": 30.0, "FENCE_MARGIN": 6.0, "FENCE_OPTIONS": 4.0}
     p = Aviator(core, AVOID_ENABLE=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE | AREAS, **params).ready()
-    p.upload_fence(square(p, c.FENCE_INCLUSION, 0.0, 0.0, 28.0))
+    p.upload_fence(square(p, MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, 0.0, 0.0, 28.0))
     p.hover()
     assert p.set_mode(LOITER)
     p.hold(pitch=1250)
@@ -258,7 +258,7 @@ def test_rtl_goes_to_the_rally_point(core: Core, params: dict[str, float], north
     """From over home, home is nearer; a point beyond RALLY_LIMIT_KM does not count."""
     p = Aviator(core, AVOID_ENABLE=0, **params).ready()
     x, y = p.location_of(50.0, -25.0)
-    p.upload_rally_points([MissionItem(c.RALLY_POINT, c.RELATIVE, x=x, y=y, z=37.0)])
+    p.upload_rally_points([MissionItem(MavCmd.NAV_RALLY_POINT, MavFrame.GLOBAL_RELATIVE_ALT, x=x, y=y, z=37.0)])
     p.arm()
     p.take_off(10.0)
     assert p.set_mode(RTL)
@@ -271,7 +271,9 @@ def test_rtl_goes_to_the_rally_point(core: Core, params: dict[str, float], north
 def test_the_nearest_rally_point_within_the_fence(core: Core) -> None:
     p = Aviator(core, AVOID_ENABLE=0, RALLY_INCL_HOME=0, FENCE_ENABLE=1, FENCE_TYPE=CIRCLE, FENCE_RADIUS=60.0).ready()
     places = [p.location_of(*place) for place in ((70.0, 0.0), (-30.0, 0.0), (0.0, 55.0))]
-    p.upload_rally_points([MissionItem(c.RALLY_POINT, c.RELATIVE, x=x, y=y, z=10.0) for x, y in places])
+    p.upload_rally_points(
+        [MissionItem(MavCmd.NAV_RALLY_POINT, MavFrame.GLOBAL_RELATIVE_ALT, x=x, y=y, z=10.0) for x, y in places]
+    )
     p.arm()
     p.take_off(10.0)
     p.target(POSITION, x=45.0, z=-10.0)

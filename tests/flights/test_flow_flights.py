@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import ARM
 from sitl.autopilot.estimation.status import CONST_POS_MODE, POS_HORIZ_ABS, POS_HORIZ_REL, POS_VERT_AGL, VELOCITY_HORIZ
-from sitl.missions.pilot import ARM
 from sitl.simulation import Core
 from tests.flights.aviator import ALT_HOLD, GUIDED, LAND, LOITER, POSITION, RTL, STABILIZE, Aviator, target
 from tests.pilots.witness import KEEP, LOW, MIDDLE

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import (
     AIRFRAMES,
@@ -148,7 +148,7 @@ def test_numbers_that_are_none_stop_the_vehicle(core: Core, frame: str) -> None:
 
 def test_take_off_edge_cases(core: Core) -> None:
     p = Aviator(core).ready()
-    assert p.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "disarmed"
+    assert p.ask(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "disarmed"
     target(p, POSITION, x=5.0, z=-5.0)
     p.arm()
     target(p, POSITION, x=5.0, z=-5.0)
@@ -156,7 +156,7 @@ def test_take_off_edge_cases(core: Core) -> None:
     assert p.on_ground, "a position does not lift off"
     p.take_off(0.7)
     assert p.height == pytest.approx(0.7, abs=0.3)
-    assert p.ask(c.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "in the air"
+    assert p.ask(MavCmd.NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 10.0) == 4, "in the air"
     p.set_mode(LAND)
     p.wait_disarmed(20.0)
 

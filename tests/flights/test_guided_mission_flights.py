@@ -5,20 +5,20 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights import aviator
 from tests.flights.aviator import AUTO, LOITER, POSITION, Aviator, Item
 from tests.pilots.witness import MIDDLE
 
-UP = Item(c.NAV_TAKEOFF, None, 10.0)
-ENABLE, ON = Item(c.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0)
+UP = Item(MavCmd.NAV_TAKEOFF, None, 10.0)
+ENABLE, ON = Item(MavCmd.NAV_GUIDED_ENABLE, None, 0.0, (1.0,)), Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 10.0)
 
 
 def guided(core: Core, *limits: float) -> Aviator:
     """In AUTO, 10 m up, where a mission has just given the vehicle to set-points."""
     p = Aviator(core, "ardupilot_quad").ready()
-    p.start_mission(UP, Item(c.DO_GUIDED_LIMITS, None, 0.0, limits), ENABLE, ON)
+    p.start_mission(UP, Item(MavCmd.DO_GUIDED_LIMITS, None, 0.0, limits), ENABLE, ON)
     assert p.fly(60.0, lambda: p.said("Mission: 3 GuidedEnable"))
     return p
 
@@ -75,7 +75,7 @@ def test_without_limits_it_waits_and_begins_again_after_another_mode(core: Core)
 
 def test_the_command_of_zero_is_passed_over(core: Core) -> None:
     p = Aviator(core, "ardupilot_quad").ready()
-    p.start_mission(UP, Item(c.NAV_GUIDED_ENABLE), ON)
+    p.start_mission(UP, Item(MavCmd.NAV_GUIDED_ENABLE), ON)
     assert p.fly(60.0, lambda: p.said("Reached command #3"))
 
 

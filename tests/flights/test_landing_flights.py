@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
-from sitl.missions.pilot import ARM, VELOCITY_ONLY
+from benchmarks.recorded.pilot import ARM, VELOCITY_ONLY
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, BRAKE, GUIDED, LAND, LOITER, RTL, Aviator, Item
 
@@ -189,5 +189,5 @@ def test_loiter_can_follow_a_landing_that_was_broken_off(core: Core) -> None:
 def test_a_mission_may_be_loaded_while_landing(core: Core) -> None:
     p = Aviator(core).hover()
     p.set_mode(LAND)
-    assert p.upload(Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0)) == 0
+    assert p.upload(Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0), 10.0)) == 0
     p.wait_disarmed(40.0)

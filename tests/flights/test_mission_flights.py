@@ -8,15 +8,15 @@ import math
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.simulation import Core
 from tests.flights import aviator
 from tests.flights.aviator import AIRFRAMES, AUTO, Aviator, Item
 from tests.pilots.witness import LOW
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
-UP = Item(c.NAV_TAKEOFF, None, 10.0)
-DOWN = Item(c.NAV_LAND)
+UP = Item(MavCmd.NAV_TAKEOFF, None, 10.0)
+DOWN = Item(MavCmd.NAV_LAND)
 
 
 def fly(core: Core, frame: str, *items: Item, seconds: float = 200.0, **params: float) -> tuple[Aviator, float]:
@@ -37,8 +37,9 @@ def heading_at(p: Aviator, time: float) -> float:
 @BOTH
 def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
     p, start = fly(
-        core, frame, UP, Item(c.NAV_WAYPOINT, (20.0, 0.0), 15.0, (5.0,)), Item(c.NAV_WAYPOINT, (20.0, 20.0), 10.0),
-        Item(c.NAV_LAND, (0.0, 20.0)),
+        core, frame, UP, Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 15.0, (5.0,)),
+        Item(MavCmd.NAV_WAYPOINT, (20.0, 20.0), 10.0),
+        Item(MavCmd.NAV_LAND, (0.0, 20.0)),
     )  # fmt: skip
     assert not p.armed
     assert p.reached == [1, 2, 3]
@@ -51,7 +52,7 @@ def test_waypoint_delay_and_landing_at_a_place(core: Core, frame: str) -> None:
 
 @BOTH
 def test_return_lands_at_home(core: Core, frame: str) -> None:
-    p, start = fly(core, frame, UP, Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(c.NAV_RETURN_TO_LAUNCH))
+    p, start = fly(core, frame, UP, Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(MavCmd.NAV_RETURN_TO_LAUNCH))
     assert not p.armed
     assert p.reached == [1, 2, 3]
     assert -p.since(start)[:, 3].min() == pytest.approx(15.0, abs=0.5)
@@ -61,9 +62,9 @@ def test_return_lands_at_home(core: Core, frame: str) -> None:
 @BOTH
 def test_loiter_turns_both_ways_and_loiter_time(core: Core, frame: str) -> None:
     p, _ = fly(
-        core, frame, UP, Item(c.NAV_LOITER_TIME, (15.0, 0.0), 10.0, (5.0,)),
-        Item(c.NAV_LOITER_TURNS, (30.0, 0.0), 12.0, (2.0, 0.0, 8.0, 1.0)),
-        Item(c.NAV_LOITER_TURNS, (30.0, 30.0), 12.0, (1.0, 0.0, -6.0, 1.0)), DOWN,
+        core, frame, UP, Item(MavCmd.NAV_LOITER_TIME, (15.0, 0.0), 10.0, (5.0,)),
+        Item(MavCmd.NAV_LOITER_TURNS, (30.0, 0.0), 12.0, (2.0, 0.0, 8.0, 1.0)),
+        Item(MavCmd.NAV_LOITER_TURNS, (30.0, 30.0), 12.0, (1.0, 0.0, -6.0, 1.0)), DOWN,
     )  # fmt: skip
     assert p.reached == [1, 2, 3, 4]
     rows = np.array(p.rows)  # the vehicle's own position: circles are asked here, the receiver's error elsewhere
@@ -78,7 +79,7 @@ def test_loiter_turns_both_ways_and_loiter_time(core: Core, frame: str) -> None:
 
 
 def test_unlimited_loiter_ends_by_set_current(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_LOITER_UNLIM, (15.0, 0.0), 10.0), DOWN, seconds=60.0)
+    p, _ = fly(core, "erle_copter", UP, Item(MavCmd.NAV_LOITER_UNLIM, (15.0, 0.0), 10.0), DOWN, seconds=60.0)
     assert p.armed
     assert p.pos[0] == pytest.approx(15.0, abs=1.5)
     p.send("MISSION_SET_CURRENT", seq=3)
@@ -86,15 +87,16 @@ def test_unlimited_loiter_ends_by_set_current(core: Core) -> None:
 
 
 def test_delay_command(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_DELAY, None, 0.0, (7.0, -1.0, -1.0, -1.0)), DOWN)
+    p, _ = fly(core, "erle_copter", UP, Item(MavCmd.NAV_DELAY, None, 0.0, (7.0, -1.0, -1.0, -1.0)), DOWN)
     assert p.reached_at(2) - p.reached_at(1) == pytest.approx(7.0, abs=0.2)
 
 
 @pytest.mark.parametrize(("times", "seconds"), [(2, 200.0), (-1, 120.0)])
 def test_jump(core: Core, times: int, seconds: float) -> None:
     p, _ = fly(
-        core, "erle_copter", UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (0.0, 0.0), 10.0),
-        Item(c.DO_JUMP, None, 0.0, (2.0, times)), DOWN, seconds=seconds,
+        core, "erle_copter", UP, Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0), 10.0),
+        Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0), 10.0),
+        Item(MavCmd.DO_JUMP, None, 0.0, (2.0, times)), DOWN, seconds=seconds,
     )  # fmt: skip
     rounds = p.reached.count(3)
     assert (rounds == 3 and not p.armed) if times == 2 else (rounds > 8 and p.armed)
@@ -103,10 +105,12 @@ def test_jump(core: Core, times: int, seconds: float) -> None:
 @BOTH
 def test_speed_and_conditions(core: Core, frame: str) -> None:
     p, start = fly(
-        core, frame, UP, Item(c.DO_CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)), Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0),
-        Item(c.CONDITION_DISTANCE, None, 0.0, (8.0,)), Item(c.CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)),
-        Item(c.NAV_WAYPOINT, (40.0, 0.0), 10.0), Item(c.CONDITION_DELAY, None, 0.0, (3.0,)),
-        Item(c.DO_CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), Item(c.NAV_WAYPOINT, (40.0, 20.0), 10.0), DOWN,
+        core, frame, UP, Item(MavCmd.DO_CHANGE_SPEED, None, 0.0, (1.0, 2.0, -1.0)),
+        Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 10.0),
+        Item(MavCmd.CONDITION_DISTANCE, None, 0.0, (8.0,)),
+        Item(MavCmd.CONDITION_YAW, None, 0.0, (90.0, 20.0, 1.0, 0.0)),
+        Item(MavCmd.NAV_WAYPOINT, (40.0, 0.0), 10.0), Item(MavCmd.CONDITION_DELAY, None, 0.0, (3.0,)),
+        Item(MavCmd.DO_CHANGE_SPEED, None, 0.0, (1.0, 5.0, -1.0)), Item(MavCmd.NAV_WAYPOINT, (40.0, 20.0), 10.0), DOWN,
     )  # fmt: skip
     rows = p.since(start)
     speed = np.linalg.norm(rows[:, 4:6], axis=1)
@@ -122,9 +126,10 @@ def test_speed_and_conditions(core: Core, frame: str) -> None:
 def test_roi_behind_a_take_off_holds_until_it_is_ended(core: Core, frame: str) -> None:
     """It runs when the take-off is done; waypoints do not turn the nose away."""
     p, _ = fly(
-        core, frame, UP, Item(c.DO_SET_ROI_LOCATION, (0.0, 50.0), 0.0), Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0),
-        Item(c.NAV_WAYPOINT, (30.0, 10.0), 10.0), Item(c.DO_SET_ROI_NONE),
-        Item(c.NAV_WAYPOINT, (0.0, 10.0), 10.0), DOWN,
+        core, frame, UP, Item(MavCmd.DO_SET_ROI_LOCATION, (0.0, 50.0), 0.0),
+        Item(MavCmd.NAV_WAYPOINT, (30.0, 0.0), 10.0),
+        Item(MavCmd.NAV_WAYPOINT, (30.0, 10.0), 10.0), Item(MavCmd.DO_SET_ROI_NONE),
+        Item(MavCmd.NAV_WAYPOINT, (0.0, 10.0), 10.0), DOWN,
     )  # fmt: skip
     assert abs(heading_at(p, p.reached_at(1))) < 15.0
     assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(121.0, abs=6.0)
@@ -135,8 +140,8 @@ def test_a_fixed_yaw_lasts_one_leg(core: Core) -> None:
     """As in ArduPilot the next waypoint points the nose along the path again (WP_YAW_BEHAVIOR not 0)."""
     for behaviour, heading in ((2, 0.0), (0, 90.0)):
         p, _ = fly(
-            core, "erle_copter", UP, Item(c.CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)),
-            Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (70.0, 0.0), 10.0), DOWN,
+            core, "erle_copter", UP, Item(MavCmd.CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 0.0)),
+            Item(MavCmd.NAV_WAYPOINT, (30.0, 0.0), 10.0), Item(MavCmd.NAV_WAYPOINT, (70.0, 0.0), 10.0), DOWN,
             WP_YAW_BEHAVIOR=behaviour,
         )  # fmt: skip
         assert heading_at(p, p.reached_at(3) - 1.0) == pytest.approx(90.0, abs=5.0)
@@ -148,9 +153,9 @@ def test_frames_of_altitude(core: Core, frame: str) -> None:
     p = Aviator(core, frame).ready()
     ground = float(p.ap.estimate.origin_alt)
     p.start_mission(
-        UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), ground + 20.0, (2.0,), c.GLOBAL_INT),
-        Item(c.NAV_WAYPOINT, (10.0, 10.0), 15.0, (2.0,), c.TERRAIN_INT),
-        Item(c.NAV_WAYPOINT, (0.0, 0.0), 5.0, (2.0,)), DOWN,
+        UP, Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0), ground + 20.0, (2.0,), MavFrame.GLOBAL_INT),
+        Item(MavCmd.NAV_WAYPOINT, (10.0, 10.0), 15.0, (2.0,), MavFrame.GLOBAL_TERRAIN_ALT_INT),
+        Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0), 5.0, (2.0,)), DOWN,
     )  # fmt: skip
     start = p.now
     p.wait_disarmed(120.0)
@@ -160,7 +165,7 @@ def test_frames_of_altitude(core: Core, frame: str) -> None:
 
 
 def test_a_mission_that_ends_in_the_air_hovers(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0), seconds=40.0)
+    p, _ = fly(core, "erle_copter", UP, Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0), 10.0), seconds=40.0)
     assert p.armed
     assert p.mode == AUTO
     here = p.pos
@@ -185,14 +190,14 @@ def test_auto_on_the_ground_waits_for_a_raised_throttle(core: Core, frame: str) 
 
 def test_auto_on_the_ground_needs_a_take_off(core: Core) -> None:
     p = Aviator(core).ready()
-    assert p.upload(Item(c.NAV_WAYPOINT, (15.0, 0.0), 10.0), DOWN) == 0
+    assert p.upload(Item(MavCmd.NAV_WAYPOINT, (15.0, 0.0), 10.0), DOWN) == 0
     p.arm()
     assert not p.set_mode(AUTO)
     assert p.ask(300, 0, 0) == 4
 
 
 def test_a_mission_is_flown_again_after_its_landing(core: Core) -> None:
-    p, _ = fly(core, "erle_copter", UP, Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0), DOWN)
+    p, _ = fly(core, "erle_copter", UP, Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0), 10.0), DOWN)
     assert p.set_mode(aviator.GUIDED)
     p.arm()
     assert p.set_mode(AUTO)
@@ -204,7 +209,9 @@ def test_a_mission_is_flown_again_after_its_landing(core: Core) -> None:
 @BOTH
 def test_rtl_in_a_corner_and_back(core: Core, frame: str) -> None:
     p = Aviator(core, frame).ready()
-    p.start_mission(UP, Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (30.0, 30.0), 10.0), DOWN)
+    p.start_mission(
+        UP, Item(MavCmd.NAV_WAYPOINT, (30.0, 0.0), 10.0), Item(MavCmd.NAV_WAYPOINT, (30.0, 30.0), 10.0), DOWN
+    )
     assert p.fly(60.0, lambda: not math.isnan(p.reached_at(2)))
     start = p.now
     assert p.set_mode(aviator.RTL)
@@ -218,8 +225,8 @@ def test_rtl_in_a_corner_and_back(core: Core, frame: str) -> None:
 @pytest.mark.parametrize(
     ("name", "item", "axis", "speeds"),
     [
-        ("WPNAV_SPEED", Item(c.NAV_WAYPOINT, (900.0, 0.0), 10.0), 0, (10.0, 7.0, 9.0)),
-        ("WPNAV_SPEED_UP", Item(c.NAV_WAYPOINT, (0.0, 0.0), 900.0), 2, (-2.5, -6.0, -2.0)),
+        ("WPNAV_SPEED", Item(MavCmd.NAV_WAYPOINT, (900.0, 0.0), 10.0), 0, (10.0, 7.0, 9.0)),
+        ("WPNAV_SPEED_UP", Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0), 900.0), 2, (-2.5, -6.0, -2.0)),
     ],
 )
 def test_speeds_set_in_flight_hold_at_once(
@@ -239,8 +246,8 @@ def test_speeds_set_in_flight_hold_at_once(
 def test_return_turns_to_the_heading_of_arming(core: Core, behaviour: float, turns: bool) -> None:
     p = Aviator(core, AIRFRAMES[0], WP_YAW_BEHAVIOR=behaviour).ready()
     before = heading_at(p, p.now)
-    turn = Item(c.CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 1.0))
-    p.start_mission(UP, turn, Item(c.NAV_WAYPOINT, (0.0, -25.0), 10.0), Item(c.NAV_RETURN_TO_LAUNCH))
+    turn = Item(MavCmd.CONDITION_YAW, None, 0.0, (90.0, 0.0, 1.0, 1.0))
+    p.start_mission(UP, turn, Item(MavCmd.NAV_WAYPOINT, (0.0, -25.0), 10.0), Item(MavCmd.NAV_RETURN_TO_LAUNCH))
     p.fly(120.0, lambda: not p.armed)
     off = (heading_at(p, p.now) - before + 180.0) % 360.0 - 180.0
     assert not p.armed and (abs(off) < 5.0) == turns
@@ -248,13 +255,13 @@ def test_return_turns_to_the_heading_of_arming(core: Core, behaviour: float, tur
 
 def test_a_take_off_never_descends(core: Core) -> None:
     p = Aviator(core, AIRFRAMES[0]).ready()
-    p.start_mission(Item(c.NAV_TAKEOFF, None, -10.0), Item(c.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
+    p.start_mission(Item(MavCmd.NAV_TAKEOFF, None, -10.0), Item(MavCmd.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
     start = p.now
     p.fly(60.0, lambda: not p.armed)
     assert p.reached == [1, 2] and not p.armed
     assert -p.since(start)[:, 3].min() == pytest.approx(1.0, abs=0.3)
     p = Aviator(core, AIRFRAMES[0]).ready()
-    p.start_mission(UP, Item(c.NAV_TAKEOFF, None, 3.0), Item(c.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
+    p.start_mission(UP, Item(MavCmd.NAV_TAKEOFF, None, 3.0), Item(MavCmd.NAV_DELAY, None, 0.0, (5.0,)), DOWN)
     p.fly(60.0, lambda: 3 in p.reached)
     assert -p.pos[2] == pytest.approx(10.0, abs=0.5)
 
@@ -262,11 +269,11 @@ def test_a_take_off_never_descends(core: Core) -> None:
 def test_spline_waypoints(core: Core) -> None:
     """Against ArduPilot 4.7 with the same items: times from the take-off's end, speeds at the waypoints."""
     p, _ = fly(
-        core, "ardupilot_quad", UP, Item(c.NAV_WAYPOINT, (40.0, 0.0), 15.0),
-        Item(c.NAV_SPLINE_WAYPOINT, (80.0, 20.0), 20.0),
-        Item(c.NAV_SPLINE_WAYPOINT, (80.0, 60.0), 25.0), Item(c.NAV_WAYPOINT, (40.0, 60.0), 15.0),
-        Item(c.NAV_WAYPOINT, (0.0, 60.0), 15.0), Item(c.NAV_SPLINE_WAYPOINT, (0.0, 20.0), 15.0, (2.0,)),
-        Item(c.NAV_SPLINE_WAYPOINT, (0.0, 0.0), 10.0), DOWN,
+        core, "ardupilot_quad", UP, Item(MavCmd.NAV_WAYPOINT, (40.0, 0.0), 15.0),
+        Item(MavCmd.NAV_SPLINE_WAYPOINT, (80.0, 20.0), 20.0),
+        Item(MavCmd.NAV_SPLINE_WAYPOINT, (80.0, 60.0), 25.0), Item(MavCmd.NAV_WAYPOINT, (40.0, 60.0), 15.0),
+        Item(MavCmd.NAV_WAYPOINT, (0.0, 60.0), 15.0), Item(MavCmd.NAV_SPLINE_WAYPOINT, (0.0, 20.0), 15.0, (2.0,)),
+        Item(MavCmd.NAV_SPLINE_WAYPOINT, (0.0, 0.0), 10.0), DOWN,
     )  # fmt: skip
     assert p.reached == [1, 2, 3, 4, 5, 6, 7, 8]
     up = p.reached_at(1)
@@ -286,7 +293,7 @@ def test_spline_waypoints(core: Core) -> None:
 
 def test_a_mission_ends_at_a_spline_waypoint(core: Core) -> None:
     """It stays there (as ArduPilot does), slow enough for its climb: 25.8 s from 10 m to 60 m, 72 m away."""
-    p, _ = fly(core, "ardupilot_quad", UP, Item(c.NAV_SPLINE_WAYPOINT, (60.0, 40.0), 60.0), seconds=60.0)
+    p, _ = fly(core, "ardupilot_quad", UP, Item(MavCmd.NAV_SPLINE_WAYPOINT, (60.0, 40.0), 60.0), seconds=60.0)
     assert p.reached_at(2) - p.reached_at(1) == pytest.approx(25.76, rel=0.05)
     p.fly(5.0)
     assert p.mode == AUTO and p.armed
@@ -296,9 +303,9 @@ def test_a_mission_ends_at_a_spline_waypoint(core: Core) -> None:
 def test_loiter_to_altitude(core: Core) -> None:
     """Up on the way, then straight down, and up and down where it is: times as ArduPilot 4.7 takes them."""
     p, _ = fly(
-        core, "ardupilot_quad", UP, Item(c.NAV_LOITER_TO_ALT, (30.0, 0.0), 40.0),
-        Item(c.NAV_LOITER_TO_ALT, None, 20.0), Item(c.NAV_LOITER_TO_ALT, (30.0, 30.0), 20.0),
-        Item(c.NAV_LOITER_TO_ALT, None, 5.0), Item(c.NAV_RETURN_TO_LAUNCH),
+        core, "ardupilot_quad", UP, Item(MavCmd.NAV_LOITER_TO_ALT, (30.0, 0.0), 40.0),
+        Item(MavCmd.NAV_LOITER_TO_ALT, None, 20.0), Item(MavCmd.NAV_LOITER_TO_ALT, (30.0, 30.0), 20.0),
+        Item(MavCmd.NAV_LOITER_TO_ALT, None, 5.0), Item(MavCmd.NAV_RETURN_TO_LAUNCH),
     )  # fmt: skip
     assert p.reached == [1, 6]  # of LOITER_TO_ALT ArduPilot tells nothing
     begun = {seq: next(t.time for t in p.texts if t.text.startswith(f"Mission: {seq} ")) for seq in range(2, 7)}
@@ -314,7 +321,7 @@ def test_loiter_to_altitude(core: Core) -> None:
 def test_circles_are_told_and_counted_in_whole_ones(core: Core) -> None:
     """Times are those of a real ArduPilot, which flies 2.25 circles as 2: 18.7 and 18.0 s."""
     p = Aviator(core, "ardupilot_quad").ready()
-    p.start_mission(UP, Item(c.NAV_LOITER_TURNS, (20.0, 0.0), 10.0, (2.25, 0.0, 10.0)), DOWN)
+    p.start_mission(UP, Item(MavCmd.NAV_LOITER_TURNS, (20.0, 0.0), 10.0, (2.25, 0.0, 10.0)), DOWN)
     assert p.fly(120.0, lambda: p.said("Mission: 3 Land"))
     times = {text: time for time, _, text in p.texts}
     told = [times[f"Mission: starting circle {k}/2"] for k in (1, 2, 3)]
@@ -325,7 +332,7 @@ def test_circles_are_told_and_counted_in_whole_ones(core: Core) -> None:
 def test_a_part_of_a_circle(core: Core) -> None:
     """Half of one: 9.7 s."""
     p = Aviator(core, "ardupilot_quad").ready()
-    p.start_mission(UP, Item(c.NAV_LOITER_TURNS, (20.0, 0.0), 10.0, (0.5, 0.0, 10.0)), DOWN)
+    p.start_mission(UP, Item(MavCmd.NAV_LOITER_TURNS, (20.0, 0.0), 10.0, (0.5, 0.0, 10.0)), DOWN)
     assert p.fly(120.0, lambda: p.said("Mission: 3 Land"))
     told = [time for time, _, text in p.texts if "starting circle 1/0" in text]
     assert p.reached_at(2) - told[0] == pytest.approx(9.7, abs=0.1)
@@ -336,7 +343,9 @@ def test_states_of_a_mission_that_is_left_and_paused(core: Core) -> None:
     """Left is not started, as ArduPilot tells it; a pause is one only on a way."""
     not_started, active, paused = 2, 3, 4
     p = Aviator(core, "ardupilot_quad").ready()
-    p.start_mission(UP, Item(c.NAV_WAYPOINT, (60.0, 0.0), 10.0), Item(c.NAV_LOITER_TURNS, (60.0, 0.0), 10.0, (1.0,)))
+    p.start_mission(
+        UP, Item(MavCmd.NAV_WAYPOINT, (60.0, 0.0), 10.0), Item(MavCmd.NAV_LOITER_TURNS, (60.0, 0.0), 10.0, (1.0,))
+    )
 
     def state() -> tuple[int, int]:
         with p.messages("MISSION_CURRENT") as found:
@@ -364,8 +373,8 @@ def test_states_of_a_mission_that_is_left_and_paused(core: Core) -> None:
 def test_the_item_is_chosen_again(core: Core) -> None:
     """224: 0 is the first item, there is no -1; outside of AUTO the next navigation command becomes current."""
     p = Aviator(core, "ardupilot_quad").ready()
-    p.upload(UP, Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(c.DO_CHANGE_SPEED, None, 0.0, (1.0, 3.0)),
-             Item(c.NAV_WAYPOINT, (20.0, 20.0), 10.0))  # fmt: skip
+    p.upload(UP, Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(MavCmd.DO_CHANGE_SPEED, None, 0.0, (1.0, 3.0)),
+             Item(MavCmd.NAV_WAYPOINT, (20.0, 20.0), 10.0))  # fmt: skip
     for params, result, current in (((3, 0), 0, 4), ((-1, 1), 2, 4), ((0, 1), 0, 1), ((2.5, 2), 0, 2), ((9, 1), 2, 2)):
         assert p.ask(224, *params) == result
         assert p.ap.modes.nav.mission_current == current
@@ -390,7 +399,7 @@ def test_a_boot_clears_the_mission_if_it_is_asked_to(core: Core, options: int, i
 def test_a_complete_mission_runs_again_when_it_is_reset(core: Core) -> None:
     """224 with p2 0, and MISSION_SET_CURRENT, choose the item alone; with p2 1 AUTO flies there. So does ArduCopter."""
     p = Aviator(core, AIRFRAMES[0]).ready()
-    p.start_mission(UP, Item(c.NAV_WAYPOINT, (5.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (10.0, 0.0), 10.0))
+    p.start_mission(UP, Item(MavCmd.NAV_WAYPOINT, (5.0, 0.0), 10.0), Item(MavCmd.NAV_WAYPOINT, (10.0, 0.0), 10.0))
     p.fly(60.0, lambda: 3 in p.reached)
     p.fly(3.0)
     assert p.ask(224, 2, 0) == 0

@@ -6,12 +6,12 @@ from __future__ import annotations
 import pytest
 
 from sitl import Simulation
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.client import Client
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 
-HOME = MissionItem(c.NAV_WAYPOINT, 0)
+HOME = MissionItem(MavCmd.NAV_WAYPOINT, 0)
 
 
 @pytest.fixture(scope="module")
@@ -49,17 +49,24 @@ def test_a_height_for_guided_is_taken_without_effect(copter: Client) -> None:
 
 @pytest.mark.parametrize(("tag", "result"), [(7.0, 0), (8.0, 4), (65535.0, 4), (65536.0, 2)])
 def test_jump_to_a_tag(copter: Client, tag: float, result: int) -> None:
-    copter.upload([HOME, MissionItem(c.NAV_TAKEOFF, z=10.0), MissionItem(c.JUMP_TAG, p1=7.0), MissionItem(c.NAV_LAND)])
+    copter.upload(
+        [
+            HOME,
+            MissionItem(MavCmd.NAV_TAKEOFF, z=10.0),
+            MissionItem(MavCmd.JUMP_TAG, p1=7.0),
+            MissionItem(MavCmd.NAV_LAND),
+        ]
+    )
     with copter.messages("COMMAND_ACK") as acks:
-        copter.send("COMMAND_LONG", command=c.DO_JUMP_TAG, param1=tag)
+        copter.send("COMMAND_LONG", command=MavCmd.DO_JUMP_TAG, param1=tag)
         copter.delay(0.2)
     assert [ack.result for ack in acks] == [result]
     assert copter.telemetry.item == (3 if result == 0 else copter.telemetry.item)
 
 
 def test_a_delay_before_the_take_off(copter: Client) -> None:
-    delay, takeoff = MissionItem(c.NAV_DELAY, p1=20.0), MissionItem(c.NAV_TAKEOFF, z=10.0)
-    copter.upload([HOME, delay, takeoff, MissionItem(c.NAV_LAND)])
+    delay, takeoff = MissionItem(MavCmd.NAV_DELAY, p1=20.0), MissionItem(MavCmd.NAV_TAKEOFF, z=10.0)
+    copter.upload([HOME, delay, takeoff, MissionItem(MavCmd.NAV_LAND)])
     copter.send("MISSION_SET_CURRENT", seq=0)
     copter.params["AUTO_OPTIONS"] = 3.0
     copter.params["DISARM_DELAY"] = 0.0  # else it disarms after 10 s on the ground

@@ -8,14 +8,14 @@ import math
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, AUTO, GUIDED, Aviator, Item
 
 BOTH = pytest.mark.parametrize("frame", AIRFRAMES)
-UP = Item(c.NAV_TAKEOFF, None, 10.0)
-DOWN = Item(c.NAV_LAND)
-SQUARE = (UP, *(Item(c.NAV_WAYPOINT, place, 10.0) for place in ((30.0, 0.0), (30.0, 30.0), (0.0, 30.0))), DOWN)
+UP = Item(MavCmd.NAV_TAKEOFF, None, 10.0)
+DOWN = Item(MavCmd.NAV_LAND)
+SQUARE = (UP, *(Item(MavCmd.NAV_WAYPOINT, place, 10.0) for place in ((30.0, 0.0), (30.0, 30.0), (0.0, 30.0))), DOWN)
 
 
 def under_way(core: Core, frame: str, seconds: float, *items: Item, **params: float) -> Aviator:
@@ -32,8 +32,8 @@ def test_corners(core: Core, frame: str, angle: int) -> None:
     """Cut within WPNAV_RADIUS (2 m) at level height, a sharp one nearly at a stop."""
     a, leg = math.radians(angle), 60.0
     back = (leg + leg * math.cos(a), leg * math.sin(a))
-    corner = (Item(c.NAV_WAYPOINT, place, 10.0) for place in ((leg, 0.0), back))
-    p = under_way(core, frame, 45.0, UP, *corner, Item(c.NAV_RETURN_TO_LAUNCH))
+    corner = (Item(MavCmd.NAV_WAYPOINT, place, 10.0) for place in ((leg, 0.0), back))
+    p = under_way(core, frame, 45.0, UP, *corner, Item(MavCmd.NAV_RETURN_TO_LAUNCH))
     rows = p.since(0.0)
     near = rows[np.abs(rows[:, 0] - p.reached_at(2)) < 4.0]
     assert np.hypot(near[:, 1] - leg, near[:, 2]).min() < 3.0
@@ -47,7 +47,7 @@ def test_corners(core: Core, frame: str, angle: int) -> None:
 @BOTH
 def test_very_short_legs(core: Core, frame: str) -> None:
     places = [(0.5 * k, 0.3 * (k % 2)) for k in range(1, 12)] + [(5.5, 0.3)] * 3
-    p = under_way(core, frame, 60.0, UP, *(Item(c.NAV_WAYPOINT, place, 10.0) for place in places), DOWN)
+    p = under_way(core, frame, 60.0, UP, *(Item(MavCmd.NAV_WAYPOINT, place, 10.0) for place in places), DOWN)
     assert not p.armed
     assert len(p.reached) == 1 + len(places)
 
@@ -56,8 +56,8 @@ def test_very_short_legs(core: Core, frame: str) -> None:
 def test_five_kilometres(core: Core, wind: float) -> None:
     """At 15 m/s and with side wind, climbing all the way."""
     p = under_way(
-        core, "erle_copter", 470.0, UP, Item(c.NAV_WAYPOINT, (5000.0, 0.0), 60.0),
-        Item(c.NAV_WAYPOINT, (5000.0, 300.0), 20.0), DOWN,
+        core, "erle_copter", 470.0, UP, Item(MavCmd.NAV_WAYPOINT, (5000.0, 0.0), 60.0),
+        Item(MavCmd.NAV_WAYPOINT, (5000.0, 300.0), 20.0), DOWN,
         WPNAV_SPEED=1500, SIM_WIND_SPD=wind, SIM_WIND_TURB=wind / 5.0, SIM_WIND_DIR=90,
     )  # fmt: skip
     assert not p.armed
@@ -92,7 +92,10 @@ def test_set_current_in_flight(core: Core, frame: str) -> None:
 @BOTH
 def test_upload_in_flight_goes_on_with_the_new_items(core: Core, frame: str) -> None:
     p = under_way(core, frame, 13.0)
-    assert p.upload(UP, Item(c.NAV_WAYPOINT, (0.0, 0.0), 12.0), Item(c.NAV_WAYPOINT, (-20.0, 0.0), 12.0), DOWN) == 0
+    assert (
+        p.upload(UP, Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0), 12.0), Item(MavCmd.NAV_WAYPOINT, (-20.0, 0.0), 12.0), DOWN)
+        == 0
+    )
     p.wait_disarmed(80.0)
     assert p.reached == [1, 2, 3]
     assert p.pos[:2] == pytest.approx([-20.0, 0.0], abs=1.2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import Aviator, Item
 
@@ -16,7 +16,7 @@ AUX, GRIPPER = 218, 19
 
 def mission(p: Aviator, *items: Item, seconds: float = 150.0) -> float:
     """Fly a take-off to 6 m, items, and a return; when it began."""
-    p.start_mission(Item(c.NAV_TAKEOFF, None, 6.0), *items, Item(c.NAV_RETURN_TO_LAUNCH))
+    p.start_mission(Item(MavCmd.NAV_TAKEOFF, None, 6.0), *items, Item(MavCmd.NAV_RETURN_TO_LAUNCH))
     start = p.now
     p.fly(seconds, lambda: not p.armed)
     return start
@@ -25,7 +25,7 @@ def mission(p: Aviator, *items: Item, seconds: float = 150.0) -> float:
 def test_a_load_is_placed(core: Core) -> None:
     """At its place: down to the ground, the gripper opens, up again, on."""
     p = Aviator(core, **GRIP, PLDP_DELAY=2.0).ready()
-    start = mission(p, Item(c.NAV_PAYLOAD_PLACE, (4.0, 3.0)))
+    start = mission(p, Item(MavCmd.NAV_PAYLOAD_PLACE, (4.0, 3.0)))
     texts = ["PayloadPlace: payload release thrust threshold", "PayloadPlace: Releasing the gripper"]
     texts += ["Gripper load releasing", "Gripper load released", "Mission: 3 RTL"]
     times = [min(t for t, _, said in p.texts if said.startswith(text)) for text in texts]
@@ -43,7 +43,7 @@ def test_a_load_is_placed(core: Core) -> None:
 
 def test_a_load_that_finds_no_ground_is_brought_back(core: Core) -> None:
     p = Aviator(core, **GRIP).ready()
-    start = mission(p, Item(c.NAV_PAYLOAD_PLACE, None, p=(2.0,)))
+    start = mission(p, Item(MavCmd.NAV_PAYLOAD_PLACE, None, p=(2.0,)))
     assert p.said("PayloadPlace: Reached maximum descent")
     assert not p.said("Gripper load")
     rows = p.since(start)
@@ -56,7 +56,7 @@ def test_nothing_is_placed_with_an_open_gripper(core: Core) -> None:
     p = Aviator(core, **GRIP).ready()
     p.ask(AUX, GRIPPER, 0)
     p.fly(1.0)
-    mission(p, Item(c.NAV_PAYLOAD_PLACE, (4.0, 3.0)))
+    mission(p, Item(MavCmd.NAV_PAYLOAD_PLACE, (4.0, 3.0)))
     assert p.said("PayloadPlace: Abort: Gripper Open")
     assert p.reached_at(2) - p.reached_at(1) < 1.0
     assert p.reached == [1, 2, 3]

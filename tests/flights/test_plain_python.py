@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
-from sitl.autopilot.mission import item as c
+from benchmarks.recorded.pilot import VELOCITY_ONLY
 from sitl.core import records
-from sitl.missions.pilot import VELOCITY_ONLY
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import (
     ACRO,
@@ -56,7 +56,7 @@ def then(mode: int, seconds: float) -> Callable[[Aviator], None]:
 
 def mission(*items: Item, seconds: float) -> Callable[[Aviator], None]:
     def fly(p: Aviator) -> None:
-        assert p.upload(Item(c.NAV_TAKEOFF, z=10.0), *items) == 0
+        assert p.upload(Item(MavCmd.NAV_TAKEOFF, z=10.0), *items) == 0
         p.set_mode(AUTO)
         p.fly(seconds)
         assert p.mode == AUTO
@@ -96,7 +96,7 @@ def in_wind(p: Aviator) -> None:
     p.fly(2.0)
 
 
-CORNER = (Item(c.NAV_WAYPOINT, (15.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (15.0, 15.0), 12.0))
+CORNER = (Item(MavCmd.NAV_WAYPOINT, (15.0, 0.0), 10.0), Item(MavCmd.NAV_WAYPOINT, (15.0, 15.0), 12.0))
 PHASES: dict[str, Callable[[Aviator], None]] = {
     "stabilize": by_sticks(STABILIZE),
     "alt_hold": by_sticks(ALT_HOLD),
@@ -117,7 +117,7 @@ PHASES: dict[str, Callable[[Aviator], None]] = {
     "guided, attitude": attitude,
     "guided, in wind": in_wind,
     "auto, at a corner": mission(*CORNER, seconds=5.0),
-    "auto, circling": mission(Item(c.NAV_LOITER_TURNS, (0.0, 0.0), 10.0, (3.0, 0.0, 5.0)), seconds=8.0),
+    "auto, circling": mission(Item(MavCmd.NAV_LOITER_TURNS, (0.0, 0.0), 10.0, (3.0, 0.0, 5.0)), seconds=8.0),
 }
 
 

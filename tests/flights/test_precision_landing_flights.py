@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
 from sitl.core.algebra import rotate_inverse
+from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3
 from sitl.simulation import Core
 from sitl.vehicle.landing_beacon import place_of
@@ -214,7 +214,7 @@ def test_rtl_and_missions_land_on_the_beacon(core: Core) -> None:
     assert p.set_mode(RTL)
     p.wait_disarmed(60.0)
     assert aside(p, place) < 0.1
-    assert p.upload(Item(c.NAV_TAKEOFF, z=8.0), Item(c.NAV_LAND, (0.0, 0.0))) == 0
+    assert p.upload(Item(MavCmd.NAV_TAKEOFF, z=8.0), Item(MavCmd.NAV_LAND, (0.0, 0.0))) == 0
     assert p.set_mode(AUTO)
     p.arm()
     assert p.fly(40.0, lambda: p.height > 5.0)

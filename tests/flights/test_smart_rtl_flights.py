@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.missions.pilot import ARM
+from benchmarks.recorded.pilot import ARM
 from sitl.simulation import Core
 from tests.flights.aviator import GUIDED, LOITER, POSITION, SMART_RTL, Aviator
 

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
-from sitl.missions.pilot import ARM
+from benchmarks.recorded.pilot import ARM
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, RTL, STABILIZE, Aviator, Item
 from tests.pilots.witness import LOW, MIDDLE, ByDice
@@ -141,10 +141,10 @@ class Soak(ByDice, Aviator):
     def command(self) -> None:
         d = self.dice
         number, params = d.choice(
-            ((c.CONDITION_YAW, (d.uniform(0, 360), d.uniform(0, 60), d.choice((-1, 0, 1)), d.choice((0, 1)))),
+            ((MavCmd.CONDITION_YAW, (d.uniform(0, 360), d.uniform(0, 60), d.choice((-1, 0, 1)), d.choice((0, 1)))),
              (CHANGE_SPEED, (d.choice((0, 1, 2, 3)), d.uniform(0.5, 8))),
              (PAUSE, (d.choice((0, 1)),)),
-             (c.NAV_TAKEOFF, (0, 0, 0, 0, 0, 0, d.uniform(1, 20))),
+             (MavCmd.NAV_TAKEOFF, (0, 0, 0, 0, 0, 0, d.uniform(1, 20))),
              (ARM, (d.choice((0, 1)),)),
              (MISSION_CURRENT, (d.randint(0, 5),)),
              (300, (0, 0)))
@@ -159,7 +159,7 @@ class Soak(ByDice, Aviator):
 
     def load_mission(self) -> None:
         count = self.dice.randint(1, 8)
-        items = [Item(c.NAV_TAKEOFF, None, 8.0), *(self.item(1 + count) for _ in range(count))]
+        items = [Item(MavCmd.NAV_TAKEOFF, None, 8.0), *(self.item(1 + count) for _ in range(count))]
         assert self.upload(*items) == 0, self.story()
 
     def item(self, last: int) -> Item:
@@ -168,16 +168,16 @@ class Soak(ByDice, Aviator):
         place = (d.uniform(-50, 50), d.uniform(-50, 50))
         height = d.uniform(3, 25)
         return d.choice(
-            (Item(c.NAV_WAYPOINT, place, height), Item(c.NAV_WAYPOINT, place, height, (d.randint(0, 3),)),
-             Item(c.NAV_LOITER_TIME, place, height, (d.randint(0, 5),)),
-             Item(c.NAV_LOITER_TURNS, place, height, (d.randint(1, 2), 0, d.uniform(-12, 12), 1)),
-             Item(c.NAV_DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
-             Item(c.DO_CHANGE_SPEED, None, 0, (1, d.uniform(1, 10), -1)),
-             Item(c.CONDITION_YAW, None, 0, (d.uniform(0, 360), d.uniform(10, 60), d.choice((-1, 0, 1)), 0)),
-             Item(c.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
-             Item(c.DO_SET_ROI_LOCATION, place, 0), Item(c.DO_SET_ROI_NONE),
-             Item(c.DO_JUMP, None, 0, (min(d.randint(1, 3), last), d.randint(1, 2))),
-             Item(c.NAV_RETURN_TO_LAUNCH), Item(c.NAV_LAND), Item(c.NAV_LAND, place))
+            (Item(MavCmd.NAV_WAYPOINT, place, height), Item(MavCmd.NAV_WAYPOINT, place, height, (d.randint(0, 3),)),
+             Item(MavCmd.NAV_LOITER_TIME, place, height, (d.randint(0, 5),)),
+             Item(MavCmd.NAV_LOITER_TURNS, place, height, (d.randint(1, 2), 0, d.uniform(-12, 12), 1)),
+             Item(MavCmd.NAV_DELAY, None, 0, (d.randint(0, 4), -1, -1, -1)),
+             Item(MavCmd.DO_CHANGE_SPEED, None, 0, (1, d.uniform(1, 10), -1)),
+             Item(MavCmd.CONDITION_YAW, None, 0, (d.uniform(0, 360), d.uniform(10, 60), d.choice((-1, 0, 1)), 0)),
+             Item(MavCmd.CONDITION_DELAY, None, 0, (d.uniform(0, 5),)),
+             Item(MavCmd.DO_SET_ROI_LOCATION, place, 0), Item(MavCmd.DO_SET_ROI_NONE),
+             Item(MavCmd.DO_JUMP, None, 0, (min(d.randint(1, 3), last), d.randint(1, 2))),
+             Item(MavCmd.NAV_RETURN_TO_LAUNCH), Item(MavCmd.NAV_LAND), Item(MavCmd.NAV_LAND, place))
         )  # fmt: skip
 
 

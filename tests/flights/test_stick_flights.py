@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from sitl.missions.pilot import ARM, FlightError
+from benchmarks.recorded.pilot import ARM, FlightError
 from sitl.physics.native import truth
 from sitl.simulation import Core
 from tests.flights.aviator import AIRFRAMES, ALT_HOLD, GUIDED, LOITER, STABILIZE, Aviator

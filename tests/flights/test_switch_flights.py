@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
-from sitl.missions.pilot import ARM
+from benchmarks.recorded.pilot import ARM
+from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.flights.aviator import ALT_HOLD, AUTO, BRAKE, GUIDED, LAND, LOITER, STABILIZE, Aviator
 from tests.pilots.witness import KEEP, LOW, Item
@@ -140,11 +140,11 @@ def test_a_mission_is_saved_by_switch(core: Core) -> None:
     p.hold()
     items = p.simulation.mission.items
     assert [item.command for item in items] == [
-        c.NAV_WAYPOINT,
-        c.NAV_TAKEOFF,
-        c.NAV_WAYPOINT,
-        c.NAV_WAYPOINT,
-        c.NAV_LAND,
+        MavCmd.NAV_WAYPOINT,
+        MavCmd.NAV_TAKEOFF,
+        MavCmd.NAV_WAYPOINT,
+        MavCmd.NAV_WAYPOINT,
+        MavCmd.NAV_LAND,
     ]
     assert items[2].z == pytest.approx(15.0, abs=0.5)
     there = np.hypot(*np.subtract(items[3][6:8], p.lat_lon(*p.pos[:2]))) * 0.0111
@@ -157,7 +157,7 @@ def test_a_mission_is_saved_by_switch(core: Core) -> None:
 
 def test_a_switch_clears_the_mission_or_takes_it_back_to_its_start(core: Core) -> None:
     p = with_switch(core, 24)
-    p.upload(Item(c.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(c.NAV_WAYPOINT, (20.0, 20.0), 10.0))
+    p.upload(Item(MavCmd.NAV_WAYPOINT, (20.0, 0.0), 10.0), Item(MavCmd.NAV_WAYPOINT, (20.0, 20.0), 10.0))
     p.ask(224, 2)
     assert p.ap.modes.nav.mission_current == 2
     move_switch(p, 7, HIGH)
@@ -220,17 +220,17 @@ def test_switches_of_modes_of_the_real_one_are_there(core: Core) -> None:
 def flown(core: Core, *items: Item) -> Aviator:
     """After a mission with a take-off, these items, and a return: disarmed, or a minute later."""
     p = Aviator(core).ready()
-    p.start_mission(Item(c.NAV_TAKEOFF, None, 10.0), *items, Item(c.NAV_RETURN_TO_LAUNCH))
+    p.start_mission(Item(MavCmd.NAV_TAKEOFF, None, 10.0), *items, Item(MavCmd.NAV_RETURN_TO_LAUNCH))
     p.fly(60.0, lambda: not p.armed)
     return p
 
 
 def test_a_mission_moves_switches(core: Core) -> None:
     """DO_AUX_FUNCTION: whatever the position, the mission goes on; a function that is not known is told."""
-    function = c.DO_AUX_FUNCTION
+    function = MavCmd.DO_AUX_FUNCTION
     p = flown(
-        core, Item(function, p=(999.0, 2.0)), Item(c.NAV_WAYPOINT, (3.0, 0.0), 10.0),
-        Item(function, p=(58.0, 3.0)), Item(c.NAV_WAYPOINT, (0.0, 0.0), 10.0),
+        core, Item(function, p=(999.0, 2.0)), Item(MavCmd.NAV_WAYPOINT, (3.0, 0.0), 10.0),
+        Item(function, p=(58.0, 3.0)), Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0), 10.0),
     )  # fmt: skip
     assert not p.armed
     assert p.said("Mission: 2 AuxFunction")
@@ -240,7 +240,7 @@ def test_a_mission_moves_switches(core: Core) -> None:
 
 def test_a_mission_leaves_itself_by_a_switch(core: Core) -> None:
     """BRAKE by function 33: the mission stops, and its next command is not flown."""
-    p = flown(core, Item(c.DO_AUX_FUNCTION, p=(33.0, 2.0)), Item(c.NAV_WAYPOINT, (30.0, 0.0), 10.0))
+    p = flown(core, Item(MavCmd.DO_AUX_FUNCTION, p=(33.0, 2.0)), Item(MavCmd.NAV_WAYPOINT, (30.0, 0.0), 10.0))
     assert p.armed
     assert p.mode == BRAKE
     assert abs(p.pos[0]) < 1.0
@@ -251,7 +251,7 @@ def test_a_mission_leaves_itself_by_a_switch(core: Core) -> None:
 def test_a_mission_that_starts_itself_again_goes_on(core: Core) -> None:
     """Function 24 sets the mission back to its start, again and again: time goes on, and the vehicle flies."""
     p = Aviator(core).ready()
-    p.start_mission(Item(c.NAV_TAKEOFF, None, 10.0), Item(c.DO_AUX_FUNCTION, p=(24.0, 2.0)))
+    p.start_mission(Item(MavCmd.NAV_TAKEOFF, None, 10.0), Item(MavCmd.DO_AUX_FUNCTION, p=(24.0, 2.0)))
     p.fly(20.0)
     assert p.armed
     assert p.pos[2] < -8.0

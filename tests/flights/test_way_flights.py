@@ -59,7 +59,7 @@ def path_to(
 
 def room(pilot: Client, places: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
     """The least distance to the areas [m]; below 0: within one."""
-    return float(Map(pilot.simulation.v.autopilot.fence, 5.0).room(places).min())
+    return float(Map(pilot.simulation.v.autopilot.fence, 5.0).clearance(places).min())
 
 
 @pytest.mark.parametrize(("kind", "least", "seconds"), [(1, 4.0, 25.4), (2, 4.5, 21.0)], ids=["BendyRuler", "Dijkstra"])

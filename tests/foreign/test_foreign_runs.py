@@ -11,6 +11,7 @@ import sys
 
 import pytest
 
+from benchmarks.recorded import __main__ as compare
 from sitl.bridge.dialect import message
 from sitl.errors import LinkLostError, OptionError
 from sitl.foreign.choice import choose
@@ -18,7 +19,6 @@ from sitl.foreign.process import AutopilotEndedError
 from sitl.foreign.px4_session import Px4Session
 from sitl.foreign.session import ArduPilotSession
 from sitl.logs.tlog import read_tlog
-from sitl.missions import compare
 from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults, Setup

@@ -13,8 +13,9 @@ from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.bridge.hil import controls
 from sitl.bridge.hil.physics_end import PhysicsEnd
-from sitl.bridge.hil.protocol import ARMED, LOCKSTEP
+from sitl.bridge.hil.protocol import LOCKSTEP
 from sitl.bridge.hil.truth import TRUTH_KIND
+from sitl.core.mavlink import MavModeFlag
 from sitl.foreign.hil_ticks import HilTicks
 from sitl.plants.json_link import wait_in_kernel
 from sitl.plants.local import stand_alone
@@ -29,7 +30,7 @@ _HEARTBEAT, _COMMAND = message("HEARTBEAT"), message("COMMAND_LONG")
 def answer(time_us: int, output: float = 0.4) -> bytes:
     """What PX4 says to a tick."""
     outputs = [output + 0.05 * math.sin(1e-5 * time_us + k) for k in range(4)] + [0.0] * 12
-    return encode_v2(controls.KIND, controls.KIND.pack(time_us, LOCKSTEP, *outputs, ARMED), 7, 1, 1)
+    return encode_v2(controls.KIND, controls.KIND.pack(time_us, LOCKSTEP, *outputs, MavModeFlag.SAFETY_ARMED), 7, 1, 1)
 
 
 class Px4:

@@ -16,13 +16,13 @@ import numpy as np
 import pytest
 
 import sitl.envs  # noqa: F401
+from benchmarks.recorded import __main__ as compare
 from sitl.client import Client
 from sitl.client.connection import connect
 from sitl.client.endpoint import Inbox
 from sitl.envs.mavlink.foreign import launch
 from sitl.errors import LinkLostError
 from sitl.foreign.choice import choose
-from sitl.missions import compare
 from sitl.missions.testing.factory import VehicleFactory
 from sitl.missions.testing.golden import GoldenStore
 from sitl.missions.testing.setup import Defaults

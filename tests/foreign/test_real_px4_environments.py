@@ -16,7 +16,7 @@ import sitl.envs  # noqa: F401
 from sitl.agents import baselines, learnt
 from sitl.agents.deploy import deploy
 from sitl.client.connection import Remote, connect
-from sitl.client.endpoint import ACCEPTED
+from sitl.core.mavlink import MavResult
 from sitl.envs.mavlink.preparation import mode_parameters
 from sitl.envs.mavlink.px4 import ALTCTL, HOLD, MODES, OFFBOARD, POSCTL
 from sitl.envs.mavlink.telemetry import StepTelemetry
@@ -154,8 +154,10 @@ def test_a_policy_takes_it_over_in_hold_flies_and_hands_it_over_to_be_landed(tmp
     with command("run", "copter", *words, cwd=tmp_path) as process:
         address = line_with(process.stdout, "MAVLink on tcp:").rpartition(" ")[2]
         link = pilot(address)
-        assert waited(link, lambda: link.inbox.mode == HOLD and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED)
-        assert link.command("NAV_TAKEOFF", altitude=590.0) == ACCEPTED
+        assert waited(
+            link, lambda: link.inbox.mode == HOLD and link.command("COMPONENT_ARM_DISARM", arm=1) == MavResult.ACCEPTED
+        )
+        assert link.command("NAV_TAKEOFF", altitude=590.0) == MavResult.ACCEPTED
         assert waited(link, lambda: link.inbox.mode == HOLD and link.inbox.position[3] < -2.0)
         link.close()
         policy = learnt.load(baselines.find("copter-waypoint"))
@@ -164,7 +166,7 @@ def test_a_policy_takes_it_over_in_hold_flies_and_hands_it_over_to_be_landed(tmp
         assert [deed.what for deed in done.deeds if deed.what != "limited"] == 2 * ["taken over"] + ["handed over"]
         link = pilot(address)
         assert waited(link, lambda: link.inbox.mode == HOLD, 5.0)
-        assert link.command("DO_SET_MODE", *mode_parameters(MODES["LAND"])) == ACCEPTED
+        assert link.command("DO_SET_MODE", *mode_parameters(MODES["LAND"])) == MavResult.ACCEPTED
         assert waited(link, lambda: not link.inbox.armed)
         link.close()
         process.terminate()

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sitl import vehicles, worlds
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.errors import OptionError
 from sitl.missions import library
 from sitl.missions.files import for_vehicle, load
@@ -68,7 +68,7 @@ def test_a_mission_without_landing_ends_in_the_air() -> None:
 
 
 def test_a_stay_without_end_runs_into_the_limit() -> None:
-    outcome = flown(copter().add(c.NAV_LOITER_UNLIM, at=(5, 0), z=5.0).land(), limit_s=40.0)
+    outcome = flown(copter().add(MavCmd.NAV_LOITER_UNLIM, at=(5, 0), z=5.0).land(), limit_s=40.0)
     assert not outcome.completed
     assert outcome.reason == "not ended after 40 s, at item 2 of 3"
 
@@ -148,7 +148,10 @@ def test_the_fence_of_a_plan_is_uploaded_and_heeded(radius: float) -> None:
     """Within the plan's own circle the mission is flown; a smaller one ends it on the way out, and it returns."""
     file = load(library.find("copter/fence_and_rally").path)
     assert file.home is not None
-    fence = tuple(item._replace(p1=radius) if item.command == c.FENCE_CIRCLE else item for item in file.fence_items)
+    fence = tuple(
+        item._replace(p1=radius) if item.command == MavCmd.NAV_FENCE_CIRCLE_INCLUSION else item
+        for item in file.fence_items
+    )
     simulation = Simulation("erle_copter", home=(*file.home, 0.0), params={"FENCE_ENABLE": 1})
     try:
         outcome = fly(simulation, file.mission, fence=fence, rally=file.rally_items)

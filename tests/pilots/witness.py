@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sitl.autopilot.mission import item as c
+from benchmarks.recorded.pilot import ARM, Pilot
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.modes import shown
 from sitl.client import MissionRefusedError
 from sitl.core.geodesy import add_offset
-from sitl.missions.pilot import ARM, Pilot
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.physics.native import truth
 from sitl.simulation import Core, Simulation
 
@@ -31,7 +31,7 @@ class Item(NamedTuple):
     place: tuple[float, float] | None = None
     z: float = 0.0
     p: tuple[float, ...] = ()
-    frame: int = c.RELATIVE_INT
+    frame: int = MavFrame.GLOBAL_RELATIVE_ALT_INT
 
 
 @cache
@@ -194,7 +194,7 @@ class Witness(Pilot):
 
     def upload(self, *items: Item) -> int:
         """Upload items (home is put in front) by the mission protocol; the MAV_MISSION_RESULT."""
-        home = Item(c.NAV_WAYPOINT, (0.0, 0.0), 584.0, frame=c.GLOBAL_INT)
+        home = Item(MavCmd.NAV_WAYPOINT, (0.0, 0.0), 584.0, frame=MavFrame.GLOBAL_INT)
         try:
             self.transfer([self._mission_item(item) for item in (home, *items)])
         except MissionRefusedError as error:

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot
 from sitl import vehicles
 from sitl.core.constants import NEVER, TICK_US
-from sitl.missions.pilot import Pilot
 from sitl.simulation import Core, Simulation
 from sitl.worlds import Box, Start, World
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl.core import records
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Core, OptionError, Simulation
 from sitl.worlds import Box, Start, World, WorldError, contact, names

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.recorded.pilot import VELOCITY_ONLY, Pilot
 from sitl.client.endpoint import Endpoint
-from sitl.missions.pilot import VELOCITY_ONLY, Pilot
 from sitl.recording.recorder import Recorder
 from sitl.simulation import Core, Simulation
 

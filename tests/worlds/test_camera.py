@@ -25,7 +25,7 @@ def place(x, y, z, yaw=0.0, pitch=0.0, roll=0.0):
     return [x, -y, -z, *quat_from_euler(Euler(roll, pitch, -yaw))]
 
 
-def room(*solids, markings=()):
+def workspace(*solids, markings=()):
     return World("room", solids, (Start("here", (0.0, 0.0, 0.0), 0.0),), markings=markings)
 
 
@@ -53,7 +53,7 @@ def test_depths_are_those_of_single_rays_from_anywhere(name):
 
 
 def test_a_wall_is_as_deep_everywhere_and_the_sky_is_far():
-    world = room(Box((5.0, 0.0, 50.0), (1.0, 100.0, 200.0)))
+    world = workspace(Box((5.0, 0.0, 50.0), (1.0, 100.0, 200.0)))
     ahead, behind = Photographer(world, OPTICS).depths(
         np.array([place(0.0, 0.0, 3.0, 0.0, 0.3), place(0.0, 0.0, 3.0, math.pi, 0.8)])
     )
@@ -65,7 +65,7 @@ def test_a_wall_is_as_deep_everywhere_and_the_sky_is_far():
 
 
 def test_colours_are_those_of_solids_and_markings_in_the_sun():
-    world = room(
+    world = workspace(
         Box((5.0, 0.0, 1.0), (1.0, 1.0, 2.0), 0.0, "crate", "red"),
         Cylinder((-5.0, 0.0, 1.0), 0.5, 2.0, "post", "green"),
         markings=(Marking((0.0, 0.0), 1.0, colour="yellow"),),
@@ -85,7 +85,7 @@ def test_colours_are_those_of_solids_and_markings_in_the_sun():
 
 
 def test_sides_are_lit_differently():
-    world = room(Box((0.0, 0.0, 1.0), (2.0, 2.0, 2.0), 0.0, "crate", "white"))
+    world = workspace(Box((0.0, 0.0, 1.0), (2.0, 2.0, 2.0), 0.0, "crate", "white"))
     around = [place(-4.0 * math.cos(a), -4.0 * math.sin(a), 1.0, a) for a in (0.0, math.pi / 2, math.pi)]
     above = place(0.0, 0.0, 6.0, 0.0, -math.pi / 2)
     sides = Photographer(world, OPTICS).colours(np.array([*around, above]))[:, 12, 16, 0].tolist()
@@ -94,5 +94,5 @@ def test_sides_are_lit_differently():
 
 
 def test_a_camera_within_a_solid_sees_no_depth():
-    world = room(Box((0.0, 0.0, 1.0), (2.0, 2.0, 2.0)))
+    world = workspace(Box((0.0, 0.0, 1.0), (2.0, 2.0, 2.0)))
     assert (Photographer(world, OPTICS).depths(np.array([place(0.0, 0.0, 1.0)])) == 0.0).all()

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from sitl.bridge.docs import NEWER
 from sitl.client.commands import command_name, command_number
+from sitl.core.mavlink import MavFrame
 
 RANGES = (
     (16, 25), (30, 36), (80, 85), (92, 95), (112, 115), (159, 159), (176, 198), (200, 218), (220, 224), (240, 243),
@@ -22,7 +23,6 @@ RANGES = (
 switch motors off in flight; 42006 and 42424, which calibrate compasses there; the buttons of a Solo, which take off."""
 HERE = (-35.363262, 149.165237)
 """The start of the programs [deg]."""
-RELATIVE = 3
 SET_GLOBAL_ORIGIN = next(number for number, name in NEWER.items() if name == "DO_SET_GLOBAL_ORIGIN")
 
 
@@ -31,7 +31,7 @@ class Case(NamedTuple):
 
     number: int
     params: tuple[float, ...] = ()
-    frame: int = RELATIVE
+    frame: int = MavFrame.GLOBAL_RELATIVE_ALT
     """Of COMMAND_INT."""
     is_place: bool = False
     """The fifth and sixth are degrees."""
@@ -40,7 +40,7 @@ class Case(NamedTuple):
     def name(self) -> str:
         """As "DO_CHANGE_SPEED 1 5"."""
         words = [NEWER.get(self.number) or command_name(self.number), *(f"{x:g}" for x in self.params)]
-        return " ".join([*words, f"frame {self.frame}"] if self.frame != RELATIVE else words)
+        return " ".join([*words, f"frame {self.frame}"] if self.frame != MavFrame.GLOBAL_RELATIVE_ALT else words)
 
 
 EVERY = tuple(Case(n) for low, high in RANGES for n in range(low, high + 1))
@@ -133,8 +133,8 @@ def _places(command: str | int, first: tuple[tuple[float, ...], ...], z: float =
     number, (lat, lon) = command if isinstance(command, int) else command_number(command), HERE
     good = [
         Case(number, (*four, 0, 0, 0, 0)[:4] + (lat, lon, z), frame, True)
-        for four, frame in itertools.product(first, (RELATIVE, 0, 1, 2, 5, 6, 10, 11))
-        if frame == RELATIVE or four == first[0]
+        for four, frame in itertools.product(first, (MavFrame.GLOBAL_RELATIVE_ALT, 0, 1, 2, 5, 6, 10, 11))
+        if frame == MavFrame.GLOBAL_RELATIVE_ALT or four == first[0]
     ]
     bad = [
         Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_place=True) for place in ((91.0, 0.0, z), (0.0, 181.0, z))

@@ -13,14 +13,14 @@ from contextlib import contextmanager
 from fnmatch import fnmatchcase
 
 from sitl.autopilot.mission.mission import Mission
+from sitl.core.mavlink import MavCmd
 
 from .ack_cases import BY_MODE, CASES, EVERY, ON_THE_GROUND, Case
 from .program import Program, Programs
 
 RESULTS = ("ACCEPTED", "TEMPORARILY_REJECTED", "DENIED", "UNSUPPORTED", "FAILED", "IN_PROGRESS")
 Value = str | dict[str, str]
-MOTOR_TEST = 209
-DISARMING = (MOTOR_TEST, 400)
+DISARMING = (MavCmd.DO_MOTOR_TEST, 400)
 """In failsafe nothing is armed again."""
 HEIGHT_M = 50.0
 """High enough for LAND to last as long as the scan of it."""
@@ -143,7 +143,7 @@ def armed(scanned: Scanned) -> None:
     """On the ground, with the motors idling."""
     program = scanned.program
     program.be_armed()
-    scanned.scan("armed", "GUIDED", [c for c in (*EVERY, *BY_MODE) if c.number != MOTOR_TEST])
+    scanned.scan("armed", "GUIDED", [c for c in (*EVERY, *BY_MODE) if c.number != MavCmd.DO_MOTOR_TEST])
 
 
 def in_flight(scanned: Scanned) -> None:
@@ -152,7 +152,7 @@ def in_flight(scanned: Scanned) -> None:
     be_high(program)
     program.set_mode(MODES[program.of][0])
     program.set_mode("GUIDED")  # it has no target
-    tested = () if program.of == "copter" else (MOTOR_TEST,)  # a rover is disarmed by a test
+    tested = () if program.of == "copter" else (MavCmd.DO_MOTOR_TEST,)  # a rover is disarmed by a test
     scanned.scan("flying", "GUIDED", [case for case in (*EVERY, *CASES) if case.number not in tested])
     cases = (*scanned.supported("flying"), *BY_MODE)
     for mode in MODES[program.of]:

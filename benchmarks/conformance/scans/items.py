@@ -14,6 +14,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega
 
 from sitl.client.commands import command_name
+from sitl.core.mavlink import MavCmd, MavMissionResult
 
 from .program import Program, Programs
 
@@ -41,8 +42,6 @@ GIVEN: dict[str, tuple[float, ...]] = {
 """Parameters 1 to 4, x, y, z and the frame."""
 LEFT_OUT = ((1000, "z NaN"),)
 """What is not sent."""
-ACCEPTED, UNSUPPORTED = 0, 3
-WAYPOINT = 16
 UPLOAD_S = 10.0
 """An upload is answered within [simulated s]."""
 
@@ -90,8 +89,8 @@ def scan(programs: Programs) -> dict[str, Any]:
                 row = f"{number} {command_name(number)} {given}"
                 if number >= 2**16 or (number, given) in LEFT_OUT or not fnmatchcase(row, programs.rows):
                     continue
-                result = upload(program, [(WAYPOINT, GIVEN["zeros"]), (number, values)])
-                rows[row] = [result, *(read_back(program, 1) or ())] if result == ACCEPTED else result
-                if given == "zeros" and result == UNSUPPORTED:
+                result = upload(program, [(MavCmd.NAV_WAYPOINT, GIVEN["zeros"]), (number, values)])
+                rows[row] = [result, *(read_back(program, 1) or ())] if result == MavMissionResult.ACCEPTED else result
+                if given == "zeros" and result == MavMissionResult.UNSUPPORTED:
                     break
     return rows

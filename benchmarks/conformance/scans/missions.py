@@ -10,8 +10,8 @@ from __future__ import annotations
 from fnmatch import fnmatchcase
 from typing import Any
 
+from benchmarks.manoeuvres.__main__ import HOME
 from sitl.client.commands import command_name
-from sitl.missions.manoeuvres.__main__ import HOME
 
 from .items import GIVEN, upload
 from .program import HEIGHT_M, Program, Programs

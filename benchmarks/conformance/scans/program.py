@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.manoeuvres import executable
+from benchmarks.manoeuvres.__main__ import FRAMES, HOME
 from sitl import vehicles
 from sitl.client import Client
 from sitl.client.connection import Connection
 from sitl.client.errors import CommandRefusedError, WaitTimeoutError
 from sitl.logs.dataflash.log import attach
 from sitl.logs.dataflash.numbered import NumberedLogs
-from sitl.missions.manoeuvres import executable
-from sitl.missions.manoeuvres.__main__ import FRAMES, HOME
 from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The shortest way around the areas of the fence (OA_TYPE 2): from corner to corner, as far as they see each other
-(Dijkstra's search with a straight line as the guess; shell side).
+"""The shortest path around the areas of the fence (OA_TYPE 2): A* from corner to corner, as far as they see each other
+(shell side).
 
 A way keeps a margin from all edges; where it begins or ends nearer to them, it keeps that distance there.
 """
@@ -63,17 +63,17 @@ class Map:
         self._a = np.concatenate([none, *(corners for corners, _ in self._polygons)])
         self._b = np.concatenate([none, *(np.roll(corners, -1, axis=0) for corners, _ in self._polygons)])
 
-    def room(self, points: Points) -> NDArray[np.float64]:
+    def clearance(self, points: Points) -> NDArray[np.float64]:
         """How far places are from the edges of all areas [m]; below 0: a place is where none may be."""
-        room = np.full(len(points), math.inf)
+        clearance = np.full(len(points), math.inf)
         if len(self._a):
-            room = np.min(_distance(points[:, None], self._a, self._b), axis=1)
+            clearance = np.min(_distance(points[:, None], self._a, self._b), axis=1)
         for corners, stays_in in self._polygons:
-            room[_inside(points, corners) != stays_in] = -1.0
+            clearance[_inside(points, corners) != stays_in] = -1.0
         for circle in self._circles:
             away = arrays.hypot(*(points - circle.centre).T)
-            room = np.minimum(room, circle.radius - away if circle.stays_in else away - circle.radius)
-        return room
+            clearance = np.minimum(clearance, circle.radius - away if circle.stays_in else away - circle.radius)
+        return clearance
 
     def sees(self, start: Points, ends: Points, margins: NDArray[np.float64]) -> NDArray[np.bool_]:
         """To which of the places ``ends`` a straight way leads from ``start``, each with its margin [m]."""
@@ -93,7 +93,7 @@ class Map:
         rings = [self._ring(np.asarray(corner), self.margin, AROUND_CORNER) for corner in self._a]
         rings += [self._ring(c.centre, c.radius + self.margin, AROUND_CIRCLE) for c in self._circles if not c.stays_in]
         places = np.concatenate([np.empty((0, 2)), *rings])
-        return places[self.room(places) >= self.margin] if len(places) else places
+        return places[self.clearance(places) >= self.margin] if len(places) else places
 
     @staticmethod
     def _ring(centre: Points, radius: float, count: int) -> Points:
@@ -104,15 +104,15 @@ class Map:
         return found
 
 
-def find_path(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[Vec2] | None:
+def a_star(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[Vec2] | None:
     """Places where the shortest way from ``start`` to ``end`` [m, NE] turns, and its end; None: there is no way."""
     area = Map(fence, margin)
     ends = np.array([start, end])
-    room = area.room(ends)
-    if room[0] < 0.0 or room[1] < 0.0:
+    clearance = area.clearance(ends)
+    if clearance[0] < 0.0 or clearance[1] < 0.0:
         return None
     places = np.concatenate((ends, area.turning_places()))
-    rooms = np.minimum(np.concatenate((room, np.full(len(places) - 2, margin))), margin)
+    clearances = np.minimum(np.concatenate((clearance, np.full(len(places) - 2, margin))), margin)
     left = arrays.hypot(*(places - places[1]).T)
     length = np.full(len(places), math.inf)
     before = np.zeros(len(places), int)
@@ -128,7 +128,7 @@ def find_path(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[
         done[k] = True
         step = length[k] + arrays.hypot(*(places - places[k]).T)
         open_ = np.flatnonzero(~done & (step < length))
-        open_ = open_[area.sees(places[k], places[open_], np.minimum(rooms[k], rooms[open_]))]
+        open_ = open_[area.sees(places[k], places[open_], np.minimum(clearances[k], clearances[open_]))]
         length[open_], before[open_] = step[open_], k
         for j in open_:
             heapq.heappush(queue, (float(step[j] + left[j]), int(j)))

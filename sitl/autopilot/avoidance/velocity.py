@@ -199,8 +199,8 @@ def changed_slowly(avoid: Avoidance, asked: Vec2, vel: Vec2, time_us: int, accel
 
 
 @law
-def climb_below(climb: float, room: float, back_max: float, b: Braking) -> float:
-    """A climb rate [m/s] that stops within ``room`` [m]; above the limit (below 0) it sinks, at most ``back_max``."""
-    if room > 0.0:
-        return min(climb, speed_before(room, b))
-    return min(climb, -min(speed_before(-room, b), back_max))
+def climb_below(climb: float, clearance: float, back_max: float, b: Braking) -> float:
+    """A climb rate [m/s] that stops within ``clearance`` [m]; above it (below 0) it sinks, at most ``back_max``."""
+    if clearance > 0.0:
+        return min(climb, speed_before(clearance, b))
+    return min(climb, -min(speed_before(-clearance, b), back_max))

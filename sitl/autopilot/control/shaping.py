@@ -115,8 +115,8 @@ def limit_accel(vel: Vec2, acc: Vec2, acc_max: float) -> Vec2:
         across = sign(across) * acc_max
         along = 0.0
     else:
-        room = math.sqrt(acc_max * acc_max - across * across)
-        along = constrain(along, -room, room)
+        rest = math.sqrt(acc_max * acc_max - across * across)
+        along = constrain(along, -rest, rest)
     return Vec2(u.x * along - u.y * across, u.y * along + u.x * across)
 
 

@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 from ...core.kernels import inlined, law
+from ...core.mavlink import MavSeverity
 from .. import arming_checks, home, smart_rtl_path
 from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, MODE, refuse
 from ..events import emit
 from ..fence.checks import switch_on_arming
-from ..notes import INFO
 from ..state import Arming
 from .arming_checks import DOUBTFUL, MANDATORY, TEXTS, arm_checks, check, doubt_text, stick_checks
 from .control.motors import ARMING_DELAY_US
+from .control.spool import SpoolState
 from .modes import ground, simple
 from .modes.state import Modes
 from .modes.table import TITLES, has_manual_throttle, idles_armed
@@ -19,7 +20,7 @@ from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]
 
-ARMED = arming_checks.ARMED.saying(INFO, "Arming motors")
+ARMED = arming_checks.ARMED.saying(MavSeverity.INFO, "Arming motors")
 
 
 @law
@@ -94,7 +95,7 @@ def follow_throttle(arming: Arming, modes: Modes, time_us: int) -> None:
 def disarm_idle(v: Vehicle) -> None:
     """Disarm what was armed on the ground and left alone for DISARM_DELAY; called ten times a second."""
     ap = v.autopilot
-    stands = ap.arming.landed and ap.control.motors.spool_state <= ground.IS_GROUND_IDLE
+    stands = ap.arming.landed and ap.control.motors.spool_state <= SpoolState.GROUND_IDLE
     idle = stands and ap.modes.pilot.throttle_zero and not idles_armed(ap.modes.number)
     if was_idle(ap.arming, idle, v.time_us, ap.params.DISARM_DELAY):
         ground.disarm(v, BY_DELAY)

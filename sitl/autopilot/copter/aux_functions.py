@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 
+from ...core.mavlink import MavCmd, MavFrame, MavSeverity
 from .. import aux_functions as shared
 from .. import payload
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
-from ..mission.item import NAV_LAND, NAV_TAKEOFF, RELATIVE, MissionItem
+from ..mission.item import MissionItem
 from ..mission.notes import Note
-from ..notes import INFO, WARNING, Text
+from ..notes import Text
 from . import arming
 from .modes import autotune_gains, commands, simple, zigzag
 from .modes.auto import AUTO
@@ -38,9 +39,9 @@ def _save_waypoint(holder: Holder, position: int) -> list[Note]:
     item = shared.item_here(holder)
     items: list[MissionItem] = []
     if not holder.sequencer.mission.present:
-        items.append(MissionItem(NAV_TAKEOFF, RELATIVE, z=max(item.z, TAKEOFF_LEAST)))
+        items.append(MissionItem(MavCmd.NAV_TAKEOFF, MavFrame.GLOBAL_RELATIVE_ALT, z=max(item.z, TAKEOFF_LEAST)))
     if ap.modes.pilot.throttle <= 0.0:
-        item = item._replace(command=NAV_LAND)
+        item = item._replace(command=MavCmd.NAV_LAND)
     shared.append_items(holder, [*items, item])
     return []
 
@@ -91,7 +92,7 @@ def _reset_heading(holder: Holder, position: int) -> list[Note]:
         return []
     ap = holder.v.autopilot
     simple.begin(ap.modes.simple, ap.estimate.yaw)
-    return [Text(INFO, "Simple heading reset")]
+    return [Text(MavSeverity.INFO, "Simple heading reset")]
 
 
 def _train(holder: Holder, position: int) -> list[Note]:
@@ -121,7 +122,7 @@ def _pause(holder: Holder, position: int) -> list[Note]:
     if position == MIDDLE:
         return []
     done = commands.set_paused(holder.v.autopilot.modes, position == HIGH) == commands.OK
-    return [Text(WARNING, "Flight Mode Pause failed")] if position == HIGH and not done else []
+    return [Text(MavSeverity.WARNING, "Flight Mode Pause failed")] if position == HIGH and not done else []
 
 
 def _save_trim(holder: Holder, position: int) -> list[Note]:
@@ -131,7 +132,7 @@ def _save_trim(holder: Holder, position: int) -> list[Note]:
         return []
     trim.X = min(max(trim.X + STICK_LEAN * pilot.roll, -MOST_TRIM), MOST_TRIM)
     trim.Y = min(max(trim.Y + STICK_LEAN * pilot.pitch, -MOST_TRIM), MOST_TRIM)
-    return [Text(INFO, "Trim saved")]
+    return [Text(MavSeverity.INFO, "Trim saved")]
 
 
 FUNCTIONS = shared.by_number(

@@ -12,10 +12,11 @@ import math
 from ...core.algebra import dot
 from ...core.elementary import cos
 from ...core.kernels import inlined
+from ...core.mavlink import MavSeverity
 from ...core.vectors import Vec3
 from ..arming_checks import BY_CRASH
 from ..events import Event, emit, err
-from ..notes import CRITICAL
+from ..log_events import LogErrorSubsystem
 from ..state import Estimate
 from . import landing
 from .control.state import AttitudeState, MotorsState
@@ -34,7 +35,12 @@ STILL_TICKS = 2000
 STILL_ACCEL, STILL_SPEED, STILL_RATE = 0.5, 0.3, math.radians(3.0)
 """What counts as no movement [m/s^2], [m/s], [rad/s]."""
 
-CRASH_DISARM = Event(8, CRITICAL, "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0", log=err(12, 1))
+CRASH_DISARM = Event(
+    8,
+    MavSeverity.CRITICAL,
+    "Crash: Disarming: AngErr={a:.0f}>30, Accel={b:.1f}<3.0",
+    log=err(LogErrorSubsystem.CRASH_CHECK, 1),
+)
 
 
 @inlined

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION, BY_TERRAIN_FAILSAFE
 from ..estimation.status import GPS_GLITCHING
@@ -35,7 +36,7 @@ from ..modes import (
     REASON_RADIO_FAILSAFE,
     REASON_TERRAIN_FAILSAFE,
 )
-from ..notes import CRITICAL, WARNING, Text
+from ..notes import Text
 from ..state import Arming, Failsafe
 from ..terrain.ground import is_long_missing
 from ..terrain.state import FAILSAFE as GROUND_MISSING
@@ -116,12 +117,12 @@ def text(which: int, how: int) -> str | None:
     return f"{said} - {_ENDINGS[how]}" if said and how in _ENDINGS else said
 
 
-def _told(v: Any, which: float, how: float) -> list[Text]:
+def _texts(v: Any, which: float, how: float) -> list[Text]:
     said = text(int(which), int(how))
-    return [Text(CRITICAL if int(which) in SEVERE else WARNING, said)] if said else []
+    return [Text(MavSeverity.CRITICAL if int(which) in SEVERE else MavSeverity.WARNING, said)] if said else []
 
 
-FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_told)
+FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_texts)
 
 
 @law

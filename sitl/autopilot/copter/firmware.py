@@ -34,7 +34,7 @@ def update(fleet: Records[Vehicle], index: int) -> None:
 
 
 def power_on(v: Vehicle) -> None:
-    """Start the rooms of the firmware on a cleared record whose parameters are set."""
+    """Start the parts of the firmware on a cleared record whose parameters are set."""
     load_frame(v.autopilot.control.motors, v.autopilot.params)
     init_control(v.autopilot.control, v.autopilot.estimate, v.autopilot.params)
     init_modes(v)

@@ -20,6 +20,7 @@ from ..state import Arming
 from .control import throttle_mix
 from .control.attitude_target import cos_lean
 from .control.motors import hover_throttle
+from .control.spool import SpoolState
 from .control.state import AttitudeState, Control, MotorsState
 from .modes import ground, table
 from .modes.state import LandingState, Modes
@@ -118,7 +119,7 @@ def count_rest(arming: Arming, at_rest: bool) -> bool:
 @inlined
 def pushes(motors: MotorsState, hover: float) -> bool:
     """Whether the motors lift more than half of the vehicle; ``hover``: throttle that lifts it."""
-    return motors.throttle > 0.5 * hover and motors.spool_state == ground.IS_UNLIMITED
+    return motors.throttle > 0.5 * hover and motors.spool_state == SpoolState.THROTTLE_UNLIMITED
 
 
 @inlined

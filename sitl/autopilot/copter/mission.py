@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.elementary import cos, hypot, sin
+from ...core.mavlink import MavCmd, MavSeverity
 from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
@@ -16,7 +17,7 @@ from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.path import clear_legs
 from ..navigation.planner import end
-from ..notes import INFO, WARNING, Text
+from ..notes import Text
 from ..terrain.ground import lose_ground
 from .modes import auto, auto_yaw
 from .modes.auto import AUTO, AUTO_RTL
@@ -41,46 +42,46 @@ LEAST_CLIMB = 1.0
 CLIMB_SPEED, DESCENT_SPEED = 2, 3
 """SPEED_TYPE of DO_CHANGE_SPEED; 0 and 1 are both horizontal."""
 
-KINDS = {
-    commands.NAV_TAKEOFF: kinds.TAKEOFF,
-    commands.NAV_WAYPOINT: kinds.WAYPOINT,
-    commands.NAV_SPLINE_WAYPOINT: kinds.WAYPOINT,
-    commands.NAV_LOITER_UNLIM: kinds.LOITER_UNLIMITED,
-    commands.NAV_LOITER_TURNS: kinds.LOITER_TURNS,
-    commands.NAV_LOITER_TIME: kinds.LOITER_TIME,
-    commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
-    commands.NAV_LAND: kinds.LAND,
-    commands.NAV_DELAY: kinds.DELAY,
-    commands.NAV_LOITER_TO_ALT: kinds.LOITER_TO_ALT,
-    commands.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
-    commands.NAV_VTOL_LAND: kinds.LAND,
-    commands.NAV_GUIDED_ENABLE: kinds.GUIDED,
-    commands.NAV_PAYLOAD_PLACE: kinds.PAYLOAD_PLACE,
-    commands.NAV_ARC_WAYPOINT: kinds.WAYPOINT,
-    commands.NAV_SCRIPT_TIME: kinds.DELAY,
-    commands.NAV_ATTITUDE_TIME: kinds.DELAY,
+KINDS: dict[int, int] = {
+    MavCmd.NAV_TAKEOFF: kinds.TAKEOFF,
+    MavCmd.NAV_WAYPOINT: kinds.WAYPOINT,
+    MavCmd.NAV_SPLINE_WAYPOINT: kinds.WAYPOINT,
+    MavCmd.NAV_LOITER_UNLIM: kinds.LOITER_UNLIMITED,
+    MavCmd.NAV_LOITER_TURNS: kinds.LOITER_TURNS,
+    MavCmd.NAV_LOITER_TIME: kinds.LOITER_TIME,
+    MavCmd.NAV_RETURN_TO_LAUNCH: kinds.RTL,
+    MavCmd.NAV_LAND: kinds.LAND,
+    MavCmd.NAV_DELAY: kinds.DELAY,
+    MavCmd.NAV_LOITER_TO_ALT: kinds.LOITER_TO_ALT,
+    MavCmd.NAV_VTOL_TAKEOFF: kinds.TAKEOFF,
+    MavCmd.NAV_VTOL_LAND: kinds.LAND,
+    MavCmd.NAV_GUIDED_ENABLE: kinds.GUIDED,
+    MavCmd.NAV_PAYLOAD_PLACE: kinds.PAYLOAD_PLACE,
+    MavCmd.NAV_ARC_WAYPOINT: kinds.WAYPOINT,
+    MavCmd.NAV_SCRIPT_TIME: kinds.DELAY,
+    MavCmd.NAV_ATTITUDE_TIME: kinds.DELAY,
 }
-FLOWN_AS = {
-    commands.NAV_ARC_WAYPOINT: "a straight line",
-    commands.NAV_SCRIPT_TIME: "a delay",
-    commands.NAV_ATTITUDE_TIME: "a delay",
+FLOWN_AS: dict[int, str] = {
+    MavCmd.NAV_ARC_WAYPOINT: "a straight line",
+    MavCmd.NAV_SCRIPT_TIME: "a delay",
+    MavCmd.NAV_ATTITUDE_TIME: "a delay",
 }
 """What is flown of commands that are carried out in part."""
 OTHERS = (
-    commands.CONDITION_DELAY,
-    commands.CONDITION_DISTANCE,
-    commands.CONDITION_YAW,
-    commands.DO_JUMP,
-    commands.DO_CHANGE_SPEED,
-    commands.DO_FENCE_ENABLE,
-    commands.DO_SET_HOME,
-    commands.DO_SET_ROI_LOCATION,
-    commands.DO_SET_ROI_NONE,
-    commands.DO_SET_ROI,
-    commands.DO_JUMP_TAG,
-    commands.DO_GUIDED_LIMITS,
-    commands.DO_SET_RESUME_REPEAT_DIST,
-    commands.DO_PARACHUTE,
+    MavCmd.CONDITION_DELAY,
+    MavCmd.CONDITION_DISTANCE,
+    MavCmd.CONDITION_YAW,
+    MavCmd.DO_JUMP,
+    MavCmd.DO_CHANGE_SPEED,
+    MavCmd.DO_FENCE_ENABLE,
+    MavCmd.DO_SET_HOME,
+    MavCmd.DO_SET_ROI_LOCATION,
+    MavCmd.DO_SET_ROI_NONE,
+    MavCmd.DO_SET_ROI,
+    MavCmd.DO_JUMP_TAG,
+    MavCmd.DO_GUIDED_LIMITS,
+    MavCmd.DO_SET_RESUME_REPEAT_DIST,
+    MavCmd.DO_PARACHUTE,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.VIDEO_COMMANDS,
@@ -90,10 +91,10 @@ OTHERS = (
 )
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (
-    commands.NAV_WAYPOINT,
-    commands.NAV_SPLINE_WAYPOINT,
-    commands.NAV_ARC_WAYPOINT,
-    commands.NAV_LOITER_TIME,
+    MavCmd.NAV_WAYPOINT,
+    MavCmd.NAV_SPLINE_WAYPOINT,
+    MavCmd.NAV_ARC_WAYPOINT,
+    MavCmd.NAV_LOITER_TIME,
 )
 
 
@@ -117,7 +118,7 @@ class CopterCommands(Commands[Vehicle]):
     def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Make ``item`` the command under way."""
         if item.command in FLOWN_AS:
-            said = Text(WARNING, f"Mission: {seq} {item.name} is flown as {FLOWN_AS[item.command]}")
+            said = Text(MavSeverity.WARNING, f"Mission: {seq} {item.name} is flown as {FLOWN_AS[item.command]}")
             self.give(v, seq, _simpler(item))
             return [said]
         ap, time_us = v.autopilot, v.time_us
@@ -129,7 +130,7 @@ class CopterCommands(Commands[Vehicle]):
             auto.choose_heading(ap.modes.auto_yaw, kind, ap.params.WP, ap.control.attitude, ap.estimate)
         _choose_heights(v, item, kind)
         here, _ = PLANNER.origin_of_next(ap, time_us)
-        if item.command == commands.NAV_SPLINE_WAYPOINT:
+        if item.command == MavCmd.NAV_SPLINE_WAYPOINT:
             PLANNER.begin_spline(ap, time_us, _end_of_leg(ap, item, here))
         elif kind in (*LEGS, kinds.LOITER_TO_ALT):
             PLANNER.begin(ap, time_us, _end_of_leg(ap, item, here))
@@ -149,7 +150,7 @@ class CopterCommands(Commands[Vehicle]):
             nav.delay = whole_seconds(item)
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)
-            return [Text(INFO, f"Delaying {int(nav.delay)} sec")]
+            return [Text(MavSeverity.INFO, f"Delaying {int(nav.delay)} sec")]
         elif kind == kinds.LOITER_TURNS:
             nav.turns = turns(item)
         elif kind == kinds.PAYLOAD_PLACE:
@@ -179,11 +180,11 @@ class CopterCommands(Commands[Vehicle]):
 
     def arrived(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """A load that stands is let go."""
-        return [OutputItem(MissionItem(commands.DO_GRIPPER, p2=GRIPPER_RELEASE))]
+        return [OutputItem(MissionItem(MavCmd.DO_GRIPPER, p2=GRIPPER_RELEASE))]
 
     def completed(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Some say so."""
-        return [Text(INFO, f"Reached command #{seq}")] if item.command in SAYS_REACHED else []
+        return [Text(MavSeverity.INFO, f"Reached command #{seq}")] if item.command in SAYS_REACHED else []
 
     def finish(self, v: Vehicle) -> list[Note]:
         """AUTO disarms on the ground and stays where it would come to rest in the air."""
@@ -200,19 +201,19 @@ class CopterCommands(Commands[Vehicle]):
     def run(self, v: Vehicle, item: MissionItem) -> list[Note]:
         """Speeds and where to look; the rest is common."""
         ap = v.autopilot
-        if item.command == commands.DO_CHANGE_SPEED:
+        if item.command == MavCmd.DO_CHANGE_SPEED:
             self.change_speed(v, int(item.p1), item.p2)
-        elif item.command == commands.CONDITION_YAW:
+        elif item.command == MavCmd.CONDITION_YAW:
             direction = int(math.copysign(1.0, item.p3)) if item.p3 else 0
             turn = auto_yaw.Turn(math.radians(item.p1), math.radians(item.p2), direction, item.p4 > 0.0)
             start = ap.control.attitude.target_euler.yaw
             auto_yaw.turn_to(ap.modes.auto_yaw, turn, start, auto_yaw.slew_max(ap.params.ATC))
             ap.modes.nav.condition_kind = kinds.CONDITION_YAW
-        elif item.command in (commands.DO_SET_ROI, commands.DO_SET_ROI_LOCATION):
+        elif item.command in (MavCmd.DO_SET_ROI, MavCmd.DO_SET_ROI_LOCATION):
             set_roi(v, item)
-        elif item.command == commands.DO_SET_ROI_NONE:
+        elif item.command == MavCmd.DO_SET_ROI_NONE:
             _look_ahead(ap)
-        elif item.command == commands.DO_GUIDED_LIMITS:
+        elif item.command == MavCmd.DO_GUIDED_LIMITS:
             _limit_guided(ap.modes.guided, item)
         return super().run(v, item)
 
@@ -233,12 +234,12 @@ class CopterCommands(Commands[Vehicle]):
 
 def _simpler(item: MissionItem) -> MissionItem:
     """What is flown of a command that is carried out in part: an arc's end, so long a stay."""
-    if item.command == commands.NAV_ARC_WAYPOINT:
-        return item._replace(command=commands.NAV_WAYPOINT, p1=0.0)
-    if item.command == commands.NAV_SCRIPT_TIME:  # of no time: until another is told to be next
-        return item._replace(command=commands.NAV_DELAY, p1=item.p2 or FOREVER_S, x=0, y=0)
-    if item.command == commands.NAV_ATTITUDE_TIME:
-        return item._replace(command=commands.NAV_DELAY, x=0, y=0)
+    if item.command == MavCmd.NAV_ARC_WAYPOINT:
+        return item._replace(command=MavCmd.NAV_WAYPOINT, p1=0.0)
+    if item.command == MavCmd.NAV_SCRIPT_TIME:  # of no time: until another is told to be next
+        return item._replace(command=MavCmd.NAV_DELAY, p1=item.p2 or FOREVER_S, x=0, y=0)
+    if item.command == MavCmd.NAV_ATTITUDE_TIME:
+        return item._replace(command=MavCmd.NAV_DELAY, x=0, y=0)
     return item
 
 
@@ -247,10 +248,10 @@ def _following(ap: Autopilot, item: MissionItem | None, after: MissionItem | Non
     if item is None or KINDS.get(item.command) not in LEGS:  # ArduPilot stops before what it skips, too
         return Following()
     place = _end_of_leg(ap, item, end(ap.modes.nav.current))
-    is_spline = item.command == commands.NAV_SPLINE_WAYPOINT
+    is_spline = item.command == MavCmd.NAV_SPLINE_WAYPOINT
     if after is None or KINDS.get(after.command) not in LEGS or whole_seconds(item) > 0.0:
         return Following(place, is_spline)
-    return Following(place, is_spline, _end_of_leg(ap, after, place), after.command == commands.NAV_SPLINE_WAYPOINT)
+    return Following(place, is_spline, _end_of_leg(ap, after, place), after.command == MavCmd.NAV_SPLINE_WAYPOINT)
 
 
 def _is_over_ground(v: Vehicle, item: MissionItem) -> bool:

@@ -8,18 +8,19 @@ aside. The test ends by itself, or with a disarming.
 from __future__ import annotations
 
 from ...core.kernels import inlined
+from ...core.mavlink import MavSeverity
 from ...core.scalars import constrain
 from ..arming_checks import BY_MOTOR_TEST
 from ..events import Event, emit
-from ..notes import INFO
 from ..state import Arming
+from .control.spool import DesiredSpoolState
 from .control.state import MotorsState
 from .modes import ground
 from .state import Vehicle
 
 LONGEST_S = 600.0
 
-MOTOR_TEST = Event(21, INFO, {0: "finished motor test", 1: "starting motor test"})  # b: motor
+MOTOR_TEST = Event(21, MavSeverity.INFO, {0: "finished motor test", 1: "starting motor test"})  # b: motor
 
 # Answers of start()
 OK = 0
@@ -69,7 +70,7 @@ def run(v: Vehicle) -> None:
     motors = ap.control.motors
     if motors.test_motor == 0:
         return
-    motors.desired_spool = 0
+    motors.desired_spool = DesiredSpoolState.SHUT_DOWN
     ap.arming.auto_armed = False
     ap.arming.idle_us = v.time_us
     if v.time_us >= motors.test_until_us or not ap.arming.landed or not ap.arming.armed:

@@ -5,8 +5,8 @@ TKOFF_RPM_MAX)."""
 from __future__ import annotations
 
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from ..events import Event, emit
-from ..notes import CRITICAL
 from ..state import Sensors
 from .parameters.flight import TakeOff
 from .state import Vehicle
@@ -20,7 +20,7 @@ _BLOCKED = {
     NO_TELEMETRY: "Takeoff blocked: waiting for ESC RPM",
     OUT_OF_RANGE: "Takeoff blocked: ESC RPM out of range",
 }
-TAKEOFF_BLOCKED = Event(41, CRITICAL, _BLOCKED)
+TAKEOFF_BLOCKED = Event(41, MavSeverity.CRITICAL, _BLOCKED)
 
 
 @law

@@ -8,9 +8,11 @@ import math
 from typing import Any
 
 from ...core.kernels import inlined, law
+from ...core.mavlink import MavSeverity
 from ..aux_switch import LOW
 from ..events import Event, emit, err
-from ..notes import EMERGENCY, EventNote, Switched, Text
+from ..log_events import LogErrorSubsystem
+from ..notes import EventNote, Switched, Text
 from ..payload import SWITCH_GRIPPER
 from .control.mixer import BOOST_MOTORS, watch_balance
 from .control.state import AttitudeState, MotorsState
@@ -27,13 +29,13 @@ _OFF, _OPENS_GRIPPER = 1, 4
 """FLIGHT_OPTIONS"""
 
 
-def _told(v: Any, motor: float, b: float) -> list[EventNote]:
-    told: list[EventNote] = [Text(EMERGENCY, f"Potential Thrust Loss ({motor:.0f})")]
+def _texts(v: Any, motor: float, b: float) -> list[EventNote]:
+    notes: list[EventNote] = [Text(MavSeverity.EMERGENCY, f"Potential Thrust Loss ({motor:.0f})")]
     opens = int(v.autopilot.params.FLIGHT_OPTIONS) & _OPENS_GRIPPER != 0
-    return [*told, Switched(SWITCH_GRIPPER, LOW)] if opens else told
+    return [*notes, Switched(SWITCH_GRIPPER, LOW)] if opens else notes
 
 
-THRUST_LOST = Event(40, says=_told, log=err(25, 1))  # a: motor 1 .. that seems to fail
+THRUST_LOST = Event(40, says=_texts, log=err(LogErrorSubsystem.THRUST_LOSS_CHECK, 1))  # a: motor 1 .. that fails
 
 
 @inlined

@@ -11,7 +11,8 @@ from ...core.kernels import law
 from ...core.scalars import constrain
 from ...core.vectors import Quat, Vec2, Vec3
 from .control.attitude_target import set_target
-from .control.motors import SPOOLING_UP, THROTTLE_UNLIMITED, hover_throttle
+from .control.motors import hover_throttle
+from .control.spool import SpoolState
 from .control.state import Control, MotorsState
 from .parameters import Parameters
 from .parameters.control import Motors
@@ -24,7 +25,7 @@ _MIN, _MAX = 0.125, 0.6875
 @law
 def is_flying(motors: MotorsState) -> bool:
     """Whether the motors follow the mixer."""
-    return SPOOLING_UP <= motors.spool_state <= THROTTLE_UNLIMITED
+    return SpoolState.SPOOLING_UP <= motors.spool_state <= SpoolState.THROTTLE_UNLIMITED
 
 
 @law

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from ..events import Event, emit
-from ..notes import EMERGENCY, Text
+from ..notes import Text
 from .state import Vehicle
 
 PERIOD = 0.1
@@ -23,7 +24,7 @@ SHARE = 0.75
 TOLD_US = 10_000_000
 _OFF = 2
 
-YAW_IMBALANCE = Event(64, says=lambda v, a, b: [Text(EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")])
+YAW_IMBALANCE = Event(64, says=lambda v, a, b: [Text(MavSeverity.EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")])
 """a: the integrator of the yaw rate loop"""
 
 
@@ -38,6 +39,6 @@ def check(v: Vehicle) -> None:
     motors.yaw_trim += (abs(ap.control.rate.yaw.integrator) - motors.yaw_trim) * SMOOTHED
     if motors.yaw_trim <= SHARE * most or most <= 0.0 or int(ap.params.FLIGHT_OPTIONS) & _OFF:
         return
-    if motors.yaw_trim_told_us == 0 or v.time_us - motors.yaw_trim_told_us >= TOLD_US:
-        motors.yaw_trim_told_us = v.time_us
+    if motors.yaw_trim_reported_us == 0 or v.time_us - motors.yaw_trim_reported_us >= TOLD_US:
+        motors.yaw_trim_reported_us = v.time_us
         emit(ap.events, v.time_us, YAW_IMBALANCE, motors.yaw_trim, 0.0)

@@ -9,7 +9,7 @@ from ...core.vectors import Vec3
 from ..events import Events, emit
 from ..params.parameters import Parameters
 from ..params.system import Compass
-from ..sensor_calibration import COMPASSES, differs, field_of, is_heard
+from ..sensor_calibration import COMPASSES, differs, field_of, is_received
 from . import magnetometer, noise
 from .covariance import clear
 from .events import EKF_COMPASS_CHANGED
@@ -28,10 +28,10 @@ def is_used(k: int, params: Compass) -> bool:
 @law
 def better(ekf: Ekf, sensors: Sensors, params: Parameters) -> int:
     """The next compass that is used and heard and shows another field than this one, if this one is heard; -1: none."""
-    own, heard = field_of(ekf.compass, sensors, params), is_heard(ekf.compass, sensors, ekf.now_us)
+    own, heard = field_of(ekf.compass, sensors, params), is_received(ekf.compass, sensors, ekf.now_us)
     for n in range(1, COMPASSES):
         k = (ekf.compass + n) % COMPASSES
-        if is_used(k, params.COMPASS) and is_heard(k, sensors, ekf.now_us):
+        if is_used(k, params.COMPASS) and is_received(k, sensors, ekf.now_us):
             if not heard or differs(own, field_of(k, sensors, params)):
                 return k
     return -1
@@ -59,7 +59,7 @@ def watch(ekf: Ekf, log: Events, sensors: Sensors, params: Parameters, armed: bo
         other = better(ekf, sensors, params)
         if other >= 0:
             take(ekf, log, other, both)
-    elif ekf.compass != 0 and not armed and is_used(0, params.COMPASS) and is_heard(0, sensors, ekf.now_us):
+    elif ekf.compass != 0 and not armed and is_used(0, params.COMPASS) and is_received(0, sensors, ekf.now_us):
         own, first = field_of(ekf.compass, sensors, params), field_of(0, sensors, params)
         if ekf.now_us - ekf.mag_changed_us > TIMEOUT_US and not differs(first, own):
             take(ekf, log, 0, both)

@@ -11,13 +11,15 @@ from typing import Any
 
 from ...core.algebra import horizontal, norm2
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from ...core.vectors import Vec2, Vec3
 from ..events import Event, Events, Row, emit, err, ev
+from ..log_events import LogErrorSubsystem, LogEvent
 from ..modes import REASON_FENCE_BREACHED
-from ..notes import INFO, NOTICE, Text
+from ..notes import Text
 from ..params.fence import Fence
 from ..state import Estimate, HomeState, Vehicle
-from .shapes import is_inclusion, place, room
+from .shapes import clearance, is_inclusion, place
 from .state import (
     AREAS,
     CIRCLE,
@@ -51,36 +53,48 @@ AUTO_OFF, AUTO_ON, BY_FLOOR, OFF, ON = range(5)
 """How fences were switched, as FENCE_SWITCHED says: by themselves; the least height, as the vehicle is above it; by the
 user."""
 _SWITCHED = {AUTO_OFF: "auto-disabled", AUTO_ON: "auto-enabled", BY_FLOOR: "enabled (auto enable)"}
-_SWITCHED_ON = {MAX_ALT: 76, CIRCLE: 78, MIN_ALT: 80, AREAS: 82}
+_SWITCHED_ON = {
+    MAX_ALT: LogEvent.FENCE_ALT_MAX_ENABLE,
+    CIRCLE: LogEvent.FENCE_CIRCLE_ENABLE,
+    MIN_ALT: LogEvent.FENCE_ALT_MIN_ENABLE,
+    AREAS: LogEvent.FENCE_POLYGON_ENABLE,
+}
 """Number of EV when a fence is switched on; off: the next."""
 
 
-def _told_switch(v: Any, fences: float, how: float) -> list[Text]:
-    return [Text(NOTICE, f"{names(int(fences))} {_SWITCHED[int(how)]}")] if how in _SWITCHED else []
+def _switch_texts(v: Any, fences: float, how: float) -> list[Text]:
+    return [Text(MavSeverity.NOTICE, f"{names(int(fences))} {_SWITCHED[int(how)]}")] if how in _SWITCHED else []
 
 
 def _logged_switch(v: Any, fences: float, how: float) -> list[Row]:
     off = int(how not in (AUTO_ON, BY_FLOOR, ON))
-    return [ev(41 + off), *(ev(number + off) for bit, number in _SWITCHED_ON.items() if int(fences) & bit)]
+    return [
+        ev(LogEvent.FENCE_ENABLE + off),
+        *(ev(number + off) for bit, number in _SWITCHED_ON.items() if int(fences) & bit),
+    ]
 
 
-def _told_near(v: Any, fences: float, room: float) -> list[Text]:
-    how = "cleared margin breach" if room < 0.0 else f"in {room:.1f}m"
-    return [Text(NOTICE, f"{names(int(fences))} {how}")]
+def _near_texts(v: Any, fences: float, clearance: float) -> list[Text]:
+    how = "cleared margin breach" if clearance < 0.0 else f"in {clearance:.1f}m"
+    return [Text(MavSeverity.NOTICE, f"{names(int(fences))} {how}")]
 
 
 # a: bits of fences; b of the first two: 1 the pilot is told
 FENCE_BREACHED = Event(
     44,
-    says=lambda v, a, b: [Text(NOTICE, f"{names(int(a))} breached")] if b != 0.0 else [],
-    log=lambda v, a, b: [err(9, int(a))],
+    says=lambda v, a, b: [Text(MavSeverity.NOTICE, f"{names(int(a))} breached")] if b != 0.0 else [],
+    log=lambda v, a, b: [err(LogErrorSubsystem.FAILSAFE_FENCE, int(a))],
 )
 FENCE_CLEAR = Event(
-    45, says=lambda v, a, b: [Text(NOTICE, "Fence breach cleared")] if b != 0.0 else [], log=err(9, 0)
+    45,
+    says=lambda v, a, b: [Text(MavSeverity.NOTICE, "Fence breach cleared")] if b != 0.0 else [],
+    log=err(LogErrorSubsystem.FAILSAFE_FENCE, 0),
 )  # none is breached any more
-FENCE_SWITCHED = Event(46, says=_told_switch, log=_logged_switch)  # b: how
-FENCE_NEAR = Event(47, says=_told_near)  # b: how far they are [m]; below zero: further than the margin again
-FENCE_RECOVERY = Event(48, INFO, "Manual recovery started")  # the pilot brings the vehicle back behind the fence
+FENCE_SWITCHED = Event(46, says=_switch_texts, log=_logged_switch)  # b: how
+FENCE_NEAR = Event(47, says=_near_texts)  # b: how far they are [m]; below zero: further than the margin again
+FENCE_RECOVERY = Event(
+    48, MavSeverity.INFO, "Manual recovery started"
+)  # the pilot brings the vehicle back behind the fence
 
 
 @law
@@ -105,7 +119,7 @@ def beyond_areas(fence: FenceState, point: Vec2, one_is_enough: bool) -> float:
     over, outside = NONE, 1e9
     inclusions = 0
     for s in range(fence.shapes):
-        away = -room(fence, s, point)
+        away = -clearance(fence, s, point)
         if one_is_enough and is_inclusion(fence, s):
             inclusions += 1
             outside = min(outside, away)
@@ -208,14 +222,14 @@ def switch_floor(fence: FenceState, params: Fence, autoenable: int, events: Even
 
 @law
 def margin_of(kind: int, params: Fence) -> float:
-    """Room that is kept to a fence of a ``kind`` [m]: FENCE_MARGIN_XY to the circle and to areas, if it is given."""
+    """Clearance that is kept to a fence of a ``kind`` [m]: FENCE_MARGIN_XY to the circle and to areas, if given."""
     if kind & (CIRCLE | AREAS) != 0 and params.MARGIN_XY > 0.0:
         return params.MARGIN_XY
     return params.MARGIN
 
 
 @law
-def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, time_us: int) -> None:
+def report_margin(fence: FenceState, before: int, params: Fence, events: Events, time_us: int) -> None:
     """FENCE_OPTIONS 4: within the margin of which fences the vehicle is, breached ones, too, and how far the first of
     them is; anew with each further fence, while not all of them are breached. And that it has left a margin."""
     if int(params.OPTIONS) & TELLS_MARGIN == 0:
@@ -225,13 +239,13 @@ def tell_margin(fence: FenceState, before: int, params: Fence, events: Events, t
         emit(events, time_us, FENCE_NEAR, float(left), -1.0)
     if fence.near & ~fence.breached == 0 or params.NTF_FREQ <= 0.0:
         return
-    if fence.near & ~before == 0 and time_us - fence.told_us < 1e6 / params.NTF_FREQ:
+    if fence.near & ~before == 0 and time_us - fence.reported_us < 1e6 / params.NTF_FREQ:
         return
     nearest = 1e9
     for k in range(FENCES):
         if fence.near >> k & 1 != 0:
             nearest = min(nearest, -fence.over[k])
-    fence.told_us = time_us
+    fence.reported_us = time_us
     emit(events, time_us, FENCE_NEAR, float(fence.near), abs(nearest))
 
 
@@ -261,7 +275,7 @@ def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
     for k in range(FENCES):
         if watched >> k & 1 != 0 and judge(fence, k, margin_of(1 << k, params), time_us):
             new |= 1 << k
-    tell_margin(fence, near, params, events, time_us)
+    report_margin(fence, near, params, events, time_us)
     if fence.recovery_us != 0:
         if time_us - fence.recovery_us < RECOVERY_US:
             return 0
@@ -280,12 +294,12 @@ def farthest(fence: FenceState, chosen: int) -> float:
 
 
 @law
-def report(fence: FenceState, before: int, new: int, told: bool, events: Events, time_us: int) -> None:
+def report(fence: FenceState, before: int, new: int, reported: bool, events: Events, time_us: int) -> None:
     """Emit that fences are breached (``new``), or that none is any more, when some were ``before``."""
     if new != 0:
-        emit(events, time_us, FENCE_BREACHED, float(new), 1.0 if told else 0.0)
+        emit(events, time_us, FENCE_BREACHED, float(new), 1.0 if reported else 0.0)
     elif before != 0 and fence.breached == 0:
-        emit(events, time_us, FENCE_CLEAR, 0.0, 1.0 if told else 0.0)
+        emit(events, time_us, FENCE_CLEAR, 0.0, 1.0 if reported else 0.0)
 
 
 @law

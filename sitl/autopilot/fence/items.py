@@ -10,32 +10,26 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from ...core.geodesy import add_offset, offset_ne
+from ...core.mavlink import MavCmd
 from ...errors import SitlError
 from ..events import Event, Row
-from ..mission.item import (
-    FENCE_CIRCLE,
-    FENCE_CIRCLE_OUT,
-    FENCE_EXCLUSION,
-    FENCE_INCLUSION,
-    FENCE_RETURN_POINT,
-    MissionItem,
-)
+from ..mission.item import MissionItem
 from .state import CIRCLE_IN, CIRCLE_OUT, CORNERS, SHAPES, STAY_IN, STAY_OUT, FenceState
 
-KINDS = {
-    FENCE_INCLUSION: STAY_IN,
-    FENCE_EXCLUSION: STAY_OUT,
-    FENCE_CIRCLE: CIRCLE_IN,
-    FENCE_CIRCLE_OUT: CIRCLE_OUT,
+KINDS: dict[int, int] = {
+    MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION: STAY_IN,
+    MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION: STAY_OUT,
+    MavCmd.NAV_FENCE_CIRCLE_INCLUSION: CIRCLE_IN,
+    MavCmd.NAV_FENCE_CIRCLE_EXCLUSION: CIRCLE_OUT,
 }
-POLYGONS = (FENCE_INCLUSION, FENCE_EXCLUSION)
+POLYGONS = (MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION)
 FEWEST_CORNERS = 3
-_TYPES = {
-    FENCE_INCLUSION: 98,
-    FENCE_EXCLUSION: 97,
-    FENCE_RETURN_POINT: 95,
-    FENCE_CIRCLE_OUT: 93,
-    FENCE_CIRCLE: 92,
+_TYPES: dict[int, int] = {
+    MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION: 98,
+    MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION: 97,
+    MavCmd.NAV_FENCE_RETURN_POINT: 95,
+    MavCmd.NAV_FENCE_CIRCLE_EXCLUSION: 93,
+    MavCmd.NAV_FENCE_CIRCLE_INCLUSION: 92,
 }
 """How ArduPilot's texts name kinds of items."""
 
@@ -64,7 +58,7 @@ def shapes(items: Sequence[MissionItem]) -> Iterator[Shape]:
     while k < len(items):
         item = items[k]
         count = int(item.p1) if item.command in POLYGONS else 1
-        if item.command == FENCE_RETURN_POINT:
+        if item.command == MavCmd.NAV_FENCE_RETURN_POINT:
             returns += 1
             if returns > 1:
                 raise FenceError("Multiple return points")
@@ -112,7 +106,7 @@ def load(fence: FenceState, areas: Sequence[Shape]) -> None:
 
 def stored_bytes(items: Sequence[MissionItem], areas: Sequence[Shape]) -> int:
     """Room that a list takes in ArduPilot's storage: its size depends on the board, not on this record."""
-    total = 5 + sum(9 for item in items if item.command == FENCE_RETURN_POINT)
+    total = 5 + sum(9 for item in items if item.command == MavCmd.NAV_FENCE_RETURN_POINT)
     return total + sum(13 if area.radius > 0.0 else 2 + 8 * len(area.places) for area in areas)
 
 

@@ -100,7 +100,7 @@ def distance_to_edge(fence: FenceState, s: int, point: Vec2) -> float:
 
 
 @law
-def room(fence: FenceState, s: int, point: Vec2) -> float:
+def clearance(fence: FenceState, s: int, point: Vec2) -> float:
     """How far a point that area ``s`` allows is from its edge [m]; below zero: how far one that it does not is."""
     distance = distance_to_edge(fence, s, point)
     return distance if is_within(fence, s, point) == is_inclusion(fence, s) else -distance

@@ -57,7 +57,7 @@ class FenceState(Record):
     breaches: int  # so far
     breach_us: int  # since when, of the last time that one was
     recovery_us: int  # since when the pilot brings the vehicle back; 0 not
-    told_us: int  # when it was last told how far a fence is
+    reported_us: int  # when it was last told how far a fence is
 
 
 POINTS = 50

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+from ...core.mavlink import MavSeverity
 from ...core.records import Floats, Record, array
 from ...core.vectors import Vec2, Vec3
 from ..events import Event
-from ..notes import CRITICAL, INFO
 
 BODY, SENSOR, LEVEL_SENSOR = 0, 1, 2
 """Frames of a line of sight: the body's FRD; that of a sensor that looks down until it is mounted (``orientation``);
@@ -21,17 +21,17 @@ SAID_NO_BEACON, SAID_NO_FRAME = 7, 8
 _TEXTS: dict[int, str | tuple[int, str]] = {
     SAID_FOUND: "PrecLand: Target Found",
     SAID_READY: "PrecLand: Init Complete",
-    SAID_FAILED: (CRITICAL, "PrecLand: Init Failed"),
-    SAID_LOST: (CRITICAL, "PrecLand: Target Lost"),
+    SAID_FAILED: (MavSeverity.CRITICAL, "PrecLand: Init Failed"),
+    SAID_LOST: (MavSeverity.CRITICAL, "PrecLand: Target Lost"),
     SAID_RETRY: "PrecLand: Retrying",
     SAID_RETRIED: "PrecLand: Retry Completed",
     SAID_FAILSAFE: "PrecLand: Failsafe Measures",
     SAID_NO_BEACON: "Set SIM_PLD_LAT, SIM_PLD_LON and SIM_PLD_ALT",
     SAID_NO_FRAME: "Plnd: Frame not supported",
 }
-LANDING_TARGET_DID = Event(61, INFO, _TEXTS)
+LANDING_TARGET_DID = Event(61, MavSeverity.INFO, _TEXTS)
 
-TOLD_BEACON, TOLD_FRAME = 1, 2
+REPORTED_BEACON, REPORTED_FRAME = 1, 2
 """Bits of what is said once."""
 
 
@@ -46,7 +46,7 @@ class LandingTarget(Record):
     used_us: int  # ``line_us`` of the last one that gave a place
     place: Vec3  # that place [m]
     sees: bool  # the sensor is well, and a beacon in its view
-    told: int  # TOLD_BEACON, TOLD_FRAME
+    reported: int  # TOLD_BEACON, TOLD_FRAME
     # the estimate, as of PLND_LAG ago
     running: bool  # measurements come
     since_us: int  # when the first of them did

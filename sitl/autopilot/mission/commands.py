@@ -7,11 +7,12 @@ import math
 from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
+from ...core.mavlink import MavCmd, MavSeverity
 from ..fence.checks import ALL, switch_by_user
 from ..fence.state import names
 from ..navigation.planner import Planner
 from ..navigation.state import CONDITION_DELAY, CONDITION_DISTANCE
-from ..notes import INFO, NOTICE, Text
+from ..notes import Text
 from ..state import Vehicle
 from . import item as commands
 from .item import UNREPORTED, MissionItem
@@ -68,18 +69,18 @@ class Commands(ABC, Generic[V]):
     def run(self, v: V, item: MissionItem) -> list[Note]:
         """Run a do-command, or start a condition: then ``nav.condition_kind`` is not zero until it is met."""
         nav = v.autopilot.modes.nav
-        if item.command == commands.CONDITION_DELAY:
+        if item.command == MavCmd.CONDITION_DELAY:
             nav.condition_kind = CONDITION_DELAY
             nav.condition_until_us = v.time_us + round(min(max(item.p1, 0.0), 1e9) * 1e6)
-        elif item.command == commands.CONDITION_DISTANCE:
+        elif item.command == MavCmd.CONDITION_DISTANCE:
             nav.condition_kind = CONDITION_DISTANCE
             nav.condition_distance = item.p1
-        elif item.command == commands.DO_SET_HOME:
+        elif item.command == MavCmd.DO_SET_HOME:
             set_home(v.autopilot, item)
-        elif item.command == commands.DO_FENCE_ENABLE:
+        elif item.command == MavCmd.DO_FENCE_ENABLE:
             return _enable_fence(v, item.p1 == 1.0)
-        elif item.command == commands.DO_SET_RESUME_REPEAT_DIST:  # taken, and no way is gone back
-            return [Text(INFO, f"Resume repeat dist set to {int(item.p1)} m")]
+        elif item.command == MavCmd.DO_SET_RESUME_REPEAT_DIST:  # taken, and no way is gone back
+            return [Text(MavSeverity.INFO, f"Resume repeat dist set to {int(item.p1)} m")]
         elif item.command in commands.CARRIED_OUT:
             return [OutputItem(item)]
         return []
@@ -99,7 +100,7 @@ def _enable_fence(v: Vehicle, on: bool) -> list[Note]:
     before = ap.fence.on
     switch_by_user(ap.fence, on, ALL, ap.params.FENCE, ap.events, v.time_us)
     changed = before ^ ap.fence.on
-    return [Text(NOTICE, f"{names(changed)} {'enabled' if on else 'disabled'}")] if changed else []
+    return [Text(MavSeverity.NOTICE, f"{names(changed)} {'enabled' if on else 'disabled'}")] if changed else []
 
 
 def whole_seconds(item: MissionItem) -> float:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import MutableMapping
 
+from ...core.mavlink import MavCmd
 from ..navigation.state import Nav
-from .item import DO_JUMP, DO_JUMP_TAG
 from .mission import Mission
 
 LONGEST = 100
@@ -40,23 +40,23 @@ def following(
     mission: Mission,
     seq: int,
     counts: MutableMapping[int, int],
-    room: int,
+    capacity: int,
     taken: list[tuple[int, int, int]] | None = None,
 ) -> int:
     """Number of the next item from ``seq`` on that is not a jump; 0 at the end or when jumps go in circles.
 
     ``counts`` is brought up to date; each jump run is appended to ``taken`` as (number, times run, times in
-    all). At most ``room`` different jumps are counted: a further one is not run.
+    all). At most ``capacity`` different jumps are counted: a further one is not run.
     """
     for _ in range(LONGEST):
         item = mission.get(seq)
         if item is None:
             return 0
-        if item.command not in (DO_JUMP, DO_JUMP_TAG):
+        if item.command not in (MavCmd.DO_JUMP, MavCmd.DO_JUMP_TAG):
             return seq
-        place = int(item.p1) if item.command == DO_JUMP else mission.tagged(int(item.p1))
+        place = int(item.p1) if item.command == MavCmd.DO_JUMP else mission.tagged(int(item.p1))
         times, done = int(item.p2), counts.get(seq, 0)
-        known = seq in counts or len(counts) < room
+        known = seq in counts or len(counts) < capacity
         if (times == FOREVER or done < times) and known:
             counts[seq] = done if times == FOREVER else done + 1
             if taken is not None:
@@ -67,12 +67,12 @@ def following(
     return 0
 
 
-def next_nav(mission: Mission, seq: int, counts: MutableMapping[int, int], room: int) -> int:
+def next_nav(mission: Mission, seq: int, counts: MutableMapping[int, int], capacity: int) -> int:
     """Number of the next navigation command from ``seq`` on, passing over do-commands;
     0 when there is none.
     """
     for _ in range(len(mission) + LONGEST):
-        seq = following(mission, seq, counts, room)
+        seq = following(mission, seq, counts, capacity)
         item = mission.get(seq)
         if item is None or item.is_nav:
             return seq

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
+from ...core.mavlink import MavCmd, MavMissionResult
 from ...errors import SitlError
-from .item import JUMP_TAG, STORED, MissionItem, home_item
-from .validate import ACCEPTED, check_all
+from .item import STORED, MissionItem, home_item
+from .validate import check_all
 
 RESULT_NAMES = {
     1: "jump to an item that is not there",
@@ -53,7 +54,7 @@ class Mission:
         """
         all_items = tuple(items)
         result, seq = check_all(all_items, taken)
-        if result != ACCEPTED:
+        if result != MavMissionResult.ACCEPTED:
             item = f" (command {all_items[seq].command}, frame {all_items[seq].frame})" if seq < len(all_items) else ""
             raise MissionError(f"mission item {seq}{item}: {RESULT_NAMES.get(result, result)}", result, seq)
         return cls(all_items)
@@ -72,7 +73,7 @@ class Mission:
 
     def tagged(self, tag: int) -> int:
         """Number of the first JUMP_TAG item with this tag, 0 when there is none."""
-        marks = (k for k, item in enumerate(self.items) if item.command == JUMP_TAG and int(item.p1) == tag)
+        marks = (k for k, item in enumerate(self.items) if item.command == MavCmd.JUMP_TAG and int(item.p1) == tag)
         return next(marks, 0)
 
     def with_home(self, lat: int, lon: int, alt: float) -> Mission:

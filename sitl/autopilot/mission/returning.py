@@ -13,19 +13,19 @@ from collections.abc import Iterator
 
 from ...core.algebra import dot, norm
 from ...core.elementary import hypot
+from ...core.mavlink import MavCmd, MavSeverity
 from ...core.vectors import Vec3
 from ..events import Event
 from ..navigation.state import JUMPS, LANDING, RETURN_PATH
-from ..notes import INFO
 from ..state import Autopilot
 from . import jumps
-from .item import COMMANDS, DO_LAND_START, DO_RETURN_PATH_START, NAV_LAND, NAV_VTOL_LAND, MissionItem
+from .item import COMMANDS, MissionItem
 from .mission import Mission
 from .place import point
 
-LANDINGS = (NAV_LAND, NAV_VTOL_LAND)
+LANDINGS = (MavCmd.NAV_LAND, MavCmd.NAV_VTOL_LAND)
 RETURN_WANTED = Event(50)  # AUTO_RTL; a: way (BEST, ...), b: 1 AUTO flies already
-RETURN_ACTIVE = Event(51, INFO, {RETURN_PATH: "Return path active", LANDING: "Landing sequence active"})
+RETURN_ACTIVE = Event(51, MavSeverity.INFO, {RETURN_PATH: "Return path active", LANDING: "Landing sequence active"})
 """It flies a part that brings it back already; a: ``mission_part``"""
 
 
@@ -37,7 +37,7 @@ def marks(mission: Mission, command: int) -> list[int]:
 
 def has_path(mission: Mission) -> bool:
     """Whether there is a return path with a place on it."""
-    return any(next(_path(mission, mark), None) for mark in marks(mission, DO_RETURN_PATH_START))
+    return any(next(_path(mission, mark), None) for mark in marks(mission, MavCmd.DO_RETURN_PATH_START))
 
 
 def nearest_landing(mission: Mission, ap: Autopilot) -> int:
@@ -51,14 +51,14 @@ def nearest_landing(mission: Mission, ap: Autopilot) -> int:
         place = point(ap, item, here)
         return hypot(place.x - here.x, place.y - here.y)
 
-    return min(marks(mission, DO_LAND_START), key=away, default=0)
+    return min(marks(mission, MavCmd.DO_LAND_START), key=away, default=0)
 
 
 def nearest_leg(mission: Mission, ap: Autopilot) -> int:
     """Number of the item at the end of the leg of a return path that is nearest to the vehicle, 0 none."""
     here = ap.estimate.pos
     best, found = math.inf, 0
-    for mark in marks(mission, DO_RETURN_PATH_START):
+    for mark in marks(mission, MavCmd.DO_RETURN_PATH_START):
         before = None if mission.items[mark].no_place else point(ap, mission.items[mark], here)
         for k, item in _path(mission, mark):
             place = point(ap, item, here)
@@ -75,7 +75,7 @@ def _path(mission: Mission, mark: int) -> Iterator[tuple[int, MissionItem]]:
     for _ in range(len(mission) + jumps.LONGEST):
         seq = jumps.following(mission, seq, counts, JUMPS)
         item = mission.get(seq)
-        if item is None or item.command == DO_LAND_START:
+        if item is None or item.command == MavCmd.DO_LAND_START:
             return
         if item.is_nav and COMMANDS[item.command].has_place and not item.no_place:
             yield seq, item

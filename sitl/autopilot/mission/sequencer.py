@@ -18,6 +18,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Protocol
 
+from ...core.mavlink import MavCmd, MavSeverity
 from ..arming_checks import DISARMED
 from ..estimation.events import EKF_ORIGIN_SET
 from ..events import EVENT_RING
@@ -46,21 +47,11 @@ from ..navigation.state import (
     WAYPOINT,
     Nav,
 )
-from ..notes import CRITICAL, INFO, WARNING, CurrentChanged, ItemReached, Text
+from ..notes import CurrentChanged, ItemReached, Text
 from ..state import Vehicle
 from . import jumps, returning
 from .commands import Commands
-from .item import (
-    COMMANDS,
-    DO_LAND_START,
-    DO_RETURN_PATH_START,
-    NAV_DELAY,
-    NAV_TAKEOFF,
-    NAV_VTOL_TAKEOFF,
-    TERRAIN_FRAMES,
-    UNREPORTED,
-    MissionItem,
-)
+from .item import COMMANDS, TERRAIN_FRAMES, UNREPORTED, MissionItem
 from .mission import Mission
 from .notes import Note
 from .time_of_day import seconds_until
@@ -122,7 +113,7 @@ class Sequencer:
         ap.params.MIS.TOTAL = float(len(mission))
         ap.modes.mission_count = len(mission)
         ap.modes.mission_takes_off = _takes_off(mission)
-        ap.modes.mission_lands = bool(returning.marks(mission, DO_LAND_START))
+        ap.modes.mission_lands = bool(returning.marks(mission, MavCmd.DO_LAND_START))
         ap.modes.mission_returns = returning.has_path(mission)
         ap.modes.mission_over_ground = any(
             item.frame in TERRAIN_FRAMES and item.command in COMMANDS and COMMANDS[item.command].has_place
@@ -148,11 +139,11 @@ class Sequencer:
             is_leg = nav.command_kind in LEGS
             if is_leg and self.mission.get(seq) is not None:
                 self._run_from(v, seq, notes)
-                notes.append(Text(CRITICAL, "Auto mission changed, restarted command"))
+                notes.append(Text(MavSeverity.CRITICAL, "Auto mission changed, restarted command"))
             else:
                 self._look_ahead(v)
                 if is_leg:
-                    notes.append(Text(CRITICAL, "Auto mission changed but failed to restart command"))
+                    notes.append(Text(MavSeverity.CRITICAL, "Auto mission changed but failed to restart command"))
             return notes
         if not mission.present:
             nav.mission_state = STOPPED
@@ -250,7 +241,7 @@ class Sequencer:
         else:
             self._stand_at(nav, seq, notes)
         nav.mission_part = RETURN_PATH if leg else LANDING
-        notes.append(Text(INFO, "Return path started" if leg else "Landing sequence start"))
+        notes.append(Text(MavSeverity.INFO, "Return path started" if leg else "Landing sequence start"))
         return notes
 
     def change_speed(self, v: Vehicle, kind: int, speed: float) -> bool:
@@ -309,7 +300,10 @@ class Sequencer:
         """Go on at item ``seq``, and what is done on the way to a navigation command there, when the mission runs."""
         nav.mission_state, nav.mission_resume = STOPPED, True
         following = jumps.next_nav(self.mission, seq, jumps.runs(nav), JUMPS) or seq
-        notes += [Text(INFO, f"Mission: {k} {self.mission.items[k].title}") for k in dict.fromkeys((seq, following))]
+        notes += [
+            Text(MavSeverity.INFO, f"Mission: {k} {self.mission.items[k].title}")
+            for k in dict.fromkeys((seq, following))
+        ]
         self._resume_at(nav, seq, notes)
 
     def _resume_at(self, nav: Nav, seq: int, notes: list[Note]) -> None:
@@ -358,7 +352,9 @@ class Sequencer:
         for _ in range(len(self.mission) + jumps.LONGEST):
             taken: list[tuple[int, int, int]] = []
             seq = jumps.following(self.mission, seq, counts, JUMPS, taken)
-            notes.extend(Text(INFO, f"Mission: {k} Jump {done}/{_often(times)}") for k, done, times in taken)
+            notes.extend(
+                Text(MavSeverity.INFO, f"Mission: {k} Jump {done}/{_often(times)}") for k, done, times in taken
+            )
             item = self.mission.get(seq)
             if item is None:
                 break
@@ -367,7 +363,7 @@ class Sequencer:
                 self._give(v, seq, notes, ends)
                 return
             if item.is_nav:
-                notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
+                notes.append(Text(MavSeverity.INFO, f"Mission: {seq} {item.title}"))
             elif nav.mission_do_next == 0:
                 ends = self._do(v, seq, notes)
                 nav.mission_do_next = seq + 1
@@ -387,7 +383,7 @@ class Sequencer:
         item = self.mission.items[seq]
         if item.command in returning.LANDINGS:
             nav.mission_part = LANDING
-        notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
+        notes.append(Text(MavSeverity.INFO, f"Mission: {seq} {item.title}"))
         self._set_current(nav, seq, notes)
         notes += self.commands.give(v, seq, self._timed(v, item))
         _end_first(notes, ends)
@@ -397,7 +393,7 @@ class Sequencer:
 
     def _timed(self, v: Vehicle, item: MissionItem) -> MissionItem:
         """A delay until a time of day as one of so many seconds."""
-        if item.command != NAV_DELAY or item.p1 > 0.0:
+        if item.command != MavCmd.NAV_DELAY or item.p1 > 0.0:
             return item
         return item._replace(p1=seconds_until(item, self._boot_us() + v.time_us))
 
@@ -429,18 +425,18 @@ class Sequencer:
     def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> list[Note]:
         """Run do-command ``seq``; what is told when it is done."""
         item = self.mission.items[seq]
-        notes.append(Text(INFO, f"Mission: {seq} {item.title}"))
+        notes.append(Text(MavSeverity.INFO, f"Mission: {seq} {item.title}"))
         nav = v.autopilot.modes.nav
         nav.mission_do = seq
-        if item.command == DO_LAND_START:
+        if item.command == MavCmd.DO_LAND_START:
             nav.mission_part = LANDING
-        elif item.command == DO_RETURN_PATH_START and nav.mission_part == OUTWARD:
+        elif item.command == MavCmd.DO_RETURN_PATH_START and nav.mission_part == OUTWARD:
             nav.mission_part = RETURN_PATH
         if item.command in self.commands.taken:
             notes += self.commands.run(v, item)
         ends: list[Note] = []
         if self.commands.skips(item):
-            ends.append(Text(WARNING, f"Skipping invalid cmd #{item.command}"))
+            ends.append(Text(MavSeverity.WARNING, f"Skipping invalid cmd #{item.command}"))
         if nav.condition_kind == CONDITION_NONE and item.command not in UNREPORTED:
             ends.append(ItemReached(seq))
         return ends
@@ -464,8 +460,8 @@ def _takes_off(mission: Mission) -> bool:
     for _ in range(BEFORE_TAKE_OFF):
         seq = jumps.next_nav(mission, seq + 1, {}, JUMPS)
         item = mission.get(seq)
-        if item is None or item.command != NAV_DELAY:
-            return item is not None and item.command in (NAV_TAKEOFF, NAV_VTOL_TAKEOFF)
+        if item is None or item.command != MavCmd.NAV_DELAY:
+            return item is not None and item.command in (MavCmd.NAV_TAKEOFF, MavCmd.NAV_VTOL_TAKEOFF)
     return False
 
 

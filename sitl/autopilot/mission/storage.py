@@ -13,11 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import item as c
-from .item import COMMANDS, GLOBAL, MISSION, MissionItem, home_item
+from ...core.mavlink import MavCmd, MavFrame
+from .item import COMMANDS, MissionItem, home_item
 
 Keep = Callable[[float], float]
-_SAME_FRAME = {MISSION: GLOBAL, c.GLOBAL_INT: GLOBAL, c.RELATIVE_INT: c.RELATIVE, c.TERRAIN_INT: c.TERRAIN}
+_SAME_FRAME: dict[int, int] = {
+    MavFrame.MISSION: MavFrame.GLOBAL,
+    MavFrame.GLOBAL_INT: MavFrame.GLOBAL,
+    MavFrame.GLOBAL_RELATIVE_ALT_INT: MavFrame.GLOBAL_RELATIVE_ALT,
+    MavFrame.GLOBAL_TERRAIN_ALT_INT: MavFrame.GLOBAL_TERRAIN_ALT,
+}
 _CENTI, _HUNDRED = np.float32(0.01), np.float32(100.0)
 _RANGE = 1 << 31
 FINE_MAX, TURNS_MAX = 255.0, 255.0
@@ -104,73 +109,73 @@ class Kept(NamedTuple):
     z: Keep = dropped
 
 
-KEPT = {
-    c.NAV_WAYPOINT: Kept(u16),
-    c.NAV_LOITER_UNLIM: Kept(p3=sized),
-    c.NAV_LOITER_TURNS: Kept(real, p3=real, p4=flag),  # ``_circle`` does the rest
-    c.NAV_LOITER_TIME: Kept(u16, p3=sign, p4=flag),
-    c.NAV_LAND: Kept(u16, p4=sign),
-    c.NAV_TAKEOFF: Kept(u16),
-    c.NAV_CONTINUE_AND_CHANGE_ALT: Kept(u16),
-    c.NAV_LOITER_TO_ALT: Kept(p2=sized, p4=flag),
-    c.NAV_ARC_WAYPOINT: Kept(sized),
-    c.NAV_SPLINE_WAYPOINT: Kept(u16),
-    c.NAV_ALTITUDE_WAIT: Kept(real, real, u8),
-    c.NAV_VTOL_LAND: Kept(u16),
-    c.NAV_GUIDED_ENABLE: Kept(u16),
-    c.NAV_DELAY: Kept(real, i8, i8, i8),
-    c.NAV_PAYLOAD_PLACE: Kept(centimetres),
-    c.NAV_SET_YAW_SPEED: Kept(real, real, u8),
-    c.NAV_SCRIPT_TIME: Kept(u8, u8, half, half, i16, i16),
-    c.NAV_ATTITUDE_TIME: Kept(
+KEPT: dict[int, Kept] = {
+    MavCmd.NAV_WAYPOINT: Kept(u16),
+    MavCmd.NAV_LOITER_UNLIM: Kept(p3=sized),
+    MavCmd.NAV_LOITER_TURNS: Kept(real, p3=real, p4=flag),  # ``_circle`` does the rest
+    MavCmd.NAV_LOITER_TIME: Kept(u16, p3=sign, p4=flag),
+    MavCmd.NAV_LAND: Kept(u16, p4=sign),
+    MavCmd.NAV_TAKEOFF: Kept(u16),
+    MavCmd.NAV_CONTINUE_AND_CHANGE_ALT: Kept(u16),
+    MavCmd.NAV_LOITER_TO_ALT: Kept(p2=sized, p4=flag),
+    MavCmd.NAV_ARC_WAYPOINT: Kept(sized),
+    MavCmd.NAV_SPLINE_WAYPOINT: Kept(u16),
+    MavCmd.NAV_ALTITUDE_WAIT: Kept(real, real, u8),
+    MavCmd.NAV_VTOL_LAND: Kept(u16),
+    MavCmd.NAV_GUIDED_ENABLE: Kept(u16),
+    MavCmd.NAV_DELAY: Kept(real, i8, i8, i8),
+    MavCmd.NAV_PAYLOAD_PLACE: Kept(centimetres),
+    MavCmd.NAV_SET_YAW_SPEED: Kept(real, real, u8),
+    MavCmd.NAV_SCRIPT_TIME: Kept(u8, u8, half, half, i16, i16),
+    MavCmd.NAV_ATTITUDE_TIME: Kept(
         lambda v: u16(min(max(v, 0.0), 65535.0)),
         within(-180.0, 180.0),
         within(-90.0, 90.0),
         within(-180.0, 360.0),
         i16,
     ),
-    c.CONDITION_DELAY: Kept(real),
-    c.CONDITION_DISTANCE: Kept(real),
-    c.CONDITION_YAW: Kept(real, real, i8, u8),
-    c.DO_JUMP: Kept(u16, i16),
-    c.DO_JUMP_TAG: Kept(u16, i16),
-    c.JUMP_TAG: Kept(u16),
-    c.DO_CHANGE_SPEED: Kept(u8, real, real),
-    c.DO_SET_HOME: Kept(u16),
-    c.DO_SET_RELAY: Kept(u8, u8),
-    c.DO_REPEAT_RELAY: Kept(u8, i16, real),
-    c.DO_SET_SERVO: Kept(u8, u16),
-    c.DO_REPEAT_SERVO: Kept(u8, u16, i16, real),
-    c.DO_AUTOTUNE_ENABLE: Kept(u16),
-    c.DO_PAUSE_CONTINUE: Kept(u16),
-    c.DO_SET_REVERSE: Kept(u16),
-    c.DO_SET_ROI_LOCATION: Kept(u16),
-    c.DO_SET_ROI_NONE: Kept(u16),
-    c.DO_SET_ROI: Kept(u16),
-    c.DO_DIGICAM_CONFIGURE: Kept(u8, u16, u8, u16, u8, u8, real),
-    c.DO_DIGICAM_CONTROL: Kept(u8, u8, i8, u8, u8, u8),
-    c.DO_MOUNT_CONTROL: Kept(real, real, real, z=lambda _: MAVLINK_TARGETING),
-    c.DO_SET_CAM_TRIGG_DIST: Kept(real, p3=u8),
-    c.DO_FENCE_ENABLE: Kept(u16),
-    c.DO_PARACHUTE: Kept(u16),
-    c.DO_INVERTED_FLIGHT: Kept(u16),
-    c.DO_GRIPPER: Kept(u8, u8),
-    c.DO_SET_RESUME_REPEAT_DIST: Kept(u16),
-    c.DO_SPRAYER: Kept(u16),
-    c.DO_SEND_SCRIPT_MESSAGE: Kept(u16, real, real, real),
-    c.DO_AUX_FUNCTION: Kept(u16, u8),
-    c.DO_GUIDED_LIMITS: Kept(u16, real, real, real),
-    c.DO_ENGINE_CONTROL: Kept(flag, flag, centimetres, lambda v: float(whole(v) & ALLOWS_START_DISARMED)),
-    c.SET_CAMERA_ZOOM: Kept(u8, real),
-    c.SET_CAMERA_FOCUS: Kept(u8, real),
-    c.SET_CAMERA_SOURCE: Kept(u8, u8, u8),
-    c.DO_GIMBAL_MANAGER_PITCHYAW: Kept(i8, i16, i8, i8, u8, z=u8),
-    c.IMAGE_START_CAPTURE: Kept(u8, real, u16, u16),
-    c.IMAGE_STOP_CAPTURE: Kept(u16),
-    c.VIDEO_START_CAPTURE: Kept(u8),
-    c.VIDEO_STOP_CAPTURE: Kept(u8),
-    c.DO_VTOL_TRANSITION: Kept(u8),
-    c.DO_WINCH: Kept(u8, u8, real, real),
+    MavCmd.CONDITION_DELAY: Kept(real),
+    MavCmd.CONDITION_DISTANCE: Kept(real),
+    MavCmd.CONDITION_YAW: Kept(real, real, i8, u8),
+    MavCmd.DO_JUMP: Kept(u16, i16),
+    MavCmd.DO_JUMP_TAG: Kept(u16, i16),
+    MavCmd.JUMP_TAG: Kept(u16),
+    MavCmd.DO_CHANGE_SPEED: Kept(u8, real, real),
+    MavCmd.DO_SET_HOME: Kept(u16),
+    MavCmd.DO_SET_RELAY: Kept(u8, u8),
+    MavCmd.DO_REPEAT_RELAY: Kept(u8, i16, real),
+    MavCmd.DO_SET_SERVO: Kept(u8, u16),
+    MavCmd.DO_REPEAT_SERVO: Kept(u8, u16, i16, real),
+    MavCmd.DO_AUTOTUNE_ENABLE: Kept(u16),
+    MavCmd.DO_PAUSE_CONTINUE: Kept(u16),
+    MavCmd.DO_SET_REVERSE: Kept(u16),
+    MavCmd.DO_SET_ROI_LOCATION: Kept(u16),
+    MavCmd.DO_SET_ROI_NONE: Kept(u16),
+    MavCmd.DO_SET_ROI: Kept(u16),
+    MavCmd.DO_DIGICAM_CONFIGURE: Kept(u8, u16, u8, u16, u8, u8, real),
+    MavCmd.DO_DIGICAM_CONTROL: Kept(u8, u8, i8, u8, u8, u8),
+    MavCmd.DO_MOUNT_CONTROL: Kept(real, real, real, z=lambda _: MAVLINK_TARGETING),
+    MavCmd.DO_SET_CAM_TRIGG_DIST: Kept(real, p3=u8),
+    MavCmd.DO_FENCE_ENABLE: Kept(u16),
+    MavCmd.DO_PARACHUTE: Kept(u16),
+    MavCmd.DO_INVERTED_FLIGHT: Kept(u16),
+    MavCmd.DO_GRIPPER: Kept(u8, u8),
+    MavCmd.DO_SET_RESUME_REPEAT_DIST: Kept(u16),
+    MavCmd.DO_SPRAYER: Kept(u16),
+    MavCmd.DO_SEND_SCRIPT_MESSAGE: Kept(u16, real, real, real),
+    MavCmd.DO_AUX_FUNCTION: Kept(u16, u8),
+    MavCmd.DO_GUIDED_LIMITS: Kept(u16, real, real, real),
+    MavCmd.DO_ENGINE_CONTROL: Kept(flag, flag, centimetres, lambda v: float(whole(v) & ALLOWS_START_DISARMED)),
+    MavCmd.SET_CAMERA_ZOOM: Kept(u8, real),
+    MavCmd.SET_CAMERA_FOCUS: Kept(u8, real),
+    MavCmd.SET_CAMERA_SOURCE: Kept(u8, u8, u8),
+    MavCmd.DO_GIMBAL_MANAGER_PITCHYAW: Kept(i8, i16, i8, i8, u8, z=u8),
+    MavCmd.IMAGE_START_CAPTURE: Kept(u8, real, u16, u16),
+    MavCmd.IMAGE_STOP_CAPTURE: Kept(u16),
+    MavCmd.VIDEO_START_CAPTURE: Kept(u8),
+    MavCmd.VIDEO_STOP_CAPTURE: Kept(u8),
+    MavCmd.DO_VTOL_TRANSITION: Kept(u8),
+    MavCmd.DO_WINCH: Kept(u8, u8, real, real),
 }
 """By command. Of one that is not here, as RTL, nothing is kept but its place."""
 
@@ -185,14 +190,14 @@ def stored(item: MissionItem) -> MissionItem:
         0.0 if math.isnan(value) and keep is not sign else keep(value)
         for keep, value in zip(kept[:4], (item.p1, item.p2, item.p3, item.p4), strict=True)
     )
-    if item.command == c.NAV_LOITER_TURNS:
+    if item.command == MavCmd.NAV_LOITER_TURNS:
         p1, p3 = _circle(item.p1, item.p3)
     if COMMANDS[item.command].has_place:
         frame = _SAME_FRAME.get(item.frame, item.frame)
         return MissionItem(item.command, frame, p1, p2, p3, p4, item.x, item.y, altitude(item.z))
     x, y = int(kept.x(item.x)), int(kept.y(item.y))
     z = 0.0 if kept.z is dropped else kept.z(item.z)
-    return MissionItem(item.command, GLOBAL, p1, p2, p3, p4, x, y, z)
+    return MissionItem(item.command, MavFrame.GLOBAL, p1, p2, p3, p4, x, y, z)
 
 
 def stored_home(lat: int, lon: int, alt: float) -> MissionItem:

@@ -214,7 +214,7 @@ def _phases(length: float, limits: Limits, start: State, v1: float) -> list[Phas
 def _hasty_phases(length: float, limits: Limits, start: State, v1: float) -> list[Phase]:
     """Phases of a leg begun too fast, empty when it is not.
 
-    Where the room is too short for slowing down to the limit and stopping after, it slows down as far as it
+    Where the leg is too short for slowing down to the limit and stopping after, it slows down as far as it
     can: bringing the speed below the limit first would mean to stop early or to fly backwards.
     """
     peak = speed_at_rest(start.v, start.a, limits.jerk)
@@ -231,12 +231,12 @@ def _hasty_phases(length: float, limits: Limits, start: State, v1: float) -> lis
 
 
 def _slowing_phases(length: float, limits: Limits, start: State, v1: float) -> list[Phase]:
-    """Phases to the speed limit without dipping below it, then as from there; empty without room enough."""
+    """Phases to the speed limit without dipping below it, then as from there; empty where the leg is too short."""
     slowing = change_speed(start.v, start.a, limits.speed, limits.acceleration, limits.jerk)
-    room = length - start.after_all(slowing).p
-    if room < 0.5 * limits.speed * (limits.speed / limits.acceleration + limits.acceleration / limits.jerk) + 1.0:
+    distance = length - start.after_all(slowing).p
+    if distance < 0.5 * limits.speed * (limits.speed / limits.acceleration + limits.acceleration / limits.jerk) + 1.0:
         return []
-    return slowing + _phases(room, limits, State(0.0, limits.speed, 0.0), v1)
+    return slowing + _phases(distance, limits, State(0.0, limits.speed, 0.0), v1)
 
 
 def _soften(phase: Phase, rise: float) -> list[Phase]:

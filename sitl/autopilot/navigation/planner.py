@@ -9,11 +9,11 @@ from typing import Any, Generic, TypeVar
 
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
 from ...core.geodesy import place_e7
+from ...core.mavlink import MavSeverity
 from ...core.sums import separation
 from ...core.vectors import Vec3
-from ..avoidance.shortest_path import find_path
+from ..avoidance.shortest_path import a_star
 from ..events import Event, Row, emit
-from ..notes import CRITICAL
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
 from .path import areas_of, set_place
@@ -37,7 +37,7 @@ def _rows(v: Any, is_closed: bool) -> list[Row]:
     return [("OADJ", (*state, *next(places), *next(places)))]
 
 
-NO_WAY = Event(60, CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
+NO_WAY = Event(60, MavSeverity.CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
 """There is no way around the areas of the fence."""
 WAY_LAID = Event(75, log=lambda v, a, b: _rows(v, False))
 """The way around them has turns."""
@@ -115,13 +115,13 @@ class Planner(ABC, Generic[A]):
             self.begin_leg(ap, time_us, target)
             return
         origin, _ = self.origin_of_next(ap, time_us)
-        way = find_path(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
+        way = a_star(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
         if way is None or len(way) > DETOUR:
             self.begin_leg(ap, time_us, self.stopping_point(ap))
             set_place(detour, 0, target)
             detour.left, detour.blocked_us = 1, time_us
-            if time_us - detour.told_us >= TOLD_US or detour.told_us == 0:
-                detour.told_us = time_us
+            if time_us - detour.reported_us >= TOLD_US or detour.reported_us == 0:
+                detour.reported_us = time_us
                 emit(ap.events, time_us, NO_WAY, 0.0, 0.0)
             return
         places = [with_down(place, target.z) for place in way[:-1]] + [target]

@@ -102,7 +102,7 @@ class Detour(Record):
     places: Floats = array(3 * DETOUR, stored="f4")  # the next one last, NED [m]
     areas: int  # the areas of the fence that it was laid around (``path.areas_of``)
     blocked_us: int  # there is no way: when that was found; 0 not
-    told_us: int  # when it was last said
+    reported_us: int  # when it was last said
     bend: int  # BendyRuler: STRAIGHT, BENT, ENDED (``avoidance.bendy_ruler``)
     bent_target: Vec3  # what it steers for in place of the destination, NED [m]
     bent_from: Vec2  # the destination when it last found a bearing, NE [m]

@@ -16,7 +16,7 @@ from .table import Table, Values
 
 __all__ = [
     "FileValues", "Given", "ParameterError", "ParameterWarning", "apply", "check", "dump", "format_value", "given",
-    "load", "load_all", "not_read", "notes", "parse", "save", "tell", "text_of",
+    "load", "load_all", "not_read", "notes", "parse", "report", "save", "text_of",
 ]  # fmt: skip
 
 _SHOWN = 6
@@ -64,12 +64,12 @@ class FileValues(dict[str, float]):
         return both
 
     @property
-    def is_told(self) -> bool:
+    def is_reported(self) -> bool:
         """Whether the user has been told what there is to say of them (``notes``), or of a copy."""
         return self._told[0]
 
-    @is_told.setter
-    def is_told(self, value: bool) -> None:
+    @is_reported.setter
+    def is_reported(self, value: bool) -> None:
         self._told[0] = value
 
     def _add(self, other: FileValues) -> None:
@@ -142,7 +142,7 @@ def apply(values: Values, given: Mapping[str, float], source: str = "parameters"
     """
     known = {name: value for name, value in given.items() if name in values.table}
     if isinstance(given, FileValues):
-        tell(values.table, given)
+        report(values.table, given)
         values.update(known)
         return []
     check(values.table, known, source)
@@ -167,10 +167,10 @@ def check(table: Table, values: Mapping[str, float], source: str = "parameters")
         raise ParameterError(f"{source}: " + "; ".join(refused))
 
 
-def tell(table: Table, values: FileValues) -> None:
+def report(table: Table, values: FileValues) -> None:
     """Warn of what there is to say of files, once."""
-    if not values.is_told:
-        values.is_told = True
+    if not values.is_reported:
+        values.is_reported = True
         for text in notes(table, values):
             warnings.warn(text, ParameterWarning, stacklevel=3)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from .. import arming_checks, smart_rtl_path
 from ..arming_checks import BY_RUDDER, refuse
 from ..events import Events, emit, emit_and_return
 from ..mode_switch import rudder_command
-from ..notes import INFO
 from ..state import Arming
 from .arming_checks import TEXTS, check, method_checks
 from .control.motors import is_moving
@@ -20,8 +20,8 @@ from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]
 
-ARMED = arming_checks.ARMED.saying(INFO, "Throttle armed")
-DISARMED = arming_checks.DISARMED.saying(INFO, "Throttle disarmed")
+ARMED = arming_checks.ARMED.saying(MavSeverity.INFO, "Throttle armed")
+DISARMED = arming_checks.DISARMED.saying(MavSeverity.INFO, "Throttle disarmed")
 
 
 @law

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from ...core.mavlink import MavSeverity
 from .. import aux_functions as shared
 from .. import home
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH
 from ..mission.mission import Mission
 from ..mission.notes import Note
-from ..notes import INFO, NOTICE, Text
+from ..notes import Text
 from . import arming
 from .modes.auto import AUTO
 from .modes.set_mode import request
@@ -27,10 +28,10 @@ def _save_waypoint(holder: Holder, position: int) -> list[Note]:
     if ap.arming.armed:
         shared.append_items(holder, [shared.item_here(holder)])
         return []
-    notes = [*holder.sequencer.set_mission(holder.v, Mission()), Text(NOTICE, "SaveWP: Mission cleared!")]
+    notes = [*holder.sequencer.set_mission(holder.v, Mission()), Text(MavSeverity.NOTICE, "SaveWP: Mission cleared!")]
     if home.set_here(ap.home, ap.estimate):
         ap.home.locked = True
-        notes.append(Text(INFO, home.set_text(ap.home)))
+        notes.append(Text(MavSeverity.INFO, home.set_text(ap.home)))
         shared.append_items(holder, [])
     return notes
 

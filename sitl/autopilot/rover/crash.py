@@ -10,11 +10,12 @@ import math
 
 from ...core.elementary import hypot
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from ...core.vectors import Euler
 from ..arming_checks import BY_CRASH
 from ..events import Event, emit, err
+from ..log_events import LogErrorSubsystem
 from ..modes import REASON_CRASH_FAILSAFE
-from ..notes import EMERGENCY
 from ..state import Arming, Estimate
 from . import motor_test
 from .arming import set_disarmed
@@ -32,7 +33,9 @@ MOTION_MIN = 0.08  # [m/s] and [rad/s]
 HOLD_AND_DISARM = 2.0
 """FS_CRASH_CHECK"""
 
-CRASH_HOLD = Event(24, EMERGENCY, "Crash: Going to HOLD", log=err(12, 1))  # crashed or blocked
+CRASH_HOLD = Event(
+    24, MavSeverity.EMERGENCY, "Crash: Going to HOLD", log=err(LogErrorSubsystem.CRASH_CHECK, 1)
+)  # crashed or blocked
 
 
 @law

@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 from ...core.kernels import law
+from ...core.mavlink import MavSeverity
 from .. import failsafe_checks
 from ..arming_checks import BY_BATTERY_FAILSAFE
 from ..estimation.state import Ekf
 from ..failsafe_checks import EKF, GCS, RADIO, VARIANCE, is_estimate_bad, report
 from ..modes import ACCEPTED, REASON_EKF_FAILSAFE, REASON_FAILSAFE
-from ..notes import CRITICAL, INFO, WARNING, Text
+from ..notes import Text
 from ..state import Estimate, Failsafe
 from . import motor_test
 from .arming import set_disarmed
@@ -59,8 +60,8 @@ def text(which: int, on: int) -> str | None:
 
 
 def _told(v: Any, which: float, on: float) -> list[Text]:
-    said, severity = text(int(which), int(on != 0.0)), WARNING if on != 0.0 else INFO
-    return [Text(CRITICAL if which in (EKF, VARIANCE) else severity, said)] if said else []
+    said, severity = text(int(which), int(on != 0.0)), MavSeverity.WARNING if on != 0.0 else MavSeverity.INFO
+    return [Text(MavSeverity.CRITICAL if which in (EKF, VARIANCE) else severity, said)] if said else []
 
 
 FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_told)

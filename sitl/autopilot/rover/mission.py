@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 
+from ...core.mavlink import MavCmd, MavSeverity
 from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
@@ -14,7 +15,7 @@ from ..mission.place import point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.planner import end
-from ..notes import INFO, NOTICE, WARNING, Text
+from ..notes import Text
 from .modes import guided_setpoints, set_mode
 from .modes.auto import AUTO, LEGS
 from .navigation import waypoint
@@ -24,30 +25,30 @@ from .state import Vehicle
 RADIUS_MAX = 2550.0
 """Greatest radius of circles that ArduPilot's mission storage holds [m]."""
 
-KINDS = {
-    commands.NAV_WAYPOINT: kinds.WAYPOINT,
-    commands.NAV_LOITER_UNLIM: kinds.LOITER_UNLIMITED,
-    commands.NAV_LOITER_TURNS: kinds.LOITER_TURNS,
-    commands.NAV_LOITER_TIME: kinds.LOITER_TIME,
-    commands.NAV_RETURN_TO_LAUNCH: kinds.RTL,
-    commands.NAV_DELAY: kinds.DELAY,
-    commands.NAV_GUIDED_ENABLE: kinds.GUIDED,
-    commands.NAV_SET_YAW_SPEED: kinds.YAW_SPEED,
+KINDS: dict[int, int] = {
+    MavCmd.NAV_WAYPOINT: kinds.WAYPOINT,
+    MavCmd.NAV_LOITER_UNLIM: kinds.LOITER_UNLIMITED,
+    MavCmd.NAV_LOITER_TURNS: kinds.LOITER_TURNS,
+    MavCmd.NAV_LOITER_TIME: kinds.LOITER_TIME,
+    MavCmd.NAV_RETURN_TO_LAUNCH: kinds.RTL,
+    MavCmd.NAV_DELAY: kinds.DELAY,
+    MavCmd.NAV_GUIDED_ENABLE: kinds.GUIDED,
+    MavCmd.NAV_SET_YAW_SPEED: kinds.YAW_SPEED,
 }
 OTHERS = (
-    commands.CONDITION_DELAY,
-    commands.CONDITION_DISTANCE,
-    commands.DO_JUMP,
-    commands.DO_CHANGE_SPEED,
-    commands.DO_FENCE_ENABLE,
-    commands.DO_SET_HOME,
-    commands.DO_SET_REVERSE,
-    commands.DO_SET_ROI_LOCATION,  # for the gimbal
-    commands.DO_SET_ROI_NONE,
-    commands.DO_SET_ROI,
-    commands.DO_GUIDED_LIMITS,
-    commands.DO_SET_RESUME_REPEAT_DIST,
-    commands.DO_JUMP_TAG,
+    MavCmd.CONDITION_DELAY,
+    MavCmd.CONDITION_DISTANCE,
+    MavCmd.DO_JUMP,
+    MavCmd.DO_CHANGE_SPEED,
+    MavCmd.DO_FENCE_ENABLE,
+    MavCmd.DO_SET_HOME,
+    MavCmd.DO_SET_REVERSE,
+    MavCmd.DO_SET_ROI_LOCATION,  # for the gimbal
+    MavCmd.DO_SET_ROI_NONE,
+    MavCmd.DO_SET_ROI,
+    MavCmd.DO_GUIDED_LIMITS,
+    MavCmd.DO_SET_RESUME_REPEAT_DIST,
+    MavCmd.DO_JUMP_TAG,
     *commands.MARKS,
     *commands.CAMERA_COMMANDS,
     *commands.VIDEO_COMMANDS,
@@ -63,7 +64,7 @@ class RoverCommands(Commands[Vehicle]):
     auto = AUTO
     taken = frozenset((*KINDS, *OTHERS))
     said_invalid = frozenset(
-        (commands.DO_RETURN_PATH_START, commands.DO_LAND_START, commands.DO_MOUNT_CONTROL, commands.DO_WINCH)
+        (MavCmd.DO_RETURN_PATH_START, MavCmd.DO_LAND_START, MavCmd.DO_MOUNT_CONTROL, MavCmd.DO_WINCH)
     )
     planner = PLANNER
     goes_on_disarmed = True
@@ -100,7 +101,7 @@ class RoverCommands(Commands[Vehicle]):
             nav.heading_speed = item.p2
         elif kind == kinds.DELAY:
             nav.delay = max(item.p1, 0.0)
-            return [Text(INFO, f"Delaying {int(nav.delay)} sec")]
+            return [Text(MavSeverity.INFO, f"Delaying {int(nav.delay)} sec")]
         return []
 
     def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
@@ -116,25 +117,27 @@ class RoverCommands(Commands[Vehicle]):
     def arrived(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Said at once, with the time that it waits."""
         wait = int(v.autopilot.modes.nav.delay)
-        return [Text(INFO, f"Reached waypoint #{seq}" + (f". Loiter for {wait} seconds" if wait > 0 else ""))]
+        return [
+            Text(MavSeverity.INFO, f"Reached waypoint #{seq}" + (f". Loiter for {wait} seconds" if wait > 0 else ""))
+        ]
 
     def completed(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """Only the end of a stay is said."""
-        return [Text(WARNING, "Finished active loiter")] if item.command == commands.NAV_LOITER_TIME else []
+        return [Text(MavSeverity.WARNING, "Finished active loiter")] if item.command == MavCmd.NAV_LOITER_TIME else []
 
     def finish(self, v: Vehicle) -> list[Note]:
         """AUTO does what MIS_DONE_BEHAVE says."""
         command.give_none(v.autopilot.modes.nav)
-        return [Text(NOTICE, "Mission Complete")]
+        return [Text(MavSeverity.NOTICE, "Mission Complete")]
 
     def run(self, v: Vehicle, item: MissionItem) -> list[Note]:
         """Speed, reverse and guided limits; the rest is common."""
-        if item.command == commands.DO_CHANGE_SPEED and self.change_speed(v, int(item.p1), item.p2):
-            return [Text(INFO, f"speed: {item.p2:.1f} m/s")]
-        if item.command == commands.DO_SET_REVERSE:
+        if item.command == MavCmd.DO_CHANGE_SPEED and self.change_speed(v, int(item.p1), item.p2):
+            return [Text(MavSeverity.INFO, f"speed: {item.p2:.1f} m/s")]
+        if item.command == MavCmd.DO_SET_REVERSE:
             ap = v.autopilot
             waypoint.set_reversed(ap.modes.nav, ap.estimate, item.p1 == 1.0, ap.params)
-        elif item.command == commands.DO_GUIDED_LIMITS:
+        elif item.command == MavCmd.DO_GUIDED_LIMITS:
             guided_setpoints.set_limits(v.autopilot.modes.guided, max(item.p1, 0.0), max(item.p4, 0.0))
         return super().run(v, item)
 

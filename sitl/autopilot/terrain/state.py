@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
+from ...core.mavlink import MavSeverity
 from ...core.records import Float32, Floats, Int32, Record, array
 from ..events import Event
-from ..notes import CRITICAL
 
 # What TERRAIN_DID says
 FAILSAFE, RTL_BEGINS_ANEW, RTL_WITHOUT = 1, 2, 3
@@ -16,7 +16,7 @@ _TEXTS = {
     RTL_BEGINS_ANEW: "Restarting RTL - Terrain data missing",
     RTL_WITHOUT: "RTL: no terrain data, using alt-above-home",
 }
-TERRAIN_DID = Event(70, CRITICAL, _TEXTS)
+TERRAIN_DID = Event(70, MavSeverity.CRITICAL, _TEXTS)
 
 
 class Terrain(Record):

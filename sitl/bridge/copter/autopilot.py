@@ -26,8 +26,8 @@ from ...autopilot.copter.modes.rtl import RTL as RTL_MODE
 from ...autopilot.copter.modes.smart_rtl import SMART_RTL
 from ...autopilot.copter.navigation.planner import PLANNER
 from ...autopilot.navigation.state import RTL
-from ...autopilot.notes import CRITICAL, INFO, WARNING
 from ...core.elementary import cos, sin
+from ...core.mavlink import MavSeverity
 from ...core.scalars import constrain
 from ...core.vectors import Vec3
 from ..autopilot_api import LONGEST_US, Vector
@@ -61,7 +61,9 @@ class CopterAutopilot(BaseAutopilot):
         motors, rotors = int(self._v.autopilot.control.motors.count), int(self._v.physics.airframe.rotor_count)
         if motors not in (0, rotors):
             number = self._v.autopilot.params.FRAME.CLASS
-            self._say(WARNING, [f"FRAME_CLASS {number:.0f} has {motors} motors, this vehicle {rotors} rotors"])
+            self._say(
+                MavSeverity.WARNING, [f"FRAME_CLASS {number:.0f} has {motors} motors, this vehicle {rotors} rotors"]
+            )
 
     def _worded(self, texts: list[str]) -> list[str]:
         first = [text for text in texts if any(each in text for each in FIRST)]
@@ -99,12 +101,14 @@ class CopterAutopilot(BaseAutopilot):
             motor = order[motor]
         answer = int(motor_test.start(self._v, motor, throttle, seconds))
         if answer == motor_test.NOT_LANDED:
-            self._say(CRITICAL, ["Motor Test: vehicle not landed"])
+            self._say(MavSeverity.CRITICAL, ["Motor Test: vehicle not landed"])
             return False
         if answer != motor_test.OK:
             began = [] if self.is_testing_motor() else ["starting motor test"]
             cancelled = ["Motor Test: cancelled"] if answer == motor_test.BAD_MOTOR else []
-            self._say(INFO, [*began, *cancelled, *([] if self.is_testing_motor() else ["finished motor test"])])
+            self._say(
+                MavSeverity.INFO, [*began, *cancelled, *([] if self.is_testing_motor() else ["finished motor test"])]
+            )
             motor_test.end(self._v)
         return True
 
@@ -208,7 +212,7 @@ class CopterAutopilot(BaseAutopilot):
     def pause(self, on: bool) -> bool:
         done = commands.set_paused(self._v.autopilot.modes, on) == 0
         if not done:
-            self._say(INFO, ["Failed to pause" if on else "Failed to resume"])
+            self._say(MavSeverity.INFO, ["Failed to pause" if on else "Failed to resume"])
         return done
 
     def set_roi(self, place: Vector | None) -> None:

@@ -9,10 +9,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, cast
 
+from ...autopilot.copter.modes.land import LAND
+from ...autopilot.copter.modes.loiter import LOITER
 from ...autopilot.navigation.state import BY_LANDING, BY_PATH
+from ...core.mavlink import MavFrame, MavResult, MotorTestThrottleType
 from ..channel import Channel
 from ..host import Host
-from ..places import GLOBAL_FRAMES, GLOBAL_RELATIVE_ALT
+from ..places import GLOBAL_FRAMES
 from ..services import command_table
 from ..services.command import Command, Entry, is_on_earth
 from ..services.command_table import set_mode
@@ -20,13 +23,10 @@ from ..services.motor_test import MotorTestService
 from ..services.mount import MountService
 from ..services.other_commands import move_landing_gear
 from ..services.parachute import ParachuteService
-from ..services.service import ACCEPTED, DENIED, FAILED
 from ..services.winch import WinchService
 
 if TYPE_CHECKING:
     from .autopilot import CopterAutopilot
-
-LOITER, LAND = 5, 9
 
 
 def _copter(bridge: Host) -> CopterAutopilot:
@@ -45,13 +45,11 @@ def land(bridge: Host, channel: Channel, command: Command) -> int:
 
 def takeoff(bridge: Host, channel: Channel, command: Command) -> int:
     """22, 84: p7 height above home [m]. Armed in GUIDED, LOITER, ALT_HOLD, POSHOLD, landed or climbing; else FAILED."""
-    if command.frame != GLOBAL_RELATIVE_ALT:
-        return DENIED
-    return ACCEPTED if _copter(bridge).takeoff(command.z) else FAILED
+    if command.frame != MavFrame.GLOBAL_RELATIVE_ALT:
+        return MavResult.DENIED
+    return MavResult.ACCEPTED if _copter(bridge).takeoff(command.z) else MavResult.FAILED
 
 
-PERCENT, PULSE, PILOT = range(3)
-"""MOTOR_TEST_THROTTLE_TYPE"""
 ROUNDING = 1e-4
 """Pulses are whole, and a percentage comes in single precision: 90.1 % is 1901 us."""
 BOARD_ORDER = 2.0
@@ -62,9 +60,9 @@ def motor_test(bridge: Host, channel: Channel, command: Command) -> int:
     """209: p1 motor, p2 0 percent, 1 pulse, 2 stick, p3 throttle, p4 seconds, p5 motors in turn, p6 order."""
     kind = int(command.p2)
     throttle, (least, most) = -1.0, (bridge.parameter(f"MOT_PWM_{end}") or 0.0 for end in ("MIN", "MAX"))
-    if kind in (PERCENT, PULSE, PILOT) and most > least:
-        pulse = _copter(bridge).throttle_pulse() if kind == PILOT else command.p3
-        if kind == PERCENT:
+    if kind in (MotorTestThrottleType.PERCENT, MotorTestThrottleType.PWM, MotorTestThrottleType.PILOT) and most > least:
+        pulse = _copter(bridge).throttle_pulse() if kind == MotorTestThrottleType.PILOT else command.p3
+        if kind == MotorTestThrottleType.PERCENT:
             pulse = math.floor(least + (most - least) * command.p3 * 0.01 + ROUNDING)
         throttle = (pulse - least) / (most - least)
     tests = bridge.get(MotorTestService)
@@ -78,34 +76,38 @@ KINDS_OF_SPEED = 4
 def change_speed(bridge: Host, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 horizontal, 2 climb, 3 descent; p2 speed [m/s]."""
     if command.p2 <= 0.0 or int(command.p1) == KINDS_OF_SPEED:
-        return DENIED
-    return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
+        return MavResult.DENIED
+    return MavResult.ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else MavResult.FAILED
 
 
 def condition_yaw(bridge: Host, channel: Channel, command: Command) -> int:
     """115: p1 angle [deg], p2 rate [deg/s] (0: default), p3 direction -1, 0, 1, p4 1 relative. Taken in any mode."""
     if not 0.0 <= command.p1 <= 360.0 or command.p4 not in (0.0, 1.0):
-        return FAILED
+        return MavResult.FAILED
     direction = (command.p3 > 0.0) - (command.p3 < 0.0)
     angle, rate = math.radians(command.p1), math.radians(max(command.p2, 0.0))
-    return ACCEPTED if _copter(bridge).condition_yaw(angle, rate, direction, command.p4 == 1.0) else FAILED
+    return (
+        MavResult.ACCEPTED
+        if _copter(bridge).condition_yaw(angle, rate, direction, command.p4 == 1.0)
+        else MavResult.FAILED
+    )
 
 
 def pause_continue(bridge: Host, channel: Channel, command: Command) -> int:
     """193: p1 0 pause, 1 continue, in GUIDED and AUTO; FAILED, with a text, in other modes and where AUTO has none."""
     if int(command.p1) not in (0, 1):
-        return DENIED
+        return MavResult.DENIED
     ok = _copter(bridge).pause(int(command.p1) == 0)
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def set_roi(bridge: Host, channel: Channel, command: Command) -> int:
     """195, 201: point the nose at a place, or the gimbal if it has a yaw axis; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
-        return DENIED
+        return MavResult.DENIED
     if not is_on_earth(command.lat, command.lon):
-        return FAILED
+        return MavResult.FAILED
     mount: MountService = bridge.get(MountService)
     if mount.turns_by_itself:
         return command_table.look_at(bridge, channel, command)
@@ -114,7 +116,7 @@ def set_roi(bridge: Host, channel: Channel, command: Command) -> int:
         return command_table.look_at(bridge, channel, command)
     place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
     if place is None:
-        return FAILED
+        return MavResult.FAILED
     _copter(bridge).set_roi(place)
     return command_table.look_at(bridge, channel, command)
 
@@ -133,10 +135,10 @@ def winch(bridge: Host, channel: Channel, command: Command) -> int:
 def terminate(bridge: Host, channel: Channel, command: Command) -> int:
     """185: p1 above 0.5 stops the motors, in flight too."""
     if command.p1 <= 0.5:
-        return FAILED
+        return MavResult.FAILED
     _copter(bridge).terminate()
     bridge.say_pending()
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def release_parachute(bridge: Host, channel: Channel, command: Command) -> int:
@@ -159,7 +161,7 @@ def landing_sequence(bridge: Host, channel: Channel, command: Command) -> int:
 def _go_back(bridge: Host, way: int) -> int:
     ok = _copter(bridge).go_back(way)
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 COMMANDS: dict[int, Entry] = {

@@ -17,7 +17,7 @@ from ..telemetry.builder import compiled
 from ..telemetry.flow import take_flow
 from ..wire.choose import choose_builder, choose_taker, choose_targets
 from ..wire.fleet import run_slots
-from ..wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
+from ..wire.link import Instruments, Limits, Links, receive_port, run_vehicle, transmit_links
 from .setpoints import attitude_target, other_position, position_target_global, position_target_local
 from .sticks import manual_control
 from .telemetry import MESSAGES
@@ -32,15 +32,15 @@ build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_tar
 
 
 @unit
-def hear(fleet: Sequence[Copter], index: int, port: int) -> None:
+def receive(fleet: Sequence[Copter], index: int, port: int) -> None:
     """Act on what the client at ``port`` sent."""
-    hear_port(fleet[index], port, take, target)
+    receive_port(fleet[index], port, take, target)
 
 
 @unit
-def tell(fleet: Sequence[Copter], index: int, ports: int, count: int, number: int) -> None:
+def transmit(fleet: Sequence[Copter], index: int, ports: int, count: int, number: int) -> None:
     """Send the regular messages that are due, or one message."""
-    tell_links(fleet[index], Links(ports, count), number, build)
+    transmit_links(fleet[index], Links(ports, count), number, build)
 
 
 @unit
@@ -56,14 +56,14 @@ def run(
 ) -> None:
     """Advance; measure, send and log what falls due."""
     run_vehicle(
-        fleet, index, Links(ports, count), Instruments(ranging, sampler), Limits(until_us, shell_us), advance, tell
+        fleet, index, Links(ports, count), Instruments(ranging, sampler), Limits(until_us, shell_us), advance, transmit
     )
 
 
 @unit
 def run_all(fleet: Sequence[Copter], index: int, last: int, slots: int, ranging: int) -> None:
     """Vehicles ``index`` .. ``last`` - 1 act on what their clients sent, and advance."""
-    run_slots(fleet, index, last, slots, ranging, hear, run)
+    run_slots(fleet, index, last, slots, ranging, receive, run)
 
 
-UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)
+UNITS = CoreUnits(receive, transmit, run, run_all, BUILDERS, TAKERS)

@@ -12,7 +12,7 @@ from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
-from ...vehicle.copter import QUADROTOR
+from ...core.mavlink import MavType
 from ..mavlink_firmware import Targets
 from ..profile import Profile
 from ..services.setpoints import SetpointService
@@ -40,7 +40,7 @@ def targets(v: Any) -> Targets:
 
 PROFILE = Profile(
     firmware="ArduCopter",
-    mav_type=QUADROTOR,
+    mav_type=MavType.QUADROTOR,
     capabilities=CAPABILITIES | TERMINATION | TERRAIN,
     modes=MODES,
     auto=AUTO,

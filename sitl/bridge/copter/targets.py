@@ -15,6 +15,7 @@ from ...core.algebra import norm2
 from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.vectors import Vec2, Vec3
 from ...vehicle.copter import Copter
@@ -72,7 +73,6 @@ TARGET_MASKS = (
 """By GUIDED's submode: what of the target does not count; others have no such target."""
 LAST_BITS = 0xF000
 """ArduPilot sets what no bit of POSITION_TARGET_TYPEMASK is, too."""
-LOCAL_NED = 1
 
 
 class PositionTargetLocalNed(Message, name="POSITION_TARGET_LOCAL_NED"):
@@ -108,7 +108,7 @@ def position_target_local(m: PositionTargetLocalNed, v: Copter) -> bool:
     m.afy = acc.y
     m.afz = acc.z
     m.type_mask = TARGET_MASKS[guided.submode]
-    m.coordinate_frame = LOCAL_NED
+    m.coordinate_frame = MavFrame.LOCAL_NED
     return True
 
 

@@ -14,22 +14,12 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.table import NEED_POSITION
 from ...autopilot.navigation.state import TAKEOFF
 from ...core.kernels import law
+from ...core.mavlink import MavLandedState, MavModeFlag, MavState, MavType
 from ...core.records import Ints
-from ...vehicle.copter import HEXAROTOR, OCTOROTOR, QUADROTOR, Copter
+from ...vehicle.copter import Copter
 from ..telemetry import channels, motion, status
 from ..telemetry.channels import RcChannels
-from ..telemetry.heartbeat import (
-    ACTIVE,
-    ARMED,
-    CRITICAL,
-    CUSTOM_MODE,
-    IS_GUIDED,
-    MANUAL_INPUT,
-    STABILIZED,
-    STANDBY,
-    Heartbeat,
-    fill_heartbeat,
-)
+from ..telemetry.heartbeat import Heartbeat, fill_heartbeat
 from ..telemetry.motion import VfrHud
 from ..telemetry.own import ExtendedSysState, Wind
 from ..telemetry.status import (
@@ -56,22 +46,22 @@ from . import targets, terrain
 def mav_type(motors: int) -> int:
     """MAV_TYPE of a multicopter by its number of motors."""
     if motors == 6:
-        return HEXAROTOR
-    return OCTOROTOR if motors == 8 else QUADROTOR
+        return MavType.HEXAROTOR
+    return MavType.OCTOROTOR if motors == 8 else MavType.QUADROTOR
 
 
 @law
 def heartbeat(m: Heartbeat, v: Copter) -> bool:
     """HEARTBEAT: kind of multicopter, ArduPilot, mode number, armed bit."""
     arming, modes, failsafe = v.autopilot.arming, v.autopilot.modes, v.autopilot.modes.failsafe
-    base = CUSTOM_MODE | STABILIZED | MANUAL_INPUT
+    base = MavModeFlag.CUSTOM_MODE_ENABLED | MavModeFlag.STABILIZE_ENABLED | MavModeFlag.MANUAL_INPUT_ENABLED
     if modes.number in NEED_POSITION:  # holds or changes the position by itself
-        base |= IS_GUIDED
+        base |= MavModeFlag.GUIDED_ENABLED
     if arming.armed:
-        base |= ARMED
-    state = STANDBY if arming.landed else ACTIVE
+        base |= MavModeFlag.SAFETY_ARMED
+    state = MavState.STANDBY if arming.landed else MavState.ACTIVE
     if failsafe.gcs or failsafe.radio or failsafe.battery != 0 or failsafe.ekf != 0:
-        state = CRITICAL
+        state = MavState.CRITICAL
     return fill_heartbeat(m, v, mav_type(v.autopilot.control.motors.count), base, state)
 
 
@@ -125,7 +115,6 @@ def vfr_hud(m: VfrHud, v: Copter) -> bool:
     return motion.vfr_hud(m, v, v.autopilot.control.motors.throttle_out)
 
 
-ON_GROUND, IN_AIR, TAKING_OFF, LANDING = 1, 2, 3, 4
 MULTICOPTER = 3
 """MAV_VTOL_STATE_MC"""
 
@@ -139,13 +128,13 @@ def extended_sys_state(m: ExtendedSysState, v: Copter) -> bool:
     if modes.number == AUTO and modes.nav.command_kind == TAKEOFF:
         climbs = True
     if v.autopilot.arming.landed:
-        m.landed_state = ON_GROUND
+        m.landed_state = MavLandedState.ON_GROUND
     elif modes.landing.landing:
-        m.landed_state = LANDING
+        m.landed_state = MavLandedState.LANDING
     elif modes.takeoff.user_active or (climbs and not modes.takeoff.complete):
-        m.landed_state = TAKING_OFF
+        m.landed_state = MavLandedState.TAKEOFF
     else:
-        m.landed_state = IN_AIR
+        m.landed_state = MavLandedState.IN_AIR
     return True
 
 

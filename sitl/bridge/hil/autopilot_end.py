@@ -13,19 +13,18 @@ from typing import Any
 import numpy as np
 
 from ...core.constants import TICK_US
+from ...core.mavlink import MavAutopilot, MavCmd, MavParamType, MavState
 from ...core.record_reader import RecordReader
 from ..dialect import message
 from ..frame import Frame, Splitter
 from . import controls, truth
 from .measurements import Inbox
-from .protocol import ARDUPILOTMEGA, AUTOPILOT, REBOOT, REQUEST_MESSAGE, RESEED, RefusedError, Sender
+from .protocol import AUTOPILOT, RESEED, RefusedError, Sender
 from .sensor import SENSOR_KIND
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, TEXT = (
     message(name) for name in ("HEARTBEAT", "COMMAND_ACK", "COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "STATUSTEXT")
 )
-_REAL32 = 9
-_ACTIVE = 4
 _NOTES = 4
 """So many are kept while nobody shows them."""
 
@@ -79,13 +78,19 @@ class AutopilotEnd:
         self._splitter = Splitter()
         self._inbox.forget()
         words = HEARTBEAT.payload(
-            type=self._type, autopilot=ARDUPILOTMEGA, base_mode=1, system_status=_ACTIVE, mavlink_version=3
+            type=self._type,
+            autopilot=MavAutopilot.ARDUPILOTMEGA,
+            base_mode=1,
+            system_status=MavState.ACTIVE,
+            mavlink_version=3,
         )
         frames = [self._frame(HEARTBEAT, words), *(self._set(name, parameters[name]) for name in parameters)]
         return b"".join(frames)
 
     def _set(self, name: str, value: float) -> bytes:
-        return self._frame(PARAM_SET, PARAM_SET.payload(param_id=name.encode(), param_value=value, param_type=_REAL32))
+        return self._frame(
+            PARAM_SET, PARAM_SET.payload(param_id=name.encode(), param_value=value, param_type=MavParamType.REAL32)
+        )
 
     def set_parameter(self, name: str, value: float) -> None:
         """Tell the physics before the next controls."""
@@ -100,12 +105,12 @@ class AutopilotEnd:
     def ask_state(self) -> bytes:
         """Ask for all that the physics knows: to begin where it is."""
         self._begin(0)
-        return self._command(REQUEST_MESSAGE, SENSOR_KIND.id)
+        return self._command(MavCmd.REQUEST_MESSAGE, SENSOR_KIND.id)
 
     def ask_reboot(self) -> bytes:
         """Ask the physics to begin anew."""
-        self._begin(REBOOT)
-        return self._command(REBOOT, 1)
+        self._begin(MavCmd.PREFLIGHT_REBOOT_SHUTDOWN)
+        return self._command(MavCmd.PREFLIGHT_REBOOT_SHUTDOWN, 1)
 
     def _begin(self, until_ack: int) -> None:
         """The next tick is taken whatever its time, once this command is acknowledged (0: at once)."""
@@ -114,7 +119,7 @@ class AutopilotEnd:
 
     def ask_truth(self) -> bytes:
         """Ask where the vehicle is."""
-        return self._command(REQUEST_MESSAGE, truth.TRUTH_KIND.id)
+        return self._command(MavCmd.REQUEST_MESSAGE, truth.TRUTH_KIND.id)
 
     def _command(self, number: int, first: float) -> bytes:
         return self._frame(COMMAND, COMMAND.payload(command=number, param1=first))

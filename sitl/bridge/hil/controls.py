@@ -14,9 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.constants import TICK_US
+from ...core.mavlink import MavModeFlag
 from ...core.record_reader import RecordReader, locate
 from ..dialect import message
-from .protocol import ARMED, CUSTOM_MODE, LATEST_US, LOCKSTEP, RefusedError, culprit, within
+from .protocol import LATEST_US, LOCKSTEP, RefusedError, culprit, within
 
 KIND = message("HIL_ACTUATOR_CONTROLS")
 OUTPUTS = 16
@@ -40,7 +41,7 @@ class Controls(NamedTuple):
     @property
     def is_armed(self) -> bool:
         """Whether motors may turn."""
-        return self.mode & ARMED != 0
+        return self.mode & MavModeFlag.SAFETY_ARMED != 0
 
 
 def controls_writer(reader: RecordReader) -> Callable[[], bytes]:
@@ -50,7 +51,8 @@ def controls_writer(reader: RecordReader) -> Callable[[], bytes]:
 
     def payload() -> bytes:
         t, *outputs, armed = read()
-        return pack(t, LOCKSTEP, *outputs, CUSTOM_MODE | ARMED if armed else CUSTOM_MODE)
+        flag = MavModeFlag.SAFETY_ARMED if armed else 0
+        return pack(t, LOCKSTEP, *outputs, MavModeFlag.CUSTOM_MODE_ENABLED | flag)
 
     return payload
 
@@ -95,7 +97,7 @@ def actuators_writer(fleet: np.ndarray[Any, Any], index: int) -> Callable[[Contr
 
     def put(controls: Controls) -> None:
         write(memory, place, *controls.outputs)
-        write_armed(memory, armed, 1 if controls.mode & ARMED else 0)
+        write_armed(memory, armed, 1 if controls.mode & MavModeFlag.SAFETY_ARMED else 0)
 
     return put
 

@@ -60,23 +60,23 @@ class GpsWriter:
         return [GPS_KIND.pack(t, lat, lon, alt, uint16(eph), uint16(epv), *speeds, fix & 0xFF, satellites & 0xFF, 0, 0)]
 
 
-class _Told(NamedTuple):
+class _Sent(NamedTuple):
     """How sure a receiver is of a fix."""
 
     eph: int
     epv: int
 
 
-def as_dop(airframe: Any) -> _Told:
+def as_dop(airframe: Any) -> _Sent:
     """What a receiver tells while nothing disturbs it: DOP [0.01]."""
-    return _Told(math.floor(100.0 * airframe.gps_hdop + 0.5), math.floor(100.0 * airframe.gps_vdop + 0.5))
+    return _Sent(math.floor(100.0 * airframe.gps_hdop + 0.5), math.floor(100.0 * airframe.gps_vdop + 0.5))
 
 
-def as_accuracy(airframe: Any) -> _Told:
+def as_accuracy(airframe: Any) -> _Sent:
     """The same as standard deviations [cm], horizontally of each axis."""
     wide = hypot(airframe.gps_noise_horizontal, airframe.gps_drift_horizontal)
     high = hypot(airframe.gps_noise_vertical, airframe.gps_drift_vertical)
-    return _Told(max(uint16(100.0 * wide), 1), max(uint16(100.0 * high), 1))
+    return _Sent(max(uint16(100.0 * wide), 1), max(uint16(100.0 * high), 1))
 
 
 class GpsReader:

@@ -15,21 +15,20 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...core.constants import TICK_US
+from ...core.mavlink import MavAutopilot, MavCmd, MavResult, MavSeverity
 from ...physics.carried import Carried
 from ..dialect import message
 from ..frame import Frame, Splitter
-from ..services.service import ACCEPTED, DENIED, UNSUPPORTED
 from . import controls, sticks, truth
 from .controls import ForeignClock
 from .measurements import Measurements
-from .protocol import ARDUPILOTMEGA, REBOOT, REQUEST_MESSAGE, RESEED, SET_MESSAGE_INTERVAL, RefusedError
+from .protocol import RESEED, RefusedError
 from .sensor import SENSOR_KIND
 
 HEARTBEAT, ACK, COMMAND, COMMAND_INT, PARAM_SET, PARAM_VALUE, TEXT = (
     message(name)
     for name in ("HEARTBEAT", "COMMAND_ACK", "COMMAND_LONG", "COMMAND_INT", "PARAM_SET", "PARAM_VALUE", "STATUSTEXT")
 )
-WARNING = 4
 
 
 class Simulated(Protocol):
@@ -58,7 +57,7 @@ class Simulated(Protocol):
 
 def text_frame(measurements: Measurements, text: str) -> bytes:
     """A STATUSTEXT for an autopilot."""
-    return measurements.sender.frame(TEXT, TEXT.payload(severity=WARNING, text=text.encode()[:50]))
+    return measurements.sender.frame(TEXT, TEXT.payload(severity=MavSeverity.WARNING, text=text.encode()[:50]))
 
 
 class PhysicsEnd:
@@ -130,15 +129,15 @@ class PhysicsEnd:
         """(Interval at which the truth is told, when it is due next) [us]; an interval of 0: never."""
         return self._truth_every_us, self._truth_due_us
 
-    def go_on_with(self, ticks: int, is_armed: bool, truth_due_us: int, is_last_untold: bool) -> bytes:
+    def go_on_with(self, ticks: int, is_armed: bool, truth_due_us: int, is_last_unsent: bool) -> bytes:
         """So many ticks were answered elsewhere; gives what the last of them has to tell, unless it was told."""
-        told = ticks - is_last_untold
+        sent = ticks - is_last_unsent
         self._complained = False
-        self._now += told * TICK_US
-        self.ticks += told
+        self._now += sent * TICK_US
+        self.ticks += sent
         self._truth_due_us = truth_due_us
-        self.clock.was_answered(ticks, self._now + is_last_untold * TICK_US, is_armed)
-        return self._tell() if is_last_untold else b""
+        self.clock.was_answered(ticks, self._now + is_last_unsent * TICK_US, is_armed)
+        return self._send() if is_last_unsent else b""
 
     @property
     def unanswered(self) -> int:
@@ -190,7 +189,7 @@ class PhysicsEnd:
 
     def _meet(self, heartbeat: Any) -> bytes:
         """Who is there?"""
-        self._is_foreign = self.measurements.is_foreign = heartbeat.autopilot != ARDUPILOTMEGA
+        self._is_foreign = self.measurements.is_foreign = heartbeat.autopilot != MavAutopilot.ARDUPILOTMEGA
         self._is_stranger = not self._is_foreign and bool(self._type) and heartbeat.type != self._type
         if not self._is_stranger:
             return b""
@@ -214,9 +213,9 @@ class PhysicsEnd:
 
     def _step(self) -> bytes:
         self._simulated.tick()
-        return self._tell()
+        return self._send()
 
-    def _tell(self) -> bytes:
+    def _send(self) -> bytes:
         """What the next tick, which is done, has to tell."""
         self._now += TICK_US
         self.ticks += 1
@@ -256,26 +255,26 @@ class PhysicsEnd:
 
     def _command(self, fields: Any, frame: Frame) -> bytes:
         """Answer a command; what it asks for follows the acknowledgement."""
-        number, result, more = fields.command, ACCEPTED, b""
-        if number == REBOOT:
+        number, result, more = fields.command, MavResult.ACCEPTED, b""
+        if number == MavCmd.PREFLIGHT_REBOOT_SHUTDOWN:
             self._simulated.power_on()
             self._now = -1
             self._renew()
             more = self._tick
         elif number == RESEED and frame.kind is COMMAND_INT:
             self._simulated.reseed((fields.x & 0xFFFFFFFF) | (fields.y & 0xFFFFFFFF) << 32)
-        elif number == REQUEST_MESSAGE and fields.param1 == truth.TRUTH_KIND.id:
+        elif number == MavCmd.REQUEST_MESSAGE and fields.param1 == truth.TRUTH_KIND.id:
             more = self._truth()
-        elif number == REQUEST_MESSAGE and fields.param1 == SENSOR_KIND.id:
+        elif number == MavCmd.REQUEST_MESSAGE and fields.param1 == SENSOR_KIND.id:
             more = self.measurements.everything()
-        elif number == SET_MESSAGE_INTERVAL and fields.param1 == truth.TRUTH_KIND.id:
+        elif number == MavCmd.SET_MESSAGE_INTERVAL and fields.param1 == truth.TRUTH_KIND.id:
             if not abs(fields.param2) < 1e12:
-                result = DENIED
+                result = MavResult.DENIED
             else:
                 self._truth_every_us = int(max(fields.param2, 0.0))
-        elif number in (REQUEST_MESSAGE, SET_MESSAGE_INTERVAL):
-            result = DENIED
+        elif number in (MavCmd.REQUEST_MESSAGE, MavCmd.SET_MESSAGE_INTERVAL):
+            result = MavResult.DENIED
         else:
-            result = UNSUPPORTED
+            result = MavResult.UNSUPPORTED
         ack = ACK.payload(command=number, result=result, target_system=frame.system, target_component=frame.component)
         return self._frame(ACK, ack) + more

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from operator import lt
 
+from ...core.mavlink import MavCmd
 from ...errors import SitlError
 from ..dialect import MessageType
 from ..frame import encode_v2
@@ -18,18 +19,14 @@ AUTOPILOT = (1, 1)
 PHYSICS = (1, 158)
 """Of the physics: a peripheral of the same system (MAV_COMP_ID_PERIPHERAL)."""
 
-ARDUPILOTMEGA, PX4 = 3, 12
-"""MAV_AUTOPILOT in a HEARTBEAT: ours, and one that counts time from the first tick that it got."""
-ARMED, CUSTOM_MODE = 128, 1
-"""Bits of ``HIL_ACTUATOR_CONTROLS.mode`` (MAV_MODE_FLAG)."""
 LOCKSTEP = 1
 """Bit of ``HIL_ACTUATOR_CONTROLS.flags``: the sender waits for the next HIL_SENSOR."""
 
 IMU_UPDATED, MAG_UPDATED, BARO_UPDATED = 0x3F, 0x1C0, 0x1A00
 """Bits of ``HIL_SENSOR.fields_updated`` (HIL_SENSOR_UPDATED_FLAGS)."""
 
-SET_MESSAGE_INTERVAL, REQUEST_MESSAGE, REBOOT, RESEED = 511, 512, 246, 31011
-"""MAV_CMD numbers. RESEED is MAV_CMD_USER_2 as COMMAND_INT: x and y are the seed's low and high 32 bits."""
+RESEED = MavCmd.USER_2
+"""As COMMAND_INT: x and y are the seed's low and high 32 bits."""
 
 LATEST_US = 1 << 62
 """No clock goes this far [us]."""

@@ -35,7 +35,7 @@ _SENSOR_LIMITS = (*(5e3,) * 3, *(500.0,) * 3, *(100.0,) * 3, 2e3, 2e3, 1e5, 300.
 DITHER_MAG, DITHER_BARO = 1e-5, 1e-3
 """What every second sample shows more [gauss], [hPa]: little of the earth's field, a centimetre."""
 
-Told = tuple[int, int, float]
+Sent = tuple[int, int, float]
 """Samples of magnetometer and barometer that were told last, and the height by the latter [m]."""
 Values = tuple[Any, ...]
 """Fields in wire order."""
@@ -53,7 +53,7 @@ class SensorWriter:
     def __init__(self, reader: RecordReader) -> None:
         names = ("time_us", "acc", "gyro", "mag", "abs_pressure", "temperature", "mag_count", "baro_count")
         self._read = reader.fields(*(SENSOR_S + name for name in names))
-        self.told: Told = (0, 0, 0.0)
+        self.sent: Sent = (0, 0, 0.0)
         self.is_dithered = False
         """PX4 holds a sensor that shows the same 100 times for failed: one without noise then changes by a little."""
 
@@ -61,7 +61,7 @@ class SensorWriter:
         """The samples of this tick; ``is_all``: all count as new."""
         t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, temperature, mag, baro = self._read()
         updated = IMU_UPDATED
-        mag_before, baro_before, altitude = self.told
+        mag_before, baro_before, altitude = self.sent
         if self.is_dithered:
             mx += DITHER_MAG * (mag & 1)
             pressure += DITHER_BARO * (baro & 1)
@@ -70,7 +70,7 @@ class SensorWriter:
         if baro != baro_before or is_all:
             altitude = pressure_altitude(pressure)
             updated |= BARO_UPDATED
-        self.told = mag, baro, altitude
+        self.sent = mag, baro, altitude
         return SENSOR_KIND.pack(t, ax, ay, az, gx, gy, gz, mx, my, mz, pressure, 0.0, altitude, temperature, updated, 0)
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from ...autopilot import home
 from ...autopilot.arming_checks import AHRS_TYPE, NEED_POSITION, TEXTS
-from ...autopilot.notes import INFO
 from ...autopilot.rover import arming, motor_test, parameter_checks
 from ...autopilot.rover.control import servos
 from ...autopilot.rover.modes import guided_setpoints, set_mode, table
 from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
+from ...core.mavlink import MavSeverity
 from ...core.vectors import Vec2
 from ..autopilot_api import LONGEST_US, Vector
 from ..base_autopilot import BaseAutopilot
@@ -87,5 +87,5 @@ class RoverAutopilot(BaseAutopilot):
 
     def _told_home(self, ok: bool) -> bool:
         if ok:
-            self._say(INFO, [home.set_text(self._v.autopilot.home)])
+            self._say(MavSeverity.INFO, [home.set_text(self._v.autopilot.home)])
         return ok

@@ -9,11 +9,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from ...autopilot.rover.motor_test import PULSE_MAX
+from ...core.mavlink import MavResult, MavSeverity, MotorTestThrottleType
 from ..channel import Channel
 from ..host import Host
 from ..services import command_table
 from ..services.command import Command, Entry
-from ..services.service import ACCEPTED, CRITICAL, DENIED, FAILED
 from ..services.statustext import StatusTextService
 
 if TYPE_CHECKING:
@@ -31,18 +31,16 @@ UP_AND_DOWN = (2, 3, 4)
 def change_speed(bridge: Host, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 (DENIED: climb, descent), p2 speed [m/s]; FAILED in a mode without a speed target."""
     if int(command.p1) in UP_AND_DOWN:
-        return DENIED
-    return ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else FAILED
+        return MavResult.DENIED
+    return MavResult.ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else MavResult.FAILED
 
 
 def set_reverse(bridge: Host, channel: Channel, command: Command) -> int:
     """194: p1 1 drives paths backwards until the mode changes, 0 forwards."""
     _rover(bridge).set_reversed(command.p1 == 1.0)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
-PERCENT, PULSE, PILOT = range(3)
-"""MOTOR_TEST_THROTTLE_TYPE"""
 LAST_MOTOR = 4
 
 
@@ -54,29 +52,35 @@ def motor_test(bridge: Host, channel: Channel, command: Command) -> int:
     motor, kind = int(command.p1), int(command.p2)
     why = _why_no_test(motor, kind, command.p3)
     if why:
-        bridge.get(StatusTextService).say(CRITICAL, f"Motor Test: {why}")
-        return FAILED
+        bridge.get(StatusTextService).say(MavSeverity.CRITICAL, f"Motor Test: {why}")
+        return MavResult.FAILED
     rover = _rover(bridge)
-    throttle = rover.stick(motor) if kind == PILOT else max(command.p3 * 0.01, -1.0) if kind == PERCENT else 0.0
-    ok = rover.test_motor(motor, throttle, int(command.p3) if kind == PULSE else 0, command.p4)
+    throttle, pulse = 0.0, 0
+    if kind == MotorTestThrottleType.PILOT:
+        throttle = rover.stick(motor)
+    elif kind == MotorTestThrottleType.PERCENT:
+        throttle = max(command.p3 * 0.01, -1.0)
+    else:
+        pulse = int(command.p3)
+    ok = rover.test_motor(motor, throttle, pulse, command.p4)
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def _why_no_test(motor: int, kind: int, how_much: float) -> str:
     if not 0 <= motor <= LAST_MOTOR:
         return f"invalid motor ({motor})"
-    if kind not in (PERCENT, PULSE, PILOT):
+    if kind not in (MotorTestThrottleType.PERCENT, MotorTestThrottleType.PWM, MotorTestThrottleType.PILOT):
         return f"invalid throttle type: {kind}"
-    if kind == PULSE and how_much > PULSE_MAX:
+    if kind == MotorTestThrottleType.PWM and how_much > PULSE_MAX:
         return f"pwm ({how_much:.0f}) too high"
-    return f"percentage ({how_much:.0f}) too high" if kind == PERCENT and how_much > 100.0 else ""
+    return f"percentage ({how_much:.0f}) too high" if kind == MotorTestThrottleType.PERCENT and how_much > 100.0 else ""
 
 
 def aux_function(bridge: Host, channel: Channel, command: Command) -> int:
     """218: p1 function of a switch (0 none), p2 0 low, 1 middle, 2 high."""
     if int(command.p1) == 0:
-        return ACCEPTED if command.p2 <= 2.0 else DENIED
+        return MavResult.ACCEPTED if command.p2 <= 2.0 else MavResult.DENIED
     return command_table.aux_function(bridge, channel, command)
 
 

@@ -9,7 +9,7 @@ from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.guided import GUIDED
 from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES, is_autonomous
-from ...vehicle.rover import GROUND_ROVER
+from ...core.mavlink import MavType
 from ..mavlink_firmware import Targets
 from ..profile import Profile
 from ..telemetry.shell import CAPABILITIES
@@ -27,7 +27,7 @@ def targets(v: Any) -> Targets:
 
 PROFILE = Profile(
     firmware="ArduRover",
-    mav_type=GROUND_ROVER,
+    mav_type=MavType.GROUND_ROVER,
     capabilities=CAPABILITIES,
     modes=MODES,
     auto=AUTO,

@@ -24,10 +24,11 @@ from ...autopilot.rover.modes.guided_setpoints import (
 from ...core.algebra import euler_of, horizontal
 from ...core.elementary import atan2, hypot
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.scalars import constrain, finite
 from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
-from ..places import GLOBAL, GLOBAL_FRAMES, local_place
+from ..places import GLOBAL_FRAMES, local_place
 from ..services.follow import take_position
 from ..services.setpoints import (
     BODY_YAW_RATE_IGNORED,
@@ -64,7 +65,7 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Rover, sender: int)
     """The same with a place on the globe, whose height means nothing."""
     if m.coordinate_frame not in GLOBAL_FRAMES or not is_open(v.autopilot.modes):
         return
-    place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, GLOBAL)
+    place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, MavFrame.GLOBAL)
     if place.is_known or (m.type_mask & POSITION_IGNORED) != 0:
         follow(v, global_target(m, place.pos), m.vx < 0.0, GLOBAL_NUMBER)
 

@@ -11,22 +11,12 @@ from ...autopilot.rover.modes.hold import HOLD
 from ...autopilot.rover.modes.initialising import INITIALISING
 from ...autopilot.rover.modes.table import MODES, is_autonomous
 from ...core.kernels import law
+from ...core.mavlink import MavModeFlag, MavState, MavType
 from ...core.records import Floats
-from ...vehicle.rover import GROUND_ROVER, Rover
+from ...vehicle.rover import Rover
 from ..telemetry import channels, motion, status
 from ..telemetry.channels import RcChannels
-from ..telemetry.heartbeat import (
-    ACTIVE,
-    ARMED,
-    CALIBRATING,
-    CRITICAL,
-    CUSTOM_MODE,
-    IS_GUIDED,
-    MANUAL_INPUT,
-    STANDBY,
-    Heartbeat,
-    fill_heartbeat,
-)
+from ..telemetry.heartbeat import Heartbeat, fill_heartbeat
 from ..telemetry.motion import VfrHud
 from ..telemetry.own import ExtendedSysState
 from ..telemetry.status import ATTITUDE, POSITION, RATE, YAW, MissionCurrent, SysStatus
@@ -43,20 +33,21 @@ MANUAL_MODES = (*numbers(MODES, "manual_input"), INITIALISING)
 def heartbeat(m: Heartbeat, v: Rover) -> bool:
     """HEARTBEAT: ground rover, ArduPilot, mode number, armed bit; STANDBY in HOLD, CRITICAL in a failsafe."""
     ap, mode = v.autopilot, v.autopilot.modes.number
-    base, state = CUSTOM_MODE, ACTIVE
+    base: int = MavModeFlag.CUSTOM_MODE_ENABLED
+    state = MavState.ACTIVE
     if is_autonomous(mode):
-        base |= IS_GUIDED
+        base |= MavModeFlag.GUIDED_ENABLED
     if mode in MANUAL_MODES or ap.params.STICK_MIXING > 0.0:
-        base |= MANUAL_INPUT
+        base |= MavModeFlag.MANUAL_INPUT_ENABLED
     if ap.arming.armed and mode != INITIALISING:
-        base |= ARMED
+        base |= MavModeFlag.SAFETY_ARMED
     if mode == INITIALISING:
-        state = CALIBRATING
+        state = MavState.CALIBRATING
     elif mode == HOLD:
-        state = STANDBY
+        state = MavState.STANDBY
     if ap.modes.links.acted != 0 or ap.modes.failsafe.ekf != 0:
-        state = CRITICAL
-    return fill_heartbeat(m, v, GROUND_ROVER, base, state)
+        state = MavState.CRITICAL
+    return fill_heartbeat(m, v, MavType.GROUND_ROVER, base, state)
 
 
 CONTROLLERS = RATE | ATTITUDE | YAW | POSITION

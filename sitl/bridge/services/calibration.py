@@ -19,13 +19,14 @@ from ...autopilot.estimation.alignment import CALIBRATE, initialise
 from ...autopilot.estimation.strapdown import tilt_from_acc
 from ...autopilot.sensor_calibration import ACCELS_DONE, corrected_acc, mounted
 from ...core.constants import GRAVITY, NEVER
+from ...core.mavlink import MavResult, MavSeverity
 from ...core.vectors import Vec3
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from .parameters import ParameterService
-from .service import ACCEPTED, CRITICAL, FAILED, INFO, TEMPORARILY_REJECTED, Handler, Service
+from .service import Handler, Service
 from .statustext import StatusTextService
 
 COMMAND_LONG = message("COMMAND_LONG")
@@ -34,7 +35,7 @@ VEHICLE_POS = 42429
 POSITIONS = ("level", "on its LEFT side", "on its RIGHT side", "nose DOWN", "nose UP", "on its BACK")
 SUCCESS, FAILURE = 16777215, 16777216
 """ACCELCAL_VEHICLE_POS"""
-TICK_US, TELL_US = 2_500, 1_000_000
+TICK_US, REPORT_US = 2_500, 1_000_000
 SAMPLES = 400
 """A second of them at each position."""
 MOST_TRIM = math.radians(10.0)
@@ -56,19 +57,19 @@ class CalibrationService(Service):
         """Accelerations at the positions so far."""
         self._waits = 0
         """Number of the position that clients are asked for, or the result that they are told; 0: none."""
-        self._tell_us = NEVER
+        self._report_us = NEVER
 
     def handlers(self) -> dict[str, Handler]:
         return {"COMMAND_ACK": self._acknowledged}
 
     def snapshot(self) -> Any:
         return (
-            self._task, tuple(self._sum.tolist()), self._count, tuple(self._means), self._waits, self._tell_us,
+            self._task, tuple(self._sum.tolist()), self._count, tuple(self._means), self._waits, self._report_us,
             self.due_us,
         )  # fmt: skip
 
     def restore(self, state: Any) -> None:
-        self._task, total, self._count, means, self._waits, self._tell_us, self.due_us = state
+        self._task, total, self._count, means, self._waits, self._report_us, self.due_us = state
         self._sum, self._means = np.array(total), list(means)
 
     # ------------------------------------------------------------------ what it is asked
@@ -76,26 +77,26 @@ class CalibrationService(Service):
     def start(self, task: str) -> int:
         """Begin to measure GYROS, LEVEL or SIMPLE. Its MAV_RESULT."""
         if self._task or 0 < self._waits <= len(POSITIONS):
-            return TEMPORARILY_REJECTED
+            return MavResult.TEMPORARILY_REJECTED
         if task == LEVEL and max(map(abs, self._trim(self._shown()[:3]))) > MOST_TRIM:
-            return FAILED
+            return MavResult.FAILED
         self._measure(task)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def start_positions(self) -> int:
         """Begin with the first of six positions. Its MAV_RESULT."""
         if self._task:
-            return TEMPORARILY_REJECTED
+            return MavResult.TEMPORARILY_REJECTED
         self._means = []
         self._ask(1)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def is_in_position(self, number: float) -> int:
         """A client says that the vehicle is in a position. The MAV_RESULT."""
         if self._task or number != self._waits or not 0 < self._waits <= len(POSITIONS):
-            return FAILED
+            return MavResult.FAILED
         self._measure(POSITION)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def _acknowledged(self, channel: Channel, m: Any, sender: Sender) -> None:
         self.is_in_position(self._waits)
@@ -108,11 +109,11 @@ class CalibrationService(Service):
 
     def _ask(self, number: int) -> None:
         """Ask for a position, or tell a result."""
-        self._waits, self._tell_us = number, self.bridge.now_us
-        self.due_us = min(self.due_us, self._tell_us)
+        self._waits, self._report_us = number, self.bridge.now_us
+        self.due_us = min(self.due_us, self._report_us)
         if number <= len(POSITIONS):
             text = f"Place vehicle {POSITIONS[number - 1]} and press any key."
-            self.bridge.get(StatusTextService).say(CRITICAL, text)
+            self.bridge.get(StatusTextService).say(MavSeverity.CRITICAL, text)
 
     def service(self, now_us: int) -> None:
         if self._task:
@@ -120,11 +121,11 @@ class CalibrationService(Service):
             self._count += 1
             if self._count == SAMPLES:
                 self._finish(self._sum / SAMPLES)
-        if now_us >= self._tell_us:
+        if now_us >= self._report_us:
             position = COMMAND_LONG.payload(command=VEHICLE_POS, param1=float(self._waits))
             self.bridge.broadcast(COMMAND_LONG, position)
-            self._tell_us = now_us + TELL_US
-        self.due_us = min(self._tell_us, now_us + TICK_US if self._task else NEVER)
+            self._report_us = now_us + REPORT_US
+        self.due_us = min(self._report_us, now_us + TICK_US if self._task else NEVER)
 
     def _shown(self) -> np.ndarray[Any, Any]:
         """Specific force [m/s^2] and rates [rad/s], as shown."""
@@ -144,7 +145,7 @@ class CalibrationService(Service):
             roll, pitch = self._trim(acc)
             self._set("AHRS_TRIM", (roll, pitch))
             text = f"Trim OK: roll={math.degrees(roll):.2f} pitch={math.degrees(pitch):.2f} yaw=0.00"
-            self.bridge.get(StatusTextService).say(INFO, text)
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, text)
         else:
             self._means.append(tuple(acc.tolist()))
             if len(self._means) < len(POSITIONS):
@@ -166,7 +167,7 @@ class CalibrationService(Service):
             self._set("AHRS_TRIM", self._trim(np.array(self._means[0])))
             self._align(np.array(self._means[-1]))
             self.bridge.vehicle.v.autopilot.calibrated.state |= ACCELS_DONE
-        say(CRITICAL, "Calibration successful" if good else "Calibration FAILED")
+        say(MavSeverity.CRITICAL, "Calibration successful" if good else "Calibration FAILED")
         self._ask(SUCCESS if good else FAILURE)
 
     def _trim(self, shown: np.ndarray[Any, Any]) -> tuple[float, float]:

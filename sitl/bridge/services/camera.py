@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 from sitl.core.constants import NEVER
 from sitl.core.elementary import hypot
+from sitl.core.mavlink import MavCmd, MavResult
 
 from ...autopilot import camera, relays
-from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
 from ..channel import Channel
 from ..dialect import message
@@ -22,7 +22,7 @@ from ..host import Host
 from ..listener import Sender
 from ..telemetry.motion import global_position
 from .liveness import HeartbeatService
-from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED, Handler, Service
+from .service import Handler, Service
 
 FEEDBACK, COMMAND_LONG = message("CAMERA_FEEDBACK"), message("COMMAND_LONG")
 EVERY_US = 20_000
@@ -93,13 +93,13 @@ class CameraService(Service):
 
     def carry_out(self, item: MissionItem) -> None:
         """A camera command of a mission."""
-        if item.command == commands.DO_DIGICAM_CONFIGURE:
+        if item.command == MavCmd.DO_DIGICAM_CONFIGURE:
             self.configure((item.p1, item.p2, item.p3, item.p4, item.x, item.y, item.z))
-        elif item.command == commands.DO_DIGICAM_CONTROL:
+        elif item.command == MavCmd.DO_DIGICAM_CONTROL:
             self.control((item.p1, item.p2, item.p3, item.p4, item.x, item.y))
-        elif item.command == commands.DO_SET_CAM_TRIGG_DIST:
+        elif item.command == MavCmd.DO_SET_CAM_TRIGG_DIST:
             self.set_distance(item.p1, item.p3 == 1.0)
-        elif item.command == commands.IMAGE_START_CAPTURE:
+        elif item.command == MavCmd.IMAGE_START_CAPTURE:
             self.start(item.p1, item.p2, item.p3)
         else:
             self.stop(item.p1)
@@ -107,14 +107,14 @@ class CameraService(Service):
     def control(self, params: Sequence[float]) -> None:
         """Session, zoom position, zoom step, focus lock, shot (1: a picture), identification of the command."""
         if self.kind == camera.BY_MAVLINK:
-            self._pass_on(commands.DO_DIGICAM_CONTROL, params)
+            self._pass_on(MavCmd.DO_DIGICAM_CONTROL, params)
         elif params[4] == 1.0:
             self.take_picture()
 
     def configure(self, params: Sequence[float]) -> None:
         """DO_DIGICAM_CONFIGURE's parameters: only a component can do something with them."""
         if self.kind == camera.BY_MAVLINK:
-            self._pass_on(commands.DO_DIGICAM_CONFIGURE, params)
+            self._pass_on(MavCmd.DO_DIGICAM_CONFIGURE, params)
 
     def _pass_on(self, number: int, params: Sequence[float]) -> None:
         fields = {f"param{k}": float(value) for k, value in enumerate(params, start=1)}
@@ -130,22 +130,22 @@ class CameraService(Service):
     def start(self, number: float, interval: float, count: float) -> int:
         """``count`` pictures (0: for ever), one each ``interval`` [s]; a single one at once. Its MAV_RESULT."""
         if number < 0.0:
-            return UNSUPPORTED
+            return MavResult.UNSUPPORTED
         if not (0.0 <= interval <= LONGEST and 0.0 <= count <= MOST):
-            return DENIED
+            return MavResult.DENIED
         if not self._is(number):
-            return FAILED
+            return MavResult.FAILED
         if count == 1.0 or (interval == 0.0 and count == 0.0):
-            return ACCEPTED if self.take_picture() else FAILED
+            return MavResult.ACCEPTED if self.take_picture() else MavResult.FAILED
         self._state = self._state._replace(every_us=round(interval * 1e6), left=int(count) or FOR_EVER)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def stop(self, number: float) -> int:
         """No more pictures of ``start``. Its MAV_RESULT."""
         if number != 0.0 and not self._is(number):
-            return UNSUPPORTED
+            return MavResult.UNSUPPORTED
         self._state = self._state._replace(left=0)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def _is(self, number: float) -> bool:
         """Whether there is a camera of this number; 0: all."""
@@ -164,11 +164,11 @@ class CameraService(Service):
         off_us = now + self._us("CAM1_DURATION")
         pos, count = self.bridge.vehicle.v.autopilot.estimate.pos, state.pictures + 1
         self._state = state._replace(
-            feedback=self._tell(count), pictures=count, taken_us=now, place=(float(pos.x), float(pos.y)),
+            feedback=self._report(count), pictures=count, taken_us=now, place=(float(pos.x), float(pos.y)),
             off_us=off_us, is_waiting=False,
         )  # fmt: skip
         if self.kind == camera.BY_MAVLINK:
-            self._pass_on(commands.DO_DIGICAM_CONTROL, (0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
+            self._pass_on(MavCmd.DO_DIGICAM_CONTROL, (0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
         self._drive(now)
         self.due_us = min(self.due_us, max(off_us, now + 1))
         self.bridge.send_to_all(FEEDBACK.id)
@@ -177,7 +177,7 @@ class CameraService(Service):
     def _us(self, name: str) -> int:
         return round(min(max(self._values[name], 0.0), LONGEST) * 1e6)
 
-    def _tell(self, count: int) -> bytes:
+    def _report(self, count: int) -> bytes:
         v = self.bridge.vehicle.v
         here, euler, home = global_position(v), v.autopilot.estimate.euler, v.autopilot.home
         return FEEDBACK.payload(

@@ -7,9 +7,9 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from ...core.mavlink import MavFrame
 from ..channel import Channel
 from ..host import Host
-from ..places import GLOBAL_RELATIVE_ALT
 
 
 class Command(NamedTuple):
@@ -48,7 +48,7 @@ class Entry(NamedTuple):
     """p5, p6 are latitude and longitude [deg] in COMMAND_LONG."""
     int_only: bool = False
     """COMMAND_LONG is UNSUPPORTED: single precision cannot say where."""
-    long_frame: int = GLOBAL_RELATIVE_ALT
+    long_frame: int = MavFrame.GLOBAL_RELATIVE_ALT
     """Frame of a COMMAND_LONG, which has none."""
     takes_nan: bool = False
     """A NaN stays one."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from ...autopilot.aux_switch import LOW
 from ...autopilot.fence.checks import ALL, kinds, switch_by_user
+from ...core.mavlink import ARM_FORCED, MavResult, MavSeverity
 from ...core.scalars import constrain
 from ..autopilot_api import LONGEST_US
 from ..channel import Channel
@@ -29,7 +30,6 @@ from .home import HomeService
 from .mount import MountService
 from .other_commands import COMMANDS as OTHERS
 from .outputs import OutputService
-from .service import ACCEPTED, DENIED, FAILED, INFO, NOTICE, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
 from .sprayer import SprayerService
 from .statustext import StatusTextService
 from .streams import StreamService
@@ -55,32 +55,32 @@ def request_message(bridge: Host, channel: Channel, command: Command) -> int:
 def control_high_latency(bridge: Host, channel: Channel, command: Command) -> int:
     """2600: p1 1 sends HIGH_LATENCY2 on links of high latency, 0 does not; else FAILED."""
     if command.p1 not in (0.0, 1.0):
-        return FAILED
+        return MavResult.FAILED
     bridge.get(HighLatencyService).switch(command.p1 != 0.0)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def get_home(bridge: Host, channel: Channel, command: Command) -> int:
     """410 (old): answers HOME_POSITION."""
     if not bridge.vehicle.v.autopilot.home.is_set:
-        return FAILED
+        return MavResult.FAILED
     return bridge.send_after_answer(channel, HOME_POSITION)
 
 
 def request_version(bridge: Host, channel: Channel, command: Command) -> int:
     """520 (old): p1 must be 1, else FAILED; answers AUTOPILOT_VERSION."""
     if command.p1 != 1.0:
-        return FAILED
+        return MavResult.FAILED
     return bridge.send_after_answer(channel, AUTOPILOT_VERSION)
 
 
 def prearm_checks(bridge: Host, channel: Channel, command: Command) -> int:
     """401: the checks that fail now, as texts."""
     if bridge.autopilot.armed():
-        return TEMPORARILY_REJECTED
+        return MavResult.TEMPORARILY_REJECTED
     bridge.autopilot.run_prearm_checks()
     bridge.say_pending()
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 FORCE_REBOOT = 20190226.0
@@ -89,11 +89,11 @@ FORCE_REBOOT = 20190226.0
 def reboot(bridge: Host, channel: Channel, command: Command) -> int:
     """246: p1 1 or 3 reboots the autopilot, when disarmed or when p6 is 20190226."""
     if bridge.autopilot.armed() and command.p6 != FORCE_REBOOT:
-        return FAILED
+        return MavResult.FAILED
     if command.p1 not in (1.0, 3.0):
-        return UNSUPPORTED
+        return MavResult.UNSUPPORTED
     bridge.vehicle.request_reboot()
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 POSITIONS_OF_ACCELEROMETER, LEVEL_TRIM, SIMPLE_ACCELEROMETER, SAVE = 1.0, 2.0, 4.0, 76.0
@@ -104,21 +104,21 @@ def calibrate(bridge: Host, channel: Channel, command: Command) -> int:
     """241: p1 1 gyros, p3 1 barometer, p5 1 accelerometers in six positions, 2 level, 4 accelerometers level."""
     say, service = bridge.get(StatusTextService).say, bridge.get(CalibrationService)
     if bridge.autopilot.armed():
-        say(NOTICE, "Disarm to allow calibration")
-        return FAILED
+        say(MavSeverity.NOTICE, "Disarm to allow calibration")
+        return MavResult.FAILED
     if command.p1 == 1.0 or command.p5 in (LEVEL_TRIM, SIMPLE_ACCELEROMETER):
         tasks = {LEVEL_TRIM: calibration.LEVEL, SIMPLE_ACCELEROMETER: calibration.SIMPLE}
         result = service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5])
-        if result == ACCEPTED:
-            say(INFO, "Initialising ArduPilot")
+        if result == MavResult.ACCEPTED:
+            say(MavSeverity.INFO, "Initialising ArduPilot")
         return result
     if command.p3 == 1.0:
-        say(INFO, "Updating barometer calibration")
-        say(INFO, "Barometer calibration complete")
-        return ACCEPTED
+        say(MavSeverity.INFO, "Updating barometer calibration")
+        say(MavSeverity.INFO, "Barometer calibration complete")
+        return MavResult.ACCEPTED
     if command.p5 == POSITIONS_OF_ACCELEROMETER:
         return int(service.start_positions())
-    return ACCEPTED if SAVE in (command.p2, command.p5) else UNSUPPORTED
+    return MavResult.ACCEPTED if SAVE in (command.p2, command.p5) else MavResult.UNSUPPORTED
 
 
 def accelerometer_position(bridge: Host, channel: Channel, command: Command) -> int:
@@ -131,7 +131,7 @@ def storage(bridge: Host, channel: Channel, command: Command) -> int:
 
     There is no storage to read, write or reset.
     """
-    return DENIED
+    return MavResult.DENIED
 
 
 def calibrate_compass(bridge: Host, channel: Channel, command: Command) -> int:
@@ -157,8 +157,8 @@ def calibrate_compass_by_heading(bridge: Host, channel: Channel, command: Comman
 
 def send_banner(bridge: Host, channel: Channel, command: Command) -> int:
     """42428: the version as a text."""
-    bridge.get(StatusTextService).say(INFO, banner(bridge.profile))
-    return ACCEPTED
+    bridge.get(StatusTextService).say(MavSeverity.INFO, banner(bridge.profile))
+    return MavResult.ACCEPTED
 
 
 def reset_battery(bridge: Host, channel: Channel, command: Command) -> int:
@@ -167,8 +167,10 @@ def reset_battery(bridge: Host, channel: Channel, command: Command) -> int:
     Bits of batteries that are not there have no effect.
     """
     if int(command.p1) & 1 == 0:
-        return ACCEPTED
-    return ACCEPTED if bridge.autopilot.set_battery_left(constrain(command.p2, 0.0, 100.0)) else FAILED
+        return MavResult.ACCEPTED
+    return (
+        MavResult.ACCEPTED if bridge.autopilot.set_battery_left(constrain(command.p2, 0.0, 100.0)) else MavResult.FAILED
+    )
 
 
 def inject_failure(bridge: Host, channel: Channel, command: Command) -> int:
@@ -176,7 +178,7 @@ def inject_failure(bridge: Host, channel: Channel, command: Command) -> int:
     return int(bridge.get(FaultService).command(command.p1, command.p2, command.p3))
 
 
-FORCE_ARM, FORCE = 2989.0, 21196.0
+FORCE_ARM = 2989.0
 CHANGE_MODE = 1
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
 
@@ -184,38 +186,38 @@ CHANGE_MODE = 1
 def arm_disarm(bridge: Host, channel: Channel, command: Command) -> int:
     """400: p1 1 arms, 0 disarms; p2 2989 or 21196 forces arming, 21196 disarming in the air."""
     if command.p1 == 1.0:
-        ok = bridge.autopilot.armed() or bridge.autopilot.arm(command.p2 in (FORCE_ARM, FORCE))
+        ok = bridge.autopilot.armed() or bridge.autopilot.arm(command.p2 in (FORCE_ARM, ARM_FORCED))
     elif command.p1 == 0.0:
-        ok = not bridge.autopilot.armed() or bridge.autopilot.disarm(command.p2 == FORCE)
+        ok = not bridge.autopilot.armed() or bridge.autopilot.disarm(command.p2 == ARM_FORCED)
     else:
-        return UNSUPPORTED
+        return MavResult.UNSUPPORTED
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def set_mode(bridge: Host, number: int) -> int:
     """Change to a mode by ArduPilot's number and say why not."""
     ok = bridge.autopilot.set_mode(number)
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def do_set_mode(bridge: Host, channel: Channel, command: Command) -> int:
     """176: p1 must have MAV_MODE_FLAG_CUSTOM_MODE_ENABLED (else DENIED), p2 is the mode's number (else FAILED)."""
     if not 0.0 <= command.p1 < 256.0 or not int(command.p1) & 1:
-        return DENIED
+        return MavResult.DENIED
     if not 0.0 <= command.p2 < 2.0**32:
-        return FAILED
+        return MavResult.FAILED
     return set_mode(bridge, int(command.p2))
 
 
 def aux_function(bridge: Host, channel: Channel, command: Command) -> int:
     """218: p1 function of a switch, p2 0 low, 1 middle, 2 high."""
     if command.p2 not in (0.0, 1.0, 2.0) or command.p1 != int(command.p1):
-        return DENIED
+        return MavResult.DENIED
     ok = bridge.autopilot.run_aux_function(int(command.p1), LOW + int(command.p2))
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def return_to_launch(bridge: Host, channel: Channel, command: Command) -> int:
@@ -226,29 +228,37 @@ def return_to_launch(bridge: Host, channel: Channel, command: Command) -> int:
 def set_servo(bridge: Host, channel: Channel, command: Command) -> int:
     """183: p1 output (those of motors are refused), p2 pulse, 0 .. 3000 us, else DENIED."""
     if not 0.0 <= command.p2 <= LONGEST_US:
-        return DENIED
-    return ACCEPTED if bridge.get(OutputService).set_servo(int(command.p1), int(command.p2)) else FAILED
+        return MavResult.DENIED
+    return (
+        MavResult.ACCEPTED
+        if bridge.get(OutputService).set_servo(int(command.p1), int(command.p2))
+        else MavResult.FAILED
+    )
 
 
 def repeat_servo(bridge: Host, channel: Channel, command: Command) -> int:
     """184: p1 output, p2 pulse, 0 .. 3000 us, by turns with SERVOn_TRIM, p3 times (below 0 for ever), each p4 [s]."""
     if not 0.0 <= command.p2 <= LONGEST_US or not abs(command.p3) <= MANY:
-        return DENIED
+        return MavResult.DENIED
     outputs, number = bridge.get(OutputService), int(command.p1)
-    return ACCEPTED if outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4) else FAILED
+    return (
+        MavResult.ACCEPTED
+        if outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4)
+        else MavResult.FAILED
+    )
 
 
 def set_relay(bridge: Host, channel: Channel, command: Command) -> int:
     """181: p1 relay, from 0, p2 0 off, 1 on, others the other way; FAILED without RELAYn_FUNCTION 1."""
-    return ACCEPTED if bridge.get(OutputService).set_relay(int(command.p1), command.p2) else FAILED
+    return MavResult.ACCEPTED if bridge.get(OutputService).set_relay(int(command.p1), command.p2) else MavResult.FAILED
 
 
 def repeat_relay(bridge: Host, channel: Channel, command: Command) -> int:
     """182: p1 relay, from 0, the other way and back p2 times (below 0 for ever), each p3 [s]."""
     if not abs(command.p2) <= MANY:
-        return DENIED
+        return MavResult.DENIED
     done = bridge.get(OutputService).repeat_relay(int(command.p1), int(command.p2), command.p3)
-    return ACCEPTED if done else FAILED
+    return MavResult.ACCEPTED if done else MavResult.FAILED
 
 
 MANY = 32767.0
@@ -259,20 +269,20 @@ def configure_camera(bridge: Host, channel: Channel, command: Command) -> int:
     """202: with CAM1_TYPE 5 passed on to other components of the vehicle; else no effect."""
     c = command
     bridge.get(CameraService).configure((c.p1, c.p2, c.p3, c.p4, c.p5, c.p6, c.z))
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def control_camera(bridge: Host, channel: Channel, command: Command) -> int:
     """203: p5 1 takes a picture; with CAM1_TYPE 5 passed on to other components; no effect without a camera."""
     c = command
     bridge.get(CameraService).control((c.p1, c.p2, c.p3, c.p4, c.p5, c.p6))
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def set_camera_distance(bridge: Host, channel: Channel, command: Command) -> int:
     """206: a picture each p1 [m] (0: none), p3 1 one at once; no effect without a camera."""
     bridge.get(CameraService).set_distance(command.p1, command.p3 == 1.0)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def start_pictures(bridge: Host, channel: Channel, command: Command) -> int:
@@ -293,7 +303,7 @@ def grip(bridge: Host, channel: Channel, command: Command) -> int:
 def spray(bridge: Host, channel: Channel, command: Command) -> int:
     """216: p1 1 runs the sprayer, 0 ends it; no effect without SPRAY_ENABLE."""
     bridge.get(SprayerService).act(command.p1)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def configure_mount(bridge: Host, channel: Channel, command: Command) -> int:
@@ -319,30 +329,30 @@ def control_gimbal(bridge: Host, channel: Channel, command: Command) -> int:
 
 def follow_system(bridge: Host, channel: Channel, command: Command) -> int:
     """198: taken; the gimbal does not follow other vehicles here."""
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def look_at(bridge: Host, channel: Channel, command: Command) -> int:
     """195, 201: the gimbal points at a place; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
-        return DENIED
+        return MavResult.DENIED
     if not is_on_earth(command.lat, command.lon):
-        return FAILED
+        return MavResult.FAILED
     mount = bridge.get(MountService)
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         mount.look_ahead()
     else:
         alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
         if alt is None:
-            return FAILED
+            return MavResult.FAILED
         mount.look_at(command.lat, command.lon, alt)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def look_ahead(bridge: Host, channel: Channel, command: Command) -> int:
     """197: the gimbal returns to the mode of MNT1_DEFLT_MODE."""
     bridge.get(MountService).look_ahead()
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def reposition(bridge: Host, channel: Channel, command: Command) -> int:
@@ -352,21 +362,21 @@ def reposition(bridge: Host, channel: Channel, command: Command) -> int:
     (FAILED to one that stands or is steered), and nothing to a copter.
     """
     if command.frame not in GLOBAL_FRAMES:
-        bridge.get(StatusTextService).say(WARNING, f"Unknown mavlink coordinate frame {command.frame}")
-        return DENIED
+        bridge.get(StatusTextService).say(MavSeverity.WARNING, f"Unknown mavlink coordinate frame {command.frame}")
+        return MavResult.DENIED
     if command.lat == 0 and command.lon == 0:
-        return DENIED
+        return MavResult.DENIED
     in_guided = bridge.autopilot.mode() == bridge.profile.guided
     if not in_guided and not (0.0 <= command.p2 < 2.0**31 and int(command.p2) & CHANGE_MODE):
-        return DENIED
+        return MavResult.DENIED
     place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
     if place is None:
-        return FAILED
-    if not in_guided and set_mode(bridge, bridge.profile.guided) != ACCEPTED:
-        return FAILED
+        return MavResult.FAILED
+    if not in_guided and set_mode(bridge, bridge.profile.guided) != MavResult.ACCEPTED:
+        return MavResult.FAILED
     if command.p1 > 0.0 and not bridge.autopilot.change_reposition_speed(command.p1):
-        return FAILED
-    return ACCEPTED if bridge.autopilot.guided_position(place) else FAILED
+        return MavResult.FAILED
+    return MavResult.ACCEPTED if bridge.autopilot.guided_position(place) else MavResult.FAILED
 
 
 def set_home(bridge: Host, channel: Channel, command: Command) -> int:
@@ -374,53 +384,53 @@ def set_home(bridge: Host, channel: Channel, command: Command) -> int:
     if command.p1 == 1.0 or (command.lat == 0 and command.lon == 0):
         return _home_result(bridge, bridge.autopilot.set_home_here())
     if command.frame not in GLOBAL_FRAMES and command.p1 == 0.0:
-        return DENIED
+        return MavResult.DENIED
     if command.p1 != 0.0 or not is_on_earth(command.lat, command.lon):
-        return FAILED
+        return MavResult.FAILED
     alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
     if alt is None:
-        return FAILED
+        return MavResult.FAILED
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
 
 
 def set_origin(bridge: Host, channel: Channel, command: Command) -> int:
     """611: the estimator's origin; FAILED when it has one already."""
     if command.frame not in GLOBAL_FRAMES or not is_on_earth(command.lat, command.lon):
-        return DENIED
+        return MavResult.DENIED
     if bridge.vehicle.v.autopilot.estimate.origin_set:
-        return FAILED
+        return MavResult.FAILED
     if command.frame not in FRAMES_AMSL or (command.lat == 0 and command.lon == 0):
-        return DENIED  # a height over what is not known yet, or a place that nobody means
+        return MavResult.DENIED  # a height over what is not known yet, or a place that nobody means
     return _home_result(bridge, bridge.autopilot.set_origin(command.lat, command.lon, command.z))
 
 
 def _home_result(bridge: Host, ok: bool) -> int:
     bridge.say_pending()
     if ok:
-        bridge.get(HomeService).tell_changes()
-    return ACCEPTED if ok else FAILED
+        bridge.get(HomeService).report_changes()
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def enable_fence(bridge: Host, channel: Channel, command: Command) -> int:
     """207: p1 1 switches fences on, 0 off; p2 which (bits as of FENCE_TYPE), 0 all."""
     which = int(command.p2) if 0.0 < command.p2 <= ALL else ALL
     if not 0.0 <= command.p1 <= 2.0 or not 0.0 <= command.p2 <= ALL:
-        return FAILED
+        return MavResult.FAILED
     v = bridge.vehicle.v
     ap = v.autopilot
     if command.p1 >= 1.0 and command.p2 > 0.0 and which & kinds(ap.fence, ap.params.FENCE) == 0:
-        return FAILED
+        return MavResult.FAILED
     switch_by_user(ap.fence, int(command.p1) == 1, which, ap.params.FENCE, ap.events, v.time_us)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def mission_start(bridge: Host, channel: Channel, command: Command) -> int:
     """300: AUTO from the beginning; p1, p2 (first and last item) must be zero."""
     if command.p1 != 0.0 or command.p2 != 0.0:
-        return DENIED
+        return MavResult.DENIED
     ok = bridge.autopilot.start_mission()
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def set_mission_current(bridge: Host, channel: Channel, command: Command) -> int:
@@ -428,27 +438,27 @@ def set_mission_current(bridge: Host, channel: Channel, command: Command) -> int
     where there is no mission."""
     seq, count = int(command.p1), len(bridge.autopilot.mission_items())
     if not 0 <= seq < max(count, 1):
-        return DENIED
+        return MavResult.DENIED
     ok = bridge.autopilot.set_current_item(seq, command.p2 == 1.0)
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def jump_to_tag(bridge: Host, channel: Channel, command: Command) -> int:
     """601: p1 the tag of a JUMP_TAG of the mission, which goes on there; FAILED without it."""
     if not 0.0 <= command.p1 <= 65535.0:
-        return DENIED
+        return MavResult.DENIED
     ok = bridge.autopilot.jump_to_tag(int(command.p1))
     bridge.say_pending()
-    return ACCEPTED if ok else FAILED
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
 
 
 def choose_sources(bridge: Host, channel: Channel, command: Command) -> int:
     """42007: p1 the set of sources of the estimator, 1 .. 3 (EK3_SRC1_* ..)."""
     if command.p1 not in (1.0, 2.0, 3.0):
-        return DENIED
+        return MavResult.DENIED
     bridge.autopilot.choose_sources(int(command.p1) - 1)
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 COMMANDS: dict[int, Entry] = {

@@ -17,19 +17,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
+from ...core.mavlink import MavCmd, MavFrame, MavResult
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..links.link import Peer
 from ..listener import Sender
-from ..places import GLOBAL_RELATIVE_ALT
 from ..switchboard import Switchboard
 from . import command_table
 from .command import Command, Entry, from_int, from_long
-from .service import ACCEPTED, DENIED, UNSUPPORTED, Handler, Service
+from .service import Handler, Service
 
 ACK = message("COMMAND_ACK")
-DO_SET_MODE = 176
 
 
 class CommandHost(Host, Protocol):
@@ -68,7 +67,7 @@ class CommandService(Service):
     def _long(self, channel: Channel, fields: Any, sender: Sender) -> None:
         entry = self._table.get(fields.command)
         if entry is None or entry.int_only:
-            self._answer(channel, fields, entry, UNSUPPORTED, sender)
+            self._answer(channel, fields, entry, MavResult.UNSUPPORTED, sender)
             return
         self._run(channel, entry, from_long(fields, entry), fields, sender)
 
@@ -78,23 +77,25 @@ class CommandService(Service):
             return
         entry = self._table.get(fields.command)
         if entry is None:
-            self._answer(channel, fields, entry, UNSUPPORTED, sender)
+            self._answer(channel, fields, entry, MavResult.UNSUPPORTED, sender)
             return
         self._run(channel, entry, from_int(fields, entry), fields, sender)
 
     def _run(self, channel: Channel, entry: Entry, command: Command | None, fields: Any, sender: Sender) -> None:
-        result = DENIED if command is None else entry.run(self.bridge, channel, command._replace(sender=sender))
+        result = (
+            MavResult.DENIED if command is None else entry.run(self.bridge, channel, command._replace(sender=sender))
+        )
         self._answer(channel, fields, entry, result, sender)
         self.bridge.send_asked()
 
     def _answer(self, channel: Channel, fields: Any, entry: Entry | None, result: int, sender: Sender) -> None:
         self._ack(channel, fields.command, result, sender)
-        frame, is_place = (GLOBAL_RELATIVE_ALT, False) if entry is None else (entry.long_frame, entry.place)
+        frame, is_place = (MavFrame.GLOBAL_RELATIVE_ALT, False) if entry is None else (entry.long_frame, entry.place)
         for listener in self.bridge.listeners:
             listener.commanded(fields, frame, is_place, sender, result)
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
-        as_command = Command(DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)
+        as_command = Command(MavCmd.DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)
         result = command_table.do_set_mode(self.bridge, channel, as_command)
         self._ack(channel, message("SET_MODE").id, result, sender)
 
@@ -105,7 +106,7 @@ class CommandService(Service):
         channel.send(ACK, ACK.payload(**fields))
 
 
-GRANT, RESEED = 31010, 31011
+GRANT, RESEED = MavCmd.USER_1, MavCmd.USER_2
 """MAV_CMD_USER_1: x = simulated time since the start of the simulation [ms] up to which the vehicle may go; the
 answer's ``result_param2`` is the time reached [ms]. An older or repeated grant gets only its answer, so that x = 0 asks
 for the time. MAV_CMD_USER_2: x (32 bits) = seed of all sensor noise from now on; answered at once."""
@@ -123,7 +124,7 @@ class Grants:
         """Take a COMMAND_INT; False when it is none of these."""
         if fields.command == GRANT:
             if fields.x < 0:
-                _ack(channel, GRANT, DENIED, sender, 0)
+                _ack(channel, GRANT, MavResult.DENIED, sender, 0)
             else:
                 if fields.x and channel.peer.ways is not None:  # its questions come in time from now on
                     channel.peer.ways.hold(False)
@@ -131,7 +132,7 @@ class Grants:
                 self._asked.append((channel.peer, sender, 1000 * fields.x))
         elif fields.command == RESEED:
             bridge.vehicle.reseed(fields.x & 0xFFFFFFFF)
-            _ack(channel, RESEED, ACCEPTED, sender, 0)
+            _ack(channel, RESEED, MavResult.ACCEPTED, sender, 0)
         return fields.command in (GRANT, RESEED)
 
     def answer(self, bridge: CommandHost) -> None:
@@ -144,7 +145,7 @@ class Grants:
             if wanted <= now:
                 for channel in bridge.channels:  # a reboot in between has made new ones
                     if channel.peer is peer:
-                        _ack(channel, GRANT, ACCEPTED, sender, now // 1000)
+                        _ack(channel, GRANT, MavResult.ACCEPTED, sender, now // 1000)
         self._asked = [asked for asked in self._asked if asked[2] > now]
         bridge.flush()
 

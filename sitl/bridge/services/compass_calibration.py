@@ -20,12 +20,13 @@ from ...autopilot.sensor_calibration import COMPASS_DONE, COMPASS_RUNNING
 from ...core.algebra import norm, quat_from_euler, rotate_inverse
 from ...core.constants import NEVER
 from ...core.earth_field import field_ned
+from ...core.mavlink import MavResult, MavSeverity
 from ...core.sums import lengths, matrix_product
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
 from ..host import Host
 from .parameters import ParameterService
-from .service import ACCEPTED, FAILED, NOTICE, Service
+from .service import Service
 from .statustext import StatusTextService
 
 PROGRESS, REPORT = message("MAG_CAL_PROGRESS"), message("MAG_CAL_REPORT")
@@ -37,7 +38,7 @@ SPACING = 0.12
 """Least distance of two samples, of the field's strength: 300 lie so in half of all directions or more."""
 LEAST_RADIUS, MOST_RADIUS = 150.0, 950.0
 """Strength of a field that can be the earth's [mGauss]."""
-LOOK_US, TELL_US = 20_000, 100_000
+LOOK_US, REPORT_US = 20_000, 100_000
 
 
 def _sections() -> np.ndarray[Any, Any]:
@@ -80,14 +81,14 @@ class CompassCalibrationService(Service):
         self._states: dict[int, State] = {}
         """By number of the compass."""
         self._retries = self._saves = self._reboots = False
-        self._start_us = self._tell_us = 0
+        self._start_us = self._report_us = 0
 
     def snapshot(self) -> Any:
         states = tuple((k, *s[:3], s.fit and tuple(s.fit), s.is_saved) for k, s in self._states.items())
-        return (states, self._retries, self._saves, self._reboots, self._start_us, self._tell_us, self.due_us)
+        return (states, self._retries, self._saves, self._reboots, self._start_us, self._report_us, self.due_us)
 
     def restore(self, state: Any) -> None:
-        states, self._retries, self._saves, self._reboots, self._start_us, self._tell_us, self.due_us = state
+        states, self._retries, self._saves, self._reboots, self._start_us, self._report_us, self.due_us = state
         self._states = {
             k: State(status, attempt, samples, fit and CompassFit(*fit), is_saved)
             for k, status, attempt, samples, fit, is_saved in states
@@ -98,58 +99,58 @@ class CompassCalibrationService(Service):
     def start(self, mask: float, retries: bool, saves: bool, delay: float, reboots: bool) -> int:
         """Begin with the compasses in ``mask`` (0: all) after ``delay`` [s]. Its MAV_RESULT."""
         if self.bridge.autopilot.armed():
-            self.bridge.get(StatusTextService).say(NOTICE, "Disarm to allow compass calibration")
-            return FAILED
+            self.bridge.get(StatusTextService).say(MavSeverity.NOTICE, "Disarm to allow compass calibration")
+            return MavResult.FAILED
         chosen = self._chosen(mask)
         if chosen is None:
-            return FAILED
+            return MavResult.FAILED
         if any(state.is_running for state in self._states.values()):
-            return ACCEPTED
+            return MavResult.ACCEPTED
         self._retries, self._saves, self._reboots = retries, saves, reboots
         self._states = {k: State(WAITING) for k in chosen}
         now = self.bridge.now_us
-        self._start_us, self._tell_us, self.due_us = now + round(1e6 * max(delay, 0.0)), now, now
+        self._start_us, self._report_us, self.due_us = now + round(1e6 * max(delay, 0.0)), now, now
         self._mark(COMPASS_RUNNING)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def accept(self, mask: float) -> int:
         """Take over what was found. Its MAV_RESULT: FAILED while one of them is without success."""
         chosen = self._chosen(mask)
         states = [(k, self._states[k]) for k in chosen or () if k in self._states]
         if chosen is None or any(state.status != SUCCESS for _, state in states):
-            return FAILED
+            return MavResult.FAILED
         for k, state in states:
             self._save(k, state)
             del self._states[k]
         self._rest()
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def cancel(self, mask: float) -> int:
         """Stop. Its MAV_RESULT."""
         chosen = self._chosen(mask)
         if chosen is None:
-            return FAILED
+            return MavResult.FAILED
         for k in chosen:
             self._states.pop(k, None)
         self._rest()
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def use_heading(self, yaw: float, mask: float, lat: float, lon: float) -> int:
         """Find the offsets from a true heading [deg] at a place [deg] (0, 0: where it is). The MAV_RESULT."""
         ap, chosen = self.bridge.vehicle.v.autopilot, self._chosen(mask)
         if lat == 0.0 and lon == 0.0:
             if not ap.estimate.origin_set:
-                return FAILED
+                return MavResult.FAILED
             lat, lon = 1e-7 * ap.estimate.origin_lat, 1e-7 * ap.estimate.origin_lon
         if chosen is None or not (abs(lat) <= 90.0 and abs(lon) <= 180.0):
-            return FAILED
+            return MavResult.FAILED
         euler = ap.estimate.euler
         attitude = quat_from_euler(Euler(euler.roll, euler.pitch, math.radians(yaw)))
         field = rotate_inverse(attitude, Vec3(*field_ned(lat, lon)))
         for k in chosen:
             offset = 1e3 * np.array(tuple(field)) - self._shown(k)
             self._set(k, CompassFit(tuple(offset.tolist()), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0, 0.0))
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     @staticmethod
     def _chosen(mask: float) -> list[int] | None:
@@ -167,10 +168,10 @@ class CompassCalibrationService(Service):
                     self._states[k] = self._sampled(k, state)
         if not any(state.is_running for state in self._states.values()):
             self._unmark()
-        if now_us >= self._tell_us:
-            self._tell_us = now_us + TELL_US
+        if now_us >= self._report_us:
+            self._report_us = now_us + REPORT_US
             for k, state in self._states.items():
-                self._tell(k, state)
+                self._report(k, state)
         if self._reboots and self._states and all(state.is_saved for state in self._states.values()):
             self.bridge.vehicle.request_reboot()
         self.due_us = now_us + LOOK_US if self._states else NEVER
@@ -241,7 +242,7 @@ class CompassCalibrationService(Service):
     def _unmark(self) -> None:
         self.bridge.vehicle.v.autopilot.calibrated.state &= ~COMPASS_RUNNING
 
-    def _tell(self, k: int, state: State) -> None:
+    def _report(self, k: int, state: State) -> None:
         mask = sum(1 << number for number in self._states)
         if state.fit is None or state.is_running:
             percent = 100 * len(state.samples) // SAMPLES

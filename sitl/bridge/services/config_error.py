@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from ...core.constants import NEVER
+from ...core.mavlink import MavSeverity
 from ..host import Host
-from .service import CRITICAL, Service
+from .service import Service
 from .statustext import StatusTextService
 
 EVERY_US = 5_000_000
@@ -22,7 +23,7 @@ class ConfigErrorService(Service):
     def service(self, now_us: int) -> None:
         self.due_us = now_us + EVERY_US
         for text in TEXTS:
-            self.bridge.get(StatusTextService).say(CRITICAL, text)
+            self.bridge.get(StatusTextService).say(MavSeverity.CRITICAL, text)
 
     def snapshot(self) -> int:
         return self.due_us

@@ -9,6 +9,7 @@ from typing import Any
 from ...autopilot.params.parameter import stored
 from ...autopilot.shell_parameters import FAILURES
 from ...core.constants import NEVER
+from ...core.mavlink import MavResult
 from ...errors import OptionError
 from ...vehicle.acting import ARMED
 from ...vehicle.equipment import Equipment
@@ -17,7 +18,7 @@ from ...vehicle.faults import TYPES, UNITS, Failure, known
 from ...vehicle.ordered_faults import ONE_SHOT, Ordered, OrderedFaults, Repair
 from ..host import Host
 from .parameters import ParameterService
-from .service import ACCEPTED, DENIED, UNSUPPORTED, Service
+from .service import Service
 
 STUCK = "SIM_RC_STUCK"
 LOOK_US = 100_000
@@ -211,26 +212,26 @@ class FaultService(Service):
     def command(self, unit: float, kind: float, instance: float) -> int:
         """MAV_CMD_INJECT_FAILURE; gives the MAV_RESULT."""
         if self.bridge.vehicle.parameters[FAILURES] == 0.0:
-            return UNSUPPORTED
+            return MavResult.UNSUPPORTED
         units = known(self._table)
         name = next((name for name, number in UNITS.items() if number == unit and name in units), None)
         if name is None or kind not in range(len(TYPES)):
-            return UNSUPPORTED
+            return MavResult.UNSUPPORTED
         types = units[name]
         if kind != 0.0 and TYPES[int(kind)] not in types:
-            return UNSUPPORTED
+            return MavResult.UNSUPPORTED
         meant = types.values() if kind == 0.0 else (types[TYPES[int(kind)]],)
         most = max(effect.instances for effect in meant)
         if instance not in (0, *self.equipment.numbers(name, most)):
-            return DENIED
+            return MavResult.DENIED
         if kind == 0.0:
             self.repair(self.repair_of(name, int(instance)))
         else:
             try:
                 self.fail(Failure(name, TYPES[int(kind)], int(instance)))
             except OptionError:  # not with this physics, or not on this vehicle
-                return UNSUPPORTED
-        return ACCEPTED
+                return MavResult.UNSUPPORTED
+        return MavResult.ACCEPTED
 
     def follow(self, before: FaultService) -> None:
         """Go on after a reboot."""

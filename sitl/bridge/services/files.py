@@ -13,16 +13,21 @@ import zlib
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ...core.mavlink import MavMissionType
 from .. import metadata
 from ..host import Host
 from .client_files import ClientFiles
-from .mission import FENCE, MISSION, RALLY, MissionService
+from .mission import MissionService
 from .mission_upload import ITEM_INT, to_int
 from .parameters import ParameterService
 
 PARAMETERS = "@PARAM/param.pck"
 LOGS = "logs"
-MISSIONS = {"@MISSION/mission.dat": MISSION, "@MISSION/fence.dat": FENCE, "@MISSION/rally.dat": RALLY}
+MISSIONS = {
+    "@MISSION/mission.dat": MavMissionType.MISSION,
+    "@MISSION/fence.dat": MavMissionType.FENCE,
+    "@MISSION/rally.dat": MavMissionType.RALLY,
+}
 MISSION_MAGIC = 0x763D
 MISSION_HEADER = struct.Struct("<HHHHH")
 """magic, MAV_MISSION_TYPE, options (0), first item (0), number of items"""

@@ -10,6 +10,7 @@ from ...autopilot import payload
 from ...autopilot.aux_switch import HIGH, LOW, MIDDLE
 from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
+from ...core.mavlink import MavCmd
 from ..host import Host
 from .camera import CameraService
 from .gripper import GripperService
@@ -23,10 +24,10 @@ from .winch import WinchService
 CARRIED_OUT_BY: dict[int, type[Service]] = {
     **dict.fromkeys(commands.CAMERA_COMMANDS, CameraService),
     **dict.fromkeys((*commands.MOUNT_COMMANDS, *commands.ROI_COMMANDS), MountService),
-    commands.DO_PARACHUTE: ParachuteService,
-    commands.DO_GRIPPER: GripperService,
-    commands.DO_SPRAYER: SprayerService,
-    commands.DO_WINCH: WinchService,
+    MavCmd.DO_PARACHUTE: ParachuteService,
+    MavCmd.DO_GRIPPER: GripperService,
+    MavCmd.DO_SPRAYER: SprayerService,
+    MavCmd.DO_WINCH: WinchService,
 }
 """By command of a mission; outputs and relays do the others."""
 

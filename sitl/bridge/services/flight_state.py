@@ -7,15 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 from ...core.algebra import rotate
+from ...core.mavlink import MavLandedState
 from ..dialect import message
 from ..host import Host
-from ..telemetry.plain import told
+from ..telemetry.plain import built
 from ..telemetry.units import boot_ms
 from .service import Service
 
 NONE_REACHED = 0xFFFF
-ON_GROUND, IN_AIR = 1, 2
-"""MAV_LANDED_STATE: it stands, or anything from this number on is a flight."""
 
 
 class FlightStateService(Service):
@@ -51,11 +50,11 @@ class FlightStateService(Service):
         """FLIGHT_INFORMATION: arming and take-off [us since boot, whatever the fields' names say]; the take-off is when
         somebody first asked in flight, as in ArduPilot."""
         now, ap = self.bridge.now_us, self.bridge.vehicle.v.autopilot
-        told_state = told(self.bridge.profile, self.bridge.vehicle.v, "EXTENDED_SYS_STATE")
-        state = int(getattr(told_state, "landed_state", 0))
-        if state == ON_GROUND:
+        sent_state = built(self.bridge.profile, self.bridge.vehicle.v, "EXTENDED_SYS_STATE")
+        state = int(getattr(sent_state, "landed_state", 0))
+        if state == MavLandedState.ON_GROUND:
             self._took_off_us = 0
-        elif state >= IN_AIR and not self._took_off_us:
+        elif state >= MavLandedState.IN_AIR and not self._took_off_us:
             self._took_off_us = now
         return message("FLIGHT_INFORMATION").payload(
             time_boot_ms=boot_ms(now),

@@ -11,11 +11,12 @@ import math
 from ...autopilot.follow import Report, is_lead, take
 from ...core.algebra import ZERO, rotate, yaw_of
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Vec3
 from ...vehicle.record import Vehicle
-from ..places import GLOBAL, GLOBAL_RELATIVE_ALT, local_place
+from ..places import local_place
 from ..telemetry.motion import GlobalPositionInt
 from ..wire.message import Message
 from .setpoints import rotation
@@ -44,9 +45,9 @@ def take_position(m: GlobalPositionInt, v: Vehicle, sender: int, over_home: bool
     """GLOBAL_POSITION_INT of another vehicle; ``over_home``: its height above home counts, not that above the sea."""
     ap = v.autopilot
     lead, p = ap.modes.follow, ap.params.FOLL
-    if (m.lat == 0 and m.lon == 0) or lead.tells_more or not is_lead(lead, p, sender, v.time_us):
+    if (m.lat == 0 and m.lon == 0) or lead.sends_more or not is_lead(lead, p, sender, v.time_us):
         return
-    alt, frame = (m.relative_alt, GLOBAL_RELATIVE_ALT) if over_home else (m.alt, GLOBAL)
+    alt, frame = (m.relative_alt, MavFrame.GLOBAL_RELATIVE_ALT) if over_home else (m.alt, MavFrame.GLOBAL)
     place = local_place(ap, m.lat, m.lon, alt * 1e-3, frame)
     if place.is_known:
         vel = Vec3(m.vx * 0.01, m.vy * 0.01, m.vz * 0.01)
@@ -62,7 +63,7 @@ def follow_target(m: FollowTarget, v: Vehicle, sender: int) -> None:
     lead, p, has = ap.modes.follow, ap.params.FOLL, m.est_capabilities
     if (m.lat == 0 and m.lon == 0) or (has & HAS_POSITION) == 0 or not is_lead(lead, p, sender, v.time_us):
         return
-    place = local_place(ap, m.lat, m.lon, m.alt, GLOBAL)
+    place = local_place(ap, m.lat, m.lon, m.alt, MavFrame.GLOBAL)
     vel = vector(m.vel) if (has & HAS_VELOCITY) != 0 else ZERO
     acc = vector(m.acc) if (has & HAS_ACCELERATION) != 0 else ZERO
     body = rotation(m.attitude_q)
@@ -71,7 +72,7 @@ def follow_target(m: FollowTarget, v: Vehicle, sender: int) -> None:
         return
     has_heading = (has & HAS_ATTITUDE) != 0 and body.is_given
     take(lead, p, sender, Report(place.pos, vel, acc, has_heading, yaw_of(body.q), turn), v.time_us)
-    lead.tells_more = True
+    lead.sends_more = True
 
 
 @law

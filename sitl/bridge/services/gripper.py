@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
 from ...core.constants import NEVER
+from ...core.mavlink import MavResult, MavSeverity
 from ..host import Host
 from .payload import PayloadService
-from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService
 
 RELEASE, GRAB = 0, 1
@@ -47,7 +47,7 @@ class GripperService(PayloadService):
         self._state = State()
         if self._there:
             self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
-            self._tell()
+            self._report()
 
     def snapshot(self) -> Any:
         return (tuple(self._state), self.due_us)
@@ -63,9 +63,9 @@ class GripperService(PayloadService):
 
     def parameter_changed(self, name: str) -> None:
         if name == "GRIP_ENABLE":
-            self._tell()
+            self._report()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         """Tell the autopilot, which waits for it where it places a load."""
         state = self._state
         self.bridge.autopilot.gripper_is(self.is_there, state.action == RELEASE and state.is_done)
@@ -75,17 +75,17 @@ class GripperService(PayloadService):
         action = int(item.p2)
         self.act(action)
         if action in IN_MISSIONS:
-            self.bridge.get(StatusTextService).say(INFO, IN_MISSIONS[action])
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, IN_MISSIONS[action])
 
     def act(self, action: float) -> int:
         """RELEASE or GRAB, in whole numbers. Its MAV_RESULT."""
         if not self.is_there or not RELEASE <= action < GRAB + 1:
-            return FAILED
+            return MavResult.FAILED
         if int(action) == GRAB:
             self.grab()
         else:
             self.release()
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def grab(self) -> None:
         """Close it."""
@@ -102,22 +102,22 @@ class GripperService(PayloadService):
         self._send(payload.GRIPPER, self._values[pulse])
         if state.action == action and not self._is_magnet:
             if state.is_done:
-                say(INFO, TEXTS[action][1])
+                say(MavSeverity.INFO, TEXTS[action][1])
             return
-        say(INFO, TEXTS[action][0])
+        say(MavSeverity.INFO, TEXTS[action][0])
         self._state = State(action, now + MOVES_US, False, now if action == RELEASE else state.released_us)
         self.due_us = now + MOVES_US
-        self._tell()
+        self._report()
 
     def service(self, now_us: int) -> None:
         state, self.due_us = self._state, NEVER
         if not state.is_done and now_us >= state.done_us:
             self._state = state._replace(is_done=True)
-            self._tell()
+            self._report()
             if self._is_magnet:
                 self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
             else:
-                self.bridge.get(StatusTextService).say(INFO, TEXTS[state.action][1])
+                self.bridge.get(StatusTextService).say(MavSeverity.INFO, TEXTS[state.action][1])
         if self._is_magnet and self._state.action == GRAB and self._state.is_done:
             self._hold(now_us)
         if self._state.action == RELEASE and self._state.is_done:

@@ -42,7 +42,7 @@ class HomeService(Service):
     def handlers(self) -> dict[str, Handler]:
         return {"SET_GPS_GLOBAL_ORIGIN": self._set_origin, "SET_HOME_POSITION": self._set_home}
 
-    def tell_changes(self) -> None:
+    def report_changes(self) -> None:
         """Send HOME_POSITION or GPS_GLOBAL_ORIGIN to everyone when they are other than last sent."""
         home, origin = self._home(), self._origin()
         if (home, origin) != (self._sent_home, self._sent_origin):
@@ -58,18 +58,18 @@ class HomeService(Service):
     def service(self, now_us: int) -> None:
         """Home is set some ticks after the origin, by itself."""
         self.due_us = now_us + LOOK_US if self._origin()[0] and not self._home()[0] else NEVER
-        self.tell_changes()
+        self.report_changes()
 
     def _set_origin(self, channel: Channel, m: Any, sender: Sender) -> None:
         """Only before the estimator has an origin; else nothing happens, as in ArduPilot."""
         if self._valid(m.latitude, m.longitude):
             if self.bridge.autopilot.set_origin(m.latitude, m.longitude, m.altitude * 1e-3):
-                self.tell_changes()
+                self.report_changes()
 
     def _set_home(self, channel: Channel, m: Any, sender: Sender) -> None:
         if self._valid(m.latitude, m.longitude):
             if self.bridge.autopilot.set_home(m.latitude, m.longitude, m.altitude * 1e-3):
-                self.tell_changes()
+                self.report_changes()
 
     @staticmethod
     def _valid(lat: int, lon: int) -> bool:

@@ -5,17 +5,16 @@ from __future__ import annotations
 
 from ...autopilot.events import emit
 from ...autopilot.landing_target.measurement import take
-from ...autopilot.landing_target.state import LANDING_TARGET_DID, LEVEL_SENSOR, SAID_NO_FRAME, SENSOR, TOLD_FRAME
+from ...autopilot.landing_target.state import LANDING_TARGET_DID, LEVEL_SENSOR, REPORTED_FRAME, SAID_NO_FRAME, SENSOR
 from ...core.elementary import tan
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.scalars import PI, finite
 from ...core.vectors import Vec3
 from ...vehicle.landing_beacon import BY_MESSAGE
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
 
-BODY_FRD, LOCAL_FRD = 12, 20
-"""MAV_FRAME"""
 _SIDEWAYS = 0.5 * PI
 """The angle of what is not before the sensor [rad]."""
 
@@ -40,10 +39,10 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
     t, p = ap.landing_target, ap.params.PLND
     if p.ENABLED == 0.0 or int(p.TYPE) != BY_MESSAGE:
         return
-    if m.frame != BODY_FRD and m.frame != LOCAL_FRD:
-        if (t.told & TOLD_FRAME) == 0:
+    if m.frame != MavFrame.BODY_FRD and m.frame != MavFrame.LOCAL_FRD:
+        if (t.reported & REPORTED_FRAME) == 0:
             emit(ap.events, v.time_us, LANDING_TARGET_DID, float(SAID_NO_FRAME), 0.0)
-        t.told |= TOLD_FRAME
+        t.reported |= REPORTED_FRAME
         return
     line = Vec3(m.x, m.y, m.z)
     if m.position_valid == 0:
@@ -51,4 +50,4 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
             return
         line = Vec3(-tan(m.angle_y), tan(m.angle_x), 1.0)
     if finite(line.x + line.y + line.z + m.distance):
-        take(t, line, SENSOR if m.frame == BODY_FRD else LEVEL_SENSOR, m.distance, v.time_us)
+        take(t, line, SENSOR if m.frame == MavFrame.BODY_FRD else LEVEL_SENSOR, m.distance, v.time_us)

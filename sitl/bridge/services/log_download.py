@@ -108,20 +108,20 @@ class LogDownloadService(Service):
 
     def service(self, now_us: int) -> None:
         for channel, waiting in list(self._transfers.items()):
-            room = 0 if channel.congested else PIECES
-            while room > 0 and waiting:
-                sent, rest = self._send(channel, waiting[0], room)
-                room, waiting = room - sent, (*rest, *waiting[1:])
+            budget = 0 if channel.congested else PIECES
+            while budget > 0 and waiting:
+                sent, rest = self._send(channel, waiting[0], budget)
+                budget, waiting = budget - sent, (*rest, *waiting[1:])
             self._transfers[channel] = waiting
             if not waiting:
                 del self._transfers[channel]
         self.due_us = now_us + EVERY_US if self._transfers else NEVER
 
-    def _send(self, channel: Channel, transfer: _Transfer, room: int) -> tuple[int, tuple[_Transfer, ...]]:
+    def _send(self, channel: Channel, transfer: _Transfer, budget: int) -> tuple[int, tuple[_Transfer, ...]]:
         """Send up to so many pieces of a transfer; gives how many, and what is left of it."""
         number, offset, left = transfer
         logs = self.bridge.logs
-        data = logs.read(number, offset, min(left, room * PIECE)) if logs is not None else b""
+        data = logs.read(number, offset, min(left, budget * PIECE)) if logs is not None else b""
         pieces = range(0, max(len(data), 1), PIECE)
         for at in pieces:
             piece = data[at : at + PIECE]

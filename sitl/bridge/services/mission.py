@@ -7,40 +7,29 @@ until then the old one stands.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from ...autopilot.fence.items import FenceError
-from ...autopilot.mission.item import FENCE_COMMANDS, RALLY_POINT, STORED, MissionItem
+from ...autopilot.mission.item import FENCE_COMMANDS, STORED, MissionItem
 from ...autopilot.mission.storage import stored_home
 from ...autopilot.mission.validate import MAX_ITEMS
 from ...core.constants import NEVER
+from ...core.mavlink import MavCmd, MavMissionResult, MavMissionType, MavSeverity
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from . import place_lists
-from .mission_upload import (
-    ACCEPTED,
-    CANCELLED,
-    DENIED,
-    ERROR,
-    INVALID_SEQUENCE,
-    NO_SPACE,
-    UNSUPPORTED,
-    Upload,
-    from_float,
-    from_int,
-    to_float,
-    to_int,
-)
-from .service import DEBUG, INFO, WARNING, Handler, Service
+from .mission_upload import Upload, from_float, from_int, to_float, to_int
+from .service import Handler, Service
 from .setpoints import SetpointService
 from .statustext import StatusTextService
 
-MISSION, FENCE, RALLY, ALL = 0, 1, 2, 255
-"""MAV_MISSION_TYPE"""
-RECEIVED = {MISSION: (INFO, "Flight plan received"), FENCE: (DEBUG, "Fence Indexed OK")}
+RECEIVED: dict[int, tuple[int, str]] = {
+    MavMissionType.MISSION: (MavSeverity.INFO, "Flight plan received"),
+    MavMissionType.FENCE: (MavSeverity.DEBUG, "Fence Indexed OK"),
+}
 ACK, COUNT, REQUEST = message("MISSION_ACK"), message("MISSION_COUNT"), message("MISSION_REQUEST")
 MISSION_CURRENT = message("MISSION_CURRENT").id
 COPY_US = 2_000_000
@@ -56,8 +45,12 @@ class MissionService(Service):
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
-        self._taken = {MISSION: STORED, FENCE: FENCE_COMMANDS, RALLY: (RALLY_POINT,)}
-        self._lists: dict[int, tuple[MissionItem, ...]] = {FENCE: (), RALLY: ()}
+        self._taken: dict[int, Collection[int]] = {
+            MavMissionType.MISSION: STORED,
+            MavMissionType.FENCE: FENCE_COMMANDS,
+            MavMissionType.RALLY: (MavCmd.NAV_RALLY_POINT,),
+        }
+        self._lists: dict[int, tuple[MissionItem, ...]] = {MavMissionType.FENCE: (), MavMissionType.RALLY: ()}
         self.upload: Upload | None = None
         self._last: tuple[Channel, Sender, int, range, int] | None = None
         """Who uploaded last, what, the numbers of its items, and when: its acknowledgement may have been lost."""
@@ -87,22 +80,22 @@ class MissionService(Service):
 
     def follow(self, before: MissionService) -> None:
         """Fences and rally points outlive a reboot."""
-        self.keep(before._lists[FENCE], before._lists[RALLY])
+        self.keep(before._lists[MavMissionType.FENCE], before._lists[MavMissionType.RALLY])
 
     def keep(self, fence: tuple[MissionItem, ...], rally: tuple[MissionItem, ...], *, counted: bool = False) -> None:
         """Take lists that were taken before; FENCE_TOTAL and RALLY_TOTAL count them, or stay as they are."""
         place_lists.load_fence(self.bridge.vehicle, fence, checked=False)
         place_lists.load_rally(self.bridge.vehicle, rally)
-        self._lists = {FENCE: fence, RALLY: rally}
+        self._lists = {MavMissionType.FENCE: fence, MavMissionType.RALLY: rally}
         if counted:
             self.bridge.vehicle.parameters.update({"FENCE_TOTAL": place_lists.count(fence), "RALLY_TOTAL": len(rally)})
 
     @property
     def lists(self) -> tuple[tuple[MissionItem, ...], tuple[MissionItem, ...]]:
         """Fences and rally points, for ``keep``."""
-        return self._lists[FENCE], self._lists[RALLY]
+        return self._lists[MavMissionType.FENCE], self._lists[MavMissionType.RALLY]
 
-    def _ack(self, channel: Channel, sender: Sender, result: int, kind: int = MISSION) -> None:
+    def _ack(self, channel: Channel, sender: Sender, result: int, kind: int = MavMissionType.MISSION) -> None:
         system, component = sender
         fields = {
             "target_system": system,
@@ -116,29 +109,33 @@ class MissionService(Service):
 
     def items(self, kind: int) -> tuple[MissionItem, ...]:
         """A list as it is now."""
-        if kind == MISSION:
+        if kind == MavMissionType.MISSION:
             return self.bridge.autopilot.mission_items()
         total = int(self.bridge.vehicle.parameters["RALLY_TOTAL"])
-        return place_lists.counted(self._lists[RALLY], total) if kind == RALLY else self._lists[kind]
+        return (
+            place_lists.counted(self._lists[MavMissionType.RALLY], total)
+            if kind == MavMissionType.RALLY
+            else self._lists[kind]
+        )
 
     def home_alone(self, kind: int) -> tuple[MissionItem, ...]:
         """Item 0, home, can be read of an empty mission all the same (DroneKit's download waits for it)."""
-        return (stored_home(*self._home()),) if kind == MISSION else ()
+        return (stored_home(*self._home()),) if kind == MavMissionType.MISSION else ()
 
     def _replace(self, kind: int, items: tuple[MissionItem, ...]) -> int:
         """Replace a list whole; the MAV_MISSION_RESULT."""
-        if kind == MISSION:
+        if kind == MavMissionType.MISSION:
             return int(self.bridge.autopilot.replace_mission(items))
         vehicle = self.bridge.vehicle
-        if kind == RALLY:
-            self._lists[RALLY] = items = tuple(place_lists.as_rally_point(item) for item in items)
+        if kind == MavMissionType.RALLY:
+            self._lists[MavMissionType.RALLY] = items = tuple(place_lists.as_rally_point(item) for item in items)
             place_lists.load_rally(vehicle, items)
             vehicle.parameters["RALLY_TOTAL"] = len(items)
         elif not self.replace_fence(tuple(place_lists.as_fence(item) for item in items)):
-            return ERROR
+            return MavMissionResult.ERROR
         else:
-            vehicle.parameters["FENCE_TOTAL"] = place_lists.count(self._lists[FENCE])
-        return ACCEPTED
+            vehicle.parameters["FENCE_TOTAL"] = place_lists.count(self._lists[MavMissionType.FENCE])
+        return MavMissionResult.ACCEPTED
 
     def replace_fence(self, items: tuple[MissionItem, ...]) -> bool:
         """Replace the fences; whether they could be."""
@@ -146,26 +143,34 @@ class MissionService(Service):
             place_lists.load_fence(self.bridge.vehicle, items)
         except FenceError as error:
             say = self.bridge.get(StatusTextService).say
-            say(WARNING, str(error))
+            say(MavSeverity.WARNING, str(error))
             if items and "storage" not in str(error):
-                say(WARNING, "Fence validation failed")
+                say(MavSeverity.WARNING, "Fence validation failed")
             return False
-        self._lists[FENCE] = items
+        self._lists[MavMissionType.FENCE] = items
         return True
 
-    def _room(self, kind: int) -> int:
+    def _capacity(self, kind: int) -> int:
         """How many items fit into a list."""
-        if kind == MISSION:
+        if kind == MavMissionType.MISSION:
             return MAX_ITEMS
         vehicle = self.bridge.vehicle
-        return place_lists.most_fence_items(vehicle) if kind == FENCE else place_lists.most_rally_points(vehicle)
+        return (
+            place_lists.most_fence_items(vehicle)
+            if kind == MavMissionType.FENCE
+            else place_lists.most_rally_points(vehicle)
+        )
 
     def take(self, kind: int, rows: Sequence[Any]) -> bool:
         """Replace a list by fields of MISSION_ITEM_INT; False, and it stays, when one is refused or an upload runs."""
         taken = [from_int(fields, self._taken[kind]) for fields in rows]
-        if self.upload is not None or len(rows) > self._room(kind) or any(result != ACCEPTED for _, result in taken):
+        if (
+            self.upload is not None
+            or len(rows) > self._capacity(kind)
+            or any(result != MavMissionResult.ACCEPTED for _, result in taken)
+        ):
             return False
-        done = self._replace(kind, tuple(item for item, _ in taken)) == ACCEPTED
+        done = self._replace(kind, tuple(item for item, _ in taken)) == MavMissionResult.ACCEPTED
         if done:
             self._say_received(kind)
         self.bridge.say_pending()
@@ -182,25 +187,25 @@ class MissionService(Service):
     def _may_start(self, channel: Channel, sender: Sender, kind: int) -> bool:
         """Whether this sender may upload now; answers if not. A sender may begin its own upload anew."""
         if not self._is_mine(channel, sender):
-            self._ack(channel, sender, DENIED, kind)
+            self._ack(channel, sender, MavMissionResult.DENIED, kind)
             return False
         return True
 
     def _count(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
         if kind not in self._taken:
-            self._ack(channel, sender, UNSUPPORTED, kind)
+            self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
         elif self._is_copy(channel, sender, kind, range(fields.count)):
             pass
         elif self._may_start(channel, sender, kind):
             self.upload = None
-            if fields.count > (room := self._room(kind)):
-                self.bridge.get(StatusTextService).say(WARNING, f"Only {room} items are supported")
-                self._ack(channel, sender, NO_SPACE, kind)
+            if fields.count > (capacity := self._capacity(kind)):
+                self.bridge.get(StatusTextService).say(MavSeverity.WARNING, f"Only {capacity} items are supported")
+                self._ack(channel, sender, MavMissionResult.NO_SPACE, kind)
             elif fields.count == 0:  # taken while the mission runs, too: the command under way goes on
                 result = self._replace(kind, ())
                 self._ack(channel, sender, result, kind)
-                if kind == MISSION and result == ACCEPTED:
+                if kind == MavMissionType.MISSION and result == MavMissionResult.ACCEPTED:
                     self._say_received(kind)
                 self.bridge.say_pending()
             else:
@@ -210,14 +215,14 @@ class MissionService(Service):
         kind = fields.mission_type
         first, last = fields.start_index, fields.end_index
         if kind not in self._taken:
-            self._ack(channel, sender, UNSUPPORTED, kind)
+            self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
         elif self._is_copy(channel, sender, kind, range(first, last + 1)):
             pass
         elif self.upload is not None:
-            self._ack(channel, sender, DENIED, kind)
+            self._ack(channel, sender, MavMissionResult.DENIED, kind)
         elif not 0 <= first <= last <= len(self.items(kind)):  # one more item may be added
-            self.bridge.get(StatusTextService).say(WARNING, "Flight plan update rejected")
-            self._ack(channel, sender, ERROR, kind)
+            self.bridge.get(StatusTextService).say(MavSeverity.WARNING, "Flight plan update rejected")
+            self._ack(channel, sender, MavMissionResult.ERROR, kind)
         else:
             self._begin(channel, sender, kind, first, last + 1, self.items(kind))
 
@@ -252,36 +257,43 @@ class MissionService(Service):
     def _item_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if self.upload is not None and fields.current not in (GUIDED_TARGET, ALTITUDE_CHANGE) and fields.seq == 0:
             say = self.bridge.get(StatusTextService).say
-            say(WARNING, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")
+            say(MavSeverity.WARNING, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")
         self._item(channel, fields, sender, *from_float(fields, self._taken.get(fields.mission_type, ())))
 
     def _item(self, channel: Channel, fields: Any, sender: Sender, item: MissionItem, result: int) -> None:
         kind = fields.mission_type
         if kind not in self._taken:
-            self._ack(channel, sender, UNSUPPORTED, kind)
+            self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
             return
-        if kind == MISSION and fields.current in (GUIDED_TARGET, ALTITUDE_CHANGE):
-            if result == ACCEPTED and fields.current == GUIDED_TARGET:
+        if kind == MavMissionType.MISSION and fields.current in (GUIDED_TARGET, ALTITUDE_CHANGE):
+            if result == MavMissionResult.ACCEPTED and fields.current == GUIDED_TARGET:
                 target = self.bridge.get(SetpointService).mission_item_target
-                result = ACCEPTED if target(item) else ERROR
+                result = MavMissionResult.ACCEPTED if target(item) else MavMissionResult.ERROR
             self._ack(channel, sender, result)
             return
         upload = self.upload
         if upload is None or upload.kind != kind:
             self._ack(
-                channel, sender, ACCEPTED if self._is_repeated(channel, sender, kind, fields.seq) else ERROR, kind
+                channel,
+                sender,
+                MavMissionResult.ACCEPTED
+                if self._is_repeated(channel, sender, kind, fields.seq)
+                else MavMissionResult.ERROR,
+                kind,
             )
         elif not self._is_mine(channel, sender):
-            self._ack(channel, sender, DENIED, kind)
+            self._ack(channel, sender, MavMissionResult.DENIED, kind)
         elif upload.first <= fields.seq < upload.next:
             if self.bridge.now_us - upload.asked_us >= REPEAT_US:
                 self._request_next(upload)  # our request for it was lost; else this is a copy, come late
         elif fields.seq != upload.next:
-            self._cancel(INVALID_SEQUENCE)
-        elif result != ACCEPTED:
-            if kind == MISSION and result == UNSUPPORTED:  # else the user must guess which of the items it was
+            self._cancel(MavMissionResult.INVALID_SEQUENCE)
+        elif result != MavMissionResult.ACCEPTED:
+            if (
+                kind == MavMissionType.MISSION and result == MavMissionResult.UNSUPPORTED
+            ):  # else the user must guess which of the items it was
                 text = f"Mission: item {fields.seq} command {fields.command} not supported"
-                self.bridge.get(StatusTextService).say(WARNING, text)
+                self.bridge.get(StatusTextService).say(MavSeverity.WARNING, text)
             self._cancel(result)
         else:
             upload.add(item, self.bridge.now_us)
@@ -301,7 +313,7 @@ class MissionService(Service):
         self.upload = None
         result = self._replace(upload.kind, upload.merged())
         self._ack(upload.channel, upload.sender, result, upload.kind)
-        if result == ACCEPTED:
+        if result == MavMissionResult.ACCEPTED:
             seqs = range(upload.first, upload.stop)
             self._last = (upload.channel, upload.sender, upload.kind, seqs, self.bridge.now_us)
             self._say_received(upload.kind)
@@ -318,7 +330,7 @@ class MissionService(Service):
         The end of a download is acknowledged in the same way and needs no action.
         """
         upload = self.upload
-        if upload is not None and self._is_mine(channel, sender) and fields.type != ACCEPTED:
+        if upload is not None and self._is_mine(channel, sender) and fields.type != MavMissionResult.ACCEPTED:
             self.upload = None
 
     def snapshot(self) -> Any:
@@ -326,12 +338,12 @@ class MissionService(Service):
         return (
             None if self.upload is None else self.upload.snapshot(),
             None if last is None else (last[0].number, *last[1:]),
-            (self._lists[FENCE], self._lists[RALLY]),
+            (self._lists[MavMissionType.FENCE], self._lists[MavMissionType.RALLY]),
             self._warned,
         )
 
     def restore(self, state: Any) -> None:
-        upload, last, (self._lists[FENCE], self._lists[RALLY]), self._warned = state
+        upload, last, (self._lists[MavMissionType.FENCE], self._lists[MavMissionType.RALLY]), self._warned = state
         by_number = {c.number: c for c in self.bridge.channels} if upload or last else {}
         self.upload = Upload.restored(upload, by_number[upload[0]]) if upload and upload[0] in by_number else None
         self._last = (by_number[last[0]], *last[1:]) if last and last[0] in by_number else None
@@ -344,8 +356,8 @@ class MissionService(Service):
     def service(self, now_us: int) -> None:
         if self.upload is not None and now_us >= self.upload.due_us:
             if now_us >= self.upload.deadline_us:
-                self._cancel(CANCELLED)
-                self.bridge.get(StatusTextService).say(WARNING, "Mission upload timeout")
+                self._cancel(MavMissionResult.OPERATION_CANCELLED)
+                self.bridge.get(StatusTextService).say(MavSeverity.WARNING, "Mission upload timeout")
             else:
                 self._request_next(self.upload)
 
@@ -354,11 +366,11 @@ class MissionService(Service):
     def _request_list(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
         if kind not in self._taken:
-            self._ack(channel, sender, UNSUPPORTED, kind)
+            self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
-            self._tell_count(channel, sender, kind)
+            self._report_count(channel, sender, kind)
 
-    def _tell_count(self, channel: Channel, sender: Sender, kind: int) -> None:
+    def _report_count(self, channel: Channel, sender: Sender, kind: int) -> None:
         target = {"target_system": sender[0], "target_component": sender[1]}
         channel.send(COUNT, COUNT.payload(count=len(self.items(kind)), mission_type=kind, **target))
 
@@ -368,38 +380,38 @@ class MissionService(Service):
     def _request_float(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if not self._warned:
             self._warned = True
-            self.bridge.get(StatusTextService).say(WARNING, "got MISSION_REQUEST; use MISSION_REQUEST_INT!")
+            self.bridge.get(StatusTextService).say(MavSeverity.WARNING, "got MISSION_REQUEST; use MISSION_REQUEST_INT!")
         self._send_item(channel, fields, sender, to_float)
 
     def _send_item(self, channel: Channel, fields: Any, sender: Sender, pack: Any) -> None:
         kind = fields.mission_type
         if kind not in self._taken:
-            self._ack(channel, sender, UNSUPPORTED, kind)
+            self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
             return
         items = self.items(kind) or self.home_alone(kind)
         if fields.seq >= len(items):
             if pack is to_int:
-                self._tell_count(channel, sender, kind)  # what a client may ask for
-            self._ack(channel, sender, INVALID_SEQUENCE, kind)
+                self._report_count(channel, sender, kind)  # what a client may ask for
+            self._ack(channel, sender, MavMissionResult.INVALID_SEQUENCE, kind)
         else:
             item = items[fields.seq]
             # ArduPilot compares the command, where the number of the item is meant: 1 is seldom sent
-            is_current = kind == MISSION and item.command == self.bridge.autopilot.current_item()
+            is_current = kind == MavMissionType.MISSION and item.command == self.bridge.autopilot.current_item()
             channel.send(*pack(item, fields.seq, is_current, sender, kind))
 
     # ------------------------------------------------------------------ the rest
 
     def _clear_all(self, channel: Channel, fields: Any, sender: Sender) -> None:
         kind = fields.mission_type
-        if kind not in (*self._taken, ALL):
-            self._ack(channel, sender, UNSUPPORTED, kind)
+        if kind not in (*self._taken, MavMissionType.ALL):
+            self._ack(channel, sender, MavMissionResult.UNSUPPORTED, kind)
         elif self._may_start(channel, sender, kind):
             self.upload = None
-            cleared = kind not in (MISSION, ALL) or self.bridge.autopilot.clear_mission()
-            for other in (FENCE, RALLY):
-                if cleared and kind in (other, ALL):
+            cleared = kind not in (MavMissionType.MISSION, MavMissionType.ALL) or self.bridge.autopilot.clear_mission()
+            for other in (MavMissionType.FENCE, MavMissionType.RALLY):
+                if cleared and kind in (other, MavMissionType.ALL):
                     self._replace(other, ())
-            self._ack(channel, sender, ACCEPTED if cleared else ERROR, kind)
+            self._ack(channel, sender, MavMissionResult.ACCEPTED if cleared else MavMissionResult.ERROR, kind)
 
     def _set_current(self, channel: Channel, fields: Any, sender: Sender) -> None:
         if self.bridge.autopilot.set_current_item(fields.seq):

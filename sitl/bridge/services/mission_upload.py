@@ -15,7 +15,8 @@ import numpy as np
 
 from ...autopilot.mission.item import COMMANDS, STORED, MissionItem
 from ...autopilot.mission.storage import stored, whole
-from ...autopilot.mission.validate import INVALID_PARAM5_X, INVALID_PARAM6_Y, check
+from ...autopilot.mission.validate import check
+from ...core.mavlink import MavMissionResult
 from ..channel import Channel
 from ..dialect import MessageType, message
 from ..listener import Sender
@@ -36,7 +37,10 @@ def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
     known = COMMANDS.get(fields.command)
     if known is None or not known.has_place:
         return _checked(fields, whole(fields.x), whole(fields.y), taken)
-    for value, most, refusal in ((fields.x, 90.0, INVALID_PARAM5_X), (fields.y, 180.0, INVALID_PARAM6_Y)):
+    for value, most, refusal in (
+        (fields.x, 90.0, MavMissionResult.INVALID_PARAM5_X),
+        (fields.y, 180.0, MavMissionResult.INVALID_PARAM6_Y),
+    ):
         if not abs(value) <= most:
             return _checked(fields, 0, 0, taken)[0], refusal
     x, y = (whole(float(np.float32(value) * _DEGE7)) for value in (fields.x, fields.y))
@@ -48,7 +52,7 @@ def _checked(fields: Any, x: int, y: int, taken: Container[int]) -> tuple[Missio
     p1, p2, p3, p4 = fields.param1, fields.param2, fields.param3, fields.param4
     item = MissionItem(fields.command, frame, p1, p2, p3, p4, x, y, fields.z, fields.autocontinue)
     result = check(item, taken)
-    return (stored(item) if result == ACCEPTED and item.command in STORED else item), result
+    return (stored(item) if result == MavMissionResult.ACCEPTED and item.command in STORED else item), result
 
 
 def _common(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> dict[str, Any]:
@@ -70,10 +74,6 @@ def to_float(item: MissionItem, seq: int, is_current: bool, target: Sender, kind
     known = COMMANDS.get(item.command)
     scale = 1e-7 if known is None or known.has_place else 1.0
     return ITEM, ITEM.payload(x=item.x * scale, y=item.y * scale, **_common(item, seq, is_current, target, kind))
-
-
-ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE, INVALID = range(6)
-INVALID_SEQUENCE, DENIED, CANCELLED = 13, 14, 15
 
 
 TIMEOUT_US = 8_000_000

@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple, Protocol, cast
 
 from ...core.constants import NEVER
+from ...core.mavlink import MavResult
 from ..host import Host
-from .service import ACCEPTED, FAILED, Service
+from .service import Service
 
 LONGEST_S = 600.0
 MOST = 255
@@ -62,7 +63,7 @@ class MotorTestService(Service):
         """Turn ``count`` motors from ``motor`` (1 ..) on at a throttle 0 .. 1, each so long [s]. The MAV_RESULT."""
         seconds = min(max(seconds, 0.0), LONGEST_S)
         self._series = Series(motor, in_order, throttle, round(seconds * 1e6), min(max(count, 1), MOST) - 1, False)
-        return ACCEPTED if self._turn() else FAILED
+        return MavResult.ACCEPTED if self._turn() else MavResult.FAILED
 
     def _turn(self) -> bool:
         series = self._series

@@ -17,13 +17,13 @@ from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
 from ...core.algebra import conjugate, euler_of, multiply, quat_from_euler
 from ...core.elementary import atan2, hypot
+from ...core.mavlink import MavCmd, MavResult
 from ...core.scalars import wrap_pi
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from .payload import PayloadService
-from .service import ACCEPTED, FAILED
 
 ATTITUDE_STATUS, INFORMATION, STATUS = (
     message(f"GIMBAL_{name}") for name in ("DEVICE_ATTITUDE_STATUS", "MANAGER_INFORMATION", "MANAGER_STATUS")
@@ -139,11 +139,11 @@ class MountService(PayloadService):
 
     def carry_out(self, item: MissionItem) -> None:
         """A mission's command about the gimbal, or about a region of interest."""
-        if item.command == commands.DO_MOUNT_CONTROL:
+        if item.command == MavCmd.DO_MOUNT_CONTROL:
             self.control(item.p1, item.p2, item.p3, ANGLES)
-        elif item.command == commands.DO_GIMBAL_MANAGER_PITCHYAW:
+        elif item.command == MavCmd.DO_GIMBAL_MANAGER_PITCHYAW:
             self.pitch_yaw(item.p1, item.p2, item.p3, item.p4, item.x, item.z)
-        elif item.command == commands.DO_SET_ROI_NONE or (item.no_place and item.z == 0.0):
+        elif item.command == MavCmd.DO_SET_ROI_NONE or (item.no_place and item.z == 0.0):
             self.look_ahead()
         else:
             ap = self.bridge.vehicle.v.autopilot
@@ -156,34 +156,34 @@ class MountService(PayloadService):
     def control(self, pitch: float, roll: float, yaw: float, mode: float) -> int:
         """DO_MOUNT_CONTROL: angles [deg] (yaw from the nose) and MAV_MOUNT_MODE. Its MAV_RESULT."""
         if not self._there or mode not in (FOLDED, NEUTRAL, ANGLES, STICKS, PLACE, HOME):
-            return FAILED
+            return MavResult.FAILED
         state = self._state._replace(mode=int(mode))
         if mode == ANGLES:
             if not all(map(math.isfinite, (pitch, roll, yaw))):
-                return FAILED
+                return MavResult.FAILED
             state = state._replace(
                 roll=math.radians(roll), pitch=math.radians(pitch), yaw=wrap_pi(math.radians(yaw)), is_locked=False
             )
         self._state = state
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def configure(self, mode: float) -> int:
         """DO_MOUNT_CONFIGURE: MAV_MOUNT_MODE, with the angles of before. Its MAV_RESULT."""
         if not self._there or mode not in (FOLDED, NEUTRAL, ANGLES, STICKS, PLACE, HOME):
-            return FAILED
+            return MavResult.FAILED
         self._state = self._state._replace(mode=int(mode))
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def pitch_yaw(
         self, pitch: float, yaw: float, pitch_rate: float, yaw_rate: float, flags: float, device: float
     ) -> int:
         """DO_GIMBAL_MANAGER_PITCHYAW: angles [deg], or rates [deg/s] where angles are NaN. Its MAV_RESULT."""
         if not self._there or device not in (0.0, DEVICE) or not 0.0 <= flags < 2.0**31:
-            return FAILED
+            return MavResult.FAILED
         bits, state = int(flags), self._state
         if bits & (IS_RETRACTED | IS_NEUTRAL):
             self._state = state._replace(mode=FOLDED if bits & IS_RETRACTED else NEUTRAL)
-            return ACCEPTED
+            return MavResult.ACCEPTED
         is_locked = bits & YAW_LOCK != 0
         if math.isfinite(pitch) and math.isfinite(yaw):
             self._state = state._replace(
@@ -196,19 +196,19 @@ class MountService(PayloadService):
                 is_locked=is_locked, pitch_rate=math.radians(pitch_rate), yaw_rate=math.radians(yaw_rate),
             )  # fmt: skip
         else:
-            return FAILED
-        return ACCEPTED
+            return MavResult.FAILED
+        return MavResult.ACCEPTED
 
     def give_control(self, system: float, component: float, sender: Sender) -> int:
         """DO_GIMBAL_MANAGER_CONFIGURE: who has primary control. Its MAV_RESULT."""
         if not self._there:
-            return FAILED
+            return MavResult.FAILED
         owner = sender if system == SENDER else (int(system), int(component))
         if not all(0 <= x <= 255 for x in owner):
-            return FAILED
+            return MavResult.FAILED
         self._state = self._state._replace(owner=owner)
         self.bridge.send_to_all(STATUS.id)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def look_at(self, lat: int, lon: int, alt: float) -> None:
         """Point at a place [degE7, m above sea level]."""

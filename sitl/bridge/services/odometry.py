@@ -9,6 +9,7 @@ from __future__ import annotations
 from ...autopilot.visual_odometry import UNKNOWN_QUALITY, take_pose, take_velocity, takes
 from ...core.algebra import quat_from_euler
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Euler, Vec3
@@ -16,9 +17,6 @@ from ...vehicle.record import Vehicle
 from ..wire.message import Message
 from .follow import vector
 from .setpoints import rotation
-
-LOCAL_NED, LOCAL_FRD, BODY_FRD = 1, 20, 12
-"""MAV_FRAME"""
 
 
 class VisionPosition(Message, name="VISION_POSITION_ESTIMATE"):
@@ -154,7 +152,7 @@ def vision_delta(m: VisionDelta, v: Vehicle, sender: int) -> None:
 def odometry(m: Odometry, v: Vehicle, sender: int) -> None:
     """ODOMETRY: frame_id LOCAL_FRD (20) or LOCAL_NED (1), child_frame_id BODY_FRD (12); others are left out."""
     seen, p, attitude = v.autopilot.odometry, v.autopilot.params.VISO, rotation(m.q)
-    if (m.frame_id != LOCAL_FRD and m.frame_id != LOCAL_NED) or m.child_frame_id != BODY_FRD:
+    if (m.frame_id != MavFrame.LOCAL_FRD and m.frame_id != MavFrame.LOCAL_NED) or m.child_frame_id != MavFrame.BODY_FRD:
         return
     if attitude.is_given and takes(seen, m.quality, p):
         seen.resets = m.reset_counter

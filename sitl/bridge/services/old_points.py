@@ -9,21 +9,15 @@ from __future__ import annotations
 from typing import Any
 
 from ...autopilot.fence.items import FEWEST_CORNERS
-from ...autopilot.mission.item import (
-    FENCE_INCLUSION,
-    FENCE_RETURN_POINT,
-    GLOBAL,
-    RALLY_POINT,
-    RELATIVE,
-    MissionItem,
-)
+from ...autopilot.mission.item import MissionItem
+from ...core.mavlink import MavCmd, MavFrame, MavSeverity
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from .mission import MissionService
 from .place_lists import counted
-from .service import INFO, WARNING, Handler, Service
+from .service import Handler, Service
 from .statustext import StatusTextService
 
 FENCE, RALLY = message("FENCE_POINT"), message("RALLY_POINT")
@@ -55,12 +49,12 @@ class OldPointService(Service):
         self._warned = state
 
     def _warn(self, text: str) -> None:
-        self.bridge.get(StatusTextService).say(WARNING, text)
+        self.bridge.get(StatusTextService).say(MavSeverity.WARNING, text)
 
     def _deprecated(self, name: str) -> None:
         if name not in self._warned:
             self._warned += (name,)
-            self.bridge.get(StatusTextService).say(INFO, f"Received message ({name}) is deprecated")
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, f"Received message ({name}) is deprecated")
 
     def _total(self, name: str) -> int:
         return int(self.bridge.vehicle.parameters[name])
@@ -70,8 +64,8 @@ class OldPointService(Service):
     def _fence(self) -> tuple[Place | None, list[Place]]:
         """The point of return and the corners of the first area to stay in."""
         items, _ = self.bridge.get(MissionService).lists
-        back = [(item.x, item.y) for item in items if item.command == FENCE_RETURN_POINT]
-        inner = [item for item in items if item.command == FENCE_INCLUSION]
+        back = [(item.x, item.y) for item in items if item.command == MavCmd.NAV_FENCE_RETURN_POINT]
+        inner = [item for item in items if item.command == MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION]
         corners = [(item.x, item.y) for item in inner[: int(inner[0].p1)]] if inner else []
         return (back[0] if back else None), corners
 
@@ -98,8 +92,11 @@ class OldPointService(Service):
             self._keep(back, corners)
 
     def _keep(self, back: Place | None, corners: list[Place]) -> None:
-        items = [MissionItem(FENCE_RETURN_POINT, GLOBAL, x=back[0], y=back[1])] if back else []
-        items += [MissionItem(FENCE_INCLUSION, GLOBAL, len(corners), x=x, y=y) for x, y in corners]
+        items = [MissionItem(MavCmd.NAV_FENCE_RETURN_POINT, MavFrame.GLOBAL, x=back[0], y=back[1])] if back else []
+        items += [
+            MissionItem(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, MavFrame.GLOBAL, len(corners), x=x, y=y)
+            for x, y in corners
+        ]
         self.bridge.get(MissionService).replace_fence(tuple(items))
 
     def _fetch_fence_point(self, channel: Channel, fields: Any, sender: Sender) -> None:
@@ -133,7 +130,9 @@ class OldPointService(Service):
             missions = self.bridge.get(MissionService)
             fence, points = missions.lists
             changed = list(counted(points, total))
-            changed[k] = MissionItem(RALLY_POINT, RELATIVE, x=fields.lat, y=fields.lng, z=float(fields.alt))
+            changed[k] = MissionItem(
+                MavCmd.NAV_RALLY_POINT, MavFrame.GLOBAL_RELATIVE_ALT, x=fields.lat, y=fields.lng, z=float(fields.alt)
+            )
             missions.keep(fence, tuple(changed))
 
     def _fetch_rally_point(self, channel: Channel, fields: Any, sender: Sender) -> None:

@@ -8,44 +8,44 @@ from __future__ import annotations
 
 import math
 
+from ...core.mavlink import MavResult
 from ..channel import Channel
 from ..host import Host
 from ..places import FRAMES_AMSL
 from .command import Command, Entry
-from .service import ACCEPTED, DENIED, FAILED, UNSUPPORTED
 
 
 def follow(bridge: Host, channel: Channel, command: Command) -> int:
     """32: p1 system id of the vehicle that FOLLOW follows, 1 .. 255."""
     if not 0.0 < command.p1 <= 255.0:
-        return DENIED
+        return MavResult.DENIED
     bridge.vehicle.parameters["FOLL_SYSID"] = float(int(command.p1))
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def pair_receiver(bridge: Host, channel: Channel, command: Command) -> int:
     """500: the receiver is paired already."""
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def move_landing_gear(bridge: Host, channel: Channel, command: Command) -> int:
     """2520: the landing gear, which is fixed, stays as it is."""
-    return ACCEPTED
+    return MavResult.ACCEPTED
 
 
 def identify(bridge: Host, channel: Channel, command: Command) -> int:
     """10001: there is no ADS-B transmitter."""
-    return FAILED
+    return MavResult.FAILED
 
 
 def forward_can(bridge: Host, channel: Channel, command: Command) -> int:
     """32000: p1 0 forwards no CAN bus to this link; others: there is none."""
-    return ACCEPTED if int(command.p1) == 0 else FAILED
+    return MavResult.ACCEPTED if int(command.p1) == 0 else MavResult.FAILED
 
 
 def trap(bridge: Host, channel: Channel, command: Command) -> int:
     """42700: no debugger is called."""
-    return DENIED
+    return MavResult.DENIED
 
 
 STOP_SCRIPTS, RESTART_SCRIPTS = 2, 3
@@ -56,8 +56,8 @@ def script(bridge: Host, channel: Channel, command: Command) -> int:
     """42701: p1 2 stops, 3 restarts scripts on board, of which there are none."""
     number = int(command.p1)
     if number in (STOP_SCRIPTS, RESTART_SCRIPTS):
-        return ACCEPTED
-    return DENIED if number in (0, 1) else UNSUPPORTED
+        return MavResult.ACCEPTED
+    return MavResult.DENIED if number in (0, 1) else MavResult.UNSUPPORTED
 
 
 DANGEROUS, SAFE = 1, 0
@@ -68,8 +68,8 @@ def switch_safety(bridge: Host, channel: Channel, command: Command) -> int:
     """5300: p1 1: there is no safety switch that keeps the outputs off, 0 FAILED."""
     number = int(command.p1)
     if number == DANGEROUS:
-        return ACCEPTED
-    return FAILED if number == SAFE else DENIED
+        return MavResult.ACCEPTED
+    return MavResult.FAILED if number == SAFE else MavResult.DENIED
 
 
 FOCUS_TYPES = (1, 2, 4, 5, 6)
@@ -78,24 +78,24 @@ FOCUS_TYPES = (1, 2, 4, 5, 6)
 
 def focus(bridge: Host, channel: Channel, command: Command) -> int:
     """532: p1 SET_FOCUS_TYPE; no camera here has a focus."""
-    return FAILED if int(command.p1) in FOCUS_TYPES else DENIED
+    return MavResult.FAILED if int(command.p1) in FOCUS_TYPES else MavResult.DENIED
 
 
 def choose_camera_source(bridge: Host, channel: Channel, command: Command) -> int:
     """534: no camera here has several sources."""
-    return DENIED
+    return MavResult.DENIED
 
 
 def record_video(bridge: Host, channel: Channel, command: Command) -> int:
     """2500, 2501: no camera here records videos."""
-    return FAILED
+    return MavResult.FAILED
 
 
 def external_position(bridge: Host, channel: Channel, command: Command) -> int:
     """43003: in a frame without altitude (p7 NaN); the estimator, which has a receiver, does not take it."""
     if command.frame not in FRAMES_AMSL or not math.isnan(command.z):
-        return DENIED
-    return FAILED
+        return MavResult.DENIED
+    return MavResult.FAILED
 
 
 COMMANDS: dict[int, Entry] = {

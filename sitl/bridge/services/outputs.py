@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ...autopilot import relays
-from ...autopilot.mission import item as commands
 from ...autopilot.mission.item import MissionItem
 from ...core.constants import NEVER
+from ...core.mavlink import MavCmd, MavSeverity
 from ..autopilot_api import LONGEST_US
 from ..host import Host
-from .service import WARNING, Service
+from .service import Service
 from .statustext import StatusTextService
 
 SHORTEST_US = 20_000
@@ -56,11 +56,11 @@ class OutputService(Service):
 
     def carry_out(self, item: MissionItem) -> None:
         """A mission's DO_SET_SERVO, DO_REPEAT_SERVO, DO_SET_RELAY or DO_REPEAT_RELAY."""
-        if item.command == commands.DO_SET_SERVO:
+        if item.command == MavCmd.DO_SET_SERVO:
             self.set_servo(int(item.p1), int(item.p2))
-        elif item.command == commands.DO_REPEAT_SERVO:
+        elif item.command == MavCmd.DO_REPEAT_SERVO:
             self.repeat_servo(int(item.p1), int(item.p2), int(item.p3), item.p4)
-        elif item.command == commands.DO_SET_RELAY:
+        elif item.command == MavCmd.DO_SET_RELAY:
             self.set_relay(int(item.p1), item.p2)
         else:
             self.repeat_relay(int(item.p1), int(item.p2), item.p3)
@@ -72,7 +72,7 @@ class OutputService(Service):
         if not self._is_free(number) or not self.bridge.autopilot.set_servo(number, pulse):
             if number > 0:
                 text = f"ServoRelayEvent: Channel {number} is already in use"
-                self.bridge.get(StatusTextService).say(WARNING, text)
+                self.bridge.get(StatusTextService).say(MavSeverity.WARNING, text)
             return False
         self._end(False, number)
         return True

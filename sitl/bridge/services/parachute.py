@@ -15,16 +15,14 @@ from ...autopilot import payload, relays
 from ...autopilot.aux_switch import HIGH, LOW
 from ...autopilot.mission.item import MissionItem
 from ...core.constants import NEVER
+from ...core.mavlink import MavResult, MavSeverity
 from ..host import Host
 from .outputs import OFF, ON, OutputService
 from .payload import PayloadService
-from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService
 
 DISABLE, ENABLE, RELEASE = 0, 1, 2
 """PARACHUTE_ACTION"""
-ALERT = 1
-"""MAV_SEVERITY"""
 EVERY_US = 100_000
 """So often a fall is looked for."""
 FALLS_US = 1_000_000
@@ -103,13 +101,13 @@ class ParachuteService(PayloadService):
     def act(self, action: float) -> int:
         """A PARACHUTE_ACTION. Its MAV_RESULT: releasing is accepted even where nothing comes of it."""
         if action not in (DISABLE, ENABLE, RELEASE):
-            return FAILED
+            return MavResult.FAILED
         if action == RELEASE:
             self._release_by_command()
         elif "CHUTE_ENABLED" in self._values.table:
             self._values["CHUTE_ENABLED"] = action
             self.parameter_changed("CHUTE_ENABLED")
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def parameter_changed(self, name: str) -> None:
         """A parachute that a client enables is there at once."""
@@ -128,9 +126,9 @@ class ParachuteService(PayloadService):
         if not self._is_enabled() or self._state.stage != PACKED:
             return
         if pilot.is_landed():
-            say(INFO, "Parachute: Landed")
+            say(MavSeverity.INFO, "Parachute: Landed")
         elif self._is_low():
-            say(ALERT, "Parachute: Too low")
+            say(MavSeverity.ALERT, "Parachute: Too low")
         else:
             self._release()
 
@@ -138,7 +136,7 @@ class ParachuteService(PayloadService):
         return bool(0.0 < self._values["CHUTE_ALT_MIN"] > self._pilot.height())
 
     def _release(self) -> None:
-        self.bridge.get(StatusTextService).say(INFO, "Parachute: Released")
+        self.bridge.get(StatusTextService).say(MavSeverity.INFO, "Parachute: Released")
         self._pilot.release_parachute(int(self._values["CHUTE_OPTIONS"]) & KEEP_MOTORS == 0)
         delay_us = round(min(max(self._values["CHUTE_DELAY_MS"], 0.0), 1e6) * 1e3)
         self._state = State(RELEASED, self.bridge.now_us + delay_us)

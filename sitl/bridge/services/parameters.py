@@ -20,11 +20,12 @@ from typing import Any
 from ...autopilot.params.parameter import FLOAT, INT8, INT16, INT32, Parameter, stored
 from ...autopilot.params.renamed import Alias, alias
 from ...core.constants import NEVER
+from ...core.mavlink import MavSeverity
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from .service import INFO, WARNING, Handler, Service
+from .service import Handler, Service
 from .statustext import StatusTextService
 
 VALUE, ERROR = message("PARAM_VALUE"), message("PARAM_ERROR")
@@ -47,7 +48,7 @@ class ParameterService(Service):
         super().__init__(bridge)
         self._table, self._values = bridge.vehicle.firmware.table, bridge.vehicle.parameters
         self._lists: dict[Channel, int] = {}
-        self._told = 0
+        self._reported = 0
         self._packed: dict[bool, tuple[Any, bytes]] = {}
         """With defaults or without -> what the values were then, the file."""
 
@@ -89,10 +90,10 @@ class ParameterService(Service):
         self.due_us = min(self.due_us, self.bridge.now_us)
 
     def snapshot(self) -> Any:
-        return (tuple((c.number, at) for c, at in self._lists.items()), self.due_us, self._told)
+        return (tuple((c.number, at) for c, at in self._lists.items()), self.due_us, self._reported)
 
     def restore(self, state: Any) -> None:
-        lists, self.due_us, self._told = state
+        lists, self.due_us, self._reported = state
         self._lists = {c: at for number, at in lists for c in self.bridge.channels if c.number == number}
 
     def service(self, now_us: int) -> None:
@@ -152,7 +153,7 @@ class ParameterService(Service):
         if refusal is not None:
             error = PERMISSION_DENIED if math.isfinite(fields.param_value) else OUT_OF_RANGE
             _refuse(channel, sender, fields.param_id, -1, error)
-            self.bridge.get(StatusTextService).say(WARNING, refusal)
+            self.bridge.get(StatusTextService).say(MavSeverity.WARNING, refusal)
             channel.send(VALUE, self._one(name))
 
     def set(self, name: str, value: float) -> str | None:
@@ -170,27 +171,27 @@ class ParameterService(Service):
         range_text = parameter.out_of_range(value)
         if range_text is not None and value != self._values[name]:
             used = parameter.used(stored(parameter, value))
-            self.bridge.get(StatusTextService).say(INFO, f"{range_text}: {used:g} is used")
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, f"{range_text}: {used:g} is used")
         if not (parameter.has_effect or parameter.doc or name in self._values.kept):
-            self._tell(name)
+            self._report(name)
         self._values[name] = value
         self.bridge.broadcast(VALUE, self._one(name))
         for listener in self.bridge.listeners:
             listener.parameter_set(name)
         self.bridge.autopilot.parameter_changed(name)
-        self.bridge.tell(self.bridge.autopilot.take_notes())
+        self.bridge.report(self.bridge.autopilot.take_notes())
         self.bridge.parameter_changed(name)
         if name == "MAV_SYSID":
             self.bridge.refresh_identity()
         return None
 
-    def _tell(self, name: str) -> None:
+    def _report(self, name: str) -> None:
         """Tell the user that a parameter, set for the first time, does nothing here."""
-        self._told += 1
-        if self._told <= TOLD:
-            self.bridge.get(StatusTextService).say(INFO, f"{name} has no effect in this simulator")
-        elif self._told == TOLD + 1:
-            self.bridge.get(StatusTextService).say(INFO, "Others that are set have no effect either")
+        self._reported += 1
+        if self._reported <= TOLD:
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, f"{name} has no effect in this simulator")
+        elif self._reported == TOLD + 1:
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, "Others that are set have no effect either")
 
 
 def _refuse(channel: Channel, sender: Sender, name: bytes, index: int, error: int) -> None:

@@ -9,10 +9,11 @@ from ...autopilot import rally
 from ...autopilot.events import emit
 from ...autopilot.fence import items as fence
 from ...autopilot.fence.state import CORNERS, POINTS
-from ...autopilot.mission.item import FENCE_RETURN_POINT, GLOBAL, RALLY_POINT, RELATIVE_FRAMES, MissionItem
+from ...autopilot.mission.item import RELATIVE_FRAMES, MissionItem
+from ...core.mavlink import MavCmd, MavFrame
 
 CORNER_BYTES, POINT_BYTES = 8, 15
-NO_POINT = MissionItem(RALLY_POINT, GLOBAL, autocontinue=0)
+NO_POINT = MissionItem(MavCmd.NAV_RALLY_POINT, MavFrame.GLOBAL, autocontinue=0)
 """What RALLY_TOTAL counts beyond the points that were given."""
 
 
@@ -35,13 +36,13 @@ def _on_card(vehicle: Any) -> bool:
 
 def as_fence(item: MissionItem) -> MissionItem:
     """A fence's item as it is kept and sent back: its place, and its number of corners or radius."""
-    return MissionItem(item.command, GLOBAL, p1=item.p1, x=item.x, y=item.y, autocontinue=item.autocontinue)
+    return MissionItem(item.command, MavFrame.GLOBAL, p1=item.p1, x=item.x, y=item.y, autocontinue=item.autocontinue)
 
 
 def as_rally_point(item: MissionItem) -> MissionItem:
     """A rally point as it is kept and sent back: its place, at whole metres."""
     return MissionItem(
-        RALLY_POINT, item.frame, x=item.x, y=item.y, z=float(int(item.z)), autocontinue=item.autocontinue
+        MavCmd.NAV_RALLY_POINT, item.frame, x=item.x, y=item.y, z=float(int(item.z)), autocontinue=item.autocontinue
     )
 
 
@@ -60,9 +61,9 @@ def load_fence(vehicle: Any, items: tuple[MissionItem, ...], *, checked: bool = 
 
 def count(items: tuple[MissionItem, ...]) -> int:
     """FENCE_TOTAL: with a point of return and the first corner again at the end, once there is an area to stay in."""
-    if not any(item.command == fence.FENCE_INCLUSION for item in items):
+    if not any(item.command == MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION for item in items):
         return 0
-    has_return = any(item.command == FENCE_RETURN_POINT for item in items)
+    has_return = any(item.command == MavCmd.NAV_FENCE_RETURN_POINT for item in items)
     return min(len(items) + (1 if has_return else 2), 127)
 
 

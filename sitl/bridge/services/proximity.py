@@ -24,9 +24,10 @@ from ...autopilot.avoidance.proximity import (
 )
 from ...core.elementary import atan2, hypot, tan
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.scalars import finite
 from ...vehicle.record import Vehicle
-from ..telemetry.ranging import BODY_FRD, DistanceSensor, ObstacleDistance
+from ..telemetry.ranging import DistanceSensor, ObstacleDistance
 from ..wire.message import Message
 
 LEVEL = tan(math.radians(15.0))
@@ -88,6 +89,6 @@ def obstacle_3d(m: ObstacleDistance3d, v: Vehicle, sender: int) -> None:
     seen = v.autopilot.proximity
     away = hypot(m.x, m.y)
     is_known = finite(away) and finite(m.min_distance) and finite(m.max_distance)
-    if is_known and seen.kind == MAVLINK and m.frame == BODY_FRD and abs(m.z) < away * LEVEL:
+    if is_known and seen.kind == MAVLINK and m.frame == MavFrame.BODY_FRD and abs(m.z) < away * LEVEL:
         begin_scan(seen, m.min_distance, m.max_distance, v.autopilot.params.PRX1)
         note_one(v, seen, atan2(m.y, m.x), away)

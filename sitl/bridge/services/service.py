@@ -53,8 +53,3 @@ class Service:
 
     def restore(self, state: Any) -> None:
         """Go on from a snapshot. The record has been put back already."""
-
-
-ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
-EMERGENCY = 0
-CRITICAL, ERROR, WARNING, NOTICE, INFO, DEBUG = range(2, 8)

@@ -17,6 +17,7 @@ from ...autopilot.mission.item import MissionItem
 from ...autopilot.state import Estimate
 from ...core.algebra import IDENTITY, ZERO, horizontal, quat_norm_squared, turned, with_down
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.vectors import Quat, Vec3
 from ..host import Host
@@ -28,9 +29,8 @@ POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
 FORCE, YAW_IGNORED, YAW_RATE_IGNORED = 0x200, 0x400, 0x800
 YAWS_IGNORED = YAW_IGNORED | YAW_RATE_IGNORED
 """POSITION_TARGET_TYPEMASK"""
-LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED = 1, 7, 8, 9
-LOCAL_FRAMES = (LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED)
-BODY_FRAMES = (BODY_NED, BODY_OFFSET_NED)
+LOCAL_FRAMES = (MavFrame.LOCAL_NED, MavFrame.LOCAL_OFFSET_NED, MavFrame.BODY_NED, MavFrame.BODY_OFFSET_NED)
+BODY_FRAMES = (MavFrame.BODY_NED, MavFrame.BODY_OFFSET_NED)
 
 ROLL_RATE_IGNORED, PITCH_RATE_IGNORED, BODY_YAW_RATE_IGNORED = 0x01, 0x02, 0x04
 THRUST_IGNORED, ATTITUDE_IGNORED = 0x40, 0x80
@@ -125,7 +125,7 @@ def local_target(m: SetPositionTargetLocalNed, estimate: Estimate) -> Target:
     """The target of a message whose frame is one of ``LOCAL_FRAMES``."""
     frame, yaw = m.coordinate_frame, estimate.yaw
     pos = to_ned(Vec3(m.x, m.y, m.z), frame, yaw)
-    if frame != LOCAL_NED:
+    if frame != MavFrame.LOCAL_NED:
         pos = pos + estimate.pos
     vel = to_ned(Vec3(m.vx, m.vy, m.vz), frame, yaw)
     acc = to_ned(Vec3(m.afx, m.afy, m.afz), frame, yaw)

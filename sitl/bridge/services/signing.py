@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...core.mavlink import MavSeverity
 from ..channel import Channel
 from ..dialect import message
 from ..frame import Splitter
 from ..host import Host
 from ..listener import Sender
 from ..signing import Signing, SigningState, Stream, is_signed, unsigned
-from .service import ERROR, Handler, Service
+from .service import Handler, Service
 from .statustext import StatusTextService
 
 TAKEN_UNSIGNED = frozenset((message("RADIO_STATUS").id, message("RADIO").id))
@@ -51,7 +52,7 @@ class SigningService(Service):
         if m.target_component not in (0, 1):
             return
         if self.bridge.autopilot.armed():
-            self.bridge.get(StatusTextService).say(ERROR, "ERROR: Won't setup signing when armed")
+            self.bridge.get(StatusTextService).say(MavSeverity.ERROR, "ERROR: Won't setup signing when armed")
             return
         self.signing.set_key(bytes(m.secret_key), m.initial_timestamp)
         self._splitters.clear()

@@ -11,18 +11,10 @@ from ...autopilot.events import EVENT_RING
 from ...autopilot.fence.checks import FENCE_BREACHED
 from ...autopilot.mission.notes import OutputItem
 from ...autopilot.modes import MODE_CHANGED
-from ...autopilot.notes import (
-    CRITICAL,
-    INFO,
-    ChecksFailed,
-    CurrentChanged,
-    ItemReached,
-    ParametersFound,
-    Switched,
-    Text,
-)
+from ...autopilot.notes import ChecksFailed, CurrentChanged, ItemReached, ParametersFound, Switched, Text
 from ...autopilot.terrain.ground import TERRAIN_LEFT
 from ...core.constants import NEVER
+from ...core.mavlink import MavSeverity
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
@@ -113,7 +105,7 @@ class EventService(Service):
         self.due_us = BOOT_TEXTS[self._boot_text][0] if more else NEVER
 
     def service(self, now_us: int) -> None:
-        self.bridge.get(StatusTextService).say(INFO, BOOT_TEXTS[self._boot_text][1])
+        self.bridge.get(StatusTextService).say(MavSeverity.INFO, BOOT_TEXTS[self._boot_text][1])
         self._boot_text += 1
         self._find_due()
 
@@ -132,11 +124,11 @@ class EventService(Service):
         ring = self.bridge.vehicle.v.autopilot.events
         for k in range(max(self._seen, count - EVENT_RING), count):
             at = k % EVENT_RING
-            self._tell(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
+            self._report(int(ring.code[at]), float(ring.a[at]), float(ring.b[at]))
         self._seen = count
-        self.bridge.get(HomeService).tell_changes()
+        self.bridge.get(HomeService).report_changes()
 
-    def _tell(self, code: int, a: float, b: float) -> None:
+    def _report(self, code: int, a: float, b: float) -> None:
         if code in self._acts:
             self._acts[code]()
         if code in self._events:
@@ -149,7 +141,7 @@ class EventService(Service):
                 self.bridge.get(StatusTextService).say(note.severity, note.text)
             elif isinstance(note, ChecksFailed):
                 for text in self.bridge.autopilot.refusal_texts(note.failed):
-                    self.bridge.get(StatusTextService).say(CRITICAL, text)
+                    self.bridge.get(StatusTextService).say(MavSeverity.CRITICAL, text)
             elif isinstance(note, ItemReached):
                 if note.is_sent:
                     self.bridge.broadcast(REACHED, REACHED.pack(note.seq))

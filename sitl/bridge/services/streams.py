@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...autopilot.modes import Mode
+from ...core.mavlink import MavResult, MavSeverity
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
@@ -19,7 +20,7 @@ from ..listener import Sender
 from ..wire.streams import interval_of, set_interval
 from .command import Command
 from .high_latency import HIGH_LATENCY2, HighLatencyService
-from .service import ACCEPTED, DENIED, FAILED, INFO, Handler, Service
+from .service import Handler, Service
 from .statustext import StatusTextService
 from .terrain import REPORT, TerrainService
 
@@ -168,25 +169,25 @@ class StreamService(Service):
         """MAV_CMD_SET_MESSAGE_INTERVAL: p1 message id, p2 interval [us], -1 off, 0 default; p3 must be 0."""
         number, interval = int(command.p1), int(command.p2)
         if command.p3 != 0.0:
-            return DENIED
+            return MavResult.DENIED
         kind = self.bridge.telemetry.get(number)
         say = self.bridge.get(StatusTextService).say
         if kind is None or kind.name in ON_REQUEST_ONLY:
-            say(INFO, f"No ap_message for mavlink id ({number})")
-            return DENIED
+            say(MavSeverity.INFO, f"No ap_message for mavlink id ({number})")
+            return MavResult.DENIED
         if interval == 0:
             self._set(channel, number, self._default_interval(channel, number))
-            return ACCEPTED
+            return MavResult.ACCEPTED
         if interval == -1:
             self._set(channel, number, 0)
-            return ACCEPTED
+            return MavResult.ACCEPTED
         if interval < 0:
-            return DENIED
+            return MavResult.DENIED
         if interval < self._shortest_us():
-            say(INFO, f"Requested rate for message ID {number} too fast. Increase SCHED_LOOP_RATE")
-            return DENIED
+            say(MavSeverity.INFO, f"Requested rate for message ID {number} too fast. Increase SCHED_LOOP_RATE")
+            return MavResult.DENIED
         self._set(channel, number, min(interval, LONGEST_US))
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def _default_interval(self, channel: Channel, number: int) -> int:
         """That of its group on this channel, as it was asked for last [us]."""
@@ -203,17 +204,21 @@ class StreamService(Service):
         interval = (interval_of(channel.port, number) or -1) if known else 0
         if 0 <= number <= 0xFFFF:
             channel.send(INTERVAL, INTERVAL.payload(message_id=number, interval_us=interval))
-        return ACCEPTED if known else FAILED
+        return MavResult.ACCEPTED if known else MavResult.FAILED
 
     def request_message(self, channel: Channel, command: Command) -> int:
         """MAV_CMD_REQUEST_MESSAGE: p1 message id; p2 number of the mode for AVAILABLE_MODES (0: all), or of the message
         for MESSAGE_INTERVAL."""
         if int(command.p1) == AVAILABLE_MODES.id:
-            return ACCEPTED if send_modes(channel, self.bridge.profile.modes, int(command.p2)) else DENIED
+            return (
+                MavResult.ACCEPTED
+                if send_modes(channel, self.bridge.profile.modes, int(command.p2))
+                else MavResult.DENIED
+            )
         if int(command.p1) == INTERVAL.id:
             return self.get_interval(channel, command._replace(p1=command.p2))
         number = int(command.p1)
         if number == TIMESYNC:
-            return FAILED
+            return MavResult.FAILED
         result = self.bridge.send_after_answer(channel, number)
-        return ACCEPTED if number in OF_PARTS | self.bridge.profile.silent else result
+        return MavResult.ACCEPTED if number in OF_PARTS | self.bridge.profile.silent else result

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 from ...autopilot import payload
 from ...autopilot.aux_switch import HIGH
 from ...autopilot.mission.item import MissionItem
+from ...core.mavlink import MavResult, MavSeverity
 from ..dialect import message
 from ..host import Host
 from .payload import PayloadService
-from .service import ACCEPTED, FAILED, INFO
 from .statustext import StatusTextService
 
 STATUS = message("WINCH_STATUS")
@@ -71,20 +71,20 @@ class WinchService(PayloadService):
     def act(self, action: float, length: float, rate: float) -> int:
         """WINCH_ACTIONS: 0 relax, 1 more line by ``length`` [m] (less below 0), 2 wind at ``rate`` [m/s]."""
         if not self._there:
-            return FAILED
+            return MavResult.FAILED
         if action == RELAXED:
             self.relax()
         elif action == LENGTH_CONTROL and abs(length) <= UNKNOWN:
             to = self._state.length + length
             way = "lowering" if length > 0.0 else "raising"
             text = f"Winch: {way} {abs(length):4.1f}m to {to:4.1f}m"
-            self.bridge.get(StatusTextService).say(INFO, text)
+            self.bridge.get(StatusTextService).say(MavSeverity.INFO, text)
             self._start(LENGTH_CONTROL, to)
         elif action == RATE_CONTROL:
             self.wind(rate)
         else:
-            return FAILED
-        return ACCEPTED
+            return MavResult.FAILED
+        return MavResult.ACCEPTED
 
     def relax(self) -> None:
         """Let the line go."""

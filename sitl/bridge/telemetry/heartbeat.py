@@ -5,14 +5,11 @@ from __future__ import annotations
 
 from ...autopilot.modes import shown
 from ...core.kernels import law
+from ...core.mavlink import MavAutopilot
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
 
-ARDUPILOTMEGA, MAVLINK_VERSION = 3, 3
-CUSTOM_MODE, IS_GUIDED, STABILIZED, MANUAL_INPUT, ARMED = 1, 8, 16, 64, 128
-"""base_mode"""
-CALIBRATING, STANDBY, ACTIVE, CRITICAL = 2, 3, 4, 5
-"""system_status"""
+MAVLINK_VERSION = 3
 
 
 class Heartbeat(Message, name="HEARTBEAT"):
@@ -29,7 +26,7 @@ def fill_heartbeat(m: Heartbeat, v: Vehicle, mav_type: int, base_mode: int, stat
     """HEARTBEAT of a vehicle of this MAV_TYPE."""
     m.custom_mode = shown(v.autopilot.modes) & 0xFFFFFFFF
     m.type = mav_type
-    m.autopilot = ARDUPILOTMEGA
+    m.autopilot = MavAutopilot.ARDUPILOTMEGA
     m.base_mode = base_mode
     m.system_status = state
     m.mavlink_version = MAVLINK_VERSION

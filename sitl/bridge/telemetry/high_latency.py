@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
+from ...core.mavlink import MavAutopilot
 from ..autopilot_api import Vehicle
 from ..dialect import message
 from ..mavlink_firmware import MavlinkFirmware
 from .motion import global_position
-from .plain import told
+from .plain import built
 from .status import ACCEL, AHRS, BARO, BATTERY, GEOFENCE, GPS, GYRO, MAG, RECEIVER, TERRAIN
 from .units import boot_ms, heading_cdeg, int16, percent, uint8, uint16
 
-ARDUPILOTMEGA = 3
 DIFFERENTIAL_PRESSURE = 0x10
 """Bit of SYS_STATUS; no vehicle has an airspeed sensor."""
 FAILURES = {
@@ -30,13 +30,13 @@ def high_latency(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
     v = vehicle.v
     ap = v.autopilot
     names = ("HEARTBEAT", "VFR_HUD", "SYS_STATUS", "NAV_CONTROLLER_OUTPUT")
-    beat, hud, status, navigation = (told(profile, v, name) for name in names)
+    beat, hud, status, navigation = (built(profile, v, name) for name in names)
     here, targets = global_position(v), profile.targets(v)
     bearing, distance = (navigation.target_bearing, navigation.wp_dist) if navigation is not None else (0, 0)
     return message("HIGH_LATENCY2").payload(
         timestamp=boot_ms(int(v.time_us)),
         type=profile.mav_type,
-        autopilot=ARDUPILOTMEGA,
+        autopilot=MavAutopilot.ARDUPILOTMEGA,
         custom_mode=int(beat.custom_mode) & 0xFFFF,
         latitude=int(here.lat),
         longitude=int(here.lon),

@@ -28,7 +28,7 @@ def filled(builder: Builder, v: Vehicle, port: Port | None = None) -> Any:
     return m if said else None
 
 
-def told(profile: MavlinkFirmware, v: Vehicle, name: str) -> Any:
+def built(profile: MavlinkFirmware, v: Vehicle, name: str) -> Any:
     """A message of a firmware's laws as it is now; None when the vehicle has nothing to say."""
     law = next(law for law in profile.core.builders if message_of(law).kind.name == name)
     return filled(law, v)

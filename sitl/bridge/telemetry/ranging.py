@@ -10,6 +10,7 @@ from ...autopilot.avoidance import proximity
 from ...autopilot.avoidance.proximity import Proximity
 from ...core.border import LIDAR_SAMPLES
 from ...core.kernels import law
+from ...core.mavlink import MavFrame
 from ...core.records import Floats, Ints
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
@@ -19,7 +20,7 @@ from .units import DEG, boot_ms, uint16
 SECTORS = 72
 """Elements of OBSTACLE_DISTANCE."""
 UNKNOWN = 65535
-LASER, BODY_FRD, FACING_DOWN, COVARIANCE_UNKNOWN = 0, 12, 25, 255
+LASER, FACING_DOWN, COVARIANCE_UNKNOWN = 0, 25, 255
 SECTOR_ID = 10
 """Of the DISTANCE_SENSOR of sector 0 (ArduPilot's)."""
 PART = 58
@@ -80,7 +81,7 @@ def obstacle_distance(m: ObstacleDistance, v: Vehicle) -> bool:
     m.increment = min(uint16(step * DEG + 0.5), 255)
     m.increment_f = step * DEG
     m.angle_offset = first * DEG
-    m.frame = BODY_FRD
+    m.frame = MavFrame.BODY_FRD
     return True
 
 

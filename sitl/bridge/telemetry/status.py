@@ -7,7 +7,7 @@ from ...autopilot import visual_odometry
 from ...autopilot.fence.checks import kinds
 from ...autopilot.gps_receivers import fix_of, has_fix, time_of
 from ...autopilot.optical_flow import is_healthy
-from ...autopilot.sensor_calibration import is_heard
+from ...autopilot.sensor_calibration import is_received
 from ...core.border import ACC_SILENT, GYRO_SILENT
 from ...core.kernels import law
 from ...core.records import Ints
@@ -45,7 +45,7 @@ def sensor_health(v: Vehicle) -> int:
     if s.time_us > 0 and (ekf.use_external or ekf.bad_imu == 0):
         health |= GYRO if s.imu_state & 3 * GYRO_SILENT == 0 else 0
         health |= ACCEL if s.imu_state & 3 * ACC_SILENT == 0 else 0
-    if s.mag_count > 0 and is_heard(0, s, t) and not (watched and t - ekf.mag_us > SAMPLE_US):
+    if s.mag_count > 0 and is_received(0, s, t) and not (watched and t - ekf.mag_us > SAMPLE_US):
         health |= MAG
     if s.baro_count > 0 and not (watched and t - ekf.baro_us > SAMPLE_US):
         health |= BARO

@@ -36,15 +36,15 @@ class Slot(Record):
 
 
 @law
-def hear_clients(
-    fleet: Sequence[V], index: int, slot: Slot, ranging: int, hear: Callable[[Sequence[V], int, int], None]
+def receive_clients(
+    fleet: Sequence[V], index: int, slot: Slot, ranging: int, receive: Callable[[Sequence[V], int, int], None]
 ) -> bool:
     """Let a vehicle act on what its clients sent; False: the shell has to act before it goes on."""
     v = fleet[index]
     for k in range(slot.clients):
         port = record_at(Port, slot.ports + k * SIZE)
         if port.in_size > 0:
-            hear(fleet, index, slot.ports + k * SIZE)
+            receive(fleet, index, slot.ports + k * SIZE)
             if port.frame_end != 0 or v.autopilot.events.count != slot.events_seen:
                 return False
     return v.autopilot.events.count == slot.events_seen and not wants_shell(v, ranging)
@@ -56,13 +56,13 @@ def run_slot(
     index: int,
     ranging: int,
     slot: Slot,
-    hear: Callable[[Sequence[V], int, int], None],
+    receive: Callable[[Sequence[V], int, int], None],
     run: Callable[[Sequence[V], int, int, int, int, int, int, int], None],
 ) -> None:
     """Let one vehicle act on what its clients sent and go on to ``slot.until_us``."""
     v = fleet[index]
     slot.needs_shell = GOES_ON
-    if not hear_clients(fleet, index, slot, ranging, hear):
+    if not receive_clients(fleet, index, slot, ranging, receive):
         slot.needs_shell = TO_HEAR
     elif v.time_us < slot.until_us:
         shell_us = slot.shell_us
@@ -80,7 +80,7 @@ def run_slots(
     last: int,
     slots: int,
     ranging: int,
-    hear: Callable[[Sequence[V], int, int], None],
+    receive: Callable[[Sequence[V], int, int], None],
     run: Callable[[Sequence[V], int, int, int, int, int, int, int], None],
 ) -> None:
     """The same for vehicles ``first`` .. ``last`` - 1; those whose ``until_us`` is STAYS excepted.
@@ -98,7 +98,7 @@ def run_slots(
         if slot.until_us == STAYS:
             slot.needs_shell = GOES_ON
         else:
-            run_slot(fleet, index, ranging, slot, hear, run)
+            run_slot(fleet, index, ranging, slot, receive, run)
 
 
 @law

@@ -222,9 +222,9 @@ def next_frame(port: Port, address: int) -> bool:
     port.received += 1
     note_sender(port, port.frame_sender, sender.sequence)
     if found.version == 2:
-        port.heard_v2 = True
+        port.received_v2 = True
         port.version = 2
-    elif not port.heard_v2:
+    elif not port.received_v2:
         port.version = 1
     return True
 

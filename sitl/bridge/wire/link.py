@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A vehicle and its clients in the core: bytes are acted on, ticks go by, messages go out when they are due.
 
-A firmware makes three units of these laws (``copter/core.py``): ``hear``, ``tell`` and ``run``. All take the address of
-the vehicle's ports, which lie side by side. Of a vehicle in a world, ``run`` takes the address of its ``Ranging``, too:
-lidar and range-finder measure, and solids are listed, while the core goes on.
+A firmware makes three units of these laws (``copter/core.py``): ``receive``, ``transmit`` and ``run``. All take the
+address of the vehicle's ports, which lie side by side. Of a vehicle in a world, ``run`` takes the address of its
+``Ranging``, too: lidar and range-finder measure, and solids are listed, while the core goes on.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from .streams import Builder, next_due, send, send_all_due
 
 V = TypeVar("V", bound=Vehicle)
 Advance = Callable[[Sequence[V], int, int], None]
-Tell = Callable[[Sequence[V], int, int, int, int], None]
+Transmit = Callable[[Sequence[V], int, int, int, int], None]
 REGULAR = -1
 """In place of a message's number: all that is due."""
 Taker = Callable[[int, V, int, int], bool]
 
 
 @law
-def hear_port(v: V, address: int, take: Taker[V], targets: Callable[[int], int]) -> None:
+def receive_port(v: V, address: int, take: Taker[V], targets: Callable[[int], int]) -> None:
     """Act on what a client sent, up to a frame that is the shell's: ``frame_end`` is 0 when there is none.
 
     Args:
@@ -106,7 +106,7 @@ def run_vehicle(
     instruments: Instruments,
     limits: Limits,
     advance: Advance[V],
-    tell: Tell[V],
+    transmit: Transmit[V],
 ) -> None:
     """Advance to the first tick at or after ``until_us``, measuring and then sending what falls due.
 
@@ -124,7 +124,7 @@ def run_vehicle(
     """
     v, ranging, sampler = fleet[index], instruments.ranging, instruments.sampler
     events, obstacles = v.autopilot.events, v.physics.obstacles
-    told = events.count
+    before = events.count
     while True:
         if obstacles.wanted and ranging != 0:
             list_near(fleet, index, ranging)
@@ -135,11 +135,11 @@ def run_vehicle(
         advance(fleet, index, max(ticks, 1))
         if due <= v.time_us:
             measure(fleet, index, ranging)
-        if wants_shell(v, ranging) or events.count != told or v.time_us >= limits.shell_us:
+        if wants_shell(v, ranging) or events.count != before or v.time_us >= limits.shell_us:
             return
         has_room = True
         if next_due(links.address, links.clients) <= v.time_us:
-            tell(fleet, index, links.address, links.clients, REGULAR)
+            transmit(fleet, index, links.address, links.clients, REGULAR)
             has_room = spill_all(links.address, links.clients, v.time_us)
             if next_due(links.address, links.clients) <= v.time_us:
                 return
@@ -164,7 +164,7 @@ def measurement_due(v: Vehicle, ranging: int) -> int:
 
 
 @law
-def tell_links(v: V, links: Links, number: int, build: Builder) -> None:
+def transmit_links(v: V, links: Links, number: int, build: Builder) -> None:
     """Send all that is due to every client, or the message ``number`` to the first."""
     if number == REGULAR:
         send_all_due(v, links.address, links.clients, build)

@@ -39,7 +39,7 @@ class Message(Record):
             name: of the message, as MAVLink has it.
 
         Raises:
-            TypeError: a field that the message does not have, or that is of another sort there.
+            TypeError: a field that the message does not have, or that is of another type there.
         """
         cls.kind = message(name)
         hints = {field: hint for field, hint in get_type_hints(cls).items() if field in cls.__annotations__}

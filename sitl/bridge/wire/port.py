@@ -26,7 +26,7 @@ class Port(Record):
     # what a snapshot keeps of it (``STATE``)
     sequence: int  # of the next frame
     version: int  # of MAVLink in outgoing frames: 1 or 2
-    heard_v2: bool  # the client speaks MAVLink 2
+    received_v2: bool  # the client speaks MAVLink 2
     part: int  # of a message that is sent in several parts: the next one, 0 when there is none
     # regular messages, in order of interval, then of request
     stream_count: int

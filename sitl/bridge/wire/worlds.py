@@ -25,7 +25,7 @@ class Vehicles(NamedTuple):
 
 @law
 def run_in_worlds(
-    vehicles: Vehicles, first: int, count: int, slots: int, ranging: int, room: int, step_us: int
+    vehicles: Vehicles, first: int, count: int, slots: int, ranging: int, ranging_size: int, step_us: int
 ) -> bool:
     """Let vehicles ``first`` .. ``first + count`` - 1 of a fleet go on, in one thread; whether any of them needs the
     shell.
@@ -43,6 +43,6 @@ def run_in_worlds(
         slot = record_at(Slot, slots + k * SLOT_SIZE)
         if step_us != STAYS:
             slot.until_us = ints_at(vehicles.records + k * vehicles.size, 1)[0] + step_us
-        call_unit(vehicles.unit, vehicles.records, vehicles.total, k, k + 1, slots, ranging + k * room)
+        call_unit(vehicles.unit, vehicles.records, vehicles.total, k, k + 1, slots, ranging + k * ranging_size)
         waits = waits or slot.needs_shell != GOES_ON
     return waits

@@ -7,14 +7,14 @@ import math
 from collections.abc import Sequence
 
 from sitl.client.connection import Connection
-from sitl.client.endpoint import ACCEPTED
 from sitl.core.constants import GRAVITY
 from sitl.core.elementary import cos, sin
+from sitl.core.mavlink import MavModeFlag, MavResult
 from sitl.errors import NotReadyError
 from sitl.foreign.betaflight.sticks import ACRO as _ACRO
 from sitl.foreign.betaflight.sticks import MODES
 
-from .preparation import CUSTOM_MODE_ENABLED, INTERVAL_US, ORIGIN, check_reports, set_intervals, until
+from .preparation import INTERVAL_US, ORIGIN, check_reports, set_intervals, until
 from .setpoints import COPTER, RATES_ONLY, TARGET, Encode
 from .telemetry import StepTelemetry
 
@@ -66,11 +66,11 @@ def prepare(link: Connection, take_off: float) -> None:
     inbox = link.inbox
     link.endpoint.send("REQUEST_DATA_STREAM", target_system=inbox.system, target_component=1)  # stop all
     set_intervals(link, STEP_US)
-    if link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, ACRO) != ACCEPTED:
+    if link.command("DO_SET_MODE", MavModeFlag.CUSTOM_MODE_ENABLED, ACRO) != MavResult.ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses ACRO")
 
     def arms() -> bool:
-        return link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
+        return link.command("COMPONENT_ARM_DISARM", arm=1) == MavResult.ACCEPTED
 
     until(link, arms, _TENTH, "does not arm", _READY_S)
     north, east, down = inbox.position[1:4]

@@ -22,6 +22,7 @@ from sitl.bridge.wire.port import INCOMING, OUT, PAYLOAD, PAYLOAD_BYTES, SIZE, P
 from sitl.core.algebra import quat_from_euler
 from sitl.core.array_kernels import IntColumn, IntLine, Kernel, Line, NarrowTable, Table
 from sitl.core.kernels import law
+from sitl.core.mavlink import MavFrame, MavModeFlag
 from sitl.core.memory import Bytes, bytes_at, record_at
 from sitl.core.records import Floats, Ints, Record, Records, array
 from sitl.core.vectors import Euler, Vec3
@@ -33,15 +34,13 @@ from .reports import REPORTED, read_report, show_report
 from .setpoints import (
     ACCELERATION_ONLY,
     ATTITUDE_AND_RATES,
-    BODY_OFFSET_NED,
-    LOCAL_NED,
     PLACE_ONLY,
     RATES_ONLY,
     TURN_AND_SPEED,
     VELOCITY_ONLY,
     YAWS_IGNORED,
 )
-from .telemetry import ARMED, HIT, PART, SCAN_NAME
+from .telemetry import HIT, PART, SCAN_NAME
 
 GROUND_STATION, COMPONENT = 255, 190
 """MAVLink ids of the environment."""
@@ -131,7 +130,7 @@ def override(m: RcChannelsOverride, commands: Table, i: int, system: int) -> Non
 def velocity(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int) -> None:
     """Velocities along the body's heading: forward, left, up [m/s]; turn rate [rad/s]."""
     m.target_system = system
-    m.coordinate_frame = BODY_OFFSET_NED
+    m.coordinate_frame = MavFrame.BODY_OFFSET_NED
     m.type_mask = VELOCITY_ONLY
     m.vx = commands[i, 0]
     m.vy = -commands[i, 1]
@@ -144,7 +143,7 @@ def position(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int,
     """A place of the world [m], yaw [rad]; ``origin``: of the vehicle's local frame, NED in the world [m]."""
     north, east, down = to_ned(commands[i, 0], commands[i, 1], commands[i, 2])
     m.target_system = system
-    m.coordinate_frame = LOCAL_NED
+    m.coordinate_frame = MavFrame.LOCAL_NED
     m.type_mask = mask
     m.x = north - origin.x
     m.y = east - origin.y
@@ -156,7 +155,7 @@ def position(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int,
 def acceleration(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int) -> None:
     """Accelerations along the body's heading: forward, left, up [m/s^2]; turn rate [rad/s]."""
     m.target_system = system
-    m.coordinate_frame = BODY_OFFSET_NED
+    m.coordinate_frame = MavFrame.BODY_OFFSET_NED
     m.type_mask = ACCELERATION_ONLY
     m.afx = commands[i, 0]
     m.afy = -commands[i, 1]
@@ -325,7 +324,7 @@ def read_bytes(
         elif number == HEARTBEAT_:
             beat = record_at(Heartbeat, payload)
             end.mode = beat.custom_mode
-            end.armed = (beat.base_mode & ARMED) != 0
+            end.armed = (beat.base_mode & MavModeFlag.SAFETY_ARMED) != 0
         elif number == TEXT_ and begins_with(record_at(Statustext, payload).text, _HIT):
             end.hits += 1
         else:

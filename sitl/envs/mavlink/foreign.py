@@ -18,7 +18,8 @@ from sitl.bridge.hil.protocol import BASE_PORT
 from sitl.client.byte_socket import ByteStream, open_stream
 from sitl.client.commands import command_number
 from sitl.client.connection import Connection
-from sitl.client.endpoint import ACCEPTED, Endpoint, Inbox
+from sitl.client.endpoint import Endpoint, Inbox
+from sitl.core.mavlink import ARM_FORCED, MavResult
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.betaflight import configuration
@@ -37,7 +38,6 @@ from sitl.plants.local import LocalPlant
 from sitl.plants.physics_server import SimulatedPlant
 from sitl.run.runner import BASE_TCP_PORT
 
-from .preparation import FORCE
 from .telemetry import StepTelemetry
 
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
@@ -212,7 +212,7 @@ class Foreign(Connection):
         Raises:
             LinkLostError, NotReadyError: it does not boot.
         """
-        self.command("COMPONENT_ARM_DISARM", arm=0, force=FORCE)
+        self.command("COMPONENT_ARM_DISARM", arm=0, force=ARM_FORCED)
         boots = self.host.boots
         try:
             result = self.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
@@ -221,7 +221,7 @@ class Foreign(Connection):
             if answer is None:
                 raise
             result = int(answer.result)
-        if result != ACCEPTED:
+        if result != MavResult.ACCEPTED:
             raise NotReadyError(f"{self.name}: the autopilot refuses to reboot (MAV_RESULT {result})")
         self.plant.close()
         self._use(plant)

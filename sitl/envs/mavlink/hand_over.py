@@ -14,9 +14,10 @@ from typing import Any
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
 from sitl.client.commands import command_number
-from sitl.client.connection import ACCEPTED, Remote
-from sitl.client.endpoint import ACK, ARMED, AUTOPILOT, HEARTBEAT, IN_PROGRESS
+from sitl.client.connection import Remote
+from sitl.client.endpoint import ACK, AUTOPILOT, HEARTBEAT
 from sitl.client.proof import REQUEST_MESSAGE
+from sitl.core.mavlink import MavModeFlag, MavResult
 
 from .preparation import mode_parameters
 
@@ -73,7 +74,7 @@ class HandOver:
         self._listen(0.0)  # a pilot may have taken it since
         while not self.is_done:
             now = time.monotonic()
-            is_refused = self.result not in (None, ACCEPTED)
+            is_refused = self.result not in (None, MavResult.ACCEPTED)
             if now - self._began > (REFUSED_S if is_refused else BOUND_S):
                 return
             if self._accepted_s is None or now - self._accepted_s > AGAIN_S:
@@ -115,18 +116,18 @@ class HandOver:
         if kind is HEARTBEAT:
             if not self._link.inbox.is_for_us(kind, fields):
                 return
-            is_ours = bool(fields.base_mode & ARMED) and fields.custom_mode == self._guided
+            is_ours = bool(fields.base_mode & MavModeFlag.SAFETY_ARMED) and fields.custom_mode == self._guided
             is_news = self._knows or time.monotonic() - self._began > _OLD_S
             self.is_done = self.is_done or fields.custom_mode == self._mode or (is_news and not is_ours)
             if not self.is_done:
                 self._accepted_s = None  # what was accepted was not this
-        elif fields.command == _SET_MODE and self.sent and fields.result != IN_PROGRESS:
+        elif fields.command == _SET_MODE and self.sent and fields.result != MavResult.IN_PROGRESS:
             own = self._link.endpoint
             target = fields.target_system, fields.target_component
             if target not in ((own.system, own.component), (0, 0)):
                 return  # another station's
             self.result = int(fields.result)
-            if self.result == ACCEPTED and target != (0, 0) and self._accepted_s is None:
+            if self.result == MavResult.ACCEPTED and target != (0, 0) and self._accepted_s is None:
                 self._accepted_s = time.monotonic()
                 self._send(REQUEST_MESSAGE, param1=HEARTBEAT.id)
 
@@ -138,7 +139,7 @@ class HandOver:
     @property
     def failure(self) -> str:
         """What is known when the vehicle could not be brought into the mode."""
-        if self.result == ACCEPTED:
+        if self.result == MavResult.ACCEPTED:
             return f"it accepts mode {self._mode}, but no HEARTBEAT says in {BOUND_S:g} s that it is in it"
         if self.result is not None:
             return f"it refuses mode {self._mode} (MAV_RESULT {self.result})"

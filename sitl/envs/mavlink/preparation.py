@@ -13,17 +13,13 @@ from typing import Any
 
 from sitl.client.commands import command_number
 from sitl.client.connection import TRIES, Connection
-from sitl.client.endpoint import ACCEPTED
+from sitl.core.mavlink import ARM_FORCED, MavModeFlag, MavResult
 from sitl.core.sums import lengths
 from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
 from .reports import LANDED
 from .telemetry import ATTITUDE, GLOBAL, LANDED_STATE, ORIGIN, POSITION, SCAN, SECTORS
 
-FORCE = 21196
-"""Second parameter of arming: even in the air."""
-CUSTOM_MODE_ENABLED = 1
-"""MAV_MODE_FLAG_CUSTOM_MODE_ENABLED"""
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 INTERVAL_US = 100_000
 """Of position, attitude and scan after ``prepare``."""
@@ -50,7 +46,7 @@ def reboot(link: Connection) -> None:
         NotReadyError: it refuses.
         LinkLostError: it does not come back.
     """
-    link.command("COMPONENT_ARM_DISARM", arm=0, force=FORCE)
+    link.command("COMPONENT_ARM_DISARM", arm=0, force=ARM_FORCED)
     name = {"target_system": link.inbox.system, "target_component": 1, "param_id": LEARNED.encode()}
     if not link.inbox.was_rebooted:
         link.endpoint.send("PARAM_REQUEST_READ", param_index=-1, **name)
@@ -62,14 +58,14 @@ def reboot(link: Connection) -> None:
     link.inbox.acks.pop(_REBOOT, None)
     try:
         result = link.command("PREFLIGHT_REBOOT_SHUTDOWN", autopilot=1)
-        if result == ACCEPTED:
+        if result == MavResult.ACCEPTED:
             link.pause(0 if link.is_exact else 2 * _SECOND)
     except LinkLostError:  # an ArduPilot's simulator closes its TCP port; its last word may be the answer
         answer = link.inbox.acks.get(_REBOOT)
         if answer is None or not link.reopen():
             raise
         result = int(answer.result)
-    if result != ACCEPTED:
+    if result != MavResult.ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses to reboot (MAV_RESULT {result}), so it cannot be reset")
     link.inbox.forget()
 
@@ -90,7 +86,9 @@ def set_intervals(link: Connection, interval_us: int) -> None:
         link.simulation.bridge.is_stepped = True
     intervals = [interval_us] if link.is_exact else _longer_ones(interval_us)
     for kind in (POSITION, ATTITUDE, *scan, *telemetry.wanted):
-        taken = next((us for us in intervals if link.command("SET_MESSAGE_INTERVAL", kind.id, us) == ACCEPTED), None)
+        taken = next(
+            (us for us in intervals if link.command("SET_MESSAGE_INTERVAL", kind.id, us) == MavResult.ACCEPTED), None
+        )
         if taken is not None:
             intervals = intervals[intervals.index(taken) :]  # its loop is the same for the others
             continue
@@ -98,7 +96,7 @@ def set_intervals(link: Connection, interval_us: int) -> None:
         if kind is SCAN:
             link.inbox.scan_kind = kind = SECTORS
             result = link.command("SET_MESSAGE_INTERVAL", kind.id, interval_us)
-        if result != ACCEPTED:
+        if result != MavResult.ACCEPTED:
             why = "; the environment's observation or task reads the lidar" if kind is SECTORS else ""
             raise NotReadyError(
                 f"{link.name}: the vehicle does not send {kind.name} every {interval_us / 1000:g} ms{why}"
@@ -122,8 +120,8 @@ def mode_parameters(number: int) -> tuple[int, int, int]:
     """Parameters of DO_SET_MODE for a mode, by the ``custom_mode`` of its HEARTBEAT: a number, as ArduPilot has them,
     or a main mode in the third byte and one below it in the fourth, as PX4 has them."""
     if number < 1 << 16:
-        return CUSTOM_MODE_ENABLED, number, 0
-    return CUSTOM_MODE_ENABLED, number >> 16 & 0xFF, number >> 24 & 0xFF
+        return MavModeFlag.CUSTOM_MODE_ENABLED, number, 0
+    return MavModeFlag.CUSTOM_MODE_ENABLED, number >> 16 & 0xFF, number >> 24 & 0xFF
 
 
 def set_mode(link: Connection, number: int) -> None:
@@ -132,7 +130,7 @@ def set_mode(link: Connection, number: int) -> None:
     Raises:
         NotReadyError: it refuses.
     """
-    if link.command("DO_SET_MODE", *mode_parameters(number)) != ACCEPTED:
+    if link.command("DO_SET_MODE", *mode_parameters(number)) != MavResult.ACCEPTED:
         raise NotReadyError(f"{link.name}: the vehicle refuses mode {number}; {last_texts(link)}")
 
 
@@ -177,14 +175,17 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     set_intervals(link, INTERVAL_US)
 
     def arms() -> bool:
-        if math.isnan(inbox.position[1]) or link.command("DO_SET_MODE", CUSTOM_MODE_ENABLED, guided) != ACCEPTED:
+        if (
+            math.isnan(inbox.position[1])
+            or link.command("DO_SET_MODE", MavModeFlag.CUSTOM_MODE_ENABLED, guided) != MavResult.ACCEPTED
+        ):
             return False
-        return link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
+        return link.command("COMPONENT_ARM_DISARM", arm=1) == MavResult.ACCEPTED
 
     until(link, arms, _SECOND, "does not arm")
     if take_off > 0.0:
         floor = inbox.position[3]  # home is where it is armed, which is not the origin of local positions
-        if link.command("NAV_TAKEOFF", altitude=take_off) != ACCEPTED:
+        if link.command("NAV_TAKEOFF", altitude=take_off) != MavResult.ACCEPTED:
             raise NotReadyError(f"{link.name}: the vehicle refuses to take off; {last_texts(link)}")
         until(link, lambda: abs(inbox.position[3] - floor + take_off) < 0.1 and abs(inbox.position[6]) < 0.1, _TENTH,
                f"does not climb to {take_off:g} m")  # fmt: skip
@@ -279,7 +280,7 @@ def has_landed(link: Connection) -> bool:
     told = link.inbox.reports
     told[LANDED] = 0.0  # unknown
     for _ in range(TRIES):
-        if link.command("REQUEST_MESSAGE", LANDED_STATE.id) != ACCEPTED:
+        if link.command("REQUEST_MESSAGE", LANDED_STATE.id) != MavResult.ACCEPTED:
             return False
         for _ in range(1 if link.is_exact else _ANSWER_LOOKS):
             if told[LANDED] != 0.0:

@@ -8,15 +8,14 @@ from collections.abc import Callable, Sequence
 from sitl.bridge.dialect import message
 from sitl.bridge.services.setpoints import (
     ACCELERATION_IGNORED,
-    LOCAL_NED,
     POSITION_IGNORED,
     VELOCITY_IGNORED,
     YAW_IGNORED,
     YAW_RATE_IGNORED,
 )
 from sitl.client.connection import Connection
-from sitl.client.endpoint import ACCEPTED
 from sitl.core.elementary import cos, sin
+from sitl.core.mavlink import MavFrame, MavResult
 from sitl.errors import NotReadyError
 
 from .preparation import (
@@ -67,7 +66,8 @@ def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     """
     north, east, down, turn = _in_local_frame(row, inbox)
     return LOCAL, LOCAL.payload(
-        target_system=inbox.system, target_component=1, coordinate_frame=LOCAL_NED, type_mask=_VELOCITY_AND_TURN,
+        target_system=inbox.system, target_component=1, coordinate_frame=MavFrame.LOCAL_NED,
+        type_mask=_VELOCITY_AND_TURN,
         vx=north, vy=east, vz=down, yaw_rate=turn,
     )  # fmt: skip
 
@@ -79,7 +79,7 @@ def acceleration(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[fl
     """
     north, east, down, turn = _in_local_frame(row, inbox)
     return LOCAL, LOCAL.payload(
-        target_system=inbox.system, target_component=1, coordinate_frame=LOCAL_NED,
+        target_system=inbox.system, target_component=1, coordinate_frame=MavFrame.LOCAL_NED,
         type_mask=_ACCELERATION_AND_TURN, afx=north, afy=east, afz=down, yaw_rate=turn,
     )  # fmt: skip
 
@@ -180,7 +180,7 @@ def send_place(link: Connection, north: float, east: float, down: float, heading
     link.endpoint.send_payload(
         LOCAL,
         LOCAL.payload(
-            target_system=link.inbox.system, target_component=1, coordinate_frame=LOCAL_NED,
+            target_system=link.inbox.system, target_component=1, coordinate_frame=MavFrame.LOCAL_NED,
             type_mask=_PLACE_AND_YAW, **place,
         ),
     )  # fmt: skip
@@ -260,10 +260,10 @@ def prepare(link: Connection, take_off: float) -> None:
         link.run(_TENTH)
 
     def offboard() -> bool:
-        return link.command("DO_SET_MODE", *mode_parameters(OFFBOARD)) == ACCEPTED
+        return link.command("DO_SET_MODE", *mode_parameters(OFFBOARD)) == MavResult.ACCEPTED
 
     def arms() -> bool:
-        return offboard() and link.command("COMPONENT_ARM_DISARM", arm=1) == ACCEPTED
+        return offboard() and link.command("COMPONENT_ARM_DISARM", arm=1) == MavResult.ACCEPTED
 
     until(link, arms, _TENTH, "does not arm in OFFBOARD", _READY_S, hold)
     until(

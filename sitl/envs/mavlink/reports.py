@@ -28,8 +28,6 @@ REPORTED = 10
 """Number of these."""
 
 
-ON_GROUND = 1
-"""MAV_LANDED_STATE_ON_GROUND"""
 IMU_, STATUS_, WIND_, RANGE_ = ScaledImu.kind.id, SysStatus.kind.id, Wind.kind.id, RangeFinder.kind.id
 LANDED_ = ExtendedSysState.kind.id
 _UNKNOWN = 65535

@@ -10,9 +10,7 @@ from sitl.bridge.dialect import message
 from sitl.bridge.services.setpoints import (
     ACCELERATION_IGNORED,
     ATTITUDE_IGNORED,
-    BODY_OFFSET_NED,
     BODY_YAW_RATE_IGNORED,
-    LOCAL_NED,
     PITCH_RATE_IGNORED,
     POSITION_IGNORED,
     ROLL_RATE_IGNORED,
@@ -22,6 +20,7 @@ from sitl.bridge.services.setpoints import (
     YAWS_IGNORED,
 )
 from sitl.core.algebra import quat_from_euler
+from sitl.core.mavlink import MavFrame
 from sitl.core.vectors import Euler
 from sitl.worlds.shapes import to_heading, to_ned
 
@@ -56,7 +55,7 @@ def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     forward, left, up, turn = row
     motion = {"vx": forward, "vy": -left, "vz": -up, "yaw_rate": -turn}
     return LOCAL, LOCAL.payload(
-        target_system=inbox.system, coordinate_frame=BODY_OFFSET_NED, type_mask=VELOCITY_ONLY, **motion
+        target_system=inbox.system, coordinate_frame=MavFrame.BODY_OFFSET_NED, type_mask=VELOCITY_ONLY, **motion
     )
 
 
@@ -64,7 +63,9 @@ def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     """SET_POSITION_TARGET_LOCAL_NED: a place of the world [m], yaw [rad]."""
     north, east, down = to_ned(*row[:3])
     place = {"x": north - origin[0], "y": east - origin[1], "z": down - origin[2], "yaw": to_heading(row[3])}
-    return LOCAL, LOCAL.payload(target_system=inbox.system, coordinate_frame=LOCAL_NED, type_mask=mask, **place)
+    return LOCAL, LOCAL.payload(
+        target_system=inbox.system, coordinate_frame=MavFrame.LOCAL_NED, type_mask=mask, **place
+    )
 
 
 def rover_position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
@@ -95,7 +96,7 @@ def acceleration(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[fl
     forward, left, up, turn = row
     motion = {"afx": forward, "afy": -left, "afz": -up, "yaw_rate": -turn}
     return LOCAL, LOCAL.payload(
-        target_system=inbox.system, coordinate_frame=BODY_OFFSET_NED, type_mask=ACCELERATION_ONLY, **motion
+        target_system=inbox.system, coordinate_frame=MavFrame.BODY_OFFSET_NED, type_mask=ACCELERATION_ONLY, **motion
     )
 
 

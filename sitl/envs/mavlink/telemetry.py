@@ -14,10 +14,10 @@ import numpy.typing as npt
 from sitl.bridge.dialect import MessageType, message
 from sitl.bridge.frame import Splitter
 from sitl.bridge.telemetry.own import ExtendedSysState
-from sitl.client.endpoint import ARMED as ARMED
 from sitl.client.endpoint import HEARTBEAT, TEXT, Inbox
+from sitl.core.mavlink import MavAutopilot, MavLandedState, MavModeFlag
 
-from .reports import LANDED, ON_GROUND, REPORTED, note_report
+from .reports import LANDED, REPORTED, note_report
 
 POSITION, ATTITUDE, SCAN = message("LOCAL_POSITION_NED"), message("ATTITUDE"), message("DEBUG_FLOAT_ARRAY")
 SECTORS = message("OBSTACLE_DISTANCE")
@@ -26,8 +26,6 @@ LANDED_STATE, ESTIMATOR = ExtendedSysState.kind, message("ESTIMATOR_STATUS")
 PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
-PX4 = 12
-"""MAV_AUTOPILOT_PX4"""
 HIT = b"SIM Hit obstacle"
 """How the text begins that tells of a touch."""
 _part = struct.Struct("<QH10s").unpack_from
@@ -93,7 +91,7 @@ class StepTelemetry(Inbox):
     @property
     def landed(self) -> bool:
         """Whether the vehicle has said last that it is on the ground (EXTENDED_SYS_STATE, where that was asked for)."""
-        return bool(self.reports[LANDED] == ON_GROUND)
+        return bool(self.reports[LANDED] == MavLandedState.ON_GROUND)
 
     def feed(self, data: bytes) -> None:
         """Take bytes from the vehicle, in any pieces."""
@@ -147,8 +145,8 @@ class StepTelemetry(Inbox):
             return
         self._note(kind, fields, system)
         if kind is HEARTBEAT:
-            self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & ARMED)
-            self.is_px4 = fields.autopilot == PX4
+            self.mode, self.armed = fields.custom_mode, bool(fields.base_mode & MavModeFlag.SAFETY_ARMED)
+            self.is_px4 = fields.autopilot == MavAutopilot.PX4
         elif kind is SECTORS:
             self._sectors(fields)
         elif kind is GLOBAL:

@@ -10,8 +10,9 @@ from typing import ClassVar
 from gymnasium import logger
 
 from sitl.client.connection import Connection, Lockstep, Remote, connect
-from sitl.client.endpoint import ACCEPTED, AUTOPILOT
+from sitl.client.endpoint import AUTOPILOT
 from sitl.core.algebra import quat_from_euler
+from sitl.core.mavlink import MavAutopilot, MavFrame, MavResult, MavState, MavType
 from sitl.core.sums import separation
 from sitl.core.vectors import Euler
 from sitl.errors import NotReadyError, OptionError
@@ -34,13 +35,11 @@ from ..mavlink.preparation import (
     refusal,
 )
 from ..mavlink.reports import LANDED
-from ..mavlink.setpoints import ATTITUDE_ALONE, LOCAL, LOCAL_NED, PLACE_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
+from ..mavlink.setpoints import ATTITUDE_ALONE, LOCAL, PLACE_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
 
-GCS, INVALID, ACTIVE = 6, 8, 4
-"""MAV_TYPE, MAV_AUTOPILOT, MAV_STATE of the environment's heartbeat."""
 NEAR = 1.0
 """A vehicle that goes back is back at such a distance [m]."""
 _SINKING = 0.3
@@ -205,7 +204,7 @@ class SocketVehicles(Vehicles):
                 return
             stands, down = has_landed(link), inbox.position[3]
             may_stand = stands or inbox.reports[LANDED] == 0.0  # some do not say
-            if may_stand and link.command("NAV_TAKEOFF", altitude=self._height) == ACCEPTED:
+            if may_stand and link.command("NAV_TAKEOFF", altitude=self._height) == MavResult.ACCEPTED:
                 if stands:
                     self._stands(down)
                 if self.watch is not None:
@@ -224,7 +223,7 @@ class SocketVehicles(Vehicles):
     def _stop(self, link: Connection, sinking: float = 0.0) -> None:
         """Ask for no speed, in GUIDED, but ``sinking`` [m/s]."""
         mask = VELOCITY_ONLY | YAWS_IGNORED
-        fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "vx": 0, "vy": 0, "vz": sinking}
+        fields = {"coordinate_frame": MavFrame.LOCAL_NED, "type_mask": mask, "vx": 0, "vy": 0, "vz": sinking}
         link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
 
     def _stands(self, down: float) -> None:
@@ -291,7 +290,7 @@ class SocketVehicles(Vehicles):
         mask = PLACE_ONLY | YAWS_IGNORED
         pauses = _PAUSES if self._is_px4 else 1  # it leaves OFFBOARD without set-points
         for _ in range(pauses * max(round(self.options.wait), 1)):
-            fields = {"coordinate_frame": LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
+            fields = {"coordinate_frame": MavFrame.LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
             link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
             link.pause(1_000_000 // pauses)
             away = separation(inbox.position[1:4], place)
@@ -317,7 +316,13 @@ class SocketVehicles(Vehicles):
         inbox = link.inbox
         if inbox.time_ms - self._heard_ms >= 1000:
             self._heard_ms = inbox.time_ms
-            link.endpoint.send("HEARTBEAT", type=GCS, autopilot=INVALID, system_status=ACTIVE, mavlink_version=3)
+            link.endpoint.send(
+                "HEARTBEAT",
+                type=MavType.GCS,
+                autopilot=MavAutopilot.INVALID,
+                system_status=MavState.ACTIVE,
+                mavlink_version=3,
+            )
         if not inbox.armed:
             return "the vehicle is disarmed"
         if inbox.mode != self.setup.kind.guided:

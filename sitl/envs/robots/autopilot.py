@@ -21,6 +21,7 @@ from sitl import vehicles, worlds
 from sitl.bridge.dialect import message as message_kind
 from sitl.client.connection import Connection
 from sitl.core.elementary import cos, sin
+from sitl.core.mavlink import MavLandedState
 from sitl.errors import LinkLostError
 from sitl.foreign.betaflight import configuration
 from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, PX4, Choice, choose
@@ -42,7 +43,7 @@ from ..actions import MOTORS, Action, Continuous, Setpoint
 from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import GUARDED, Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
-from ..mavlink.reports import LANDED, ON_GROUND, show_report
+from ..mavlink.reports import LANDED, show_report
 from ..mavlink.setpoints import Message
 from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .at_connection import SocketVehicles
@@ -445,7 +446,7 @@ class AutopilotRobot:
 
     def has_landed(self) -> npt.NDArray[np.bool_]:
         """See ``sitl.envs.senses.LandingRobot``."""
-        landed: npt.NDArray[np.bool_] = self.reports[:, LANDED] == ON_GROUND
+        landed: npt.NDArray[np.bool_] = self.reports[:, LANDED] == MavLandedState.ON_GROUND
         return landed
 
     def let_down(self, height: float) -> bool:

@@ -61,6 +61,22 @@ class Among(Waypoints):
         self._ways.aim(index, x, y)
         self._left[index] = self._ways.lengths(self.judged_pose())[index]
 
+    def plan_routes(self) -> None:
+        """``routes`` is going to be called; before the first episode."""
+        self._ways.plan_routes()
+
+    def routes(self, ahead: float, out: Floats, first: int = 0) -> None:
+        """Write where the routes of all robots to their targets lead next, from where their autopilots believe them to
+        be: short obstacle-free paths that keep away from obstacles where there is room (``free_ways.follow_ways``).
+
+        Args:
+            ahead: how far along the path [m].
+            out: forward, left of the robot's heading, and the length of the shortest path [m], shape (count,
+                columns).
+            first: column of the first one.
+        """
+        self._ways.follow(self._from(), ahead, out, first)
+
     def _nearer(self, pose: Floats) -> Floats:
         left = self._ways.lengths(pose)
         np.subtract(self._left, left, self._gain)

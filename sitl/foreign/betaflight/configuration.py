@@ -118,7 +118,7 @@ class CommandLine:
             if self._us > until:
                 raise OptionError(f"autopilot betaflight: its command line does not answer {line!r}: {said[-200:]!r}")
             self._step()
-            said += self._program.hear()
+            said += self._program.receive()
         return said.decode("ascii", "replace")
 
     def save(self) -> None:

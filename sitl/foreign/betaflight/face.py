@@ -12,8 +12,8 @@ from typing import Any
 
 from ...bridge.dialect import MessageType, message, message_by_id
 from ...bridge.frame import Splitter, encode_v2
-from ...bridge.services.service import ACCEPTED, DENIED, FAILED, INFO, TEMPORARILY_REJECTED, UNSUPPORTED, WARNING
 from ...bridge.services.setpoints import ATTITUDE_IGNORED
+from ...core.mavlink import ARM_FORCED, MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType
 from ...plants.local import LocalPlant
 from .airframe import throttle
 from .msp import Status
@@ -22,14 +22,6 @@ from .sticks import ACRO, MODES, Sticks
 from .telemetry import Telemetry
 
 SYSTEM, COMPONENT = 1, 1
-GENERIC, QUADROTOR = 0, 2
-"""MAV_AUTOPILOT, MAV_TYPE: MAVLink has no number for Betaflight."""
-CUSTOM_MODE, ARMED, CUSTOM_MODE_ENABLED = 1, 128, 1
-ACTIVE, STANDBY = 4, 3
-FORCED = 21196
-"""Second parameter of COMPONENT_ARM_DISARM: even in the air."""
-ARM, SET_MODE, INTERVAL, REQUEST = 400, 176, 511, 512
-"""MAV_CMD"""
 ARM_US = 500_000
 """Simulated time that Betaflight has to do what the arm switch says [us]."""
 SECOND_US, SHORTEST_US = 1_000_000, 2500
@@ -103,7 +95,7 @@ class Face:
                 self._due[number] = now_us - now_us % interval + interval
         self._next_us = min(self._due.values())
 
-    def hear_status(self, status: Status, now_us: int) -> None:
+    def receive_status(self, status: Status, now_us: int) -> None:
         """Betaflight has said how it is."""
         self.status = status
         self.telemetry.may_arm = status.armed or not status.arming
@@ -111,8 +103,8 @@ class Face:
             self._was_armed = status.armed
             if not status.armed and self._pending is None and self.sticks.is_armed:
                 self.sticks.is_armed = False  # it must see the switch off before it arms again
-                self.say(WARNING, f"Disarmed by Betaflight: {status.reasons or 'no reason told'}")
-            self.say(INFO, "Armed" if status.armed else "Disarmed")
+                self.say(MavSeverity.WARNING, f"Disarmed by Betaflight: {status.reasons or 'no reason told'}")
+            self.say(MavSeverity.INFO, "Armed" if status.armed else "Disarmed")
             self._send_now(HEARTBEAT.id)
         if self._pending is not None:
             self._settle(status, now_us)
@@ -120,7 +112,7 @@ class Face:
     def rebooted(self) -> None:
         """Betaflight has begun anew."""
         self.status, self.sticks.is_armed, self._pending = None, False, None
-        self.say(WARNING, "Betaflight has rebooted")
+        self.say(MavSeverity.WARNING, "Betaflight has rebooted")
 
     # ------------------------------------------------------------------ what goes out
 
@@ -138,9 +130,11 @@ class Face:
         self._frame(message_by_id(number), self._builders[number]())
 
     def _heartbeat(self) -> bytes:
+        armed = MavModeFlag.SAFETY_ARMED if self.is_armed else 0
         return HEARTBEAT.payload(
-            type=QUADROTOR, autopilot=GENERIC, base_mode=CUSTOM_MODE | (ARMED if self.is_armed else 0),
-            custom_mode=self.sticks.mode.number, system_status=ACTIVE if self.is_armed else STANDBY, mavlink_version=3,
+            type=MavType.QUADROTOR, autopilot=MavAutopilot.GENERIC, base_mode=MavModeFlag.CUSTOM_MODE_ENABLED | armed,
+            custom_mode=self.sticks.mode.number, system_status=MavState.ACTIVE if self.is_armed else MavState.STANDBY,
+            mavlink_version=3,
         )  # fmt: skip
 
     # ------------------------------------------------------------------ what comes in
@@ -181,35 +175,39 @@ class Face:
     # ------------------------------------------------------------------ commands
 
     def _command_int(self, m: Any, sender: tuple[int, int]) -> None:
-        self._answer(m.command, UNSUPPORTED, sender)
+        self._answer(m.command, MavResult.UNSUPPORTED, sender)
 
     def _command(self, m: Any, sender: tuple[int, int]) -> None:
-        if m.command == ARM:
-            self._arm(m.param1 == 1.0, m.param2 == FORCED, sender)
+        if m.command == MavCmd.COMPONENT_ARM_DISARM:
+            self._arm(m.param1 == 1.0, m.param2 == ARM_FORCED, sender)
             return
-        results = {SET_MODE: self._do_set_mode, INTERVAL: self._message_interval, REQUEST: self._request}
+        results = {
+            MavCmd.DO_SET_MODE: self._do_set_mode,
+            MavCmd.SET_MESSAGE_INTERVAL: self._message_interval,
+            MavCmd.REQUEST_MESSAGE: self._request,
+        }
         found = results.get(m.command)
-        self._answer(m.command, UNSUPPORTED if found is None else found(m), sender)
+        self._answer(m.command, MavResult.UNSUPPORTED if found is None else found(m), sender)
 
     def _answer(self, command: int, result: int, to: tuple[int, int]) -> None:
         kind = message("COMMAND_ACK")
         self._frame(kind, kind.payload(command=command, result=result, target_system=to[0], target_component=to[1]))
 
     def _do_set_mode(self, m: Any) -> int:
-        if _whole(m.param1) & CUSTOM_MODE_ENABLED:
+        if _whole(m.param1) & MavModeFlag.CUSTOM_MODE_ENABLED:
             return self._set_mode(_whole(m.param2))
-        self.say(WARNING, "Mode: MAV_MODE_FLAG_CUSTOM_MODE_ENABLED is needed")
-        return DENIED
+        self.say(MavSeverity.WARNING, "Mode: MAV_MODE_FLAG_CUSTOM_MODE_ENABLED is needed")
+        return MavResult.DENIED
 
     def _set_mode(self, number: int) -> int:
         for mode in MODES:
             if mode.number == number:
                 self.sticks.mode = mode
                 self._send_now(HEARTBEAT.id)
-                return ACCEPTED
+                return MavResult.ACCEPTED
         known = ", ".join(f"{mode.number} {mode.name}" for mode in MODES)
-        self.say(WARNING, f"No mode {number}; there are {known}")
-        return DENIED
+        self.say(MavSeverity.WARNING, f"No mode {number}; there are {known}")
+        return MavResult.DENIED
 
     def _old_set_mode(self, m: Any, sender: tuple[int, int]) -> None:
         """SET_MODE, which has no answer."""
@@ -218,19 +216,19 @@ class Face:
     def _message_interval(self, m: Any) -> int:
         number, interval = _whole(m.param1), _whole(m.param2)
         if number not in self._builders or interval < -1 or 0 < interval < SHORTEST_US:
-            return DENIED
+            return MavResult.DENIED
         names = {message(name).id: us for name, us in DEFAULT_US.items()}
         self._set_interval(number, names.get(number, 0) if interval == 0 else interval)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def _request(self, m: Any) -> int:
         number = _whole(m.param1)
         if number == message("AVAILABLE_MODES").id:
             return self._send_modes(_whole(m.param2))
         if number not in self._builders:
-            return DENIED
+            return MavResult.DENIED
         self._send_now(number)
-        return ACCEPTED
+        return MavResult.ACCEPTED
 
     def _send_modes(self, index: int) -> int:
         kind = message("AVAILABLE_MODES")
@@ -239,29 +237,29 @@ class Face:
                 name = mode.name.encode()
                 self._frame(kind, kind.payload(number_modes=len(MODES), mode_index=k, custom_mode=mode.number,
                                                mode_name=name))  # fmt: skip
-        return ACCEPTED if 0 <= index <= len(MODES) else DENIED
+        return MavResult.ACCEPTED if 0 <= index <= len(MODES) else MavResult.DENIED
 
     def _arm(self, wanted: bool, by_force: bool, sender: tuple[int, int]) -> None:
         status = self.status
         if status is None:
-            self._refuse(TEMPORARILY_REJECTED, "Betaflight has not told its status yet", sender)
+            self._refuse(MavResult.TEMPORARILY_REJECTED, "Betaflight has not told its status yet", sender)
         elif self._pending is not None:
-            self._refuse(TEMPORARILY_REJECTED, "the last command is still being carried out", sender)
+            self._refuse(MavResult.TEMPORARILY_REJECTED, "the last command is still being carried out", sender)
         elif status.armed == wanted:
-            self._answer(ARM, ACCEPTED, sender)
+            self._answer(MavCmd.COMPONENT_ARM_DISARM, MavResult.ACCEPTED, sender)
         elif not wanted and not (by_force or self.telemetry.is_on_ground):
-            self._refuse(DENIED, "not in the air (param2 21196 does)", sender, "Disarm")
+            self._refuse(MavResult.DENIED, "not in the air (param2 21196 does)", sender, "Disarm")
         elif wanted and not self.sticks.throttle_is_low:
-            self._refuse(DENIED, "the throttle is not low (1050 us)", sender)
+            self._refuse(MavResult.DENIED, "the throttle is not low (1050 us)", sender)
         elif wanted and status.arming:
-            self._refuse(DENIED, status.reasons, sender)
+            self._refuse(MavResult.DENIED, status.reasons, sender)
         else:
             self.sticks.is_armed = wanted
             self._pending = wanted, self._now_us + ARM_US, sender
 
     def _refuse(self, result: int, why: str, sender: tuple[int, int], what: str = "Arm") -> None:
-        self.say(WARNING, f"{what}: {why}")
-        self._answer(ARM, result, sender)
+        self.say(MavSeverity.WARNING, f"{what}: {why}")
+        self._answer(MavCmd.COMPONENT_ARM_DISARM, result, sender)
 
     def _settle(self, status: Status, now_us: int) -> None:
         """Whether what was asked for has come true, or time is up."""
@@ -269,8 +267,10 @@ class Face:
         wanted, until_us, sender = self._pending
         if status.armed == wanted:
             self._pending = None
-            self._answer(ARM, ACCEPTED, sender)
+            self._answer(MavCmd.COMPONENT_ARM_DISARM, MavResult.ACCEPTED, sender)
         elif now_us >= until_us:
             self._pending = None
             self.sticks.is_armed = status.armed
-            self._refuse(FAILED, status.reasons or "Betaflight does not say why", sender, "Arm" if wanted else "Disarm")
+            self._refuse(
+                MavResult.FAILED, status.reasons or "Betaflight does not say why", sender, "Arm" if wanted else "Disarm"
+            )

@@ -129,7 +129,7 @@ class BetaflightHost:
         self.plant.tick()
         now_us = self.time_us
         if self._is_asked:
-            self._hear(now_us)
+            self._receive(now_us)
         self.face.tick(now_us)
 
     def _grant(self) -> None:
@@ -160,11 +160,11 @@ class BetaflightHost:
             1e-6 * now_us, values[:3], values[3:6], values[6:10], values[10:13], place, 100.0 * values[13]
         )
 
-    def _hear(self, now_us: int) -> None:
-        for number, payload in self._answers.feed(self.program.hear()):
+    def _receive(self, now_us: int) -> None:
+        for number, payload in self._answers.feed(self.program.receive()):
             if number == msp.STATUS_EX and (status := msp.status(payload)) is not None:
                 self._is_asked = self.face.sticks.rates is None
-                self.face.hear_status(status, now_us)
+                self.face.receive_status(status, now_us)
             elif number == msp.RC_TUNING and (rates := msp.rates(payload)) is not None:
                 self.face.sticks.rates = rates
 

@@ -86,7 +86,7 @@ class Program:
         with contextlib.suppress(OSError):
             self.clock.serial.send(data)
 
-    def hear(self) -> bytes:
+    def receive(self) -> bytes:
         """What its first serial port has said since."""
         try:
             return self.clock.serial.recv(_READ)

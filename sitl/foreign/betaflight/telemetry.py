@@ -10,13 +10,12 @@ from ...bridge.dialect import message
 from ...core.algebra import euler_of
 from ...core.elementary import hypot
 from ...core.geodesy import add_offset
+from ...core.mavlink import MavLandedState
 from ...physics.native.records import GROUND_AIRBORNE
 from ...plants.local import LocalPlant
 from . import wire
 from .sticks import Sticks
 
-ON_GROUND, IN_AIR = 1, 2
-"""MAV_LANDED_STATE"""
 _UNKNOWN16, _UNKNOWN8 = 65535, 255
 _CELLS = 10
 _PREARM = 0x10000000
@@ -160,7 +159,9 @@ class Telemetry:
         )  # fmt: skip
 
     def _landed(self) -> bytes:
-        return message("EXTENDED_SYS_STATE").payload(landed_state=ON_GROUND if self.is_on_ground else IN_AIR)
+        return message("EXTENDED_SYS_STATE").payload(
+            landed_state=MavLandedState.ON_GROUND if self.is_on_ground else MavLandedState.IN_AIR
+        )
 
     def _time(self) -> bytes:
         return message("SYSTEM_TIME").payload(time_boot_ms=self._ms)

@@ -10,12 +10,11 @@ from collections.abc import Callable, Iterable, Sequence
 from struct import Struct
 from typing import Any, NamedTuple
 
+from ...autopilot.log_events import LogErrorSubsystem, LogEvent
 from ...autopilot.mission.item import MissionItem
 from .common import EVENT_MESSAGES
 from .formats import HEAD, TYPES
 
-EV_AUTO_ARMED, EV_LAND_MAYBE, EV_LANDED = 15, 17, 18
-EV_SET_HOME, EV_NOT_LANDED, EV_ALT_RESET, EV_YAW_RESET = 25, 28, 60, 62
 TEXT_BYTES = 64
 ORIGIN, HOME = 0, 1
 """Type of ORGN."""
@@ -31,12 +30,12 @@ class Edge(NamedTuple):
 
 
 EDGES = (
-    Edge("autopilot.arming.auto_armed", EV_AUTO_ARMED),
-    Edge("autopilot.arming.landed_maybe", EV_LAND_MAYBE),
-    Edge("autopilot.arming.landed", EV_LANDED, EV_NOT_LANDED),
-    Edge("autopilot.home.is_set", EV_SET_HOME),
-    Edge("autopilot.estimate.reset_d_count", EV_ALT_RESET),
-    Edge("autopilot.estimate.reset_yaw_count", EV_YAW_RESET),
+    Edge("autopilot.arming.auto_armed", LogEvent.AUTO_ARMED),
+    Edge("autopilot.arming.landed_maybe", LogEvent.LAND_COMPLETE_MAYBE),
+    Edge("autopilot.arming.landed", LogEvent.LAND_COMPLETE, LogEvent.NOT_LANDED),
+    Edge("autopilot.home.is_set", LogEvent.SET_HOME),
+    Edge("autopilot.estimate.reset_d_count", LogEvent.EKF_ALT_RESET),
+    Edge("autopilot.estimate.reset_yaw_count", LogEvent.EKF_YAW_RESET),
 )
 
 
@@ -49,11 +48,13 @@ class Health(NamedTuple):
     """Field of the vehicle's record: when it was last heard [us since boot]; 0: never, or that is not known."""
 
 
-_COMPASS, _BARO = 3, 18
 SILENCE_US = 500_000
 RESOLVED, UNHEALTHY = 0, 4
 """Codes of ERR."""
-HEALTH = (Health(_BARO, "autopilot.ekf.baro_us"), Health(_COMPASS, "sensors.mag_us[0]"))
+HEALTH = (
+    Health(LogErrorSubsystem.BARO, "autopilot.ekf.baro_us"),
+    Health(LogErrorSubsystem.COMPASS, "sensors.mag_us[0]"),
+)
 
 
 class EventEncoder:

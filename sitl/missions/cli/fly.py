@@ -7,13 +7,13 @@ import argparse
 import math
 from pathlib import Path
 
-from sitl.autopilot.mission.item import NAV_SPLINE_WAYPOINT
 from sitl.bridge.links import open_link
 from sitl.cli import recordings
 from sitl.cli.execute import terminable
 from sitl.cli.fault_options import say_faults
 from sitl.cli.options import add_vehicle_options, build_simulation, open_folder, seconds
 from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown
+from sitl.core.mavlink import MavCmd, MavType
 from sitl.errors import OptionError
 from sitl.run import runner
 from sitl.run.pacing import StoppablePacing, parse_speedup
@@ -26,9 +26,6 @@ from ..files.document import kind_of_type
 from ..files.store import READ_TEXT
 from ..fly import LIMIT_S, Outcome, checked, fly
 from .options import add_file_options, load_all, say_notes
-
-GENERIC = 0
-"""MAV_TYPE_GENERIC"""
 
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -79,7 +76,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
         )
     params = prepare(options, file, entry)
     taken = KINDS[options.vehicle].firmware.commands.taken
-    has_curves = any(item.command == NAV_SPLINE_WAYPOINT for item in file.mission.items)
+    has_curves = any(item.command == MavCmd.NAV_SPLINE_WAYPOINT for item in file.mission.items)
     file = for_vehicle(file, taken)
     say_notes(file)
     folder = open_folder(options.log_dir)
@@ -94,7 +91,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
         log = runner.open_log(simulation, folder, stem)
         if not options.quiet:
             print(f"{file.name}: {len(file.mission) - 1} items, {simulation.airframe.name}")
-            if has_curves and NAV_SPLINE_WAYPOINT not in taken:
+            if has_curves and MavCmd.NAV_SPLINE_WAYPOINT not in taken:
                 print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
             if file.has_fence_or_rally:
                 say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
@@ -141,7 +138,11 @@ def prepare(options: argparse.Namespace, file: MissionFile, entry: library.Entry
         OptionError: the file is for another kind of vehicle.
     """
     kind = entry.kind if entry else file.kind
-    if options.vehicle is None and file.vehicle_type not in (None, GENERIC) and kind_of_type(file.vehicle_type) is None:
+    if (
+        options.vehicle is None
+        and file.vehicle_type not in (None, MavType.GENERIC)
+        and kind_of_type(file.vehicle_type) is None
+    ):
         raise OptionError(
             f"{file.name}: vehicleType {file.vehicle_type} (MAV_TYPE) is none of {', '.join(KINDS)}; "
             "--vehicle says what flies it"

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 
-from sitl.autopilot.mission.item import GLOBAL, NAV_WAYPOINT, RELATIVE, TERRAIN, MissionItem
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.validate import HIGHEST, MAX_ITEMS
 from sitl.core.elementary import cos, sin
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.core.sums import separation
 
 from .document import make
@@ -93,7 +94,12 @@ SURVEY, CORRIDOR, STRUCTURE = "survey", "CorridorScan", "StructureScan"
 KINDS = (SURVEY, CORRIDOR, STRUCTURE)
 LANDINGS = {"fwLandingPattern": "fixed-wing aircraft", "vtolLandingPattern": "VTOL aircraft"}
 STYLE = "TransectStyleComplexItem"
-FRAMES = {1: RELATIVE, 2: GLOBAL, 3: RELATIVE, 4: TERRAIN}
+FRAMES = {
+    1: MavFrame.GLOBAL_RELATIVE_ALT,
+    2: MavFrame.GLOBAL,
+    3: MavFrame.GLOBAL_RELATIVE_ALT,
+    4: MavFrame.GLOBAL_TERRAIN_ALT,
+}
 """CameraCalc.DistanceMode -> frame; 3 is heights above terrain from the ground station, and the ground is flat here."""
 FARTHEST = 1e5
 """Greatest width, spacing, turnaround [m]."""
@@ -174,11 +180,11 @@ def _structure(entry: Node) -> list[MissionItem]:
     if "ScanBottomAlt" in entry:  # version 3
         bottom, top = entry["ScanBottomAlt"].number(-HIGHEST, HIGHEST), entry["StructureHeight"].number(0.0, HIGHEST)
         entrance = entry["EntranceAltitude"].number(-HIGHEST, HIGHEST)
-        falls, frame = entry.get("StartFromTop", False).flag, RELATIVE
+        falls, frame = entry.get("StartFromTop", False).flag, MavFrame.GLOBAL_RELATIVE_ALT
     else:
         bottom = entrance = entry["Altitude"].number(-HIGHEST, HIGHEST)
         top, falls = bottom, False
-        frame = RELATIVE if entry.get("altitudeRelative", True).flag else GLOBAL
+        frame = MavFrame.GLOBAL_RELATIVE_ALT if entry.get("altitudeRelative", True).flag else MavFrame.GLOBAL
     layers = entry["Layers"].number(1.0, MAX_ITEMS)
     _limit(entry, layers * (len(ring) + 1))
     heights = [top - layer * (k + 0.5) if falls else bottom + layer * (k + 0.5) for k in range(int(layers))]
@@ -206,7 +212,9 @@ def _height(style: Node) -> tuple[float, int]:
     height = camera["DistanceToSurface"].number(-HIGHEST, HIGHEST)
     if "DistanceMode" in camera:
         return height, FRAMES[camera["DistanceMode"].whole(*FRAMES)]
-    return height, RELATIVE if camera.get("DistanceToSurfaceRelative", True).flag else GLOBAL
+    return height, MavFrame.GLOBAL_RELATIVE_ALT if camera.get(
+        "DistanceToSurfaceRelative", True
+    ).flag else MavFrame.GLOBAL
 
 
 def _limit(entry: Node, lines: float) -> None:
@@ -217,4 +225,4 @@ def _limit(entry: Node, lines: float) -> None:
 
 def _waypoint(plane: Plane, point: Point, height: float, frame: int, entry: Node) -> MissionItem:
     lat, lon = plane.place(point)
-    return make(NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, math.nan, lat, lon, height), 1, entry.where)
+    return make(MavCmd.NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, math.nan, lat, lon, height), 1, entry.where)

@@ -9,31 +9,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from sitl.autopilot.mission import validate
-from sitl.autopilot.mission.item import (
-    COMMANDS,
-    FENCE_CIRCLE,
-    FENCE_CIRCLE_OUT,
-    FENCE_EXCLUSION,
-    FENCE_INCLUSION,
-    FENCE_RETURN_POINT,
-    NAV_LAND,
-    NAV_TAKEOFF,
-    NUMBER_COMMANDS,
-    RALLY_POINT,
-    RELATIVE,
-    MissionItem,
-)
+from sitl.autopilot.mission.item import COMMANDS, NUMBER_COMMANDS, MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.validate import HIGHEST, PLACE_FRAMES
+from sitl.core.mavlink import MavAutopilot, MavCmd, MavFrame, MavMissionResult
 from sitl.errors import OptionError
 from sitl.vehicle.kinds import KINDS
 
 from .plane import Place
-
-FIXED_WING, QUADROTOR, GROUND_ROVER, BOAT = 1, 2, 10, 11
-"""MAV_TYPE"""
-ARDUPILOT = 3
-"""MAV_AUTOPILOT_ARDUPILOTMEGA"""
 
 
 def kind_of_type(vehicle_type: int | None) -> str | None:
@@ -51,7 +34,7 @@ class FenceCircle:
     """[m]"""
     inclusion: bool = True
     """To stay inside; else to stay out."""
-    frame: int = RELATIVE
+    frame: int = MavFrame.GLOBAL_RELATIVE_ALT
     """MAV_FRAME of the items; a fence has no height of its own."""
 
 
@@ -61,7 +44,7 @@ class FencePolygon:
 
     corners: tuple[Place, ...]
     inclusion: bool = True
-    frame: int = RELATIVE
+    frame: int = MavFrame.GLOBAL_RELATIVE_ALT
 
 
 @dataclass(frozen=True)
@@ -71,7 +54,7 @@ class RallyPoint:
     place: Place
     height: float
     """[m] in the frame."""
-    frame: int = RELATIVE
+    frame: int = MavFrame.GLOBAL_RELATIVE_ALT
     """MAV_FRAME; RELATIVE: above home."""
 
 
@@ -99,7 +82,7 @@ class MissionFile:
     """Path, for messages."""
     vehicle_type: int | None = None
     """MAV_TYPE; None: the format does not say."""
-    firmware_type: int = ARDUPILOT
+    firmware_type: int = MavAutopilot.ARDUPILOTMEGA
     """MAV_AUTOPILOT"""
     cruise_speed: float | None = None
     """Planned speed of vehicles on wings or wheels [m/s]; no mission item carries it."""
@@ -130,7 +113,7 @@ class MissionFile:
         kind = kind_of_type(self.vehicle_type)
         if kind is not None:
             return kind
-        flies = any(item.command in (NAV_TAKEOFF, NAV_LAND) for item in self.mission.items)
+        flies = any(item.command in (MavCmd.NAV_TAKEOFF, MavCmd.NAV_LAND) for item in self.mission.items)
         return next(name for name, kind in KINDS.items() if kind.flies) if flies else None
 
     @property
@@ -142,19 +125,25 @@ class MissionFile:
     def fence_items(self) -> tuple[MissionItem, ...]:
         """The geofence as a vehicle takes it: point of return, polygons, circles."""
         back = self.breach_return
-        items = [] if back is None else [_at(FENCE_RETURN_POINT, (back[0], back[1]), z=back[2])]
+        items = [] if back is None else [_at(MavCmd.NAV_FENCE_RETURN_POINT, (back[0], back[1]), z=back[2])]
         for polygon in self.polygons:
-            command = FENCE_INCLUSION if polygon.inclusion else FENCE_EXCLUSION
+            command = (
+                MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION
+                if polygon.inclusion
+                else MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+            )
             items += [_at(command, corner, len(polygon.corners), frame=polygon.frame) for corner in polygon.corners]
         for circle in self.circles:
-            command = FENCE_CIRCLE if circle.inclusion else FENCE_CIRCLE_OUT
+            command = MavCmd.NAV_FENCE_CIRCLE_INCLUSION if circle.inclusion else MavCmd.NAV_FENCE_CIRCLE_EXCLUSION
             items.append(_at(command, circle.centre, circle.radius, frame=circle.frame))
         return tuple(items)
 
     @property
     def rally_items(self) -> tuple[MissionItem, ...]:
         """The rally points as a vehicle takes them."""
-        return tuple(_at(RALLY_POINT, point.place, z=point.height, frame=point.frame) for point in self.rally)
+        return tuple(
+            _at(MavCmd.NAV_RALLY_POINT, point.place, z=point.height, frame=point.frame) for point in self.rally
+        )
 
     def simple(self) -> MissionFile:
         """A copy in which complex items are replaced by their simple items."""
@@ -197,7 +186,9 @@ def make(
     for k in range(7):
         if math.isfinite(values[k]) and abs(values[k]) > LARGEST:
             if k in (4, 5) and COMMANDS[command].has_place:
-                raise MissionFileError(f"{where}: {_reason(validate.INVALID_PARAM1 + k, command, frame, values)}")
+                raise MissionFileError(
+                    f"{where}: {_reason(MavMissionResult.INVALID_PARAM1 + k, command, frame, values)}"
+                )
             raise MissionFileError(
                 f"{where}: parameter {k + 1} is {values[k]}: it is within +-{LARGEST:.2g}, MAVLink's single precision"
             )
@@ -207,9 +198,9 @@ def make(
         raise MissionFileError(f"{where}: parameter {k} is {values[k - 1]}: a whole number is needed{_of(command)}")
     item = MissionItem(command, frame, p1, p2, p3, p4, round(x * scale), round(y * scale), z, autocontinue, current)
     result = validate.check(item, COMMANDS)
-    if result == validate.ACCEPTED and not COMMANDS[command].has_place:
+    if result == MavMissionResult.ACCEPTED and not COMMANDS[command].has_place:
         result = _numbers(item)
-    if result != validate.ACCEPTED:
+    if result != MavMissionResult.ACCEPTED:
         raise MissionFileError(f"{where}: {_reason(result, command, frame, values)}")
     return item
 
@@ -217,10 +208,10 @@ def make(
 def _numbers(item: MissionItem) -> int:
     """Result for parameters 5 to 7 where no place stands: files have numbers there that MAVLink carries."""
     if abs(item.x) > INT32_MAX:
-        return validate.INVALID_PARAM5_X
+        return MavMissionResult.INVALID_PARAM5_X
     if abs(item.y) > INT32_MAX:
-        return validate.INVALID_PARAM6_Y
-    return validate.ACCEPTED if math.isfinite(item.z) else validate.INVALID_PARAM7
+        return MavMissionResult.INVALID_PARAM6_Y
+    return MavMissionResult.ACCEPTED if math.isfinite(item.z) else MavMissionResult.INVALID_PARAM7
 
 
 def _of(command: int) -> str:
@@ -230,22 +221,22 @@ def _of(command: int) -> str:
 def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) -> str:
     """Reason for the refusal of an item, in words."""
     of = _of(command)
-    if result == validate.UNSUPPORTED_FRAME:
+    if result == MavMissionResult.UNSUPPORTED_FRAME:
         known = ", ".join(f"{number} {FRAME_NAMES[number]}" for number in PLACE_FRAMES)
         return f"frame {frame} is not known for places; known are {known}{of}"
-    if result == validate.ERROR:
+    if result == MavMissionResult.ERROR:
         said = "item 0 is home" if int(values[0]) == 0 else "items are numbered from 1, home is 0"
         return f"DO_JUMP to item {values[0]:g} cannot be flown: {said}{of}"
-    k = result - validate.INVALID_PARAM1
+    k = result - MavMissionResult.INVALID_PARAM1
     value = values[k]
     if not COMMANDS[command].has_place or k < 4:
         if math.isfinite(value):
             limit = f"{INT32_MAX * (1e-7 if has_degrees(command) else 1.0):.10g}"
             return f"parameter {k + 1} is {value}: it is within +-{limit}, which MAVLink carries{of}"
         return f"parameter {k + 1} is {value}: a finite number is needed{of}"
-    if result == validate.INVALID_PARAM5_X:
+    if result == MavMissionResult.INVALID_PARAM5_X:
         return f"latitude {value} is not within -90 .. 90 degrees{of}"
-    if result == validate.INVALID_PARAM6_Y:
+    if result == MavMissionResult.INVALID_PARAM6_Y:
         return f"longitude {value} is not within -180 .. 180 degrees{of}"
     return f"altitude {value} is not a number of metres within +-{HIGHEST:g}{of}"
 
@@ -261,6 +252,8 @@ def numbers(item: MissionItem) -> tuple[float, ...]:
     return (item.p1, item.p2, item.p3, item.p4, x, y, item.z)
 
 
-def _at(command: int, place: Place, p1: float = 0.0, z: float = 0.0, frame: int = RELATIVE) -> MissionItem:
+def _at(
+    command: int, place: Place, p1: float = 0.0, z: float = 0.0, frame: int = MavFrame.GLOBAL_RELATIVE_ALT
+) -> MissionItem:
     lat, lon = place
     return MissionItem(command, frame, float(p1), x=round(lat * 1e7), y=round(lon * 1e7), z=z)

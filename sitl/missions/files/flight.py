@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Container
 from dataclasses import replace
 
-from sitl.autopilot.mission.item import NAV_RETURN_TO_LAUNCH, NAV_SPLINE_WAYPOINT, NAV_TAKEOFF, MissionItem
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
+from sitl.core.mavlink import MavCmd
 
 from .document import MissionFile
 from .splines import straightened
@@ -18,8 +19,8 @@ def for_vehicle(file: MissionFile, taken: Container[int]) -> MissionFile:
 
     A bare path gets a take-off and a return where there is such a thing; curves become waypoints where there are none.
     """
-    file = as_flight(file) if NAV_TAKEOFF in taken else file
-    return file if NAV_SPLINE_WAYPOINT in taken else straightened(file)
+    file = as_flight(file) if MavCmd.NAV_TAKEOFF in taken else file
+    return file if MavCmd.NAV_SPLINE_WAYPOINT in taken else straightened(file)
 
 
 def as_flight(file: MissionFile) -> MissionFile:
@@ -27,5 +28,7 @@ def as_flight(file: MissionFile) -> MissionFile:
     if not file.is_path:
         return file
     home, *path = file.mission.items
-    take_off = MissionItem(NAV_TAKEOFF, path[0].frame, z=path[0].z)
-    return replace(file, is_path=False, mission=Mission.of([home, take_off, *path, MissionItem(NAV_RETURN_TO_LAUNCH)]))
+    take_off = MissionItem(MavCmd.NAV_TAKEOFF, path[0].frame, z=path[0].z)
+    return replace(
+        file, is_path=False, mission=Mission.of([home, take_off, *path, MissionItem(MavCmd.NAV_RETURN_TO_LAUNCH)])
+    )

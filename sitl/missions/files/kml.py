@@ -17,9 +17,10 @@ import zlib
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from sitl.autopilot.mission.item import GLOBAL, NAV_WAYPOINT, RELATIVE, TERRAIN, MissionItem, home_item
+from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.validate import MAX_ITEMS
+from sitl.core.mavlink import MavCmd, MavFrame
 
 from .document import FencePolygon, MissionFile, MissionFileError, make
 from .json_reader import shown
@@ -30,7 +31,7 @@ LARGEST, LARGEST_TEXT = 16 * 1024 * 1024, 1024 * 1024
 MOST_MEMBERS, MOST_ELEMENTS, DEEPEST = 1000, 200_000, 64
 """Files in an archive; elements of a document, and how deep they lie in each other."""
 ABSOLUTE, ABOVE_GROUND = "absolute", "relativeToGround"
-FRAMES = {ABSOLUTE: GLOBAL, ABOVE_GROUND: TERRAIN}
+FRAMES = {ABSOLUTE: MavFrame.GLOBAL, ABOVE_GROUND: MavFrame.GLOBAL_TERRAIN_ALT}
 """altitudeMode -> frame; of the others (clampToGround, sea floor) heights say nothing."""
 LINES, RING = ("LineString", "Track"), "LinearRing"
 
@@ -167,7 +168,7 @@ def parse(data: bytes, name: str = "mission", altitude: float | None = None) -> 
         raise MissionFileError(f"{name}: no path (LineString, gx:Track) and no polygon; {reader.points} single places")
     mission = Mission.of(_items(paths[0], name, altitude)) if paths else Mission()
     said = "heights are above the sea; the file does not say how high the ground is (--home LAT,LON,ALT,HEADING)"
-    over_sea = any(item.frame == GLOBAL for item in mission.items[1:])
+    over_sea = any(item.frame == MavFrame.GLOBAL for item in mission.items[1:])
     return MissionFile(mission, name, polygons=polygons, is_path=bool(paths), notes=(said,) if over_sea else ())
 
 
@@ -183,12 +184,12 @@ def _items(path: Shape, name: str, altitude: float | None) -> list[MissionItem]:
             "(--altitude METRES above home, or altitude=)"
         )
     if altitude is not None or frame is None:
-        frame = RELATIVE
+        frame = MavFrame.GLOBAL_RELATIVE_ALT
     lat, lon, _ = path.places[0]
     items = [home_item(round(lat * 1e7), round(lon * 1e7), 0.0)]
     for lat, lon, height in path.places:
         height = height if altitude is None else altitude
-        items.append(make(NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, 0.0, lat, lon, height), 1, where))
+        items.append(make(MavCmd.NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, 0.0, lat, lon, height), 1, where))
     return items
 
 

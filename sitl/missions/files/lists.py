@@ -10,15 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from sitl.autopilot.mission.item import (
-    FENCE_CIRCLE,
-    FENCE_CIRCLE_OUT,
-    FENCE_INCLUSION,
-    FENCE_RETURN_POINT,
-    GLOBAL,
-    MissionItem,
-)
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
+from sitl.core.mavlink import MavCmd, MavFrame
 
 from .document import FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint, degrees
 from .plane import Place
@@ -42,10 +36,10 @@ def of_fence(items: list[MissionItem], lines: list[str]) -> MissionFile:
     while k < len(items):
         item = items[k]
         place = degrees(item)
-        if item.command == FENCE_RETURN_POINT:
+        if item.command == MavCmd.NAV_FENCE_RETURN_POINT:
             back = (*place, item.z)
-        elif item.command in (FENCE_CIRCLE, FENCE_CIRCLE_OUT):
-            circles.append(FenceCircle(place, item.p1, item.command == FENCE_CIRCLE, item.frame))
+        elif item.command in (MavCmd.NAV_FENCE_CIRCLE_INCLUSION, MavCmd.NAV_FENCE_CIRCLE_EXCLUSION):
+            circles.append(FenceCircle(place, item.p1, item.command == MavCmd.NAV_FENCE_CIRCLE_INCLUSION, item.frame))
         else:
             count = int(item.p1)
             corners = [i for i in items[k : k + max(count, 1)] if (i.command, i.p1) == (item.command, item.p1)]
@@ -54,7 +48,11 @@ def of_fence(items: list[MissionItem], lines: list[str]) -> MissionFile:
                     f"{lines[k]}: a polygon of {item.p1:g} corners begins here, and {len(corners)} follow; "
                     f"it has {FEWEST} or more, and parameter 1 of each says how many"
                 )
-            polygons.append(FencePolygon(tuple(map(degrees, corners)), item.command == FENCE_INCLUSION, item.frame))
+            polygons.append(
+                FencePolygon(
+                    tuple(map(degrees, corners)), item.command == MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, item.frame
+                )
+            )
             k += count - 1
         k += 1
     return MissionFile(Mission(), circles=tuple(circles), polygons=tuple(polygons), breach_return=back)
@@ -85,7 +83,9 @@ def parse_fence(text: str, name: str) -> MissionFile:
             "polygon that begins behind it. Put a place to return to first, or name the file .poly, a bare polygon"
         )
     corners = tuple(place for place, _ in places[1:-1])
-    return MissionFile(Mission(), name, polygons=(FencePolygon(corners, frame=GLOBAL),), breach_return=(*back, 0.0))
+    return MissionFile(
+        Mission(), name, polygons=(FencePolygon(corners, frame=MavFrame.GLOBAL),), breach_return=(*back, 0.0)
+    )
 
 
 def parse_polygon(text: str, name: str) -> MissionFile:

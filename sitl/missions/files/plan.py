@@ -11,23 +11,13 @@ import json
 import math
 from typing import Any
 
-from sitl.autopilot.mission.item import COMMANDS, DO_JUMP, GLOBAL, NAV_WAYPOINT, RELATIVE, RELATIVE_FRAMES, MissionItem
+from sitl.autopilot.mission.item import COMMANDS, RELATIVE_FRAMES, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.mission.validate import MAY_BE_NAN
+from sitl.core.mavlink import MavAutopilot, MavCmd, MavFrame, MavType
 
 from . import complex_items
-from .document import (
-    ARDUPILOT,
-    QUADROTOR,
-    Complex,
-    FenceCircle,
-    FencePolygon,
-    MissionFile,
-    MissionFileError,
-    RallyPoint,
-    make,
-    numbers,
-)
+from .document import Complex, FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint, make, numbers
 from .json_reader import Node
 
 FARTHEST = 1e6
@@ -71,7 +61,7 @@ def parse(text: str, name: str = "mission") -> MissionFile:
         mission,
         name,
         vehicle_type=found["vehicleType"].whole() if "vehicleType" in found else None,
-        firmware_type=found.get("firmwareType", ARDUPILOT).whole(),
+        firmware_type=found.get("firmwareType", MavAutopilot.ARDUPILOTMEGA).whole(),
         cruise_speed=found["cruiseSpeed"].number(0.0) if "cruiseSpeed" in found else None,
         hover_speed=found["hoverSpeed"].number(0.0) if "hoverSpeed" in found else None,
         circles=tuple(_circle(entry) for entry in fence.get("circles", [])),
@@ -86,7 +76,7 @@ def _mission(found: Node) -> tuple[list[MissionItem], list[Complex]]:
     """Home and the items of the object "mission"."""
     home = tuple(0.0 if math.isnan(v) else v for v in found.get("plannedHomePosition", [0.0, 0.0, 0.0]).numbers(3))
     where = found.get("plannedHomePosition", None).where
-    items = [make(NAV_WAYPOINT, GLOBAL, (0.0, 0.0, 0.0, 0.0, *home), 1, where)]
+    items = [make(MavCmd.NAV_WAYPOINT, MavFrame.GLOBAL, (0.0, 0.0, 0.0, 0.0, *home), 1, where)]
     complexes: list[Complex] = []
     numbers: dict[int, int] = {}
     """doJumpId -> number of the item."""
@@ -124,7 +114,7 @@ def _add(items: list[MissionItem], entry: Node, numbers: dict[int, int], jumps: 
         numbers.setdefault(entry["doJumpId"].whole(), len(items))
     else:
         numbers.setdefault(len(items), len(items))
-    if item.command == DO_JUMP:
+    if item.command == MavCmd.DO_JUMP:
         jumps.append((len(items), entry))
     items.append(item)
 
@@ -139,7 +129,10 @@ def plan_simple(entry: Node) -> MissionItem:
     values = entry["params"].numbers(7)
     command, frame = entry["command"].whole(), entry["frame"].whole()
     if math.isnan(values[6]) and entry.get("AltitudeMode", 0).value == ABOVE_TERRAIN and "Altitude" in entry:
-        values, frame = (*values[:6], entry["Altitude"].number()), RELATIVE  # the ground is flat, as high as home
+        values, frame = (
+            (*values[:6], entry["Altitude"].number()),
+            MavFrame.GLOBAL_RELATIVE_ALT,
+        )  # the ground is flat, as high as home
     is_nav = command in COMMANDS and COMMANDS[command].is_nav
     may_be_nan = {1, 2, 3} if is_nav else set()  # of navigation commands the first three are asked for
     may_be_nan |= {*MAY_BE_NAN.get(command, ())}
@@ -193,7 +186,7 @@ def write(file: MissionFile) -> str:
             "hoverSpeed": HOVER_SPEED if file.hover_speed is None else file.hover_speed,
             "items": _entries(items, {c.first: c for c in file.complexes}),
             "plannedHomePosition": [round(home[0], 8), round(home[1], 8), home[2]],
-            "vehicleType": QUADROTOR if file.vehicle_type is None else file.vehicle_type,
+            "vehicleType": MavType.QUADROTOR if file.vehicle_type is None else file.vehicle_type,
             "version": 2,
         },
         "rallyPoints": {"points": [_rally(point, file.name) for point in file.rally], "version": 2},

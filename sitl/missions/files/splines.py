@@ -10,15 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from sitl.autopilot.mission.item import (
-    DO_JUMP,
-    NAV_LOITER_TIME,
-    NAV_LOITER_UNLIM,
-    NAV_SPLINE_WAYPOINT,
-    NAV_WAYPOINT,
-    MissionItem,
-)
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
+from sitl.core.mavlink import MavCmd
 from sitl.core.sums import separation
 
 from .document import MissionFile, MissionFileError
@@ -27,7 +21,7 @@ from .plane import Plane
 PIECE = 5.0
 """A curve is cut into pieces of about this length [m], at least two; shorter ones make the vehicle slow."""
 PIECES_MAX = 24
-_PLACES = (NAV_WAYPOINT, NAV_SPLINE_WAYPOINT, NAV_LOITER_TIME, NAV_LOITER_UNLIM)
+_PLACES = (MavCmd.NAV_WAYPOINT, MavCmd.NAV_SPLINE_WAYPOINT, MavCmd.NAV_LOITER_TIME, MavCmd.NAV_LOITER_UNLIM)
 
 Point = tuple[float, float, float]
 
@@ -39,14 +33,14 @@ def straightened(file: MissionFile) -> MissionFile:
         MissionFileError: a spline waypoint without a place, or more items than a mission holds.
     """
     items = file.mission.items
-    if not any(item.command == NAV_SPLINE_WAYPOINT for item in items):
+    if not any(item.command == MavCmd.NAV_SPLINE_WAYPOINT for item in items):
         return file
     plane = Plane((items[0].x * 1e-7, items[0].y * 1e-7))
     new: list[MissionItem] = []
     numbers: dict[int, int] = {}
     for seq, item in enumerate(items):
         numbers[seq] = len(new)
-        if item.command != NAV_SPLINE_WAYPOINT:
+        if item.command != MavCmd.NAV_SPLINE_WAYPOINT:
             new.append(item)
             continue
         if item.no_place:
@@ -54,11 +48,13 @@ def straightened(file: MissionFile) -> MissionFile:
         for point in _curve(items, seq, plane)[:-1]:
             lat, lon = plane.place(point[:2])
             new.append(
-                MissionItem(NAV_WAYPOINT, item.frame, p4=item.p4, x=round(lat * 1e7), y=round(lon * 1e7), z=point[2])
+                MissionItem(
+                    MavCmd.NAV_WAYPOINT, item.frame, p4=item.p4, x=round(lat * 1e7), y=round(lon * 1e7), z=point[2]
+                )
             )
-        new.append(item._replace(command=NAV_WAYPOINT))
+        new.append(item._replace(command=MavCmd.NAV_WAYPOINT))
     numbers[len(items)] = len(new)
-    jumped = [i._replace(p1=float(numbers.get(int(i.p1), i.p1))) if i.command == DO_JUMP else i for i in new]
+    jumped = [i._replace(p1=float(numbers.get(int(i.p1), i.p1))) if i.command == MavCmd.DO_JUMP else i for i in new]
     complexes = tuple(replace(c, first=numbers[c.first]) for c in file.complexes)
     try:
         return replace(file, mission=Mission.of(jumped), complexes=complexes)
@@ -88,7 +84,7 @@ def _start_direction(items: tuple[MissionItem, ...], seq: int, plane: Plane) -> 
     before, here = _neighbour(items, k, -1, plane), _point(items[k], plane)
     if before is None:
         return None
-    ahead = _point(items[seq], plane) if items[k].command == NAV_SPLINE_WAYPOINT else here
+    ahead = _point(items[seq], plane) if items[k].command == MavCmd.NAV_SPLINE_WAYPOINT else here
     return _unit(before, ahead)
 
 
@@ -97,7 +93,7 @@ def _end_direction(items: tuple[MissionItem, ...], seq: int, start: Point, plane
     k = _beside(items, seq, 1)
     if k is None or items[seq].p1 > 0.0:
         return None
-    behind = start if items[k].command == NAV_SPLINE_WAYPOINT else _point(items[seq], plane)
+    behind = start if items[k].command == MavCmd.NAV_SPLINE_WAYPOINT else _point(items[seq], plane)
     return _unit(behind, _point(items[k], plane))
 
 

@@ -10,18 +10,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from sitl.autopilot.mission.item import (
-    DO_JUMP,
-    FENCE_COMMANDS,
-    NAV_LAND,
-    NAV_LOITER_UNLIM,
-    NAV_RETURN_TO_LAUNCH,
-    NAV_TAKEOFF,
-    NAV_WAYPOINT,
-    RALLY_POINT,
-    MissionItem,
-)
+from sitl.autopilot.mission.item import FENCE_COMMANDS, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
+from sitl.core.mavlink import MavCmd
 
 from .document import MissionFile, MissionFileError, make, numbers
 from .lists import of_fence, of_rally
@@ -30,8 +21,9 @@ HEADER, OLD_HEADER = "QGC WPL 110", "QGC WPL 100"
 COLUMNS = ("index", "current", "frame", "command", "p1", "p2", "p3", "p4", "x", "y", "z", "autocontinue")
 OLD_COLUMNS = ("index", "frame", "command", "p3", "p4", "p1", "p2", "current", "y", "x", "z", "unused", "autocontinue")
 OLD_COMMANDS = {
-    2: NAV_TAKEOFF, 3: NAV_RETURN_TO_LAUNCH, 4: NAV_LAND, 24: NAV_TAKEOFF, 25: NAV_WAYPOINT, 26: NAV_LAND,
-    27: NAV_LOITER_UNLIM,
+    2: MavCmd.NAV_TAKEOFF, 3: MavCmd.NAV_RETURN_TO_LAUNCH, 4: MavCmd.NAV_LAND, 24: MavCmd.NAV_TAKEOFF,
+    25: MavCmd.NAV_WAYPOINT, 26: MavCmd.NAV_LAND,
+    27: MavCmd.NAV_LOITER_UNLIM,
 }  # fmt: skip
 """Actions of the old format -> MAV_CMD."""
 SAVE_ANEW = f"open it in the program that wrote it, or in QGroundControl, and save it as {HEADER!r} or .plan"
@@ -69,7 +61,7 @@ def parse(text: str, name: str = "mission") -> MissionFile:
             command = _old_command(command, where)
         if not items:
             first = index
-            command = NAV_WAYPOINT if command == index == 0 else command
+            command = MavCmd.NAV_WAYPOINT if command == index == 0 else command
         values = tuple(_number(cells[k], f"{where}: {k}") for k in COLUMNS[4:11])
         items.append(make(command, frame, values, autocontinue, where, current))
         places.append(where)
@@ -78,18 +70,18 @@ def parse(text: str, name: str = "mission") -> MissionFile:
 
 def _file(items: list[MissionItem], places: list[str], first: int, name: str) -> MissionFile:
     """What the items are: a mission, a fence, or rally points. Mission Planner puts home before the latter two."""
-    listed = items[1:] if len(items) > 1 and items[0].command == NAV_WAYPOINT else items
+    listed = items[1:] if len(items) > 1 and items[0].command == MavCmd.NAV_WAYPOINT else items
     lines = places[len(places) - len(listed) :]
-    for kinds, read in ((FENCE_COMMANDS, of_fence), ((RALLY_POINT,), of_rally)):
+    for kinds, read in ((FENCE_COMMANDS, of_fence), ((MavCmd.NAV_RALLY_POINT,), of_rally)):
         if listed and all(item.command in kinds for item in listed):
             return replace(read(listed, lines), name=name)
     for item, where in zip(items, places, strict=True):
-        if item.command in (*FENCE_COMMANDS, RALLY_POINT):
+        if item.command in (*FENCE_COMMANDS, MavCmd.NAV_RALLY_POINT):
             raise MissionFileError(
                 f"{where}: command {item.command} is of a fence or of rally points, the others are of a mission: "
                 "each list is a file of its own"
             )
-        if item.command == DO_JUMP and int(item.p1) not in range(1, len(items)):
+        if item.command == MavCmd.DO_JUMP and int(item.p1) not in range(1, len(items)):
             raise MissionFileError(f"{where}: p1: DO_JUMP to {item.p1:g}; there are items 1 to {len(items) - 1}")
     try:
         mission = Mission.of(items)

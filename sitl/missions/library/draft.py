@@ -11,6 +11,7 @@ from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.core.elementary import cos, sin
 from sitl.core.geodesy import add_offset
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.physics.native.power_on import DEFAULT_HOME
 from sitl.vehicle.kinds import KINDS
 
@@ -47,7 +48,12 @@ class Draft:
         return len(self._items)
 
     def add(
-        self, command: int, *params: float, at: Place | None = None, z: float = 0.0, frame: int = c.RELATIVE
+        self,
+        command: int,
+        *params: float,
+        at: Place | None = None,
+        z: float = 0.0,
+        frame: int = MavFrame.GLOBAL_RELATIVE_ALT,
     ) -> Draft:
         """Add any command; ``at``: north, east of home [m]."""
         p1, p2, p3, p4 = (*params, *(0.0,) * (4 - len(params)))
@@ -57,36 +63,40 @@ class Draft:
 
     def take_off(self, height: float) -> Draft:
         """Take off vertically to a height above home [m]."""
-        return self.add(c.NAV_TAKEOFF, z=height)
+        return self.add(MavCmd.NAV_TAKEOFF, z=height)
 
-    def to(self, *places: tuple[float, ...], z: float = 0.0, wait: float = 0.0, frame: int = c.RELATIVE) -> Draft:
+    def to(
+        self, *places: tuple[float, ...], z: float = 0.0, wait: float = 0.0, frame: int = MavFrame.GLOBAL_RELATIVE_ALT
+    ) -> Draft:
         """Waypoints (north, east[, height above home]) [m]."""
         for place in places:
-            self.add(c.NAV_WAYPOINT, wait, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z, frame=frame)
+            self.add(
+                MavCmd.NAV_WAYPOINT, wait, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z, frame=frame
+            )
         return self
 
     def curve(self, *places: tuple[float, ...], z: float = 0.0) -> Draft:
         """Spline waypoints (north, east[, height above home]) [m]."""
         for place in places:
-            self.add(c.NAV_SPLINE_WAYPOINT, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z)
+            self.add(MavCmd.NAV_SPLINE_WAYPOINT, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z)
         return self
 
     def land(self, at: Place | None = None) -> Draft:
         """Land at north, east [m]; None: at the current position."""
-        return self.add(c.NAV_LAND, at=at)
+        return self.add(MavCmd.NAV_LAND, at=at)
 
     def home(self) -> Draft:
         """Return to launch."""
-        return self.add(c.NAV_RETURN_TO_LAUNCH)
+        return self.add(MavCmd.NAV_RETURN_TO_LAUNCH)
 
     def pace(self, speed: float) -> Draft:
         """Ground speed from here on [m/s]."""
         self.speed = self.speed or speed
-        return self.add(c.DO_CHANGE_SPEED, 1.0, speed, -1.0)
+        return self.add(MavCmd.DO_CHANGE_SPEED, 1.0, speed, -1.0)
 
     def jump(self, seq: int, times: int) -> Draft:
         """Jump to an item ``times`` times."""
-        return self.add(c.DO_JUMP, float(seq), float(times))
+        return self.add(MavCmd.DO_JUMP, float(seq), float(times))
 
     def complex(self, entry: dict[str, Any]) -> Draft:
         """Add a survey, corridor or structure by its description in the plan format."""

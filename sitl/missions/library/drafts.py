@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.autopilot.mission import item as c
 from sitl.core.elementary import cos, sin
+from sitl.core.mavlink import MavCmd, MavFrame
 
 from .draft import Draft, FenceCircle, FencePolygon, RallyPoint, circle, degrees, survey, transects
 
@@ -59,35 +59,38 @@ def copter_drafts() -> dict[str, Draft]:
             "version": 3,
         }).home(),
         "delivery": copter("Two places served: down to 2 m, wait 5 s, up again, on; then home")
-        .take_off(UP).pace(6.0).to((30, 0), z=UP).to((30, 0), z=2.0).add(c.NAV_DELAY, 5, -1, -1, -1)
-        .to((30, 0), (15, 25), z=UP).to((15, 25), z=2.0).add(c.NAV_DELAY, 5, -1, -1, -1).to((15, 25), z=UP).home(),
+        .take_off(UP).pace(6.0).to((30, 0), z=UP).to((30, 0), z=2.0).add(MavCmd.NAV_DELAY, 5, -1, -1, -1)
+        .to((30, 0), (15, 25), z=UP).to((15, 25), z=2.0).add(MavCmd.NAV_DELAY, 5, -1, -1, -1).to((15, 25), z=UP).home(),
         "jump_loop": copter("To and fro three times by a jump, then land", text=True)
         .take_off(UP).to((15, 0), (0, 0), z=UP).jump(2, 2).land(),
         "nested_jumps": copter("A short loop within a longer one, each flown twice")
         .take_off(UP).to((12, 0), (12, 8), z=UP).jump(2, 1).to((0, 8), (0, 0), z=UP).jump(2, 1).land(),
         "circles": copter("Two turns clockwise on 8 m, one counter-clockwise on 6 m")
-        .take_off(UP).add(c.NAV_LOITER_TURNS, 2, 0, 8, 1, at=(20, 0), z=UP)
-        .add(c.NAV_LOITER_TURNS, 1, 0, -6, 1, at=(20, 25), z=12.0).home(),
+        .take_off(UP).add(MavCmd.NAV_LOITER_TURNS, 2, 0, 8, 1, at=(20, 0), z=UP)
+        .add(MavCmd.NAV_LOITER_TURNS, 1, 0, -6, 1, at=(20, 25), z=12.0).home(),
         "loiter_times": copter("Stays of 3, 5 and 2 seconds at three places", text=True)
-        .take_off(UP).add(c.NAV_LOITER_TIME, 3, at=(15, 0), z=UP).add(c.NAV_LOITER_TIME, 5, at=(15, 15), z=8.0)
-        .add(c.NAV_LOITER_TIME, 2, at=(0, 15), z=UP).home(),
+        .take_off(UP).add(MavCmd.NAV_LOITER_TIME, 3, at=(15, 0), z=UP)
+        .add(MavCmd.NAV_LOITER_TIME, 5, at=(15, 15), z=8.0)
+        .add(MavCmd.NAV_LOITER_TIME, 2, at=(0, 15), z=UP).home(),
         "speed_changes": copter("Legs of 30 m at 2, 4, 8 and 3 m/s, climbs at 1 and 2 m/s")
         .take_off(UP).pace(2.0).to((30, 0), z=UP).pace(4.0).to((30, 30), z=UP)
-        .add(c.DO_CHANGE_SPEED, 2, 1.0, -1).to((30, 30), z=15.0).pace(8.0).to((0, 30), z=15.0).pace(3.0)
-        .add(c.DO_CHANGE_SPEED, 3, 1.0, -1).to((0, 0), z=UP).land(),
+        .add(MavCmd.DO_CHANGE_SPEED, 2, 1.0, -1).to((30, 30), z=15.0).pace(8.0).to((0, 30), z=15.0).pace(3.0)
+        .add(MavCmd.DO_CHANGE_SPEED, 3, 1.0, -1).to((0, 0), z=UP).land(),
         "yaw": copter("Headings on the way: absolute, relative both ways, at several rates")
-        .take_off(UP).pace(3.0).to((10, 0), z=UP).add(c.CONDITION_YAW, 90, 30, 1, 0).to((25, 0), z=UP)
-        .add(c.CONDITION_YAW, 60, 20, -1, 1).to((25, 20), z=UP).add(c.CONDITION_YAW, 45, 45, 1, 1).to((0, 20), z=UP)
+        .take_off(UP).pace(3.0).to((10, 0), z=UP).add(MavCmd.CONDITION_YAW, 90, 30, 1, 0).to((25, 0), z=UP)
+        .add(MavCmd.CONDITION_YAW, 60, 20, -1, 1).to((25, 20), z=UP).add(MavCmd.CONDITION_YAW, 45, 45, 1, 1)
+        .to((0, 20), z=UP)
         .land(),
         "region_of_interest": copter("Round a place that the nose looks at, then without")
-        .take_off(UP).pace(4.0).add(c.DO_SET_ROI_LOCATION, at=(20, 0))
-        .to(*circle((20, 0), 12, 6, 180), z=UP).add(c.DO_SET_ROI_NONE).to((0, 0), z=UP).land(),
+        .take_off(UP).pace(4.0).add(MavCmd.DO_SET_ROI_LOCATION, at=(20, 0))
+        .to(*circle((20, 0), 12, 6, 180), z=UP).add(MavCmd.DO_SET_ROI_NONE).to((0, 0), z=UP).land(),
         "conditions": copter("Commands held back by a distance and by a time")
-        .take_off(UP).pace(2.0).to((15, 0), z=UP).add(c.CONDITION_DISTANCE, 10).add(c.CONDITION_YAW, 90, 30, 1, 0)
-        .to((40, 0), z=UP).add(c.CONDITION_DELAY, 3).pace(5.0).to((40, 25), z=UP).land(),
+        .take_off(UP).pace(2.0).to((15, 0), z=UP).add(MavCmd.CONDITION_DISTANCE, 10)
+        .add(MavCmd.CONDITION_YAW, 90, 30, 1, 0)
+        .to((40, 0), z=UP).add(MavCmd.CONDITION_DELAY, 3).pace(5.0).to((40, 25), z=UP).land(),
         "stairs": copter("Up and down in steps: heights above home, above mean sea level and above terrain")
-        .take_off(5).to((8, 0, 8), (16, 0, 12)).to((24, 0, 600), frame=c.GLOBAL)
-        .to((24, 12, 10), (16, 12, 6), frame=c.TERRAIN).to((0, 12, 4)).land(),
+        .take_off(5).to((8, 0, 8), (16, 0, 12)).to((24, 0, 600), frame=MavFrame.GLOBAL)
+        .to((24, 12, 10), (16, 12, 6), frame=MavFrame.GLOBAL_TERRAIN_ALT).to((0, 12, 4)).land(),
         "spiral": copter("Two turns of a spiral that climbs from 5 m to 20 m and widens to 15 m")
         .take_off(5).pace(4.0)
         .to(*[((5 + 10 * k / 20) * cos(math.radians(36 * k)), (5 + 10 * k / 20) * sin(math.radians(36 * k)),
@@ -104,9 +107,9 @@ def copter_drafts() -> dict[str, Draft]:
             rally=(RallyPoint(degrees(-10, 0), 15.0),),
         ),
         "photo_points": copter("Four places with a picture at each: camera commands, for a camera (CAM1_TYPE)")
-        .take_off(UP).to((12, 0), z=UP, wait=1.0).add(c.IMAGE_START_CAPTURE, 0, 0, 1)
-        .to((12, 12), z=UP, wait=1.0).add(c.IMAGE_START_CAPTURE, 0, 0, 1)
-        .to((0, 12), z=UP, wait=1.0).add(c.DO_DIGICAM_CONTROL).to((0, 0), z=UP, wait=1.0).land(),
+        .take_off(UP).to((12, 0), z=UP, wait=1.0).add(MavCmd.IMAGE_START_CAPTURE, 0, 0, 1)
+        .to((12, 12), z=UP, wait=1.0).add(MavCmd.IMAGE_START_CAPTURE, 0, 0, 1)
+        .to((0, 12), z=UP, wait=1.0).add(MavCmd.DO_DIGICAM_CONTROL).to((0, 0), z=UP, wait=1.0).land(),
         "office_route": copter(
             "Through the office at 1.2 m, over a wall into the next room, and back", world="office_erlecopter"
         ).take_off(1.2).pace(1.5).to((0, 8), (-1.5, 1), (-9, -1), (-13, 1), z=1.2).to((-13, 1), (-19.5, 1.5), z=4.0)
@@ -142,18 +145,18 @@ def rover_drafts() -> dict[str, Draft]:
         "figure_eight": rover("Two circles of eight waypoints each, one to the left and one to the right")
         .to(*circle((0, 8), 8, 8, 270)[1:], *[(n, -e) for n, e in circle((0, 8), 8, 8, 270)]),
         "reverse": rover("Forwards, 10 m backwards, forwards again")
-        .to((15, 0)).add(c.DO_SET_REVERSE, 1).to((5, 0)).add(c.DO_SET_REVERSE, 0).to((20, 8)),
+        .to((15, 0)).add(MavCmd.DO_SET_REVERSE, 1).to((5, 0)).add(MavCmd.DO_SET_REVERSE, 0).to((20, 8)),
         "speed_changes": rover("Legs of 15 m at 0.5, 1.2 and 0.8 m/s", text=True)
         .pace(0.5).to((12, 0)).pace(1.2).to((12, 15)).pace(0.8).to((0, 15)),
         "delivery": rover("Stops of 4, 6 and 2 seconds at three places, and home")
-        .to((15, 0), wait=4.0).to((15, 12)).add(c.NAV_DELAY, 6, -1, -1, -1).to((0, 12), wait=2.0).home(),
+        .to((15, 0), wait=4.0).to((15, 12)).add(MavCmd.NAV_DELAY, 6, -1, -1, -1).to((0, 12), wait=2.0).home(),
         "jump_loop": rover("A triangle driven twice by a jump", text=True)
         .to((12, 0), (12, 12), (0, 0)).jump(1, 1),
-        "circles": rover("Two turns on a circle of 5 m").to((6, 0)).add(c.NAV_LOITER_TURNS, 2, 0, 5, at=(12, 0)),
+        "circles": rover("Two turns on a circle of 5 m").to((6, 0)).add(MavCmd.NAV_LOITER_TURNS, 2, 0, 5, at=(12, 0)),
         "loiter_times": rover("Stays of 5 and 3 seconds")
-        .add(c.NAV_LOITER_TIME, 5, at=(10, 0)).add(c.NAV_LOITER_TIME, 3, at=(10, 10)),
+        .add(MavCmd.NAV_LOITER_TIME, 5, at=(10, 0)).add(MavCmd.NAV_LOITER_TIME, 3, at=(10, 10)),
         "headings": rover("Turns to headings at a walking speed, between two places")
-        .to((8, 0)).add(c.NAV_SET_YAW_SPEED, 90, 0.8, 0).add(c.NAV_SET_YAW_SPEED, 90, 0.8, 1).to((0, 10)),
+        .to((8, 0)).add(MavCmd.NAV_SET_YAW_SPEED, 90, 0.8, 0).add(MavCmd.NAV_SET_YAW_SPEED, 90, 0.8, 1).to((0, 10)),
         "mowing": rover("A meadow of 24 m by 20 m, in lines 5 m apart")
         .complex(survey([(4, 4), (28, 4), (28, 24), (4, 24)], 0.0, transects(5.0, 0.0), 2)).home(),
         "return_home": rover("Out and back by return to launch").to((15, 5), (20, 15)).home(),

@@ -174,7 +174,7 @@ def setup(
             if strange := [name for name in params if name not in table]:
                 raise files.ParameterError(files.unknown(vehicles.load(frame).kind, strange, table))
             files.check(table, params)
-        files.tell(table, values)
+        files.report(table, values)
     place = tuple(float(x) for x in home) if home is not None else None
     if place is not None and len(place) != 4:
         raise OptionError(f"home {home!r} is not (latitude, longitude, altitude, heading)")

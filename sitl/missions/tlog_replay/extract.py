@@ -10,11 +10,12 @@ from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.params.files import FileValues
+from sitl.core.mavlink import MavCmd
 from sitl.scenario import Home
 from sitl.vehicle.kinds import KINDS
 
 from .log import Log, LoggedMessage
-from .steps import ARM, LEFT_OUT, PASSED, QUESTIONS, SET_MODE, Found, Send, Sender, Step, Upload, item_of
+from .steps import LEFT_OUT, PASSED, QUESTIONS, Found, Send, Sender, Step, Upload, item_of
 
 ANSWER_S = 3.0
 """An answer that comes later is none."""
@@ -41,7 +42,11 @@ def extract(log: Log) -> Script:
     """All that was done to the log's vehicle."""
     notes: list[str] = []
     found = _commanded(log)
-    flown = [step for step in found.steps if isinstance(step, Send) and step.command in (ARM, SET_MODE)]
+    flown = [
+        step
+        for step in found.steps
+        if isinstance(step, Send) and step.command in (MavCmd.COMPONENT_ARM_DISARM, MavCmd.DO_SET_MODE)
+    ]
     moves = [step for step in found.steps if isinstance(step, Send) and step.name.startswith("SET_POSITION")]
     armed = [time for time, state in log.changes("armed") if state]
     if not flown and not moves:
@@ -49,8 +54,10 @@ def extract(log: Log) -> Script:
         notes.append(
             "the log has no commands: modes, arming and mission are taken from what the vehicle says of itself"
         )
-    elif armed and not any(step.command == ARM for step in flown):
-        found.steps += [step for step in _observed(log) if isinstance(step, Send) and step.command == ARM]
+    elif armed and not any(step.command == MavCmd.COMPONENT_ARM_DISARM for step in flown):
+        found.steps += [
+            step for step in _observed(log) if isinstance(step, Send) and step.command == MavCmd.COMPONENT_ARM_DISARM
+        ]
         notes.append("nobody arms the vehicle by command: it is armed when it says that it is")
     if log.clock_set:
         notes.append(f"the clock of the log was set {log.clock_set} times: what it jumped is left out")
@@ -144,11 +151,11 @@ def _observed(log: Log) -> list[Step]:
     if items and sorted(items) == list(range(len(items))):
         steps.append(Upload(max(first - 5.0, 0.0), GROUND_STATION, tuple(items[seq] for seq in sorted(items))))
     for time, mode in log.changes("mode"):
-        fields = {"command": SET_MODE, "param1": 1.0, "param2": float(mode)}
+        fields = {"command": MavCmd.DO_SET_MODE, "param1": 1.0, "param2": float(mode)}
         steps.append(Send(time, GROUND_STATION, "COMMAND_LONG", fields, 0))
     for time, state in armed:
         if state:
-            fields = {"command": ARM, "param1": 1.0}
+            fields = {"command": MavCmd.COMPONENT_ARM_DISARM, "param1": 1.0}
             steps.append(Send(time, GROUND_STATION, "COMMAND_LONG", fields, 0))
     last: tuple[int, ...] = ()
     for message in log.of_vehicle("RC_CHANNELS"):

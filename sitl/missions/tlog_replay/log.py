@@ -8,14 +8,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from sitl.bridge.frame import Splitter
+from sitl.core.mavlink import MavAutopilot, MavModeFlag
 from sitl.logs.tlog import LogError, read_steady
 
 from ..files.document import kind_of_type
 
-INVALID = 8
-"""MAV_AUTOPILOT_INVALID: what is no autopilot says so in its HEARTBEAT."""
-ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED"""
 MOST_MESSAGES = 5_000_000
 """Of a log: 15 hours at 90 a second."""
 
@@ -49,7 +46,7 @@ class Log:
         types = Counter(
             (s.system, int(s.fields.type))
             for s in self.messages
-            if s.name == "HEARTBEAT" and s.component == 1 and s.fields.autopilot != INVALID
+            if s.name == "HEARTBEAT" and s.component == 1 and s.fields.autopilot != MavAutopilot.INVALID
         )
         found = {number: type_ for (number, type_), _ in reversed(types.most_common())}
         title = f"log {str(path)!r}"
@@ -93,7 +90,11 @@ class Log:
         """(time [s], value) at each change of "mode" or "armed" in the vehicle's HEARTBEATs."""
         found: list[tuple[float, int]] = []
         for message in self.of_vehicle("HEARTBEAT"):
-            value = int(message.fields.custom_mode) if of == "mode" else int(bool(message.fields.base_mode & ARMED))
+            value = (
+                int(message.fields.custom_mode)
+                if of == "mode"
+                else int(bool(message.fields.base_mode & MavModeFlag.SAFETY_ARMED))
+            )
             if not found or found[-1][1] != value:
                 found.append((message.time, value))
         return found

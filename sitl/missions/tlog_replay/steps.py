@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.core.mavlink import MavCmd
 
 from .log import LoggedMessage
 
-ARM, SET_MODE, TAKEOFF, MISSION_START = 400, 176, 22, 300
 Sender = tuple[int, int]
 """System and component id."""
 
@@ -36,7 +36,7 @@ class Send(Step):
     def command(self) -> int | None:
         """Number of the command, if it is one."""
         if self.name == "SET_MODE":
-            return SET_MODE
+            return MavCmd.DO_SET_MODE
         return int(self.fields["command"]) if self.name in ("COMMAND_LONG", "COMMAND_INT") else None
 
     @property
@@ -53,9 +53,9 @@ class Send(Step):
         """Whether a vehicle does it only when it is ready, and the one of the log did."""
         if self.result not in (None, 0):
             return False
-        if self.command == ARM:
+        if self.command == MavCmd.COMPONENT_ARM_DISARM:
             return float(self.fields["param1"]) == 1.0
-        return self.command in (SET_MODE, TAKEOFF, MISSION_START)
+        return self.command in (MavCmd.DO_SET_MODE, MavCmd.NAV_TAKEOFF, MavCmd.MISSION_START)
 
 
 @dataclass(frozen=True)

@@ -278,7 +278,7 @@ class TwinFlight:
         except MissionError as error:
             self.notes.append(f"the mission is not taken: {error}")
             return
-        simulation.bridge.tell(simulation.sequencer.set_mission(simulation.v, mission))
+        simulation.bridge.report(simulation.sequencer.set_mission(simulation.v, mission))
 
     def _set(self, name: str, value: float) -> None:
         """A parameter, as a ground station would."""

@@ -17,10 +17,11 @@ import numpy as np
 from sitl.autopilot.mission.item import MissionItem
 from sitl.core import elementary_arrays as arrays
 from sitl.core.elementary import atan2, cos, hypot, sin
+from sitl.core.mavlink import MavCmd
 from sitl.logs.dataflash.columns import Table
 from sitl.logs.kind import mode_name
 
-from ..tlog_replay.steps import ARM, QUESTIONS, SET_MODE
+from ..tlog_replay.steps import QUESTIONS
 from .flight_log import FlightLog
 
 Array = np.ndarray[Any, Any]
@@ -181,7 +182,11 @@ def _commands(log: FlightLog, notes: list[str]) -> Iterator[Message]:
     for k in np.flatnonzero(_inside(log, table)):
         row = {name: float(table[name][k]) for name in table.fields}
         command = int(row["Cmd"])
-        if command in QUESTIONS or command == SET_MODE or (command == ARM and row["P1"] == 1.0):
+        if (
+            command in QUESTIONS
+            or command == MavCmd.DO_SET_MODE
+            or (command == MavCmd.COMPONENT_ARM_DISARM and row["P1"] == 1.0)
+        ):
             continue
         if int(row.get("Res", _ACCEPTED)) != _ACCEPTED:
             refused[command] += 1

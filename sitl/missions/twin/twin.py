@@ -170,7 +170,7 @@ class _Twins:
             raise files.ParameterError(files.unknown(self.kind.name, unknown, table))
         files.check(table, change.params, "--set")
         self.taken = parameters.taken(log, table)
-        self.taken.values.is_told = True
+        self.taken.values.is_reported = True
         self.inputs: Inputs = inputs.of(log)
         self.wind = wind
         self.seed, self.physics, self.change, self.progress = seed, physics, change, progress

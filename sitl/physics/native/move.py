@@ -14,13 +14,13 @@ from ...core.constants import TICK_S
 from ...core.displacement import Displacement, faster, moved, turned, turned_attitude
 from ...core.geodesy import add_offset, offset_ne
 from ...core.kernels import law
+from ...core.mavlink import GpsFixType
 from ...core.rng import Rng, normal_vector
 from ...core.vectors import Quat, Vec2, Vec3
 from . import wind
 from .atmosphere import pressure, set_air
 from .obstacles import nearest
 from .records import GPS_RING, Body, Fix, GpsReceiver, Obstacles, Physics, Place
-from .sensors.gps import FIX_3D
 from .tick import Clock
 
 INSIDE = 1e-6
@@ -76,14 +76,14 @@ def move_fixes(r: GpsReceiver, place: Place, d: Displacement, tick: int, delay: 
     r.drift = turned(d, r.drift)
     for n in range(r.tail, r.head):
         fix = r.fixes[n % GPS_RING]
-        if fix.type >= FIX_3D:
+        if fix.type >= GpsFixType.FIX_3D:
             move_fix(fix, place, d, TICK_S * (tick - fix.due + delay))
 
 
 @law
 def move_delivered(shown: GpsReading, place: Place, d: Displacement, age: float) -> None:
     """The fix that the reader has, ``age`` [s] old."""
-    if shown.gps_fix < FIX_3D:
+    if shown.gps_fix < GpsFixType.FIX_3D:
         return
     to = moved_fix(place, d, shown.gps_lat, shown.gps_lon, age)
     shown.gps_lat, shown.gps_lon = int(to.x), int(to.y)

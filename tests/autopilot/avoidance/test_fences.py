@@ -13,7 +13,7 @@ from sitl.autopilot.avoidance import fences, proximity
 from sitl.autopilot.avoidance.proximity import Proximity
 from sitl.autopilot.avoidance.state import Avoidance
 from sitl.autopilot.avoidance.velocity import Braking
-from sitl.autopilot.fence.shapes import is_within, room
+from sitl.autopilot.fence.shapes import clearance, is_within
 from sitl.autopilot.fence.state import CIRCLE_IN, CIRCLE_OUT, STAY_IN, STAY_OUT
 from sitl.autopilot.params.avoidance import ProximitySensor
 from sitl.core.vectors import Vec2
@@ -38,7 +38,7 @@ def test_no_fence_is_crossed(course: float, speed: float, how: Braking) -> None:
     for _ in range(600):
         at += fences.avoid_areas(avoid, AREAS, asked, at, fences.Margin(MARGIN, how)) * 0.05
     for s in range(AREAS.shapes):
-        assert room(AREAS, s, at) >= (MARGIN - 0.1 if how is SLIDE else 0.1)
+        assert clearance(AREAS, s, at) >= (MARGIN - 0.1 if how is SLIDE else 0.1)
 
 
 def test_who_is_on_the_wrong_side_is_left_alone() -> None:

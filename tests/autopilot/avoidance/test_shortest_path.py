@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sitl.autopilot.avoidance.shortest_path import Map, find_path
+from sitl.autopilot.avoidance.shortest_path import Map, a_star
 from sitl.autopilot.fence.state import CIRCLE_IN, CIRCLE_OUT, STAY_IN, STAY_OUT, FenceState
 from sitl.core.vectors import Vec2
 
@@ -51,7 +51,7 @@ def length(way: list[Vec2]) -> float:
 
 
 def test_a_free_way_is_straight() -> None:
-    assert find_path(fence(box(STAY_OUT, 50.0, 50.0, 5.0, 5.0)), Vec2(0.0, 0.0), Vec2(40.0, 0.0), MARGIN) == [
+    assert a_star(fence(box(STAY_OUT, 50.0, 50.0, 5.0, 5.0)), Vec2(0.0, 0.0), Vec2(40.0, 0.0), MARGIN) == [
         Vec2(40.0, 0.0)
     ]
 
@@ -59,19 +59,19 @@ def test_a_free_way_is_straight() -> None:
 def test_a_wall_is_gone_round_on_its_shorter_side_with_the_margin() -> None:
     walls = fence(box(STAY_OUT, 20.0, 5.0, 2.0, 15.0))
     start, end = Vec2(0.0, 0.0), Vec2(40.0, 0.0)
-    way = find_path(walls, start, end, MARGIN)
+    way = a_star(walls, start, end, MARGIN)
     assert way is not None and way[-1] == end
     places = samples([start, *way])
     assert places[:, 1].min() < -10.0 and places[:, 1].max() < 1.0
-    assert Map(walls, MARGIN).room(places).min() == pytest.approx(MARGIN, abs=0.1)
+    assert Map(walls, MARGIN).clearance(places).min() == pytest.approx(MARGIN, abs=0.1)
     assert length([start, *way]) < 2.0 * math.hypot(18.0, 13.5) + 4.0 + 2.0
 
 
 def test_there_is_no_way_out_of_a_closed_area_nor_into_one() -> None:
     closed = fence(box(STAY_IN, 0.0, 0.0, 20.0, 20.0), box(STAY_OUT, 100.0, 0.0, 5.0, 5.0))
-    assert find_path(closed, Vec2(0.0, 0.0), Vec2(40.0, 0.0), MARGIN) is None
-    assert find_path(fence(box(STAY_OUT, 100.0, 0.0, 5.0, 5.0)), Vec2(0.0, 0.0), Vec2(100.0, 0.0), MARGIN) is None
-    assert find_path(fence((CIRCLE_IN, [(0.0, 0.0)], 20.0)), Vec2(0.0, 0.0), Vec2(40.0, 0.0), MARGIN) is None
+    assert a_star(closed, Vec2(0.0, 0.0), Vec2(40.0, 0.0), MARGIN) is None
+    assert a_star(fence(box(STAY_OUT, 100.0, 0.0, 5.0, 5.0)), Vec2(0.0, 0.0), Vec2(100.0, 0.0), MARGIN) is None
+    assert a_star(fence((CIRCLE_IN, [(0.0, 0.0)], 20.0)), Vec2(0.0, 0.0), Vec2(40.0, 0.0), MARGIN) is None
 
 
 def test_a_gap_narrower_than_two_margins_is_closed() -> None:
@@ -84,16 +84,16 @@ def test_a_gap_narrower_than_two_margins_is_closed() -> None:
         )
 
     start, end = Vec2(0.0, 5.0), Vec2(40.0, -5.0)
-    way = find_path(gap(7.0), start, end, MARGIN)
+    way = a_star(gap(7.0), start, end, MARGIN)
     assert way is not None and np.abs(samples([start, *way])[:, 1]).max() < 10.0
-    assert find_path(gap(5.0), start, end, MARGIN) is None
+    assert a_star(gap(5.0), start, end, MARGIN) is None
 
 
 def test_who_begins_within_a_margin_leaves_it() -> None:
     walls = fence(box(STAY_OUT, 20.0, 0.0, 2.0, 10.0))
     start, end = Vec2(17.0, 0.0), Vec2(23.0, 0.0)  # both a metre from the wall
-    way = find_path(walls, start, end, MARGIN)
-    assert way is not None and Map(walls, MARGIN).room(samples([start, *way])).min() > 0.9
+    way = a_star(walls, start, end, MARGIN)
+    assert way is not None and Map(walls, MARGIN).clearance(samples([start, *way])).min() > 0.9
 
 
 circles = st.lists(
@@ -106,7 +106,7 @@ circles = st.lists(
 def test_a_way_through_a_forest_keeps_its_margin(trees: list[tuple[float, float, float]]) -> None:
     forest = fence(*((CIRCLE_OUT, [(north, east)], radius) for north, east, radius in trees))
     start, end = Vec2(-10.0, 0.0), Vec2(110.0, 0.0)
-    way = find_path(forest, start, end, MARGIN)
+    way = a_star(forest, start, end, MARGIN)
     assert way is not None  # one can always go round all of them
-    assert Map(forest, MARGIN).room(samples([start, *way])).min() >= MARGIN - 0.02
+    assert Map(forest, MARGIN).clearance(samples([start, *way])).min() >= MARGIN - 0.02
     assert length([start, *way]) >= 120.0 - 1e-9

@@ -9,16 +9,10 @@ import pytest
 
 from sitl.autopilot.fence import items, shapes
 from sitl.autopilot.fence.state import CORNERS, SHAPES, FenceState
-from sitl.autopilot.mission.item import (
-    FENCE_CIRCLE,
-    FENCE_CIRCLE_OUT,
-    FENCE_EXCLUSION,
-    FENCE_INCLUSION,
-    FENCE_RETURN_POINT,
-    MissionItem,
-)
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.state import Estimate
 from sitl.core.geodesy import add_offset
+from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec2
 
 LAT, LON = 473000000, 85000000
@@ -52,7 +46,10 @@ DART = ((0.0, 0.0), (40.0, 20.0), (0.0, 40.0), (10.0, 20.0))
 
 
 def test_corners_are_where_the_items_say() -> None:
-    fence = placed(*polygon(FENCE_INCLUSION, *SQUARE), at(FENCE_CIRCLE_OUT, 7.5, -2000.0, 3000.0))
+    fence = placed(
+        *polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE),
+        at(MavCmd.NAV_FENCE_CIRCLE_EXCLUSION, 7.5, -2000.0, 3000.0),
+    )
     assert fence.shapes == 2
     for k, corner in enumerate(SQUARE):
         assert shapes.corner_of(fence, 0, k) == pytest.approx(corner, abs=0.02)  # 1e-7 degree is 11 mm
@@ -68,37 +65,37 @@ def test_corners_are_where_the_items_say() -> None:
      ((150.0, 201.0), False), ((300.0, 300.0), False)],
 )  # fmt: skip
 def test_a_point_is_in_a_square_or_not(point: tuple[float, float], inside: bool) -> None:
-    fence = placed(*polygon(FENCE_INCLUSION, *SQUARE))
+    fence = placed(*polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE))
     assert shapes.is_within(fence, 0, Vec2(*point)) == inside
 
 
 def test_the_notch_of_a_polygon_is_outside() -> None:
-    fence = placed(*polygon(FENCE_EXCLUSION, *DART))
+    fence = placed(*polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION, *DART))
     assert shapes.is_within(fence, 0, Vec2(12.0, 20.0))
     assert not shapes.is_within(fence, 0, Vec2(8.0, 20.0))
 
 
 def test_room_is_the_distance_to_the_edge_on_the_allowed_side() -> None:
     fence = placed(
-        *polygon(FENCE_INCLUSION, *SQUARE),
-        *polygon(FENCE_EXCLUSION, *SQUARE),
-        at(FENCE_CIRCLE, 50.0, 0.0, 0.0),
-        at(FENCE_CIRCLE_OUT, 50.0, 0.0, 0.0),
+        *polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE),
+        *polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION, *SQUARE),
+        at(MavCmd.NAV_FENCE_CIRCLE_INCLUSION, 50.0, 0.0, 0.0),
+        at(MavCmd.NAV_FENCE_CIRCLE_EXCLUSION, 50.0, 0.0, 0.0),
     )
     inside, outside = Vec2(150.0, 190.0), Vec2(203.0, 204.0)
-    assert shapes.room(fence, 0, inside) == pytest.approx(10.0, abs=0.02)
-    assert shapes.room(fence, 0, outside) == pytest.approx(-5.0, abs=0.02)  # to the corner
-    assert shapes.room(fence, 1, inside) == pytest.approx(-10.0, abs=0.02)
-    assert shapes.room(fence, 1, outside) == pytest.approx(5.0, abs=0.02)
+    assert shapes.clearance(fence, 0, inside) == pytest.approx(10.0, abs=0.02)
+    assert shapes.clearance(fence, 0, outside) == pytest.approx(-5.0, abs=0.02)  # to the corner
+    assert shapes.clearance(fence, 1, inside) == pytest.approx(-10.0, abs=0.02)
+    assert shapes.clearance(fence, 1, outside) == pytest.approx(5.0, abs=0.02)
     assert shapes.nearest_on_edge(fence, 0, outside) == pytest.approx((200.0, 200.0), abs=0.02)
     for s, sign in ((2, 1.0), (3, -1.0)):
-        assert shapes.room(fence, s, Vec2(30.0, 0.0)) == pytest.approx(sign * 20.0, abs=0.02)
-        assert shapes.room(fence, s, Vec2(0.0, 60.0)) == pytest.approx(-sign * 10.0, abs=0.02)
+        assert shapes.clearance(fence, s, Vec2(30.0, 0.0)) == pytest.approx(sign * 20.0, abs=0.02)
+        assert shapes.clearance(fence, s, Vec2(0.0, 60.0)) == pytest.approx(-sign * 10.0, abs=0.02)
     assert shapes.distance_to_edge(fence, 2, shapes.centre(fence, 2)) == pytest.approx(50.0)
 
 
 def test_another_origin_moves_no_corner_on_the_globe() -> None:
-    fence, estimate = placed(*polygon(FENCE_INCLUSION, *SQUARE)), Estimate()
+    fence, estimate = placed(*polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE)), Estimate()
     place = add_offset(LAT, LON, -5000.0, 400.0)
     estimate.origin_set, estimate.origin_lat, estimate.origin_lon = True, round(place.lat), round(place.lon)
     shapes.place(fence, estimate)
@@ -112,16 +109,17 @@ def test_another_origin_moves_no_corner_on_the_globe() -> None:
 @pytest.mark.parametrize(
     "listed, text",
     [
-        (polygon(FENCE_INCLUSION, *SQUARE[:2]), "Invalid vertex count (2)"),
-        ([at(FENCE_INCLUSION, 0, 0.0, 0.0)], "Invalid vertex count (0)"),
-        (polygon(FENCE_INCLUSION, *SQUARE)[:3], "Incorrect item count"),
+        (polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE[:2]), "Invalid vertex count (2)"),
+        ([at(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, 0, 0.0, 0.0)], "Invalid vertex count (0)"),
+        (polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE)[:3], "Incorrect item count"),
         (
-            polygon(FENCE_INCLUSION, *SQUARE)[:2] + polygon(FENCE_EXCLUSION, *SQUARE)[:2],
+            polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE)[:2]
+            + polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_EXCLUSION, *SQUARE)[:2],
             "Received incorrect vertex type (want=98 got=97)",
         ),
-        ([at(FENCE_CIRCLE, 0.0, 0.0, 0.0)], "Non-positive circle radius"),
-        ([at(FENCE_CIRCLE, math.nan, 0.0, 0.0)], "Non-positive circle radius"),
-        (2 * [at(FENCE_RETURN_POINT, 0.0, 0.0, 0.0)], "Multiple return points"),
+        ([at(MavCmd.NAV_FENCE_CIRCLE_INCLUSION, 0.0, 0.0, 0.0)], "Non-positive circle radius"),
+        ([at(MavCmd.NAV_FENCE_CIRCLE_INCLUSION, math.nan, 0.0, 0.0)], "Non-positive circle radius"),
+        (2 * [at(MavCmd.NAV_FENCE_RETURN_POINT, 0.0, 0.0, 0.0)], "Multiple return points"),
     ],
 )
 def test_items_that_make_no_fence_are_named(listed: list[MissionItem], text: str) -> None:
@@ -131,9 +129,9 @@ def test_items_that_make_no_fence_are_named(listed: list[MissionItem], text: str
 
 
 def test_a_fence_that_has_no_room_leaves_the_one_of_before() -> None:
-    fence = placed(*polygon(FENCE_INCLUSION, *SQUARE))
-    circles = (SHAPES + 1) * [at(FENCE_CIRCLE, 5.0, 0.0, 0.0)]
-    corners = polygon(FENCE_INCLUSION, *((CORNERS + 1) * [(0.0, 0.0)]))
+    fence = placed(*polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE))
+    circles = (SHAPES + 1) * [at(MavCmd.NAV_FENCE_CIRCLE_INCLUSION, 5.0, 0.0, 0.0)]
+    corners = polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *((CORNERS + 1) * [(0.0, 0.0)]))
     for listed in (circles, corners):
         with pytest.raises(items.FenceError):
             items.load(fence, list(items.shapes(listed)))

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import COMMANDS, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.mission.storage import stored
 from sitl.autopilot.mission.validate import MAX_ITEMS, PLACE_FRAMES, check, check_all, check_count
+from sitl.core.mavlink import MavCmd
 
-WP = MissionItem(c.NAV_WAYPOINT, x=-353632621, y=1491652371, z=10.0)
+WP = MissionItem(MavCmd.NAV_WAYPOINT, x=-353632621, y=1491652371, z=10.0)
 
 CASES = [
     (WP, 0),
@@ -24,13 +24,13 @@ CASES = [
     (WP._replace(p3=math.nan), 8),
     (WP._replace(p4=math.nan), 0),
     (WP._replace(p4=math.inf), 9),
-    (WP._replace(command=c.NAV_TAKEOFF, p4=math.nan), 0),
-    (WP._replace(command=c.NAV_LAND, p4=math.nan), 0),
-    (WP._replace(command=c.NAV_LOITER_UNLIM, p4=math.nan), 0),
-    (WP._replace(command=c.NAV_LOITER_TIME, p4=math.nan), 9),
-    (WP._replace(command=c.NAV_LOITER_TURNS, p1=math.nan), 6),
-    (WP._replace(command=c.DO_JUMP, p2=math.nan), 7),
-    (WP._replace(command=c.DO_CHANGE_SPEED, p1=math.inf), 6),
+    (WP._replace(command=MavCmd.NAV_TAKEOFF, p4=math.nan), 0),
+    (WP._replace(command=MavCmd.NAV_LAND, p4=math.nan), 0),
+    (WP._replace(command=MavCmd.NAV_LOITER_UNLIM, p4=math.nan), 0),
+    (WP._replace(command=MavCmd.NAV_LOITER_TIME, p4=math.nan), 9),
+    (WP._replace(command=MavCmd.NAV_LOITER_TURNS, p1=math.nan), 6),
+    (WP._replace(command=MavCmd.DO_JUMP, p2=math.nan), 7),
+    (WP._replace(command=MavCmd.DO_CHANGE_SPEED, p1=math.inf), 6),
     (WP._replace(command=84, p4=math.nan), 0),
     (WP._replace(command=85, p3=math.nan, p4=math.nan), 0),
     (WP._replace(command=85, p3=math.inf), 8),
@@ -49,11 +49,11 @@ CASES = [
     (WP._replace(z=83000.0), 12),
     (WP._replace(frame=1), 2),
     (WP._replace(frame=8), 2),
-    (MissionItem(c.DO_JUMP, frame=1, p1=1.0), 0),
-    (MissionItem(c.NAV_RETURN_TO_LAUNCH, frame=99), 0),
-    (MissionItem(c.DO_JUMP), 1),
-    (MissionItem(c.DO_JUMP, p1=-1.0), 1),
-    (MissionItem(c.DO_CHANGE_SPEED, p2=5.0, x=2**31 - 1, z=math.nan), 0),
+    (MissionItem(MavCmd.DO_JUMP, frame=1, p1=1.0), 0),
+    (MissionItem(MavCmd.NAV_RETURN_TO_LAUNCH, frame=99), 0),
+    (MissionItem(MavCmd.DO_JUMP), 1),
+    (MissionItem(MavCmd.DO_JUMP, p1=-1.0), 1),
+    (MissionItem(MavCmd.DO_CHANGE_SPEED, p2=5.0, x=2**31 - 1, z=math.nan), 0),
 ]
 
 
@@ -80,12 +80,12 @@ def test_count() -> None:
 
 
 def test_jumps_lead_to_an_item_that_is_there() -> None:
-    assert check_all([WP, WP, MissionItem(c.DO_JUMP, p1=2.0)]) == (0, -1)
-    assert check_all([WP, WP, MissionItem(c.DO_JUMP, p1=3.0)]) == (1, 2)
-    assert check_all([WP, MissionItem(c.DO_JUMP, p1=2.0), WP]) == (0, -1)
+    assert check_all([WP, WP, MissionItem(MavCmd.DO_JUMP, p1=2.0)]) == (0, -1)
+    assert check_all([WP, WP, MissionItem(MavCmd.DO_JUMP, p1=3.0)]) == (1, 2)
+    assert check_all([WP, MissionItem(MavCmd.DO_JUMP, p1=2.0), WP]) == (0, -1)
 
 
-REALS = (c.DO_DIGICAM_CONFIGURE, c.NAV_SCRIPT_TIME)
+REALS = (MavCmd.DO_DIGICAM_CONFIGURE, MavCmd.NAV_SCRIPT_TIME)
 """Keep what is no number: the one where a height stands, the other beyond half precision."""
 anything = st.one_of(st.floats(), st.just(0.0))
 items = st.builds(

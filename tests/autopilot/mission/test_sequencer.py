@@ -42,28 +42,29 @@ from sitl.autopilot.navigation.state import (
 from sitl.autopilot.navigation.state import TAKEOFF as TAKE_OFF
 from sitl.autopilot.notes import CurrentChanged, ItemReached, Text
 from sitl.autopilot.rover.mission import COMMANDS as ROVER
+from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3
 from sitl.vehicle.copter import Copter
 
 LAT, LON, ALT = -353632621, 1491652371, 584.0
-WP = MissionItem(c.NAV_WAYPOINT, x=LAT + 1000, y=LON, z=10.0)
-TAKEOFF = MissionItem(c.NAV_TAKEOFF, z=10.0)
-SPEED = MissionItem(c.DO_CHANGE_SPEED, p1=1.0, p2=5.0)
+WP = MissionItem(MavCmd.NAV_WAYPOINT, x=LAT + 1000, y=LON, z=10.0)
+TAKEOFF = MissionItem(MavCmd.NAV_TAKEOFF, z=10.0)
+SPEED = MissionItem(MavCmd.DO_CHANGE_SPEED, p1=1.0, p2=5.0)
 
 
 def jump(target: int, times: int) -> MissionItem:
     """DO_JUMP."""
-    return MissionItem(c.DO_JUMP, p1=float(target), p2=float(times))
+    return MissionItem(MavCmd.DO_JUMP, p1=float(target), p2=float(times))
 
 
 def tag(number: int) -> MissionItem:
     """JUMP_TAG."""
-    return MissionItem(c.JUMP_TAG, p1=float(number))
+    return MissionItem(MavCmd.JUMP_TAG, p1=float(number))
 
 
 def to_tag(number: int, times: int) -> MissionItem:
     """DO_JUMP_TAG."""
-    return MissionItem(c.DO_JUMP_TAG, p1=float(number), p2=float(times))
+    return MissionItem(MavCmd.DO_JUMP_TAG, p1=float(number), p2=float(times))
 
 
 class Vehicle:
@@ -117,7 +118,7 @@ class Vehicle:
 
 def test_texts_as_recorded() -> None:
     """The recorded square says these texts and numbers, in this order."""
-    p = Vehicle(TAKEOFF, WP, WP._replace(y=LON + 500), MissionItem(c.NAV_LAND)).start()
+    p = Vehicle(TAKEOFF, WP, WP._replace(y=LON + 500), MissionItem(MavCmd.NAV_LAND)).start()
     assert p.v.autopilot.modes.mission_takes_off == 1
     p.order()
     assert p.told[:10] == [
@@ -139,7 +140,7 @@ def test_disarming_starts_again() -> None:
     """Landed and disarmed in AUTO: back to item 1;
     the landing that completes in the same tick is not told.
     """
-    p = Vehicle(TAKEOFF, MissionItem(c.NAV_LAND)).start()
+    p = Vehicle(TAKEOFF, MissionItem(MavCmd.NAV_LAND)).start()
     assert p.complete() == 2
     assert p.nav.command_kind == LAND
     emit(p.v.autopilot.events, 0, DISARMED, 13.0, 0.0)
@@ -215,7 +216,7 @@ def test_only_the_first_of_the_last_do_commands_runs() -> None:
 
 
 def test_conditions_hold_the_do_commands_behind_them_back() -> None:
-    wait = MissionItem(c.CONDITION_DELAY, p1=2.0)
+    wait = MissionItem(MavCmd.CONDITION_DELAY, p1=2.0)
     p = Vehicle(WP, SPEED, wait, SPEED._replace(p2=3.0), WP, SPEED._replace(p2=7.0), WP).start()
     assert p.complete() == 5
     assert p.texts()[-2:] == ["Mission: 5 WP", "Mission: 3 CondDelay"]
@@ -233,7 +234,7 @@ def test_conditions_hold_the_do_commands_behind_them_back() -> None:
 
 def test_held_back_is_passed_over() -> None:
     """A do-command whose condition is not met in time does not run."""
-    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
+    p = Vehicle(WP, MissionItem(MavCmd.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
     assert p.complete() == 4
     assert p.complete() == 5
     p.wait(100.0)
@@ -241,7 +242,7 @@ def test_held_back_is_passed_over() -> None:
 
 
 def test_a_condition_begins_anew_when_the_mission_goes_on() -> None:
-    p = Vehicle(WP, MissionItem(c.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
+    p = Vehicle(WP, MissionItem(MavCmd.CONDITION_DELAY, p1=60.0), SPEED, WP, WP).start()
     assert p.complete() == 4
     p.sequencer.stop(p.v)
     p.told.clear()
@@ -257,7 +258,7 @@ def test_a_condition_begins_anew_when_the_mission_goes_on() -> None:
 
 def test_a_turn_goes_on_when_the_next_command_begins() -> None:
     """CONDITION_YAW runs before the waypoint behind it, which does not turn the nose back."""
-    p = Vehicle(WP, MissionItem(c.CONDITION_YAW, p1=90.0), WP, WP).start()
+    p = Vehicle(WP, MissionItem(MavCmd.CONDITION_YAW, p1=90.0), WP, WP).start()
     yaw = p.v.autopilot.modes.auto_yaw
     p.complete()
     assert yaw.mode == auto_yaw.FIXED
@@ -319,7 +320,7 @@ def test_set_current_in_flight() -> None:
 
 def test_end_on_the_ground() -> None:
     """On the ground the mission's end leaves no command; AUTO disarms."""
-    p = Vehicle(MissionItem(c.NAV_LAND)).start()
+    p = Vehicle(MissionItem(MavCmd.NAV_LAND)).start()
     p.v.autopilot.arming.landed = 1
     p.complete()
     assert p.nav.mission_state == COMPLETE
@@ -331,7 +332,7 @@ def test_new_mission_in_flight() -> None:
     p = Vehicle(WP, WP, WP).start()
     p.complete()
     assert not p.sequencer.may_clear(p.v)
-    land = MissionItem(c.NAV_LAND)
+    land = MissionItem(MavCmd.NAV_LAND)
     p.sequencer.set_mission(p.v, Mission((*p.mission.items[:3], land)))
     assert p.nav.command_kind == WAYPOINT
     assert p.complete() == 3
@@ -385,9 +386,9 @@ def test_disarmed_without_a_mission_nothing_is_under_way() -> None:
 def test_texts_of_items_that_have_no_other_effect() -> None:
     p = Vehicle(
         tag(7),
-        MissionItem(c.DO_SET_ROI_LOCATION, x=LAT, y=LON),
-        MissionItem(c.DO_SET_ROI_NONE),
-        MissionItem(c.NAV_DELAY, p1=3.7),
+        MissionItem(MavCmd.DO_SET_ROI_LOCATION, x=LAT, y=LON),
+        MissionItem(MavCmd.DO_SET_ROI_NONE),
+        MissionItem(MavCmd.NAV_DELAY, p1=3.7),
     ).start()
     said = ["Mission: 1 Tag 0", "Mission: 4 Delay", "Delaying 3 sec", "Mission: 2 SetROILocation"]
     assert p.texts() == [*said, "Mission: 3 SetROINone"]
@@ -401,7 +402,7 @@ def test_corner_is_planned_ahead() -> None:
     assert p.nav.next.length == pytest.approx(2000 * 0.0111319, rel=1e-3)
     assert p.nav.current.top_speed == 5.0
     assert Vehicle(WP._replace(p1=1.0), there).start().nav.current.fast == 0
-    assert Vehicle(WP, MissionItem(c.NAV_LAND)).start().nav.current.fast == 0
+    assert Vehicle(WP, MissionItem(MavCmd.NAV_LAND)).start().nav.current.fast == 0
 
 
 @pytest.mark.parametrize("frame", [0, 3, 10])
@@ -413,13 +414,13 @@ def test_altitude_frames(frame: int) -> None:
 
 def test_set_home_and_roi() -> None:
     """DO_SET_HOME moves home to a place or to the vehicle; DO_SET_ROI turns the nose to a place."""
-    roi = MissionItem(c.DO_SET_ROI, x=LAT + 1000, y=LON + 1000)
-    p = Vehicle(MissionItem(c.DO_SET_HOME, 0, x=LAT + 2000, y=LON, z=600.0), roi, WP).start()
+    roi = MissionItem(MavCmd.DO_SET_ROI, x=LAT + 1000, y=LON + 1000)
+    p = Vehicle(MissionItem(MavCmd.DO_SET_HOME, 0, x=LAT + 2000, y=LON, z=600.0), roi, WP).start()
     home = p.v.autopilot.home
     assert (int(home.lat), float(home.alt), int(home.locked)) == (LAT + 2000, 600.0, 1)
     assert home.pos[0] == pytest.approx(2000 * 0.0111319, rel=1e-3)
     assert p.v.autopilot.modes.auto_yaw.roi[0] == pytest.approx(11.13, abs=0.01)
-    p = Vehicle(MissionItem(c.DO_SET_HOME, p1=1.0), WP).start()
+    p = Vehicle(MissionItem(MavCmd.DO_SET_HOME, p1=1.0), WP).start()
     assert p.v.autopilot.home.alt == pytest.approx(594.0)
 
 
@@ -475,11 +476,11 @@ def test_marks_and_devices_that_are_not_fitted_are_passed(number: int) -> None:
 
 
 def test_vertical_take_off_and_landing_are_the_copters_own() -> None:
-    p = Vehicle(MissionItem(c.NAV_VTOL_TAKEOFF, z=10.0), MissionItem(c.NAV_VTOL_LAND)).start()
+    p = Vehicle(MissionItem(MavCmd.NAV_VTOL_TAKEOFF, z=10.0), MissionItem(MavCmd.NAV_VTOL_LAND)).start()
     assert p.v.autopilot.modes.mission_takes_off and p.nav.command_kind == TAKE_OFF
     p.complete()
     assert p.nav.command_kind == LAND
-    assert c.NAV_VTOL_LAND not in ROVER.taken
+    assert MavCmd.NAV_VTOL_LAND not in ROVER.taken
 
 
 def test_a_jump_for_ever_says_so() -> None:
@@ -503,7 +504,7 @@ def test_a_do_command_behind_a_waypoint_is_told_in_place_of_it() -> None:
 
 
 def test_what_is_not_carried_out_is_passed_over() -> None:
-    up, reverse = MissionItem(c.NAV_CONTINUE_AND_CHANGE_ALT), MissionItem(c.DO_SET_REVERSE, p1=1.0)
+    up, reverse = MissionItem(MavCmd.NAV_CONTINUE_AND_CHANGE_ALT), MissionItem(MavCmd.DO_SET_REVERSE, p1=1.0)
     p = Vehicle(WP, up, reverse, WP).start()
     assert p.complete() == 4
     assert p.texts()[-4:] == [
@@ -514,7 +515,7 @@ def test_what_is_not_carried_out_is_passed_over() -> None:
     ]
 
 
-@pytest.mark.parametrize("command", [c.NAV_ARC_WAYPOINT, c.NAV_SCRIPT_TIME, c.NAV_ATTITUDE_TIME])
+@pytest.mark.parametrize("command", [MavCmd.NAV_ARC_WAYPOINT, MavCmd.NAV_SCRIPT_TIME, MavCmd.NAV_ATTITUDE_TIME])
 def test_what_is_carried_out_in_part_says_so(command: int) -> None:
     p = Vehicle(WP, MissionItem(command, p1=3.0, p2=3.0, x=LAT, y=LON), WP).start()
     assert p.complete() == 2
@@ -524,10 +525,10 @@ def test_what_is_carried_out_in_part_says_so(command: int) -> None:
 @pytest.mark.parametrize(
     ("items", "takes_off"),
     [
-        ((SPEED, MissionItem(c.NAV_DELAY, p1=60.0), TAKEOFF), 1),
-        ((MissionItem(c.NAV_DELAY, p1=60.0), WP, TAKEOFF), 0),
-        ((MissionItem(c.NAV_DELAY, p1=60.0),), 0),
-        ((MissionItem(c.NAV_DELAY, p1=60.0), jump(1, -1)), 0),
+        ((SPEED, MissionItem(MavCmd.NAV_DELAY, p1=60.0), TAKEOFF), 1),
+        ((MissionItem(MavCmd.NAV_DELAY, p1=60.0), WP, TAKEOFF), 0),
+        ((MissionItem(MavCmd.NAV_DELAY, p1=60.0),), 0),
+        ((MissionItem(MavCmd.NAV_DELAY, p1=60.0), jump(1, -1)), 0),
         ((), 0),
     ],
 )
@@ -536,7 +537,7 @@ def test_delays_may_stand_before_the_take_off(items: tuple[MissionItem, ...], ta
 
 
 def test_a_delay_until_a_time_of_day() -> None:
-    p = Vehicle(WP, MissionItem(c.NAV_DELAY, p2=0.0, p3=1.0, p4=17.0), WP).start()
+    p = Vehicle(WP, MissionItem(MavCmd.NAV_DELAY, p2=0.0, p3=1.0, p4=17.0), WP).start()
     p.complete()
     assert "Delaying 77 sec" in p.texts() and p.nav.delay == 77.0
 

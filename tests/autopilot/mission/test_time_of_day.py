@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.mission.item import NAV_DELAY, MissionItem
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.time_of_day import seconds_until
+from sitl.core.mavlink import MavCmd
 
 NOON_US = (20454 * 86400 + 12 * 3600 + 30 * 60 + 15) * 1_000_000
 """12:30:15 of a day."""
@@ -27,7 +28,7 @@ NOON_US = (20454 * 86400 + 12 * 3600 + 30 * 60 + 15) * 1_000_000
     ],
 )
 def test_seconds_until(hour: int, minute: int, second: int, wait: float) -> None:
-    item = MissionItem(NAV_DELAY, p2=hour, p3=minute, p4=second)
+    item = MissionItem(MavCmd.NAV_DELAY, p2=hour, p3=minute, p4=second)
     assert seconds_until(item, NOON_US) == wait
     if hour != second:
         assert seconds_until(item, NOON_US - 250_000) == wait + 0.25

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot
 from sitl.bridge.dialect import message
-from sitl.missions.pilot import Pilot
 from sitl.physics.native.power_on import DEFAULT_HOME
 from sitl.plants.local import stand_alone
 from sitl.plants.physics_server import PhysicsServer

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from benchmarks.recorded import copter, rover
 from sitl.bridge.dialect import message
-from sitl.missions import copter, rover
 from sitl.simulation import Simulation
 from tests.bridge.hil.conftest import WatchedPilot
 

@@ -13,16 +13,17 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot
 from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor
 from sitl.bridge.hil.autopilot_end import TAKEN, AutopilotEnd
 from sitl.bridge.hil.physics_end import HEARTBEAT
-from sitl.bridge.hil.protocol import PX4, Sender
+from sitl.bridge.hil.protocol import Sender
 from sitl.cli import main
 from sitl.client.endpoint import Endpoint
+from sitl.core.mavlink import MavAutopilot
 from sitl.core.records import first_difference
 from sitl.errors import OptionError
-from sitl.missions.pilot import Pilot
 from sitl.physics.engine import EngineError
 from sitl.plants import hil
 from sitl.plants.plant import PhysicsLostError
@@ -353,7 +354,7 @@ def test_px4_on_a_real_socket(beside) -> None:
                         times.append(frame.kind.decode(frame.payload).time_usec)
             return times
 
-        link.sendall(px4.frame(HEARTBEAT, HEARTBEAT.payload(autopilot=PX4)))
+        link.sendall(px4.frame(HEARTBEAT, HEARTBEAT.payload(autopilot=MavAutopilot.PX4)))
         assert ticks(5)[:5] == [2500, 5000, 7500, 10_000, 12_500]
         for k in range(20):
             last = server.end.time_us

@@ -16,7 +16,7 @@ from sitl.bridge.frame import Splitter, encode_v1, encode_v2
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.bridge.wire import frames, streams
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets, message_of
-from sitl.bridge.wire.link import hear_port, keep_rest
+from sitl.bridge.wire.link import keep_rest, receive_port
 from sitl.bridge.wire.message import Message
 from sitl.bridge.wire.port import OUT, Port
 from sitl.core.constants import NEVER
@@ -266,7 +266,7 @@ def test_the_core_finds_the_frames_that_the_splitter_finds(
 
 def hear(channel: Channel, v: Copter, *given: bytes) -> None:
     channel.feed(b"".join(given))
-    hear_port(v, channel.address, take, target)
+    receive_port(v, channel.address, take, target)
 
 
 def a_ping(seq: int, system: int = 255, to: int = 0, component: int = 190) -> bytes:
@@ -292,7 +292,7 @@ def test_the_core_stops_at_a_message_of_the_shell_and_goes_on_behind_it(channel:
     hear(channel, v, a_ping(1), other, a_ping(2), b"\xfd")
     assert channel.frame().raw == other and not channel.port.frame_taken
     assert v.autopilot.modes.number == 355
-    hear_port(v, channel.address, take, target)
+    receive_port(v, channel.address, take, target)
     assert (channel.port.frame_end, v.autopilot.modes.number, channel.port.in_size) == (0, 455, 1)
 
 

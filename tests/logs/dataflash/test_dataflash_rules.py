@@ -14,6 +14,7 @@ from pymavlink import DFReader
 from sitl.autopilot.estimation.events import EKF_STOPPED_GPS
 from sitl.autopilot.events import emit
 from sitl.autopilot.terrain.ground import TERRAIN_LEFT
+from sitl.core.mavlink import MavCmd
 from sitl.logs.dataflash import formats
 from sitl.logs.dataflash.common import EVENT_MESSAGES
 from sitl.logs.dataflash.encoder import EVERY_BIT, LogEncoder
@@ -186,12 +187,12 @@ def test_a_reboot_begins_another_log(tmp_path: Path) -> None:
 
 
 def test_missions_and_their_items_are_told(tmp_path: Path) -> None:
-    from sitl.autopilot.mission.item import NAV_LAND, NAV_TAKEOFF, MissionItem
+    from sitl.autopilot.mission.item import MissionItem
     from sitl.autopilot.mission.mission import Mission
 
     run = Run(tmp_path)
     home = MissionItem(16, 0)
-    items = (home, MissionItem(NAV_TAKEOFF, 3, z=3.0), MissionItem(NAV_LAND, 3))
+    items = (home, MissionItem(MavCmd.NAV_TAKEOFF, 3, z=3.0), MissionItem(MavCmd.NAV_LAND, 3))
     run.simulation.sequencer.set_mission(run.simulation.v, Mission(items))
     run.arm()
     run.client.command(300)  # MISSION_START

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.missions.files import MissionFileError, plan, straightened
 from sitl.missions.files import plan as writer
 from sitl.missions.files.complex_items import FROM_END, FROM_RIGHT, across_polygon, count_of, there_and_back
@@ -171,8 +171,10 @@ def test_sharp_corners_do_not_run_away() -> None:
 def places(draft: Draft) -> list[tuple[float, float]]:
     """Of the straightened mission [m]."""
     items = straightened(draft.file()).mission.items
-    assert all(item.command != c.NAV_SPLINE_WAYPOINT for item in items)
-    return [PLANE.point((i.x * 1e-7, i.y * 1e-7)) for i in items if i.command == c.NAV_WAYPOINT and not i.no_place][1:]
+    assert all(item.command != MavCmd.NAV_SPLINE_WAYPOINT for item in items)
+    return [
+        PLANE.point((i.x * 1e-7, i.y * 1e-7)) for i in items if i.command == MavCmd.NAV_WAYPOINT and not i.no_place
+    ][1:]
 
 
 def test_a_circle_of_splines_is_round() -> None:
@@ -210,4 +212,4 @@ def test_without_splines_it_is_the_same_file() -> None:
 
 def test_a_spline_needs_a_place() -> None:
     with pytest.raises(MissionFileError, match="item 2: a spline waypoint needs a latitude"):
-        straightened(Draft("copter", "").take_off(5).add(c.NAV_SPLINE_WAYPOINT, z=3.0).file())
+        straightened(Draft("copter", "").take_off(5).add(MavCmd.NAV_SPLINE_WAYPOINT, z=3.0).file())

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.missions.files import MissionFileError, as_flight, kml, load, save
 
 PATH = "149.1652,-35.3632,20 149.1653,-35.3630,25\n149.1654,-35.3630,30"
@@ -42,27 +42,27 @@ def document(*marks: str) -> bytes:
 @pytest.mark.parametrize(
     ("mode", "altitude", "frame", "heights"),
     [
-        ("absolute", None, c.GLOBAL, [20.0, 25.0, 30.0]),
-        ("relativeToGround", None, c.TERRAIN, [20.0, 25.0, 30.0]),
-        ("clampToGround", 12.0, c.RELATIVE, [12.0] * 3),
-        ("absolute", 12.0, c.RELATIVE, [12.0] * 3),
+        ("absolute", None, MavFrame.GLOBAL, [20.0, 25.0, 30.0]),
+        ("relativeToGround", None, MavFrame.GLOBAL_TERRAIN_ALT, [20.0, 25.0, 30.0]),
+        ("clampToGround", 12.0, MavFrame.GLOBAL_RELATIVE_ALT, [12.0] * 3),
+        ("absolute", 12.0, MavFrame.GLOBAL_RELATIVE_ALT, [12.0] * 3),
     ],
 )
 def test_a_path(mode: str, altitude: float | None, frame: int, heights: list[float]) -> None:
     """Waypoints in its order; heights are what its mode says, or above home where they are given."""
     found = kml.parse(document(line(mode)), "m", altitude)
     items = found.mission.items[1:]
-    assert [(i.command, i.frame, i.z) for i in items] == [(c.NAV_WAYPOINT, frame, z) for z in heights]
+    assert [(i.command, i.frame, i.z) for i in items] == [(MavCmd.NAV_WAYPOINT, frame, z) for z in heights]
     assert (items[0].x, items[0].y) == (-353632000, 1491652000)
     assert found.home == (-35.3632, 149.1652, 0.0)
-    assert bool(found.notes) == (frame == c.GLOBAL)
+    assert bool(found.notes) == (frame == MavFrame.GLOBAL)
 
 
 def test_a_path_is_flown_with_a_take_off_and_a_return() -> None:
     """Which it lacks; other missions stay as they are."""
     flight = as_flight(kml.parse(document(line("relativeToGround"))))
     assert [i.command for i in flight.mission.items[1:]] == [22, 16, 16, 16, 20]
-    assert (flight.mission.items[1].frame, flight.mission.items[1].z) == (c.TERRAIN, 20.0)
+    assert (flight.mission.items[1].frame, flight.mission.items[1].z) == (MavFrame.GLOBAL_TERRAIN_ALT, 20.0)
     assert as_flight(flight) is flight
 
 

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import COMMANDS, MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
+from sitl.core.mavlink import MavCmd
 from sitl.missions.files import (
     FenceCircle,
     FencePolygon,
@@ -33,11 +34,11 @@ HOME = home_item(-353632621, 1491652371, 584.0)
 SQUARE = Mission.of(
     [
         HOME,
-        MissionItem(c.NAV_TAKEOFF, z=10.0),
-        MissionItem(c.NAV_WAYPOINT, p1=2.0, p4=math.nan, x=-353629926, y=1491652371, z=10.5),
-        MissionItem(c.DO_JUMP, p1=1.0, p2=-1.0),
-        MissionItem(c.DO_SET_ROI_LOCATION, x=-1, y=1799999999, z=-3.25),
-        MissionItem(c.NAV_RETURN_TO_LAUNCH),
+        MissionItem(MavCmd.NAV_TAKEOFF, z=10.0),
+        MissionItem(MavCmd.NAV_WAYPOINT, p1=2.0, p4=math.nan, x=-353629926, y=1491652371, z=10.5),
+        MissionItem(MavCmd.DO_JUMP, p1=1.0, p2=-1.0),
+        MissionItem(MavCmd.DO_SET_ROI_LOCATION, x=-1, y=1799999999, z=-3.25),
+        MissionItem(MavCmd.NAV_RETURN_TO_LAUNCH),
     ]
 )
 WHOLE = MissionFile(
@@ -71,7 +72,7 @@ def test_a_plan_keeps_everything(tmp_path: Path) -> None:
 
 items = st.builds(
     MissionItem,
-    st.sampled_from(sorted(set(COMMANDS) - {c.DO_JUMP, *c.FENCE_COMMANDS, c.RALLY_POINT})),
+    st.sampled_from(sorted(set(COMMANDS) - {MavCmd.DO_JUMP, *c.FENCE_COMMANDS, MavCmd.NAV_RALLY_POINT})),
     st.sampled_from([0, 3, 10]),
     *[st.integers(-1000, 1000).map(lambda k: k / 8)] * 4,
     st.integers(-900000000, 900000000),
@@ -86,7 +87,7 @@ items = st.builds(
 @settings(max_examples=60)
 def test_any_mission_there_and_back(listed: list[MissionItem]) -> None:
     """Both formats keep every item."""
-    file = MissionFile(Mission.of([HOME, *listed, MissionItem(c.DO_JUMP, p1=1.0, p2=2.0), MissionItem(20)]))
+    file = MissionFile(Mission.of([HOME, *listed, MissionItem(MavCmd.DO_JUMP, p1=1.0, p2=2.0), MissionItem(20)]))
     assert wpl.parse(wpl.write(file)).mission.items[1:] == file.mission.items[1:]
     assert plan.parse(writer.write(file)).mission.items == file.mission.items
 
@@ -215,7 +216,7 @@ def test_ground_station_text() -> None:
     file = wpl.parse(text)
     assert len(file.mission) == 2
     assert file.mission.items[0].x == -353632621
-    assert file.mission.items[1].command == c.NAV_TAKEOFF
+    assert file.mission.items[1].command == MavCmd.NAV_TAKEOFF
     assert file.home == pytest.approx((-35.3632621, 149.1652371, 584.0))
     assert file.kind == "copter"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sitl import cli
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 from sitl.missions.files import MissionFileError, load
 
 CASES = Path(__file__).parent / "cases"
@@ -52,7 +52,7 @@ def test_a_polygon_is_a_fence() -> None:
 def test_a_conversion_keeps_the_place_of_a_return(target: str, tmp_path: Path) -> None:
     assert cli.main(["mission", "convert", str(CASES / "rtl_place.txt"), str(tmp_path / target)]) == 0
     item = load(tmp_path / target).mission.items[2]
-    assert (item.command, item.x, item.y) == (c.NAV_RETURN_TO_LAUNCH, -353595860, 1491646390)
+    assert (item.command, item.x, item.y) == (MavCmd.NAV_RETURN_TO_LAUNCH, -353595860, 1491646390)
     assert "-35.359586" in (tmp_path / target).read_text()
 
 

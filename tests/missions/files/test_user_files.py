@@ -10,6 +10,7 @@ import pytest
 from pymavlink import mavwp
 
 from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.missions.files import FencePolygon, MissionFileError, RallyPoint, load, save, wpl
 from sitl.missions.files.document import numbers
 
@@ -103,7 +104,7 @@ def test_a_fence_file(tmp_path: Path) -> None:
     """Where to return to, the corners, the first of them once more; as pymavlink, whose places are cut, not rounded."""
     path = saved(tmp_path, "area.fen", FENCE)
     found = load(path)
-    assert found.polygons == (FencePolygon(SQUARE, frame=c.GLOBAL),)
+    assert found.polygons == (FencePolygon(SQUARE, frame=MavFrame.GLOBAL),)
     assert found.breach_return == (-35.36325, 149.16525, 0.0)
     assert not found.mission.items
     loader = mavwp.MAVFenceLoader()
@@ -167,7 +168,9 @@ def test_fences_and_rally_points_as_items(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", [".plan", ".waypoints"])
-@pytest.mark.parametrize("command", sorted(set(c.COMMANDS) - {c.DO_JUMP, *c.FENCE_COMMANDS, c.RALLY_POINT}))
+@pytest.mark.parametrize(
+    "command", sorted(set(c.COMMANDS) - {MavCmd.DO_JUMP, *c.FENCE_COMMANDS, MavCmd.NAV_RALLY_POINT})
+)
 def test_no_field_loses_a_digit(command: int, suffix: str, tmp_path: Path) -> None:
     """Places too where the command has none: that of RTL was cut to whole degrees."""
     place = "7\t-8" if command in c.NUMBER_COMMANDS else "-35.3595861\t149.1646391"

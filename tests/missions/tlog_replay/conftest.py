@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+from benchmarks.recorded.pilot import Pilot, items
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.logs.tlog import read_tlog
-from sitl.missions.pilot import Pilot, items
 from sitl.run import runner
 from sitl.simulation import Core, Simulation
 

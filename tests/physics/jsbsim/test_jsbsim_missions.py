@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sitl.missions import engines
+from benchmarks import engines
 from sitl.simulation import Simulation
 
 pytest.importorskip("jsbsim")

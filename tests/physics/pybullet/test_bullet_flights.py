@@ -6,13 +6,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission import item as c
+from sitl.core.mavlink import MavCmd
 
 pytest.importorskip("pybullet")
 
+from benchmarks.recorded.pilot import Pilot
 from sitl import vehicles
 from sitl.core.records import first_difference
-from sitl.missions.pilot import Pilot
 from sitl.physics.native import truth
 from sitl.simulation import Simulation
 from tests.pilots.witness import KEEP, MIDDLE, Item, Witness
@@ -39,8 +39,10 @@ def square(physics: str, frame: str, world: str | None, side: float, height: flo
     flyer = Flyer(physics, frame, world)
     flyer.boot()
     flyer.fly(0.1)
-    ways = [Item(c.NAV_WAYPOINT, corner, height) for corner in ((side, 0.0), (side, side), (0.0, side), (0.0, 0.0))]
-    assert flyer.upload(Item(c.NAV_TAKEOFF, None, height), *ways, Item(c.NAV_LAND, (0.0, 0.0))) == 0
+    ways = [
+        Item(MavCmd.NAV_WAYPOINT, corner, height) for corner in ((side, 0.0), (side, side), (0.0, side), (0.0, 0.0))
+    ]
+    assert flyer.upload(Item(MavCmd.NAV_TAKEOFF, None, height), *ways, Item(MavCmd.NAV_LAND, (0.0, 0.0))) == 0
     flyer.arm()
     assert flyer.set_mode(AUTO)
     assert flyer.ask(300, 0, 0) == 0
@@ -116,7 +118,7 @@ def test_square_and_return(frame: str) -> None:
     r, side = Rover(frame).ready(), SIDES[frame]
     limit = 60.0 + 6.0 * side / float(r.ap.params.WP_SPEED)
     corners = [(side, 0.0), (side, side), (0.0, side)]
-    assert r.upload(*(Item(c.NAV_WAYPOINT, corner) for corner in corners)) == 0
+    assert r.upload(*(Item(MavCmd.NAV_WAYPOINT, corner) for corner in corners)) == 0
     start = r.now
     assert r.set_mode(ROVER_AUTO)
     assert r.fly(limit, lambda: r.said("Mission Complete")), r.texts

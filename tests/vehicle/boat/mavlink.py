@@ -14,12 +14,13 @@ from sitl.bridge.services import command_table
 from sitl.bridge.services.rc import rc_channels_override
 from sitl.bridge.services.setpoints import SetpointService
 from sitl.bridge.telemetry.builder import compiled
-from sitl.bridge.telemetry.heartbeat import ACTIVE, ARMED, CUSTOM_MODE, Heartbeat, fill_heartbeat
+from sitl.bridge.telemetry.heartbeat import Heartbeat, fill_heartbeat
 from sitl.bridge.telemetry.shell import CAPABILITIES
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets
 from sitl.bridge.wire.fleet import run_slots
-from sitl.bridge.wire.link import Instruments, Limits, Links, hear_port, run_vehicle, tell_links
+from sitl.bridge.wire.link import Instruments, Limits, Links, receive_port, run_vehicle, transmit_links
 from sitl.core.kernels import law, unit
+from sitl.core.mavlink import MavModeFlag, MavState
 from sitl.vehicle.record import Vehicle
 
 from .firmware import AHEAD, MODES
@@ -57,8 +58,8 @@ class BoatAutopilot(BaseAutopilot):
 @law
 def heartbeat(m: Heartbeat, v: Vehicle) -> bool:
     """HEARTBEAT: a boat, its mode, armed or not."""
-    base = CUSTOM_MODE | (ARMED if v.autopilot.arming.armed else 0)
-    return fill_heartbeat(m, v, SURFACE_BOAT, base, ACTIVE)
+    base = MavModeFlag.CUSTOM_MODE_ENABLED | (MavModeFlag.SAFETY_ARMED if v.autopilot.arming.armed else 0)
+    return fill_heartbeat(m, v, SURFACE_BOAT, base, MavState.ACTIVE)
 
 
 BUILDERS = compiled((heartbeat,))
@@ -67,13 +68,13 @@ build, take, target = choose_builder(BUILDERS), choose_taker(TAKERS), choose_tar
 
 
 @unit
-def hear(fleet: Sequence[Boat], index: int, port: int) -> None:
-    hear_port(fleet[index], port, take, target)
+def receive(fleet: Sequence[Boat], index: int, port: int) -> None:
+    receive_port(fleet[index], port, take, target)
 
 
 @unit
-def tell(fleet: Sequence[Boat], index: int, ports: int, count: int, number: int) -> None:
-    tell_links(fleet[index], Links(ports, count), number, build)
+def transmit(fleet: Sequence[Boat], index: int, ports: int, count: int, number: int) -> None:
+    transmit_links(fleet[index], Links(ports, count), number, build)
 
 
 @unit
@@ -81,16 +82,16 @@ def run(
     fleet: Sequence[Boat], index: int, ports: int, count: int, ranging: int, sampler: int, until_us: int, shell_us: int
 ) -> None:
     run_vehicle(
-        fleet, index, Links(ports, count), Instruments(ranging, sampler), Limits(until_us, shell_us), advance, tell
+        fleet, index, Links(ports, count), Instruments(ranging, sampler), Limits(until_us, shell_us), advance, transmit
     )
 
 
 @unit
 def run_all(fleet: Sequence[Boat], index: int, last: int, slots: int, ranging: int) -> None:
-    run_slots(fleet, index, last, slots, ranging, hear, run)
+    run_slots(fleet, index, last, slots, ranging, receive, run)
 
 
-UNITS = CoreUnits(hear, tell, run, run_all, BUILDERS, TAKERS)
+UNITS = CoreUnits(receive, transmit, run, run_all, BUILDERS, TAKERS)
 _VEHICLE: dict[int, Any] = {**command_table.COMMANDS, **command_table.COMMANDS}
 PROFILE = Profile(
     firmware="Boat",

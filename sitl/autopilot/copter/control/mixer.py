@@ -43,7 +43,7 @@ def between(ratio: float, boosted: float, normal: float) -> float:
 
 
 @inlined
-def yaw_room(motors: MotorsState, k: int, yaw: float, middle: float) -> float:
+def motor_headroom(motors: MotorsState, k: int, yaw: float, middle: float) -> float:
     """How much of a yaw demand motor ``k`` has room for, at a thrust of ``middle``."""
     left = 1.0 - middle if yaw * motors.yaw_factor[k] > 0.0 else middle
     return max(left, 0.0) * motors.yaw_range[k]
@@ -76,18 +76,18 @@ def mix(motors: MotorsState, count: int, demands: Demands, yaw_headroom: float, 
 
     # What yaw may use: the room of the tightest motor with the throttle where roll and pitch have most of it.
     centre = min(0.5, throttle_avg_max)
-    room = 1.0
+    headroom = 1.0
     for k in range(count):
         thrust = roll * motors.roll_factor[k] + pitch * motors.pitch_factor[k]
         motors.thrust[k] = thrust
         if k != failing:
-            room = min(room, yaw_room(motors, k, yaw, centre + thrust))
-    room = max(room, between(boost, _BOOST_HEADROOM, yaw_headroom))
+            headroom = min(headroom, motor_headroom(motors, k, yaw, centre + thrust))
+    headroom = max(headroom, between(boost, _BOOST_HEADROOM, yaw_headroom))
     if failing >= 0:
-        tight = yaw_room(motors, failing, yaw, centre + motors.thrust[failing])
-        room = between(boost, room, min(room, tight))
-    if abs(yaw) > room:
-        yaw = constrain(yaw, -room, room)
+        tight = motor_headroom(motors, failing, yaw, centre + motors.thrust[failing])
+        headroom = between(boost, headroom, min(headroom, tight))
+    if abs(yaw) > headroom:
+        yaw = constrain(yaw, -headroom, headroom)
         motors.limit_yaw = True
 
     low = 1.0

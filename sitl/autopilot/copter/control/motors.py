@@ -15,13 +15,9 @@ from ...state import Actuators, Arming
 from ..parameters import Parameters
 from ..parameters.control import Motors
 from .mixer import Boost, Demands, follow_boost, mix, mix_many, watch_balance
+from .spool import DesiredSpoolState, SpoolState
 from .state import DT, QUAD, MotorsState
 from .thrust_curve import command_from_thrust
-
-# desired_spool
-DESIRED_SHUT_DOWN, DESIRED_GROUND_IDLE, DESIRED_THROTTLE_UNLIMITED = 0, 1, 2
-# spool_state
-SHUT_DOWN, GROUND_IDLE, SPOOLING_UP, THROTTLE_UNLIMITED, SPOOLING_DOWN = 0, 1, 2, 3, 4
 
 ARMING_DELAY_US = 2_000_000
 """Motors stand still for this long after arming [us]: time to step back (ArduPilot's)."""
@@ -61,65 +57,65 @@ def spool(motors: MotorsState, enabled: bool, p: Motors) -> None:
     ``enabled`` is false while disarmed and during the arming delay: then the motors stand.
     """
     if not enabled:
-        motors.desired_spool = DESIRED_SHUT_DOWN
-        motors.spool_state = SHUT_DOWN
+        motors.desired_spool = DesiredSpoolState.SHUT_DOWN
+        motors.spool_state = SpoolState.SHUT_DOWN
     up = DT / max(p.SPOOL_TIME, 0.05)
     down = DT / max(p.SPOOL_TIM_DN, 0.05) if p.SPOOL_TIM_DN > 0.0 else up
     state = motors.spool_state
     desired = motors.desired_spool
-    if state == SHUT_DOWN:
+    if state == SpoolState.SHUT_DOWN:
         set_limits(motors, True)
         motors.boosting, motors.boost_ratio = False, 0.0
         motors.spin_up_ratio = 0.0
         motors.thrust_max = 0.0
-        if desired != DESIRED_SHUT_DOWN:
-            motors.spool_state = GROUND_IDLE
-    elif state == GROUND_IDLE:
+        if desired != DesiredSpoolState.SHUT_DOWN:
+            motors.spool_state = SpoolState.GROUND_IDLE
+    elif state == SpoolState.GROUND_IDLE:
         set_limits(motors, True)
         motors.boosting, motors.boost_ratio = False, 0.0
         ratio = motors.spin_up_ratio
-        if desired == DESIRED_SHUT_DOWN:
+        if desired == DesiredSpoolState.SHUT_DOWN:
             ratio = max(ratio - down, 0.0)
             if ratio <= 0.0:
-                motors.spool_state = SHUT_DOWN
-        elif desired == DESIRED_GROUND_IDLE:
+                motors.spool_state = SpoolState.SHUT_DOWN
+        elif desired == DesiredSpoolState.GROUND_IDLE:
             idle = p.SPIN_ARM / p.SPIN_MIN if p.SPIN_MIN > 0.0 else 0.0
             ratio += constrain(idle - ratio, -down, up)
         else:
             ratio = min(ratio + up, 1.0)
             if ratio >= 1.0 and not motors.blocked:
-                motors.spool_state = SPOOLING_UP
+                motors.spool_state = SpoolState.SPOOLING_UP
         motors.spin_up_ratio = ratio
         motors.thrust_max = 0.0
-    elif state == SPOOLING_UP:
+    elif state == SpoolState.SPOOLING_UP:
         set_limits(motors, False)
         motors.boosting = False
         motors.spin_up_ratio = 1.0
-        if desired != DESIRED_THROTTLE_UNLIMITED:
-            motors.spool_state = SPOOLING_DOWN
+        if desired != DesiredSpoolState.THROTTLE_UNLIMITED:
+            motors.spool_state = SpoolState.SPOOLING_DOWN
             return
         motors.thrust_max += up
         if motors.thrust_max >= min(motors.throttle, 1.0):
             motors.thrust_max = 1.0
-            motors.spool_state = THROTTLE_UNLIMITED
-    elif state == THROTTLE_UNLIMITED:
+            motors.spool_state = SpoolState.THROTTLE_UNLIMITED
+    elif state == SpoolState.THROTTLE_UNLIMITED:
         set_limits(motors, False)
         motors.spin_up_ratio = 1.0
         motors.thrust_max = 1.0
         if motors.boosting or motors.boost_ratio > 0.0:
             follow_boost(motors, up, down)
-        if desired != DESIRED_THROTTLE_UNLIMITED:
-            motors.spool_state = SPOOLING_DOWN
+        if desired != DesiredSpoolState.THROTTLE_UNLIMITED:
+            motors.spool_state = SpoolState.SPOOLING_DOWN
     else:
         set_limits(motors, False)
         motors.boosting, motors.boost_ratio = False, 0.0
         motors.spin_up_ratio = 1.0
-        if desired == DESIRED_THROTTLE_UNLIMITED:
-            motors.spool_state = SPOOLING_UP
+        if desired == DesiredSpoolState.THROTTLE_UNLIMITED:
+            motors.spool_state = SpoolState.SPOOLING_UP
             return
         motors.thrust_max = max(motors.thrust_max - down, 0.0)
         if motors.thrust_max <= 0.0:
-            motors.spool_state = GROUND_IDLE
+            motors.spool_state = SpoolState.GROUND_IDLE
 
 
 @law
@@ -148,11 +144,11 @@ def command_motors(motors: MotorsState, count: int, p: Motors) -> None:
     state = motors.spool_state
     span = p.SPIN_MAX - p.SPIN_MIN
     for k in range(count):
-        if state == SHUT_DOWN:
+        if state == SpoolState.SHUT_DOWN:
             motors.actuator[k] = 0.0
             continue
         wanted = motors.spin_up_ratio * p.SPIN_MIN
-        if state != GROUND_IDLE:
+        if state != SpoolState.GROUND_IDLE:
             thrust = motors.thrust[k] if finite(motors.thrust[k]) else 0.0
             command = command_from_thrust(thrust, p.THST_EXPO, motors.lift_max, motors.voltage_ratio)
             wanted = p.SPIN_MIN + span * command
@@ -191,7 +187,7 @@ def drive_motors(motors: MotorsState, arming: Arming, p: Parameters, time_us: in
     """Everything between the demands of the controllers and ``motors.actuator``; ``time_us`` since boot."""
     filter_throttle(motors, arming.armed)
     spool(motors, may_turn(arming) and time_us - arming.armed_us >= ARMING_DELAY_US, p.MOT)
-    if motors.spool_state == SHUT_DOWN:
+    if motors.spool_state == SpoolState.SHUT_DOWN:
         motors.throttle_out = 0.0
     else:
         demands = compensated_demands(motors)

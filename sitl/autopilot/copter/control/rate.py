@@ -7,7 +7,7 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ...control.pid import pid_gains, relax_integrator, reset_filter, update_pid
 from ..parameters.control import Attitude
-from .motors import GROUND_IDLE, SHUT_DOWN
+from .spool import SpoolState
 from .state import DT, MotorsState, RateState
 
 RELAX_TIME = 0.16
@@ -21,9 +21,9 @@ def control_rates(rate: RateState, motors: MotorsState, target: Vec3, rates: Vec
     The mixer's limit flags of the last tick hold integrators. The trim of the last flight is forgotten while the
     motors stand or idle on the ground.
     """
-    if motors.spool_state == SHUT_DOWN:
+    if motors.spool_state == SpoolState.SHUT_DOWN:
         reset_integrators(rate)
-    elif motors.spool_state == GROUND_IDLE:
+    elif motors.spool_state == SpoolState.GROUND_IDLE:
         relax_integrators(rate)
     motors.roll = update_pid(rate.roll, target.x, rates.x, DT, motors.limit_roll, pid_gains(params.RAT_RLL))
     motors.pitch = update_pid(rate.pitch, target.y, rates.y, DT, motors.limit_pitch, pid_gains(params.RAT_PIT))

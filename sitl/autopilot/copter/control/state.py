@@ -17,7 +17,7 @@ from ... import state as shared
 from ...control.pid import Pid
 
 DT = TICK_S
-"""Period of every law in this room [s]: one autopilot tick."""
+"""Period of every law in this package [s]: one autopilot tick."""
 MOTORS_MAX, QUAD = 8, 4
 
 
@@ -122,8 +122,8 @@ class VibrationState(Record):
 class MotorsState(Record):
     """Spool, mixer and motor outputs."""
 
-    desired_spool: int  # 0 SHUT_DOWN, 1 GROUND_IDLE, 2 THROTTLE_UNLIMITED: set by modes
-    spool_state: int  # 0 SHUT_DOWN, 1 GROUND_IDLE, 2 SPOOLING_UP, 3 THROTTLE_UNLIMITED, 4 SPOOLING_DOWN
+    desired_spool: int  # DesiredSpoolState, set by modes
+    spool_state: int  # SpoolState
     spin_up_ratio: float  # 0 .. 1 of MOT_SPIN_MIN, on the ground
     thrust_max: float  # 0 .. 1, ramped by the spool
     roll: float  # demands -1 .. 1
@@ -158,7 +158,7 @@ class MotorsState(Record):
     loss_ticks: int  # for which thrust seemed to be lost
     learns_at_rest: bool  # hover throttle is learnt only while the path stands still, not while it is slow
     yaw_trim: float  # size of the yaw rate loop's integrator, low-passed
-    yaw_trim_told_us: int  # when that was last told to be large
+    yaw_trim_reported_us: int  # when that was last told to be large
     voltage_ratio: float  # resting voltage over MOT_BAT_VOLT_MAX, filtered; 1 when not compensated
     lift_max: float  # thrust at full throttle at that voltage, 1 at MOT_BAT_VOLT_MAX
     compensation_gain: float  # of thrust demands for voltage and air density

@@ -11,6 +11,7 @@ from ...modes import ACCEPTED
 from ...state import Arming, Estimate, Radio
 from .. import avoidance, pilot
 from ..control import altitude, altitude_start, attitude
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import AltitudeState, Control, MotorsState
 from ..control.throttle_mix import lean_limit
 from ..parameters import Parameters
@@ -57,18 +58,18 @@ def set_limits(path: AltitudeState, p: Parameters) -> None:
 def decide(arming: Arming, takeoff: TakeoffState, motors: MotorsState, climb: float) -> int:
     """What to do with the throttle stick asking for ``climb`` [m/s]; sets the spool state that this needs."""
     if not arming.armed:
-        motors.desired_spool = ground.SHUT_DOWN
+        motors.desired_spool = DesiredSpoolState.SHUT_DOWN
         return STOPPED
-    triggered = arming.landed and climb > 0.0 and motors.spool_state == ground.IS_UNLIMITED
+    triggered = arming.landed and climb > 0.0 and motors.spool_state == SpoolState.THROTTLE_UNLIMITED
     if takeoff.user_active or triggered:
-        motors.desired_spool = ground.UNLIMITED
+        motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
         return TAKING_OFF
     if not arming.auto_armed or arming.landed:
-        motors.desired_spool = ground.GROUND_IDLE if climb < 0.0 else ground.UNLIMITED
-        if motors.spool_state == ground.IS_GROUND_IDLE or motors.spool_state == ground.IS_SHUT_DOWN:
+        motors.desired_spool = DesiredSpoolState.GROUND_IDLE if climb < 0.0 else DesiredSpoolState.THROTTLE_UNLIMITED
+        if motors.spool_state == SpoolState.GROUND_IDLE or motors.spool_state == SpoolState.SHUT_DOWN:
             return LANDED_IDLE
         return LANDED_READY
-    motors.desired_spool = ground.UNLIMITED
+    motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     return FLYING
 
 
@@ -92,7 +93,7 @@ def run_vertical(
     if doing == TAKING_OFF:
         if not state.user_active:
             takeoff.begin_user(state, constrain(p.PILOT.TKOFF_ALT * 0.01, 0.0, 10.0), control, est, p)
-        if control.motors.spool_state != ground.IS_UNLIMITED:
+        if control.motors.spool_state != SpoolState.THROTTLE_UNLIMITED:
             altitude_start.relax_d(control, est, p, 0.0)
             altitude.update_d(control, est, p)
         elif not arming.landed:

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 from ....core.algebra import horizontal
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ...arming_checks import BY_MISSION_EXIT
 from ...events import Event, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, MODE_CHANGED, REASON_AUTO_RTL_EXIT
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, PAYLOAD_PLACE, RTL, TAKEOFF
-from ...notes import INFO, Text
+from ...notes import Text
 from ...state import Arming, Estimate
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import AttitudeState, Control
 from ..navigation import circle, command, waypoint
 from ..navigation.state import CopterNav
@@ -40,7 +42,7 @@ _NO_PILOT_YAW = 128
 FLYING = 0
 DESCENDING = 1
 
-CIRCLE_BEGINS = Event(59, says=lambda v, a, b: [Text(INFO, f"Mission: starting circle {int(a)}/{int(b)}")])
+CIRCLE_BEGINS = Event(59, says=lambda v, a, b: [Text(MavSeverity.INFO, f"Mission: starting circle {int(a)}/{int(b)}")])
 """The next circle of a mission's LOITER_TURNS; a: its number, b: how many"""
 
 
@@ -210,20 +212,20 @@ def run_path(v: Vehicle, kind: int) -> bool:
     if not command.follows_path(kind):
         ground.hold(modes.auto_yaw, control, est, p)
         return False
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     done = command.run(modes.nav, control, est, p, v.time_us)
     if kind == kinds.LOITER_TURNS and modes.nav.circle_running:
-        tell_circle(modes.nav, ap.events, v.time_us)
+        report_circle(modes.nav, ap.events, v.time_us)
     ground.fly(modes.auto_yaw, control, est, p)
     return done
 
 
 @law
-def tell_circle(nav: CopterNav, events: Events, time_us: int) -> None:
+def report_circle(nav: CopterNav, events: Events, time_us: int) -> None:
     """Say when the next circle begins, and when the last one is done."""
     number = 1 + int(circle.turned(nav))
-    if number > nav.circle_told:
-        nav.circle_told = number
+    if number > nav.circle_reported:
+        nav.circle_reported = number
         emit(events, time_us, CIRCLE_BEGINS, float(number), float(int(nav.turns)))
 
 
@@ -233,11 +235,11 @@ def run_land(v: Vehicle) -> bool:
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     land.finish(v)
-    done = ap.arming.landed and control.motors.spool_state <= ground.IS_GROUND_IDLE
+    done = ap.arming.landed and control.motors.spool_state <= SpoolState.GROUND_IDLE
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return done
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if modes.auto.land_state == DESCENDING:
         precision_land.descend(v)
         return done

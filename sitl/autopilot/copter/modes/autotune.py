@@ -15,16 +15,19 @@ from typing import Any
 from ....core.algebra import horizontal, norm2, quat_from_euler, rotate
 from ....core.elementary import atan2, sincos
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import PI, constrain, wrap_pi
 from ....core.vectors import Euler, Vec3
 from ...events import Row, ev
+from ...log_events import LogEvent
 from ...modes import ACCEPTED, INIT_FAILED
-from ...notes import CRITICAL, INFO, NOTICE, EventNote, ParametersFound, Text
+from ...notes import EventNote, ParametersFound, Text
 from .. import pilot
 from ..control import attitude
+from ..control.spool import SpoolState
 from ..control.throttle_mix import lean_limit
 from ..state import Vehicle
-from . import alt_hold, ground
+from . import alt_hold
 from . import autotune_gains as gains
 from . import autotune_rules as rules
 from . import autotune_twitch as twitches
@@ -52,18 +55,26 @@ _TEXTS = {
     gains.INCOMPLETE: "must be complete to test gains", gains.D_LIMIT: "Min Rate D limit reached",
 }  # fmt: skip
 _FAILURES = {rules.NO_ROOM: "Twitch Size", rules.NO_D: "Rate D Gain", rules.NO_P: "Rate P Gain"}
-_SEVERITIES = {gains.COMPLETE: NOTICE, gains.SUCCESS: NOTICE, gains.FAILURE: CRITICAL}
+_SEVERITIES = {
+    gains.COMPLETE: MavSeverity.NOTICE,
+    gains.SUCCESS: MavSeverity.NOTICE,
+    gains.FAILURE: MavSeverity.CRITICAL,
+}
 """Of texts; of the others it is INFO."""
 _LOGGED = {
-    gains.STARTED: 30, gains.STOPPED: 31, gains.SUCCESS: 33, gains.FAILURE: 34, gains.D_LIMIT: 35, gains.TRIES: 36,
-    gains.SAVED: 37,
-}  # fmt: skip
-"""Number of EV."""
+    gains.STARTED: LogEvent.AUTOTUNE_INITIALISED,
+    gains.STOPPED: LogEvent.AUTOTUNE_OFF,
+    gains.SUCCESS: LogEvent.AUTOTUNE_SUCCESS,
+    gains.FAILURE: LogEvent.AUTOTUNE_FAILED,
+    gains.D_LIMIT: LogEvent.AUTOTUNE_REACHED_LIMIT,
+    gains.TRIES: LogEvent.AUTOTUNE_PILOT_TESTING,
+    gains.SAVED: LogEvent.AUTOTUNE_SAVEDGAINS,
+}
 
 _PAUSE_US = 500_000  # from the sticks' release to the next twitch
 _LEVEL_US = 250_000
 _PATIENCE_US = 2_000_000  # after it the limits of what is level are those below; twice that after twice the time
-_TELL_US, _WARN_US = 2_000_000, 1_000_000
+_REPORT_US, _WARN_US = 2_000_000, 1_000_000
 _LEVEL, _STILL, _YAW_STILL = math.radians(2.5), math.radians(5.0), math.radians(7.5)
 _HOLD_LEAN, _HOLD_DISTANCE = math.radians(10.0), 20.0  # [m]
 _HOLD_NEAR, _TURN_FAR = 0.1, 5.0  # [m]
@@ -104,9 +115,9 @@ def parameters(axes: int) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _told(v: Any, a: float, b: float) -> list[EventNote]:
+def _texts(v: Any, a: float, b: float) -> list[EventNote]:
     did, number = int(a), int(b)
-    severity = _SEVERITIES.get(did, INFO)
+    severity = _SEVERITIES.get(did, MavSeverity.INFO)
     said: list[EventNote] = [
         Text(severity, f"AutoTune: {text}") for text in texts(did, number, v.autopilot.modes.autotune)
     ]
@@ -125,7 +136,7 @@ def _rows(v: Any, did: float, number: float) -> list[Row]:
     return [("ATUN", (t.axis, t.step, *measured, *numbers))]
 
 
-AUTOTUNE_DID = gains.AUTOTUNE_DID.saying(says=_told, log=_rows)
+AUTOTUNE_DID = gains.AUTOTUNE_DID.saying(says=_texts, log=_rows)
 
 
 @law
@@ -157,7 +168,7 @@ def start(v: Vehicle) -> int:
     if gains.has_found(t):
         gains.try_gains(v, True)
         return ACCEPTED
-    gains.tell(v, gains.STARTED, 0.0)
+    gains.report(v, gains.STARTED, 0.0)
     if is_new:
         begin(v)
     else:
@@ -197,7 +208,7 @@ def tune_next_axis(v: Vehicle) -> None:
     if axis == gains.AXES:
         t.phase = FOUND
         gains.restore(v)
-        gains.tell(v, gains.SUCCESS, 0.0)
+        gains.report(v, gains.SUCCESS, 0.0)
         return
     t.axis = axis
     g = gains.found(t, axis)
@@ -252,7 +263,7 @@ def is_overridden(v: Vehicle, climb: float, flies: bool) -> bool:
         level_first(v)
     if (by_sticks or flies) and t.overridden_us != 0 and v.time_us - t.warned_us >= _WARN_US:
         t.warned_us = v.time_us
-        gains.tell(v, gains.OVERRIDDEN, 0.0)
+        gains.report(v, gains.OVERRIDDEN, 0.0)
     return t.overridden_us != 0
 
 
@@ -280,7 +291,7 @@ def run(v: Vehicle) -> None:
     alt_hold.set_limits(control.pos_d, p)
     climb = alt_hold.climb_rate(modes, ap.rc, control.pos_d, p)
     doing = alt_hold.decide(ap.arming, modes.takeoff, control.motors, climb)
-    flies = doing == alt_hold.FLYING and control.motors.spool_state == ground.IS_UNLIMITED
+    flies = doing == alt_hold.FLYING and control.motors.spool_state == SpoolState.THROTTLE_UNLIMITED
     overridden = is_overridden(v, climb, flies)
     if flies and modes.autotune.phase == TUNING and not overridden:
         tune(v)
@@ -299,10 +310,10 @@ def run(v: Vehicle) -> None:
 def tune(v: Vehicle) -> None:
     """One tick of levelling or of a twitch."""
     t = v.autopilot.modes.autotune
-    if v.time_us - t.told_us >= _TELL_US:
-        t.told_us = v.time_us
+    if v.time_us - t.reported_us >= _REPORT_US:
+        t.reported_us = v.time_us
         percent = 100 * min(t.count, rules.ENOUGH) // rules.ENOUGH
-        gains.tell(v, gains.PROGRESS, float(t.axis * 10000 + t.step * 1000 + percent))
+        gains.report(v, gains.PROGRESS, float(t.axis * 10000 + t.step * 1000 + percent))
     if t.came_to != rules.GOES_ON:
         conclude(v)
     if t.phase == TUNING and t.twitching:
@@ -343,7 +354,7 @@ def fail(v: Vehicle, why: int) -> None:
     t.phase = gains.FAILED
     t.twitching = False
     gains.restore(v)
-    gains.tell(v, gains.FAILURE, float(why))
+    gains.report(v, gains.FAILURE, float(why))
 
 
 @law
@@ -391,7 +402,7 @@ def learn(v: Vehicle) -> None:
         fail(v, came_to)
         return
     if came_to == rules.D_AT_LIMIT:
-        gains.tell(v, gains.D_LIMIT, 0.0)
+        gains.report(v, gains.D_LIMIT, 0.0)
     if t.count < rules.ENOUGH:
         return
     if t.step != rules.ANGLE_P_UP:
@@ -400,7 +411,7 @@ def learn(v: Vehicle) -> None:
     g = gains.found(t, t.axis)
     g.angle_p = max(_ANGLE_BACKOFF * g.angle_p, _ANGLE_P_MIN)
     g.accel = max(_CDEG * t.accel, _ACCEL_MIN if t.axis < YAW else _YAW_ACCEL_MIN)
-    gains.tell(v, gains.COMPLETE, float(t.axis))
+    gains.report(v, gains.COMPLETE, float(t.axis))
     t.done |= 1 << t.axis
     tune_next_axis(v)
 

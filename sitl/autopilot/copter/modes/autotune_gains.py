@@ -38,7 +38,7 @@ TWITCHING_I = 0.01
 
 
 @law
-def tell(v: Vehicle, did: int, number: float) -> None:
+def report(v: Vehicle, did: int, number: float) -> None:
     """Tell what it did."""
     emit(v.autopilot.events, v.time_us, AUTOTUNE_DID, float(did), number)
 
@@ -150,17 +150,17 @@ def try_gains(v: Vehicle, on: bool) -> None:
     """Fly with the gains found, or with those from before."""
     t = v.autopilot.modes.autotune
     if not has_found(t):
-        tell(v, INCOMPLETE, 0.0)
+        report(v, INCOMPLETE, 0.0)
     elif on:
         if t.phase != TRIED:
             remember(v)
         use(v)
         t.phase = TRIED
-        tell(v, TRIES, float(t.done))
+        report(v, TRIES, float(t.done))
     else:
         restore(v)
         t.phase = RETURNED
-        tell(v, RESTORED, 0.0)
+        report(v, RESTORED, 0.0)
 
 
 @law
@@ -174,7 +174,7 @@ def leave(v: Vehicle) -> None:
         t.phase = PAUSED
     elif has_found(t):
         t.phase = RETURNED
-    tell(v, STOPPED, 0.0)
+    report(v, STOPPED, 0.0)
 
 
 @law
@@ -191,7 +191,7 @@ def settle(v: Vehicle, landed: bool) -> None:
     t = v.autopilot.modes.autotune
     if landed and (t.phase == FOUND or t.phase == TRIED):
         use(v)
-        tell(v, SAVED, float(t.done))
+        report(v, SAVED, float(t.done))
     else:
         give_back(v)
     t.phase = IDLE

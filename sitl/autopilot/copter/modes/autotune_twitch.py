@@ -143,7 +143,7 @@ def run(v: Vehicle) -> None:
     if t.came_to == rules.GOES_ON and v.time_us - t.begun_us >= t.limit_us:
         t.came_to = rules.MEASURED
     if t.came_to == rules.MEASURED:
-        gains.tell(v, gains.MEASURED, 0.0)
+        gains.report(v, gains.MEASURED, 0.0)
 
 
 @law

@@ -7,6 +7,7 @@ from ....core.elementary import hypot
 from ....core.kernels import law
 from ...modes import ACCEPTED
 from ..control import altitude, altitude_start, attitude, position, position_start
+from ..control.spool import DesiredSpoolState
 from ..state import Vehicle
 from . import ground
 from .mode import CopterMode, never_arms
@@ -41,7 +42,7 @@ def run(v: Vehicle) -> None:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     ground.brake(control)
     position.update_ne(control, est, p)
     altitude.update_d(control, est, p)

@@ -16,6 +16,7 @@ from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec3
 from ...modes import ACCEPTED
 from ..control import altitude, altitude_start, position_start
+from ..control.spool import DesiredSpoolState
 from ..control.state import DT
 from ..navigation import circle
 from ..navigation.state import CopterNav
@@ -110,7 +111,7 @@ def run(v: Vehicle) -> None:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if state.radius_set != CM * p.CIRCLE.RADIUS:
         state.radius_set = CM * p.CIRCLE.RADIUS
         state.radius = state.radius_set

@@ -18,8 +18,8 @@ from ...modes import ACCEPTED, INIT_FAILED, REASON_FLIP_COMPLETE, ask
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
+from ..control.spool import DesiredSpoolState
 from ..state import Vehicle
-from . import ground
 from .acro import ACRO
 from .alt_hold import ALT_HOLD
 from .mode import CopterMode, never_arms
@@ -115,7 +115,9 @@ def run(v: Vehicle) -> None:
     late = v.time_us - flip.start_us > _TIME_MAX_US
     if advance(flip, est.q) or pushed or late or not ap.arming.armed or ap.arming.landed:
         ask(modes, modes.previous, REASON_FLIP_COMPLETE)
-    control.motors.desired_spool = ground.UNLIMITED if ap.arming.armed else ground.SHUT_DOWN
+    control.motors.desired_spool = (
+        DesiredSpoolState.THROTTLE_UNLIMITED if ap.arming.armed else DesiredSpoolState.SHUT_DOWN
+    )
     if flip.phase == RECOVERING:
         attitude.input_quaternion(control, est, p, flip.level, Vec3(0.0, 0.0, 0.0))
     else:

@@ -14,6 +14,7 @@ from ...follow import FOLLOW_OFF, FOLLOW_OFFSET
 from ...modes import ACCEPTED, INIT_FAILED
 from ...state import FollowState
 from ..control import altitude, position
+from ..control.spool import DesiredSpoolState
 from ..control.state import DT
 from ..state import Vehicle
 from . import auto_yaw, ground
@@ -57,7 +58,7 @@ def run(v: Vehicle) -> None:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     auto_yaw.follow_angle(ap.modes.auto_yaw, control.attitude.target_euler.yaw, 0.0)
     if lead_motion.follow(lead, p.FOLL, est.pos, v.time_us, DT):
         if lead_motion.keep_distance(lead, p.FOLL, est.pos):

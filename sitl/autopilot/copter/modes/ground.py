@@ -4,29 +4,20 @@
 from __future__ import annotations
 
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ... import arming_checks
 from ...events import emit_and_return
 from ...fence.checks import switch_on_disarming
-from ...notes import INFO
 from ...state import Arming, Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import Control, MotorsState
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import auto_yaw, autotune_gains
 from .state import AutoYaw
 
-# Spool states wanted by a mode (control/motors.py)
-SHUT_DOWN = 0
-GROUND_IDLE = 1
-UNLIMITED = 2
-
-# Spool states that the motors are in
-IS_SHUT_DOWN = 0
-IS_GROUND_IDLE = 1
-IS_UNLIMITED = 3
-
-DISARMED = arming_checks.DISARMED.saying(INFO, "Disarming motors")
+DISARMED = arming_checks.DISARMED.saying(MavSeverity.INFO, "Disarming motors")
 
 
 @law
@@ -57,7 +48,7 @@ def disarm(v: Vehicle, method: int) -> None:
     ap.modes.arming_delay = False
     ap.modes.takeoff.user_active = False
     ap.modes.auto.started = False
-    ap.control.motors.desired_spool = SHUT_DOWN
+    ap.control.motors.desired_spool = DesiredSpoolState.SHUT_DOWN
     switch_on_disarming(ap.fence, int(ap.params.FENCE.AUTOENABLE), ap.events, v.time_us)
     autotune_gains.settle(v, landed)
     emit_and_return(ap.events, v.time_us, DISARMED, float(method), 0.0)  # the mission goes back to its start
@@ -67,12 +58,12 @@ def disarm(v: Vehicle, method: int) -> None:
 def spool_by_stick(arming: Arming, throttle_zero: bool, motors: MotorsState) -> bool:
     """The motors' wanted state where the throttle stick drives them; whether they are off or idle, and push nothing."""
     if not arming.armed:
-        motors.desired_spool = SHUT_DOWN
+        motors.desired_spool = DesiredSpoolState.SHUT_DOWN
     else:
-        motors.desired_spool = GROUND_IDLE if throttle_zero else UNLIMITED
-    if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
+        motors.desired_spool = DesiredSpoolState.GROUND_IDLE if throttle_zero else DesiredSpoolState.THROTTLE_UNLIMITED
+    if motors.spool_state == SpoolState.SHUT_DOWN or motors.spool_state == SpoolState.GROUND_IDLE:
         return True
-    if motors.spool_state == IS_UNLIMITED and not motors.limit_throttle_lower and arming.landed:
+    if motors.spool_state == SpoolState.THROTTLE_UNLIMITED and not motors.limit_throttle_lower and arming.landed:
         set_landed(arming, False)
     return False
 
@@ -81,8 +72,8 @@ def spool_by_stick(arming: Arming, throttle_zero: bool, motors: MotorsState) -> 
 def rest(armed: bool, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick on the ground: motors idle, controllers follow the vehicle, throttle decays to zero."""
     motors = control.motors
-    motors.desired_spool = GROUND_IDLE if armed else SHUT_DOWN
-    if motors.spool_state == IS_SHUT_DOWN or motors.spool_state == IS_GROUND_IDLE:
+    motors.desired_spool = DesiredSpoolState.GROUND_IDLE if armed else DesiredSpoolState.SHUT_DOWN
+    if motors.spool_state == SpoolState.SHUT_DOWN or motors.spool_state == SpoolState.GROUND_IDLE:
         attitude.reset_yaw_target(control.attitude, est.yaw)
     position_start.relax_ne(control, est, p)
     position.update_ne(control, est, p)
@@ -109,7 +100,7 @@ def brake(control: Control) -> None:
 @law
 def hold(yaw: AutoYaw, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of a stop, with the heading of auto_yaw."""
-    control.motors.desired_spool = UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     brake(control)
     fly(yaw, control, est, p)
 

@@ -36,6 +36,7 @@ from ...terrain.ground import lose_ground
 from .. import avoidance, terrain
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from ..control.attitude_target import limit_rates, rate_max
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import DT, Control
 from ..parameters import Parameters
 from ..state import Vehicle
@@ -116,7 +117,7 @@ def run(v: Vehicle) -> None:
     elif ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
     else:
-        control.motors.desired_spool = ground.UNLIMITED
+        control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
         if guided.submode != POSITION:
             note_timeout(guided, stale, ap.events, v.time_us)
         if stale:
@@ -131,7 +132,7 @@ def run_paused(arming: Arming, control: Control, est: Estimate, p: Parameters) -
     if ground.is_grounded(arming):
         ground.rest(arming.armed, control, est, p)
         return
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     ground.brake(control)
     position.update_ne(control, est, p)
     altitude.update_d(control, est, p)
@@ -211,7 +212,7 @@ def run_angle(guided: GuidedState, stale: bool, arming: Arming, control: Control
     if not arming.armed or not arming.auto_armed or (arming.landed and not wants_up):
         ground.rest(arming.armed, control, est, p)
         return
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if arming.landed:
         leave_ground(arming, control, est, p)
     else:
@@ -241,7 +242,7 @@ def leave_ground(arming: Arming, control: Control, est: Estimate, p: Parameters)
     """One tick of a landed vehicle that is asked to climb: it flies as soon as the motors have spooled up."""
     throttle_mix.set_throttle_out(control, p, 0.0, False, 0.0)
     attitude.relax(control, est)
-    if control.motors.spool_state == ground.IS_UNLIMITED:
+    if control.motors.spool_state == SpoolState.THROTTLE_UNLIMITED:
         ground.set_landed(arming, False)
         altitude_start.init_d(control, est, p)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from ....core.kernels import law
 from ...arming_checks import BY_LANDING
 from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE, ask
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..parameters.flight import Pilot
 from ..state import Vehicle
 from ..terrain import height_over_ground
@@ -49,7 +50,7 @@ def run(v: Vehicle) -> None:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     height = height_over_ground(v)
     if is_cancelled(modes.pilot, p.PILOT):
         ask(modes, LOITER if est.position_ok else ALT_HOLD, REASON_THROTTLE_LAND_ESCAPE)
@@ -72,7 +73,7 @@ def follow_state(land: LandState, time_us: int, position_ok: bool) -> None:
 def finish(v: Vehicle) -> None:
     """Disarm when landed and the motors have come down to idle."""
     ap = v.autopilot
-    if ap.arming.landed and ap.control.motors.spool_state == ground.IS_GROUND_IDLE:
+    if ap.arming.landed and ap.control.motors.spool_state == SpoolState.GROUND_IDLE:
         ground.disarm(v, BY_LANDING)
 
 

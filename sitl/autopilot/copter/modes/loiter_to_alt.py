@@ -9,6 +9,7 @@ from ....core.scalars import constrain
 from ...control.shaping import sqrt_controller
 from ...navigation.path import distance
 from ..control import altitude, position
+from ..control.spool import DesiredSpoolState
 from ..control.state import DT
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -27,7 +28,7 @@ def run(v: Vehicle) -> bool:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return False
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if nav.since_us == 0 and distance(nav, est.pos) > waypoint.CM * p.WPNAV.RADIUS:
         waypoint.advance(nav, control, est, p, v.time_us)
         ground.fly(modes.auto_yaw, control, est, p)

@@ -9,12 +9,13 @@ https://ardupilot.org/copter/docs/common-mission-command-list.html#nav-payload-p
 from __future__ import annotations
 
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ...control.shaping import Motion
 from ...events import Event, Events, emit, emit_and_return
 from ...navigation.state import COMMAND_ARRIVED, NAV_COMMAND, Nav
-from ...notes import INFO, WARNING
 from ...terrain.ground import by_range
 from ..control import altitude, altitude_start
+from ..control.spool import DesiredSpoolState
 from ..navigation import waypoint
 from ..parameters import Parameters
 from ..state import Vehicle
@@ -33,12 +34,12 @@ _TEXTS: dict[int, str | tuple[int, str]] = {
     LANDED: "PayloadPlace: landed",
     ABORTED: "PayloadPlace: Abort: Gripper Open",
     BY_HAND: "PayloadPlace: Manual release",
-    AT_LIMIT: (WARNING, "PayloadPlace: Reached maximum descent"),
-    NO_RANGE: (WARNING, "PayloadPlace: PLDP_RNG_MAX set and rangefinder not enabled"),
+    AT_LIMIT: (MavSeverity.WARNING, "PayloadPlace: Reached maximum descent"),
+    NO_RANGE: (MavSeverity.WARNING, "PayloadPlace: PLDP_RNG_MAX set and rangefinder not enabled"),
     PLACED: "PayloadPlace: payload release thrust threshold: {b:f}",
     RELEASED: "PayloadPlace: Releasing the gripper",
 }
-PAYLOAD_PLACE_DID = Event(77, INFO, _TEXTS)
+PAYLOAD_PLACE_DID = Event(77, MavSeverity.INFO, _TEXTS)
 
 STEADY = 0.95
 """Of the descent's speed: from then on its thrust counts."""
@@ -78,7 +79,7 @@ def run(v: Vehicle) -> bool:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return False
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if ap.arming.landed_maybe and place.stage == DESCENDING:
         say(ap.events, v.time_us, LANDED, 0.0)
         place.stage = RELEASING

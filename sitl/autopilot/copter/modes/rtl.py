@@ -19,6 +19,7 @@ from ...state import Estimate
 from ...terrain.state import RTL_WITHOUT, TERRAIN_DID
 from .. import terrain
 from ..control import altitude, position, position_start
+from ..control.spool import DesiredSpoolState
 from ..control.state import Control
 from ..navigation import waypoint
 from ..parameters import Parameters
@@ -160,7 +161,7 @@ def run_end(v: Vehicle) -> bool:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return True
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if is_landing(modes):
         precision_land.descend(v)
         return True

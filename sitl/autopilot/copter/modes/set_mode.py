@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ... import modes as all_modes
 from ...events import emit, emit_and_return
 from ...fence.checks import begin_recovery, keeps_mode
@@ -29,7 +30,7 @@ from ...modes import (
     shown,
 )
 from ...navigation.state import BEST, BY_LANDING, BY_PATH, LANDING, OUTWARD
-from ...notes import WARNING, Text
+from ...notes import Text
 from ...state import Arming, Estimate
 from ..control.motors import hover_throttle
 from ..parameters import Parameters
@@ -158,8 +159,8 @@ def refusal_texts(number: int, cause: int) -> list[str]:
     return all_modes.refusal_texts(number, cause, failed)
 
 
-def _told(v: Any, number: float, cause: float) -> list[Text]:
-    return [Text(WARNING, text) for text in refusal_texts(int(number), int(cause))]
+def _texts(v: Any, number: float, cause: float) -> list[Text]:
+    return [Text(MavSeverity.WARNING, text) for text in refusal_texts(int(number), int(cause))]
 
 
-MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_told)
+MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_texts)

@@ -13,10 +13,10 @@ from __future__ import annotations
 from ....core.algebra import horizontal, norm2, turned
 from ....core.elementary import atan2
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...aux_switch import has_function
 from ...events import Event, emit
-from ...notes import INFO
 from ..parameters import Parameters
 from ..state import Vehicle
 from .state import PilotState, SimpleState
@@ -26,7 +26,7 @@ SIMPLE_FUNCTION, SUPER_SIMPLE_FUNCTION = 3, 13
 HOME_RADIUS = 10.0  # [m]
 
 _TEXTS = {OFF: "SIMPLE mode off", SIMPLE: "SIMPLE mode on", SUPER_SIMPLE: "SUPERSIMPLE mode on"}
-SIMPLE_CHANGED = Event(31, INFO, _TEXTS)
+SIMPLE_CHANGED = Event(31, MavSeverity.INFO, _TEXTS)
 
 
 @law

@@ -197,7 +197,7 @@ class AutotuneState(Record):
     came_to: int  # what the last twitch came to (autotune_rules.py); GOES_ON: that has been dealt with
     overridden_us: int  # when a stick was last out of its middle; 0 they are centred
     warned_us: int  # when it last said so
-    told_us: int  # when it last said how far it is
+    reported_us: int  # when it last said how far it is
     levelling_us: int  # since when it levels
     level_us: int  # since when it is level
     begun_us: int  # of the twitch

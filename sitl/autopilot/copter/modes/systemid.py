@@ -15,13 +15,15 @@ from typing import Any, NamedTuple
 from ....core.algebra import turned
 from ....core.elementary import acos, cos, exp, log, sin
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
 from ...events import Event, Row, emit
 from ...modes import ACCEPTED, INIT_FAILED
-from ...notes import INFO, WARNING, Text
+from ...notes import Text
 from .. import pilot
 from ..control import altitude, attitude, position, throttle_mix
+from ..control.spool import DesiredSpoolState
 from ..control.state import DT
 from ..parameters.flight import SystemId
 from ..state import Vehicle
@@ -89,9 +91,9 @@ def text(did: int, number: float, lean_max: float) -> str:
     return REFUSALS[did] if did in REFUSALS else f"SystemID {endings[did]}"
 
 
-def _told(v: Any, did: float, number: float) -> list[Text]:
+def _texts(v: Any, did: float, number: float) -> list[Text]:
     said = text(int(did), number, v.autopilot.params.ANGLE_MAX * 0.01)
-    return [Text(WARNING if int(did) in REFUSALS else INFO, said)]
+    return [Text(MavSeverity.WARNING if int(did) in REFUSALS else MavSeverity.INFO, said)]
 
 
 def _settings(v: Any, did: float, number: float) -> list[Row]:
@@ -106,7 +108,7 @@ def _sample(v: Any, a: float, b: float) -> list[Row]:
     return [("SIDD", (*chirp, *(math.degrees(x) for x in rates), *acc))]
 
 
-SYSTEM_ID_DID = Event(52, says=_told, log=_settings)  # a: what, b: a number of it
+SYSTEM_ID_DID = Event(52, says=_texts, log=_settings)  # a: what, b: a number of it
 SYSTEM_ID_SAMPLE = Event(53, log=_sample)
 
 
@@ -159,7 +161,7 @@ def value(c: Chirp, t: float) -> float:
 
 
 @law
-def tell(v: Vehicle, did: int, number: float) -> None:
+def report(v: Vehicle, did: int, number: float) -> None:
     """Tell what it did."""
     emit(v.autopilot.events, v.time_us, SYSTEM_ID_DID, float(did), number)
 
@@ -184,14 +186,14 @@ def start(v: Vehicle) -> int:
     state, axis = ap.modes.systemid, int(ap.params.SID.AXIS)
     why = refusal(v, axis)
     if why != 0:
-        tell(v, why, 0.0)
+        report(v, why, 0.0)
         return INIT_FAILED
     state.time = 0.0
     state.testing = True
     state.holds_place = POSITION_RIGHT <= axis <= SPEED_FORWARD
     state.place = ap.control.pos_ne.pos_desired
     state.vel = Vec2(0.0, 0.0)
-    tell(v, STARTED, float(axis))
+    report(v, STARTED, float(axis))
     return ACCEPTED
 
 
@@ -199,7 +201,7 @@ def start(v: Vehicle) -> int:
 def stop(v: Vehicle, did: int, number: float) -> None:
     """End the chirp; the mode goes on without it."""
     v.autopilot.modes.systemid.testing = False
-    tell(v, did, number)
+    report(v, did, number)
 
 
 @law
@@ -284,7 +286,7 @@ def run_in_place(v: Vehicle, axis: int, added: float) -> None:
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     is_forward = axis in (POSITION_FORWARD, VELOCITY_FORWARD, SPEED_FORWARD)
     push = turned(Vec2(added, 0.0) if is_forward else Vec2(0.0, added), est.yaw)
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     place = control.pos_ne
     place.disturbed = axis <= VELOCITY_FORWARD
     zero = Vec2(0.0, 0.0)

@@ -14,6 +14,7 @@ from ...events import Event, emit
 from ...fence.checks import switch_after_takeoff
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import DT, AltitudeState, Control
 from ..parameters import Parameters
 from ..state import Vehicle
@@ -49,8 +50,8 @@ def run(v: Vehicle) -> None:
         ground.rest(ap.arming.armed, control, est, p)
         takeoff.no_nav_d = est.pos.z - p.WP.NAVALT_MIN
         return
-    control.motors.desired_spool = ground.UNLIMITED
-    if control.motors.spool_state != ground.IS_UNLIMITED:
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
+    if control.motors.spool_state != SpoolState.THROTTLE_UNLIMITED:
         spool_up(control, est, p)
     elif ap.arming.landed:
         if lift_off(control, est, p):

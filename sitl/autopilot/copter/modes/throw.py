@@ -13,13 +13,14 @@ from ....core.algebra import norm2, rotate
 from ....core.constants import GRAVITY
 from ....core.elementary import cos
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
 from ...events import Event, emit
 from ...modes import ACCEPTED, INIT_FAILED, REASON_THROW_COMPLETE, ask
-from ...notes import INFO
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
+from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import Control
 from ..parameters import Parameters
 from ..parameters.flight import Throw
@@ -51,7 +52,7 @@ _TEXTS = {
     TO_HEIGHT: "uprighted - controlling height",
     STOPPING: "height achieved - controlling position",
 }
-THROW_STAGE = Event(33, INFO, _TEXTS)  # a: stage
+THROW_STAGE = Event(33, MavSeverity.INFO, _TEXTS)  # a: stage
 
 NEXT_MODES = (AUTO, GUIDED, LOITER, RTL, LAND, BRAKE)
 """THROW_NEXTMODE: any other stays in THROW."""
@@ -138,7 +139,7 @@ def next_stage(v: Vehicle) -> int:
             ground.set_landed(ap.arming, False)
             return SPOOLING_UP
     elif state.stage == SPOOLING_UP:
-        if control.motors.spool_state == ground.IS_UNLIMITED:
+        if control.motors.spool_state == SpoolState.THROTTLE_UNLIMITED:
             return UPRIGHTING
     elif state.stage == UPRIGHTING:
         if rotate(est.q, Vec3(0.0, 0.0, 1.0)).z > _UPRIGHT:
@@ -165,7 +166,7 @@ def fly(v: Vehicle, stage: int) -> None:
     """One tick of a stage in the air."""
     ap = v.autopilot
     control, est, p = ap.control, ap.estimate, ap.params
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     if stage == UPRIGHTING:
         throttle_mix.set_throttle_out(control, p, _HALF_THROTTLE, False, p.PILOT.THR_FILT)
     elif stage == TO_HEIGHT:
@@ -203,9 +204,9 @@ def run(v: Vehicle) -> None:
         emit(ap.events, v.time_us, THROW_STAGE, float(stage), 0.0)
     state.stage = stage
     if stage <= WAITING:
-        idle(v, ground.GROUND_IDLE if ap.params.THROW.MOT_START >= 1.0 else ground.SHUT_DOWN)
+        idle(v, DesiredSpoolState.GROUND_IDLE if ap.params.THROW.MOT_START >= 1.0 else DesiredSpoolState.SHUT_DOWN)
     elif stage == SPOOLING_UP:
-        idle(v, ground.UNLIMITED)
+        idle(v, DesiredSpoolState.THROTTLE_UNLIMITED)
     else:
         fly(v, stage)
         if stage == STOPPING:

@@ -29,9 +29,10 @@ from .. import (
     yaw_imbalance,
 )
 from ..control.motors import learn_hover_throttle
+from ..control.spool import DesiredSpoolState
 from ..control.state import DT, Control
 from ..state import Vehicle
-from . import ground, set_mode, simple, smart_rtl, switch, table
+from . import set_mode, simple, smart_rtl, switch, table
 from .auto import is_guided
 from .drift import DRIFT
 from .stabilize import STABILIZE
@@ -152,7 +153,7 @@ def run_mode(v: Vehicle) -> None:
     if wanted >= 0:
         set_mode.request(v, wanted, ap.modes.wanted_reason)
     if not ap.arming.armed or ap.modes.arming_delay:
-        ap.control.motors.desired_spool = ground.SHUT_DOWN
+        ap.control.motors.desired_spool = DesiredSpoolState.SHUT_DOWN
 
 
 @inlined

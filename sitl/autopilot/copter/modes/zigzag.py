@@ -13,12 +13,14 @@ from typing import Any
 
 from ....core.algebra import direction, dot2, norm2, with_down
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...events import Event, emit
 from ...navigation.path import request_leg
-from ...notes import INFO, Text
+from ...notes import Text
 from ..control import altitude, attitude, position, position_start
+from ..control.spool import DesiredSpoolState
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import ground, loiter
@@ -54,11 +56,11 @@ def text(did: int, line: int, lines: int) -> str:
     return f"ZIGZAG: moving to {'AB'[did - GOES_TO]}" + (f" (line {line}/{lines})" if 0 < line <= lines else "")
 
 
-def _told(v: Any, did: float, line: float) -> list[Text]:
-    return [Text(INFO, text(int(did), int(line), int(v.autopilot.params.ZIGZ.LINE_NUM)))]
+def _texts(v: Any, did: float, line: float) -> list[Text]:
+    return [Text(MavSeverity.INFO, text(int(did), int(line), int(v.autopilot.params.ZIGZ.LINE_NUM)))]
 
 
-ZIGZAG_DID = Event(34, says=_told)  # a: what, b: line of the sweep, 0 none
+ZIGZAG_DID = Event(34, says=_texts)  # a: what, b: line of the sweep, 0 none
 
 
 @law
@@ -229,7 +231,7 @@ def run_way(v: Vehicle) -> None:
     """One tick of flying by itself; the yaw stick turns it."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
-    control.motors.desired_spool = ground.UNLIMITED
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     reached = False
     if modes.nav.request_pending != 0:
         ground.brake(control)

@@ -34,7 +34,7 @@ def start(nav: CopterNav, pos: Vec3, yaw: float) -> None:
     else:
         nav.circle_angle = yaw - math.pi  # at the centre: back out, looking ahead
     nav.circle_total = 0.0
-    nav.circle_told = 0
+    nav.circle_reported = 0
     nav.circle_rate = 0.0
     nav.circle_running = True
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from ....core.algebra import direction, dot2, horizontal, norm2
 from ....core.kernels import law
+from ....core.mavlink import GpsFixType
 from ....core.scalars import finite
 from ....core.vectors import Quat, Vec2, Vec3
 from ...control.pid import lowpass_gain
@@ -18,7 +19,6 @@ from ...estimation.status import VELOCITY_HORIZ
 from ...state import Estimate, Sensors
 from .state import SpeedState
 
-FIX_3D = 3
 WHEEL_HZ = 10.0
 """Low-pass of the encoders' speed."""
 WHEEL_TIMEOUT_US = 500_000
@@ -67,7 +67,7 @@ def estimate_forward_speed(s: SpeedState, estimate: Estimate, sensors: Sensors) 
     known, speed = s.wheel_ok, s.wheel
     if estimate.status_flags & VELOCITY_HORIZ != 0:
         known, speed = True, dot2(horizontal(estimate.vel), nose)
-    elif sensors.gps_fix >= FIX_3D:
+    elif sensors.gps_fix >= GpsFixType.FIX_3D:
         known, speed = True, signed_ground_speed(horizontal(sensors.gps_vel) * 0.01, nose)
     if known and finite(speed):
         return ForwardSpeed(True, speed)

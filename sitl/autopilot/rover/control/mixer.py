@@ -45,8 +45,8 @@ def fit_together(wanted: Demand, backward: float, centre: float, mix: float) -> 
         throttle = 1.0 - abs(steering) if high else abs(steering) + backward
     else:
         throttle = throttle * (fair + (1.0 - fair) * (0.5 - mix) * 2.0)
-        room = 1.0 - throttle if throttle >= centre else throttle - backward
-        steering = room * sign(steering)
+        headroom = 1.0 - throttle if throttle >= centre else throttle - backward
+        steering = headroom * sign(steering)
     return Demand(steering, throttle)
 
 
@@ -56,17 +56,17 @@ def mix_skid(motors: MotorsState, steering: float, throttle: float, mix: float, 
     asymmetry = max(asymmetry, 1.0)
     backward = -1.0 / asymmetry
     centre = 0.5 * (1.0 + backward)  # throttle with the most room for steering
-    room = max(throttle, 0.0) - backward if throttle < centre else 1.0 - centre
+    headroom = max(throttle, 0.0) - backward if throttle < centre else 1.0 - centre
     wanted_steering = constrain(steering, -1.0, 1.0)
-    if wanted_steering > room:
+    if wanted_steering > headroom:
         motors.limit_right = True
-    elif wanted_steering < -room:
+    elif wanted_steering < -headroom:
         motors.limit_left = True
     if throttle > 1.0:
         motors.limit_upper = True
     elif throttle < backward:
         motors.limit_lower = True
-    alone = Demand(constrain(wanted_steering, -room, room), constrain(throttle, backward, 1.0))
+    alone = Demand(constrain(wanted_steering, -headroom, headroom), constrain(throttle, backward, 1.0))
     fit = fit_together(alone, backward, centre, constrain(mix, 0.0, 1.0))
     if abs(fit.steering) < abs(alone.steering):
         if alone.steering < 0.0:

@@ -15,7 +15,7 @@ from ... import state as shared
 from ...control.pid import Pid
 
 DT = 0.02
-"""Period of every law in this room [s]: ArduRover's loop of 50 Hz."""
+"""Period of every law in this package [s]: ArduRover's loop of 50 Hz."""
 PERIOD_US = 20_000
 TEST_THROTTLE, TEST_STEERING, TEST_LEFT, TEST_RIGHT = 1, 2, 3, 4
 """MOTOR_TEST_ORDER of ArduRover's motor test."""

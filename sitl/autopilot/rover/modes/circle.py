@@ -13,12 +13,12 @@ from typing import NamedTuple
 from ....core.algebra import direction, horizontal, norm2
 from ....core.elementary import atan2
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
 from ...control.shaping import Motion2
 from ...events import Event, Events, emit
 from ...modes import ACCEPTED, INIT_FAILED
-from ...notes import WARNING
 from ...state import Estimate
 from ..control import position, speed
 from ..control.state import DT, PositionState
@@ -43,7 +43,7 @@ _TEXTS = {
     RADIUS_ENLARGED: "Circle: radius increased to TURN_RADIUS ({b:4.1f})",
     FELL_BEHIND: "Circle: cannot keep up, slowing to {b:.1f}m/s",
 }
-CIRCLE_ADAPTED = Event(26, WARNING, _TEXTS)  # b: the value now
+CIRCLE_ADAPTED = Event(26, MavSeverity.WARNING, _TEXTS)  # b: the value now
 
 
 class Circuit(NamedTuple):

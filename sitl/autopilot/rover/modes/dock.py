@@ -7,12 +7,12 @@ import math
 
 from ....core.algebra import direction, dot2, horizontal, norm2, turned
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...events import Event, emit
 from ...landing_target.estimator import target_place
 from ...modes import ACCEPTED, INIT_FAILED
-from ...notes import INFO, NOTICE
 from ..control import position, speed
 from ..control.steering import lat_accel_max
 from ..parameters import Parameters
@@ -28,9 +28,9 @@ NO_TARGET, NO_DIRECTION, ARRIVED = 0, 1, 2
 _TEXTS: dict[int, str | tuple[int, str]] = {
     NO_TARGET: "Dock: target not acquired",
     NO_DIRECTION: "Dock: Set DOCK_DIR or disable heading correction",
-    ARRIVED: (INFO, "Dock: Docking complete"),
+    ARRIVED: (MavSeverity.INFO, "Dock: Docking complete"),
 }
-DOCK_DID = Event(62, NOTICE, _TEXTS)
+DOCK_DID = Event(62, MavSeverity.NOTICE, _TEXTS)
 BACK = 4
 """PLND_ORIENT of a sensor that looks back: the vehicle docks in reverse."""
 LAST_PART = 3.0

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from ....core.algebra import norm2
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2
 from ...events import Event, Events, emit
 from ...modes import ACCEPTED
-from ...notes import WARNING, ItemReached
+from ...notes import ItemReached
 from .. import pilot
 from ..control import motors, speed
 from ..navigation import waypoint
@@ -28,7 +29,7 @@ STOP, POSITION, HEADING_AND_SPEED, TURN_RATE_AND_SPEED, STEERING_AND_THROTTLE = 
 TIMEOUT_US = 3_000_000
 """Velocity, heading, turn-rate and throttle set-points are good for so long (ArduRover's)."""
 
-GUIDED_TIMEOUT = Event(9, WARNING, "target not received last 3secs, stopping")
+GUIDED_TIMEOUT = Event(9, MavSeverity.WARNING, "target not received last 3secs, stopping")
 GUIDED_REACHED = Event(23, says=lambda v, a, b: [ItemReached(0)])  # the position target
 
 
@@ -40,7 +41,7 @@ def start(v: Vehicle) -> int:
     waypoint.start(ap.modes.nav, ap.control.position, ap.params)
     guided.submode = STOP
     guided.has_target = False
-    guided.reached_told = True
+    guided.arrival_reported = True
     return ACCEPTED
 
 
@@ -55,8 +56,8 @@ def check_age(guided: GuidedState, events: Events, time_us: int) -> None:
 @law
 def note_arrival(guided: GuidedState, events: Events, time_us: int) -> None:
     """At a position target: say so once."""
-    if not guided.reached_told:
-        guided.reached_told = True
+    if not guided.arrival_reported:
+        guided.arrival_reported = True
         emit(events, time_us, GUIDED_REACHED, 0.0, 0.0)
 
 

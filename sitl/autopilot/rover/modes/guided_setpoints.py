@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from ....core.algebra import with_down
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
 from ...events import Event
 from ...navigation.path import request_leg
-from ...notes import INFO
 from ..navigation import waypoint
 from ..state import Vehicle
 from .auto import AUTO, GUIDED_IN_MISSION
@@ -29,7 +29,7 @@ _IGNORED = {
     84: "Ignoring SET_POSITION_TARGET_LOCAL_NED; set ACC_IGNORE in mask",
     86: "Ignoring SET_POSITION_TARGET_GLOBAL_INT; set ACC_IGNORE in mask",
 }
-SETPOINT_IGNORED = Event(29, INFO, _IGNORED)
+SETPOINT_IGNORED = Event(29, MavSeverity.INFO, _IGNORED)
 """It has an acceleration; a: number of the MAVLink message"""
 
 LARGEST = 1e9
@@ -79,7 +79,7 @@ def set_position(v: Vehicle, point: Vec2) -> int:
         waypoint.set_destination_shaped(ap.modes.nav, ap.estimate, v.time_us, point, ap.params)
     begin(ap.modes.guided, v.time_us, POSITION)
     ap.modes.guided.pos = point
-    ap.modes.guided.reached_told = False
+    ap.modes.guided.arrival_reported = False
     return OK
 
 

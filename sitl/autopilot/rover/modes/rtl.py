@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from ....core.algebra import horizontal, with_down
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ... import rally
 from ...events import Event, emit
 from ...modes import ACCEPTED, INIT_FAILED
 from ...navigation.path import request_leg
-from ...notes import INFO
 from ..control import speed
 from ..heights import HEIGHTS
 from ..navigation import waypoint
@@ -19,7 +19,7 @@ from .mode import RoverMode, end_of_path
 
 RTL = 11
 
-DESTINATION_REACHED = Event(22, INFO, "Reached destination")  # end of a way home; a: mode
+DESTINATION_REACHED = Event(22, MavSeverity.INFO, "Reached destination")  # end of a way home; a: mode
 
 
 @law

@@ -6,11 +6,12 @@ from __future__ import annotations
 from typing import Any
 
 from ....core.kernels import law
+from ....core.mavlink import MavSeverity
 from ... import modes as all_modes
 from ...events import emit
 from ...fence.checks import begin_recovery
 from ...modes import ACCEPTED, GCS_BLOCKED, NO_MISSION, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
-from ...notes import NOTICE, WARNING, Text
+from ...notes import Text
 from ..control.motors import is_skid
 from ..navigation import waypoint
 from ..state import Vehicle
@@ -90,7 +91,7 @@ def refusal_texts(number: int, cause: int) -> list[str]:
 def _told(v: Any, number: float, cause: float) -> list[Text]:
     said = refusal_texts(int(number), int(cause))
     mild = said if cause == GCS_BLOCKED else said[:1] if cause == NO_MISSION else []
-    return [Text(NOTICE if text in mild else WARNING, text) for text in said]
+    return [Text(MavSeverity.NOTICE if text in mild else MavSeverity.WARNING, text) for text in said]
 
 
 MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_told)

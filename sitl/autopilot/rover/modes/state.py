@@ -28,7 +28,7 @@ class GuidedState(Record):
     throttle: float
     update_us: int  # when the last set-point came
     has_target: bool  # the set-point under way is fresh enough; else it stops
-    reached_told: bool  # POSITION: arrival was said
+    arrival_reported: bool  # POSITION: arrival was said
     limit_us: int  # guided within a mission ends after so long; 0 never
     limit_distance: float  # and so far from where it began [m]; 0 never
     limit_since_us: int  # when it began

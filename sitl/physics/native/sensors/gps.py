@@ -16,6 +16,7 @@ from ....core.constants import TICK_S
 from ....core.elementary import sin
 from ....core.geodesy import add_offset
 from ....core.kernels import law
+from ....core.mavlink import GpsFixType
 from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
 from ....vehicles.figures.body import Sensors as SensorFigures
@@ -24,7 +25,6 @@ from ..tick import Clock
 
 UNKNOWN_DOP = 9999
 """HDOP * 100 of a receiver without a fix."""
-NO_FIX, FIX_3D, RTK_FIXED = 1, 3, 6
 EXACT = 0.02
 """A receiver with a smaller error than this [m] has fixed the carrier's phase, and says so."""
 """Of MAVLink's GPS_FIX_TYPE."""
@@ -91,7 +91,7 @@ def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
     if r.jam_end == 0:
         r.jam_end = tick + JAM_SILENT_TICKS + int(uniform(rng) * JAM_SILENT_MORE_TICKS)
     if tick < r.jam_end:
-        return NO_FIX
+        return GpsFixType.NO_FIX
     jam = r.jam
     if uniform(rng) < JAM_CHANGES:
         jam.pos = JAM_PLACE * normal_vector(rng)
@@ -101,7 +101,7 @@ def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
         jam.satellites = int(uniform(rng) * JAM_SATELLITES)
         jam.eph = int(uniform(rng) * JAM_DOP)
         jam.epv = int(uniform(rng) * JAM_DOP)
-    return FIX_3D if jam.satellites >= LEAST_SATELLITES else NO_FIX
+    return GpsFixType.FIX_3D if jam.satellites >= LEAST_SATELLITES else GpsFixType.NO_FIX
 
 
 FAST_WAVE, SLOW_WAVE = 0.5, 0.02
@@ -128,8 +128,9 @@ def take(p: Physics, r: GpsReceiver, tick: int, rng: Rng) -> None:
     if fault.is_on and fault.loss > 0.0 and uniform(rng) < fault.loss:
         return
     found = measure(r, p.body, p.airframe, d, rng)
-    best = RTK_FIXED if p.airframe.gps_noise_horizontal + p.airframe.gps_drift_horizontal < EXACT else FIX_3D
-    fix_type = best if tick >= d.gps_fix else NO_FIX
+    is_exact = p.airframe.gps_noise_horizontal + p.airframe.gps_drift_horizontal < EXACT
+    best = GpsFixType.RTK_FIXED if is_exact else GpsFixType.FIX_3D
+    fix_type: int = best if tick >= d.gps_fix else GpsFixType.NO_FIX
     if r.jammed:
         fix_type = drift_jammed(r, tick, rng)
         found = Measured(found.pos + r.jam.pos, r.jam.vel)
@@ -153,7 +154,7 @@ def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, figures: SensorFigure
     shown.gps_count += 1
     shown.gps_time_us = now.time_us
     shown.gps_fix = fix.type
-    if fix.type >= FIX_3D:
+    if fix.type >= GpsFixType.FIX_3D:
         shown.gps_lat, shown.gps_lon, shown.gps_alt = fix.lat, fix.lon, fix.alt
         shown.gps_vel = fix.vel
         shown.gps_eph = _nearest(100.0 * figures.gps_hdop)

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from sitl.autopilot.copter.control import motors, throttle_mix
+from sitl.autopilot.copter.control import throttle_mix
 from sitl.autopilot.copter.control.frames import load_frame
+from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.update import drive, init
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
@@ -42,8 +43,8 @@ def arm(ap: Any, throttle: float = 0.35) -> None:
     """Armed long ago, spooled up, throttle steady."""
     ap.arming.armed = 1
     ap.arming.armed_us = -10_000_000
-    ap.control.motors.desired_spool = motors.DESIRED_THROTTLE_UNLIMITED
-    ap.control.motors.spool_state = motors.THROTTLE_UNLIMITED
+    ap.control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
+    ap.control.motors.spool_state = SpoolState.THROTTLE_UNLIMITED
     ap.control.motors.thrust_max = 1.0
     throttle_mix.set_throttle_out(ap.control, ap.params, throttle, True, 0.0)
 

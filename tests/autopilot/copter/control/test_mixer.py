@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.autopilot.copter.control import motors, rate
+from sitl.autopilot.copter.control import rate
 from sitl.autopilot.copter.control.frames import FRAMES, HEXA, OCTA, PLUS, QUAD, X, frame_of, load_frame, order
 from sitl.autopilot.copter.control.mixer import Demands, follow_boost, mix_many
+from sitl.autopilot.copter.control.spool import SpoolState
 from sitl.autopilot.copter.control.state import MotorsState, RateState
 from sitl.autopilot.copter.parameters import TABLE, Parameters
 from sitl.autopilot.copter.parameters.control import Attitude
@@ -218,28 +219,28 @@ class Loops:
 
 
 def test_motors_that_stand_have_no_trim():
-    assert Loops(0.2, motors.SHUT_DOWN).run() == [0.0] * 3
+    assert Loops(0.2, SpoolState.SHUT_DOWN).run() == [0.0] * 3
 
 
 def test_trim_decays_while_motors_idle_on_the_ground():
-    loops = Loops(0.2, motors.GROUND_IDLE)
+    loops = Loops(0.2, SpoolState.GROUND_IDLE)
     assert all(0.0 < x < 0.2 * 0.5 for x in loops.run(round(rate.RELAX_TIME / 0.0025)))
     assert loops.run(400) == pytest.approx([0.0] * 3, abs=1e-3)
 
 
 def test_trim_is_kept_in_flight():
-    assert Loops(0.05, motors.THROTTLE_UNLIMITED).run() == pytest.approx([0.05] * 3, abs=1e-3)
+    assert Loops(0.05, SpoolState.THROTTLE_UNLIMITED).run() == pytest.approx([0.05] * 3, abs=1e-3)
 
 
 def test_each_axis_follows_its_own_target():
-    loops = Loops(0.0, motors.THROTTLE_UNLIMITED)
+    loops = Loops(0.0, SpoolState.THROTTLE_UNLIMITED)
     loops.run(1, Vec3(1.0, -2.0, 0.0))
     m = loops.motors
     assert m.roll > 0.0 > m.pitch and m.pitch == pytest.approx(-2.0 * m.roll) and m.yaw == 0.0
 
 
 def test_a_saturated_axis_does_not_integrate():
-    loops = Loops(0.0, motors.THROTTLE_UNLIMITED)
+    loops = Loops(0.0, SpoolState.THROTTLE_UNLIMITED)
     loops.motors.limit_roll = True
     roll, pitch, _ = loops.run(10, Vec3(1.0, 1.0, 0.0))
     assert roll == 0.0 and pitch > 0.0

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.control import motors, throttle_mix, thrust_curve
+from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.state import DT, MotorsState
 from sitl.autopilot.copter.control.update import drive
 from sitl.autopilot.copter.parameters.control import Motors
@@ -37,22 +38,22 @@ def test_disarmed_motors_get_the_shortest_pulse(ap, actuators):
 def test_spool_up_takes_spool_time_to_idle_and_follows_the_throttle(ap, actuators):
     ap.arming.armed = 1
     ap.arming.armed_us = -3_000_000
-    ap.control.motors.desired_spool = motors.DESIRED_THROTTLE_UNLIMITED
-    ticks = run_until(ap, actuators, motors.SPOOLING_UP)
+    ap.control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
+    ticks = run_until(ap, actuators, SpoolState.SPOOLING_UP)
     assert ticks * DT == pytest.approx(0.5, abs=0.01)
     assert actuators.pwm[0] == pytest.approx(1150, abs=1)
     throttle_mix.set_throttle_out(ap.control, ap.params, 0.4, True, 0.0)
-    ticks = run_until(ap, actuators, motors.THROTTLE_UNLIMITED)
+    ticks = run_until(ap, actuators, SpoolState.THROTTLE_UNLIMITED)
     assert ticks * DT == pytest.approx(0.4 * 0.5, abs=0.01)
-    ap.control.motors.desired_spool = motors.DESIRED_SHUT_DOWN
-    assert run_until(ap, actuators, motors.GROUND_IDLE) * DT == pytest.approx(0.5, abs=0.01)
-    assert run_until(ap, actuators, motors.SHUT_DOWN) * DT == pytest.approx(0.5, abs=0.01)
+    ap.control.motors.desired_spool = DesiredSpoolState.SHUT_DOWN
+    assert run_until(ap, actuators, SpoolState.GROUND_IDLE) * DT == pytest.approx(0.5, abs=0.01)
+    assert run_until(ap, actuators, SpoolState.SHUT_DOWN) * DT == pytest.approx(0.5, abs=0.01)
 
 
 def test_armed_motors_idle_at_spin_arm_after_the_arming_delay(ap, actuators):
     ap.arming.armed = 1
     for time_us in range(0, 4_000_000, 2500):
-        ap.control.motors.desired_spool = motors.DESIRED_GROUND_IDLE
+        ap.control.motors.desired_spool = DesiredSpoolState.GROUND_IDLE
         drive(ap, actuators, time_us)
         if time_us == 1_990_000:
             assert actuators.pwm[0] == 1000
@@ -176,7 +177,7 @@ def test_the_spool_ends_where_it_is_told_to_and_stops_at_once_when_disabled(desi
         assert 0.0 <= m.spin_up_ratio <= 1.0 and 0.0 <= m.thrust_max <= 1.0
     assert m.spool_state == end
     motors.spool(m, False, p)
-    assert m.spool_state == motors.SHUT_DOWN and m.thrust_max == 0.0 and m.limit_roll
+    assert m.spool_state == SpoolState.SHUT_DOWN and m.thrust_max == 0.0 and m.limit_roll
 
 
 def test_the_motor_under_test_turns_alone():

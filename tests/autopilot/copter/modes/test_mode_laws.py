@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.copter import pilot
+from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.state import AltitudeState, Control, MotorsState
 from sitl.autopilot.copter.modes import (
     acro,
@@ -20,7 +21,6 @@ from sitl.autopilot.copter.modes import (
     descent,
     drift,
     flip,
-    ground,
     guided,
     guided_setpoints,
     land,
@@ -174,12 +174,12 @@ def test_a_pause_stops_path_time_and_lets_it_run_again() -> None:
 @pytest.mark.parametrize(
     ("armed", "flies", "spool", "climb", "doing", "wanted"),
     (
-        (False, False, 0, 0.0, alt_hold.STOPPED, ground.SHUT_DOWN),
-        (True, False, ground.IS_GROUND_IDLE, -0.5, alt_hold.LANDED_IDLE, ground.GROUND_IDLE),
-        (True, False, ground.IS_UNLIMITED, 0.0, alt_hold.LANDED_READY, ground.UNLIMITED),
-        (True, False, ground.IS_GROUND_IDLE, 0.5, alt_hold.LANDED_IDLE, ground.UNLIMITED),
-        (True, False, ground.IS_UNLIMITED, 0.5, alt_hold.TAKING_OFF, ground.UNLIMITED),
-        (True, True, ground.IS_UNLIMITED, -0.5, alt_hold.FLYING, ground.UNLIMITED),
+        (False, False, 0, 0.0, alt_hold.STOPPED, DesiredSpoolState.SHUT_DOWN),
+        (True, False, SpoolState.GROUND_IDLE, -0.5, alt_hold.LANDED_IDLE, DesiredSpoolState.GROUND_IDLE),
+        (True, False, SpoolState.THROTTLE_UNLIMITED, 0.0, alt_hold.LANDED_READY, DesiredSpoolState.THROTTLE_UNLIMITED),
+        (True, False, SpoolState.GROUND_IDLE, 0.5, alt_hold.LANDED_IDLE, DesiredSpoolState.THROTTLE_UNLIMITED),
+        (True, False, SpoolState.THROTTLE_UNLIMITED, 0.5, alt_hold.TAKING_OFF, DesiredSpoolState.THROTTLE_UNLIMITED),
+        (True, True, SpoolState.THROTTLE_UNLIMITED, -0.5, alt_hold.FLYING, DesiredSpoolState.THROTTLE_UNLIMITED),
     ),
 )
 def test_what_the_throttle_stick_does(

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sitl.autopilot.mission.item import NAV_SPLINE_WAYPOINT, MissionItem
+from sitl.autopilot.mission.item import MissionItem
+from sitl.core.mavlink import MavCmd
 from tests.autopilot.copter.navigation.pointmass import DT
 from tests.autopilot.copter.navigation.test_waypoint import item, path, reached, vehicle
 
@@ -16,7 +17,7 @@ SPEED, ACCEL = 10.0, 1.25
 
 def curve(n: float, e: float, up: float = 10.0, delay: float = 0.0) -> MissionItem:
     """A spline waypoint."""
-    return item(n, e, up, delay)._replace(command=NAV_SPLINE_WAYPOINT)
+    return item(n, e, up, delay)._replace(command=MavCmd.NAV_SPLINE_WAYPOINT)
 
 
 def assert_smooth(rows: np.ndarray) -> None:

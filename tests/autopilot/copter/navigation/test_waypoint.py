@@ -10,20 +10,14 @@ import pytest
 
 from sitl.autopilot.copter.navigation import waypoint
 from sitl.autopilot.copter.navigation.planner import PLANNER
-from sitl.autopilot.mission.item import (
-    NAV_LOITER_TURNS,
-    NAV_TAKEOFF,
-    NAV_WAYPOINT,
-    RELATIVE,
-    MissionItem,
-    home_item,
-)
+from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.navigation import path as paths
 from sitl.autopilot.navigation.leg import LegError, Limits, plan
 from sitl.autopilot.navigation.planner import end
 from sitl.autopilot.notes import ItemReached
 from sitl.core.geodesy import add_offset
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.core.vectors import Vec3
 from tests.autopilot.copter.navigation.pointmass import DT, ORIGIN, PointMass
 
@@ -31,7 +25,7 @@ from tests.autopilot.copter.navigation.pointmass import DT, ORIGIN, PointMass
 def item(n: float, e: float, up: float = 10.0, delay: float = 0.0) -> MissionItem:
     """A waypoint at an offset from home."""
     lat, lon = add_offset(ORIGIN[0], ORIGIN[1], n, e)
-    return MissionItem(NAV_WAYPOINT, RELATIVE, p1=delay, x=round(lat), y=round(lon), z=up)
+    return MissionItem(MavCmd.NAV_WAYPOINT, MavFrame.GLOBAL_RELATIVE_ALT, p1=delay, x=round(lat), y=round(lon), z=up)
 
 
 def vehicle(*items: MissionItem, follow: bool = True) -> PointMass:
@@ -88,7 +82,11 @@ def test_delay_stops_and_waits() -> None:
 
 def test_places_take_the_default() -> None:
     """Latitude and longitude zero: where it was; altitude zero: as high as it was."""
-    p = vehicle(MissionItem(NAV_WAYPOINT, RELATIVE, z=12.0), MissionItem(NAV_WAYPOINT, RELATIVE), follow=False)
+    p = vehicle(
+        MissionItem(MavCmd.NAV_WAYPOINT, MavFrame.GLOBAL_RELATIVE_ALT, z=12.0),
+        MissionItem(MavCmd.NAV_WAYPOINT, MavFrame.GLOBAL_RELATIVE_ALT),
+        follow=False,
+    )
     path(p, 5.5)
     assert list(p.v.autopilot.modes.nav.target) == pytest.approx([0.0, 0.0, -12.0], abs=0.02)
 
@@ -128,7 +126,9 @@ def test_pause() -> None:
 def test_circle(radius: float, turns: float) -> None:
     """Turns of the right radius and sense, entered at the nearest point."""
     lat, lon = add_offset(ORIGIN[0], ORIGIN[1], 20.0, 0.0)
-    circle = MissionItem(NAV_LOITER_TURNS, RELATIVE, p1=turns, p3=radius, x=round(lat), y=round(lon), z=10.0)
+    circle = MissionItem(
+        MavCmd.NAV_LOITER_TURNS, MavFrame.GLOBAL_RELATIVE_ALT, p1=turns, p3=radius, x=round(lat), y=round(lon), z=10.0
+    )
     p = vehicle(circle, follow=False)
     nav = p.v.autopilot.modes.nav
     points = []
@@ -199,7 +199,7 @@ def test_square_as_recorded() -> None:
     """
     start = 9.24
     square = [item(30.0, 0.0), item(30.0, 30.0), item(0.0, 30.0), item(0.0, 0.0)]
-    p = vehicle(MissionItem(NAV_TAKEOFF, RELATIVE, z=10.0), *square)
+    p = vehicle(MissionItem(MavCmd.NAV_TAKEOFF, MavFrame.GLOBAL_RELATIVE_ALT, z=10.0), *square)
     fastest = 0.0
     while (last := reached(p, 5)) is None and p.time < 40.0:
         p.tick()

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sitl.autopilot.mission.item import RELATIVE, MissionItem, home_item
+from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
 from sitl.autopilot.notes import ItemReached, Text
@@ -13,6 +13,7 @@ from sitl.autopilot.rover.mission import COMMANDS
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.core.geodesy import add_offset
+from sitl.core.mavlink import MavFrame
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 ORIGIN = (-353632621, 1491652371, 584.0)
@@ -21,7 +22,7 @@ ORIGIN = (-353632621, 1491652371, 584.0)
 def at(command: int, n: float, e: float, **fields: float) -> MissionItem:
     """An item at an offset from the origin [m]."""
     lat, lon = add_offset(ORIGIN[0], ORIGIN[1], n, e)
-    return MissionItem(command, RELATIVE, x=round(lat), y=round(lon), **fields)  # type: ignore[arg-type]
+    return MissionItem(command, MavFrame.GLOBAL_RELATIVE_ALT, x=round(lat), y=round(lon), **fields)  # type: ignore[arg-type]
 
 
 class Missionary(Rover):

@@ -10,13 +10,14 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.validate import ACCEPTED, check, check_all
+from sitl.autopilot.mission.validate import check, check_all
 from sitl.autopilot.navigation.state import COMPLETE, RUNNING, STOPPED
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.core.mavlink import MavMissionResult
 from tests.autopilot.rover.navigation.rover_on_mission import ORIGIN, Missionary
 
 numbers = st.one_of(st.sampled_from([0.0, 1.0, -1.0, 3.0, 1e9, math.nan]), st.floats(width=32))
@@ -24,12 +25,12 @@ places = st.one_of(st.just(0), st.integers(-20000, 20000))
 items = st.builds(
     lambda command, p1, p2, p3, p4, n, e: MissionItem(command, 3, p1, p2, p3, p4, ORIGIN[0] + n, ORIGIN[1] + e),
     st.sampled_from(sorted(COMMANDS.taken)), numbers, numbers, numbers, numbers, places, places,
-).filter(lambda item: check(item, COMMANDS.taken) == ACCEPTED)  # fmt: skip
+).filter(lambda item: check(item, COMMANDS.taken) == MavMissionResult.ACCEPTED)  # fmt: skip
 acts = st.sampled_from(["drive", "leave", "come back", "jump", "upload", "disarm", "arm", "clear", "faster"])
 
 
 missions = st.lists(items, min_size=1, max_size=6).filter(  # jumps to items that are not there are refused
-    lambda listed: check_all([home_item(*ORIGIN), *listed], COMMANDS.taken)[0] == ACCEPTED
+    lambda listed: check_all([home_item(*ORIGIN), *listed], COMMANDS.taken)[0] == MavMissionResult.ACCEPTED
 )
 
 

@@ -11,10 +11,9 @@ import pytest
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
 from sitl.autopilot.events import emit
-from sitl.autopilot.mission import item as c
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.validate import UNSUPPORTED, check
+from sitl.autopilot.mission.validate import check
 from sitl.autopilot.notes import ItemReached, Text
 from sitl.autopilot.rover import arming
 from sitl.autopilot.rover.mission import COMMANDS
@@ -22,9 +21,10 @@ from sitl.autopilot.rover.modes import guided_setpoints
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.core.mavlink import MavCmd, MavMissionResult
 from tests.autopilot.rover.navigation.rover_on_mission import Missionary, at
 
-WP = c.NAV_WAYPOINT
+WP = MavCmd.NAV_WAYPOINT
 
 
 def test_delay_and_texts() -> None:
@@ -38,7 +38,7 @@ def test_delay_and_texts() -> None:
 
 def test_loiter_time_and_nav_delay() -> None:
     p = Missionary().drive(
-        at(c.NAV_LOITER_TIME, 12.0, 0.0, p1=2.0), MissionItem(c.NAV_DELAY, p1=4.0), at(WP, 20.0, 0.0)
+        at(MavCmd.NAV_LOITER_TIME, 12.0, 0.0, p1=2.0), MissionItem(MavCmd.NAV_DELAY, p1=4.0), at(WP, 20.0, 0.0)
     )
     first, second = p.until(1), p.until(2)
     assert second - first == pytest.approx(4.0, abs=0.1)
@@ -48,7 +48,7 @@ def test_loiter_time_and_nav_delay() -> None:
 
 
 def test_loiter_unlimited_says_that_it_is_there_and_stays() -> None:
-    p = Missionary().drive(at(c.NAV_LOITER_UNLIM, 10.0, 0.0), at(WP, 20.0, 0.0))
+    p = Missionary().drive(at(MavCmd.NAV_LOITER_UNLIM, 10.0, 0.0), at(WP, 20.0, 0.0))
     p.run(30.0)
     assert p.reached(1) is None
     assert p.said() == ["Mission: 1 LoitUnlim", "Reached waypoint #1"]
@@ -57,7 +57,7 @@ def test_loiter_unlimited_says_that_it_is_there_and_stays() -> None:
 
 @pytest.mark.parametrize("radius", [8.0, -8.0])
 def test_turns_around_a_place(radius: float) -> None:
-    p = Missionary().drive(at(c.NAV_LOITER_TURNS, 15.0, 0.0, p1=1.0, p3=radius), at(WP, 0.0, 0.0))
+    p = Missionary().drive(at(MavCmd.NAV_LOITER_TURNS, 15.0, 0.0, p1=1.0, p3=radius), at(WP, 0.0, 0.0))
     rows = []
     while p.reached(1) is None and p.time < 90.0:
         p.step()
@@ -71,15 +71,15 @@ def test_turns_around_a_place(radius: float) -> None:
 
 
 def test_return() -> None:
-    p = Missionary().drive(at(WP, 20.0, 0.0), MissionItem(c.NAV_RETURN_TO_LAUNCH))
+    p = Missionary().drive(at(WP, 20.0, 0.0), MissionItem(MavCmd.NAV_RETURN_TO_LAUNCH))
     assert math.isfinite(p.until(2))
     assert p.position == pytest.approx((0.0, 0.0), abs=3.0)
 
 
 def test_reverse_and_speed() -> None:
     p = Missionary().drive(
-        MissionItem(c.DO_CHANGE_SPEED, p2=2.0),
-        MissionItem(c.DO_SET_REVERSE, p1=1.0),
+        MissionItem(MavCmd.DO_CHANGE_SPEED, p2=2.0),
+        MissionItem(MavCmd.DO_SET_REVERSE, p1=1.0),
         at(WP, -20.0, 0.0),
         at(WP, -20.0, 9.0),
     )
@@ -94,18 +94,18 @@ def test_reverse_and_speed() -> None:
 
 
 def test_a_speed_that_is_none_changes_nothing() -> None:
-    p = Missionary().drive(at(WP, 15.0, 0.0), MissionItem(c.DO_CHANGE_SPEED, p2=0.0), at(WP, 30.0, 0.0))
+    p = Missionary().drive(at(WP, 15.0, 0.0), MissionItem(MavCmd.DO_CHANGE_SPEED, p2=0.0), at(WP, 30.0, 0.0))
     p.until(3)
     assert not any("speed" in text for text in p.said())
 
 
 def test_turn_to_a_heading_at_a_speed() -> None:
-    p = Missionary().drive(MissionItem(c.NAV_SET_YAW_SPEED, p1=90.0, p2=1.0), at(WP, 20.0, 10.0))
+    p = Missionary().drive(MissionItem(MavCmd.NAV_SET_YAW_SPEED, p1=90.0, p2=1.0), at(WP, 20.0, 10.0))
     assert p.until(1) < 10.0
     assert math.degrees(p.heading) == pytest.approx(90.0, abs=6.0)
     relative = Missionary()
     relative.place(0.0, 0.0, math.radians(30.0))
-    relative.drive(MissionItem(c.NAV_SET_YAW_SPEED, p1=-60.0, p2=1.0, p3=1.0), at(WP, 20.0, 10.0))
+    relative.drive(MissionItem(MavCmd.NAV_SET_YAW_SPEED, p1=-60.0, p2=1.0, p3=1.0), at(WP, 20.0, 10.0))
     relative.until(1)
     assert math.degrees(relative.heading) == pytest.approx(-30.0, abs=6.0)
 
@@ -113,9 +113,9 @@ def test_turn_to_a_heading_at_a_speed() -> None:
 def test_guided_within_a_mission() -> None:
     """It takes set-points until its time is over; GUIDED_ENABLE 0 is passed over."""
     p = Missionary().drive(
-        MissionItem(c.DO_GUIDED_LIMITS, p1=6.0),
-        MissionItem(c.NAV_GUIDED_ENABLE, p1=1.0),
-        MissionItem(c.NAV_GUIDED_ENABLE, p1=0.0),
+        MissionItem(MavCmd.DO_GUIDED_LIMITS, p1=6.0),
+        MissionItem(MavCmd.NAV_GUIDED_ENABLE, p1=1.0),
+        MissionItem(MavCmd.NAV_GUIDED_ENABLE, p1=0.0),
         at(WP, 10.0, 0.0),
     )
     p.run(0.1)
@@ -130,8 +130,8 @@ def test_guided_within_a_mission() -> None:
 
 def test_conditions_hold_back_what_follows_them() -> None:
     p = Missionary().drive(
-        MissionItem(c.CONDITION_DELAY, p1=3.0), MissionItem(c.DO_CHANGE_SPEED, p2=2.0),
-        MissionItem(c.CONDITION_DISTANCE, p1=10.0), MissionItem(c.DO_CHANGE_SPEED, p2=1.0), at(WP, 40.0, 0.0),
+        MissionItem(MavCmd.CONDITION_DELAY, p1=3.0), MissionItem(MavCmd.DO_CHANGE_SPEED, p2=2.0),
+        MissionItem(MavCmd.CONDITION_DISTANCE, p1=10.0), MissionItem(MavCmd.DO_CHANGE_SPEED, p2=1.0), at(WP, 40.0, 0.0),
         at(WP, 60.0, 0.0),
     )  # fmt: skip
     while p.reached(4) is None and p.time < 60.0:
@@ -144,7 +144,7 @@ def test_conditions_hold_back_what_follows_them() -> None:
 
 def test_jump() -> None:
     p = Missionary().drive(
-        at(WP, 10.0, 0.0), at(WP, 10.0, 10.0), MissionItem(c.DO_JUMP, p1=1.0, p2=1.0), at(WP, 0.0, 0.0)
+        at(WP, 10.0, 0.0), at(WP, 10.0, 10.0), MissionItem(MavCmd.DO_JUMP, p1=1.0, p2=1.0), at(WP, 0.0, 0.0)
     )
     assert math.isfinite(p.until(4))
     assert [t for t in p.said() if t.startswith("Mission: 1")] == ["Mission: 1 WP"] * 2
@@ -192,16 +192,16 @@ def test_without_an_origin_it_waits() -> None:
 
 
 def test_what_only_the_other_firmware_carries_out() -> None:
-    for command in (c.NAV_TAKEOFF, c.NAV_LAND, c.CONDITION_YAW):
-        assert check(MissionItem(command), COMMANDS.taken) == UNSUPPORTED
-    for command in (c.DO_SET_REVERSE, c.NAV_SET_YAW_SPEED):
-        assert check(MissionItem(command), COPTER.taken) == UNSUPPORTED
+    for command in (MavCmd.NAV_TAKEOFF, MavCmd.NAV_LAND, MavCmd.CONDITION_YAW):
+        assert check(MissionItem(command), COMMANDS.taken) == MavMissionResult.UNSUPPORTED
+    for command in (MavCmd.DO_SET_REVERSE, MavCmd.NAV_SET_YAW_SPEED):
+        assert check(MissionItem(command), COPTER.taken) == MavMissionResult.UNSUPPORTED
 
 
 def test_what_it_does_not_carry_out_is_passed_over() -> None:
     p = Missionary()
     assert p.sequencer is not None
-    items = [at(WP, 0.0, 0.0), MissionItem(c.NAV_TAKEOFF), MissionItem(c.CONDITION_YAW), at(WP, 10.0, 0.0)]
+    items = [at(WP, 0.0, 0.0), MissionItem(MavCmd.NAV_TAKEOFF), MissionItem(MavCmd.CONDITION_YAW), at(WP, 10.0, 0.0)]
     p.sequencer.set_mission(p.v, Mission.of(items))
     notes = p.sequencer.start(p.v)
     assert [note.text for note in notes if isinstance(note, Text)] == [

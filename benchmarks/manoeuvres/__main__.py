@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.missions.manoeuvres [--ardupilot PATH] [copter|rover [FLIGHT ...]]``: ours and the real one."""
+"""``python -m benchmarks.manoeuvres [--ardupilot PATH] [copter|rover [FLIGHT ...]]``: ours and the real one."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) 
         "Scripts of this project fly a real ArduPilot and ours by MAVLink, with the same parameters (the defaults",
         "of the firmware and those of our airframe), in simulated time. ArduPilot's flights vary a little, because",
         "its clock continues while a client writes. Its figures are medians of three flights, in",
-        "`sitl/missions/reference/`; they are from `python -m sitl.missions.manoeuvres --ardupilot PATH --times 3",
+        "`benchmarks/reference/`; they are from `python -m benchmarks.manoeuvres --ardupilot PATH --times 3",
         "--keep`, where PATH is the folder of `arducopter` and `ardurover`. Without `--ardupilot` the command",
         "compares with these figures.",
         f"\n{table.RULE}\n",
@@ -134,7 +134,7 @@ def kept_beside_ours() -> str:
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    top = argparse.ArgumentParser(prog="python -m sitl.missions.manoeuvres", description=__doc__)
+    top = argparse.ArgumentParser(prog="python -m benchmarks.manoeuvres", description=__doc__)
     top.add_argument("kind", nargs="?", choices=sorted(FLIGHTS), help="of vehicle (default: all)")
     top.add_argument("flights", nargs="*", metavar="FLIGHT", help="names of flights (default: all)")
     top.add_argument(

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sitl.missions.engines import COLUMNS, FLIGHTS, Flown, difference, fly, plot, table
+from benchmarks.engines import COLUMNS, FLIGHTS, Flown, difference, fly, plot, table
 
 BOUNDS = {  # greatest absolute difference
     "erle_copter": {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ways around the solids of a world, on a grid: what a pilot who knows the world plans."""
+"""A* on a grid around the solids of a world: what a pilot who knows the world plans."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Floats = npt.NDArray[np.float64]
 CELL, MOST_CELLS = 0.2, 40_000
 """Side of a cell [m], which grows where a world would have more cells than that."""
 LEAST = 0.05
-"""Room that a way leaves at least [m]."""
+"""Clearance that a way leaves at least [m]."""
 CROWDED = 4.0
-"""A metre close to solids counts as so many more, one with enough room as one."""
+"""A metre close to solids counts as so many more, one with enough clearance as one."""
 _NEAR = [(i, j, hypot(i, j)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
 @law
-def write_room(solids: Table, first: Vec2, cell: float, robot: Volume, out: Table) -> None:
+def write_clearance(solids: Table, first: Vec2, cell: float, robot: Volume, out: Table) -> None:
     """Write how far a robot is from solids in the centres of the cells of a grid.
 
     Args:
@@ -47,16 +47,16 @@ def write_room(solids: Table, first: Vec2, cell: float, robot: Volume, out: Tabl
             out[i, j] = nearest_of(solids, solids.shape[0], volume).distance
 
 
-_room = Kernel(write_room)
+_clearance = Kernel(write_clearance)
 
 
-class Ways:
-    """Ways of a robot in its world, at the height of its start.
+class GridAStar:
+    """Shortest paths of a robot in its world, at the height of its start, which prefer clearance.
 
     Args:
         robot: with its world and volume.
         reach: how far beyond the world's solids ways may lead [m].
-        comfort: room beyond which more room is of no use [m].
+        comfort: clearance beyond which more is of no use [m].
     """
 
     def __init__(self, robot: Robot, reach: float, comfort: float) -> None:
@@ -67,13 +67,13 @@ class Ways:
         self._cell = cell = max(CELL, math.sqrt(float(extent[0] * extent[1]) / MOST_CELLS))
         self._low = low
         rows, columns = (math.ceil(length / cell) for length in extent.tolist())
-        room, volume = np.empty((rows, columns)), robot.volume
+        clearance, volume = np.empty((rows, columns)), robot.volume
         first_x, first_y = (low + 0.5 * cell).tolist()
         north, east, down = to_ned(first_x, first_y, z)
         body = Volume(ZERO2, down - volume.top, down - volume.bottom, volume.radius)
-        _room(robot.world.geometry.solids, Vec2(north, east), cell, body, room)
-        self._free = room > LEAST
-        self._costs = 1.0 + CROWDED * np.clip(1.0 - room / comfort, 0.0, 1.0)
+        _clearance(robot.world.geometry.solids, Vec2(north, east), cell, body, clearance)
+        self._free = clearance > LEAST
+        self._costs = 1.0 + CROWDED * np.clip(1.0 - clearance / comfort, 0.0, 1.0)
 
     def _cell_of(self, place: Floats) -> tuple[int, int]:
         """The free cell that is nearest to x, y [m]."""
@@ -83,7 +83,7 @@ class Ways:
             at = cells[np.square(cells - at).sum(axis=1).argmin()]
         return int(at[0]), int(at[1])
 
-    def way(self, here: Floats, there: Floats) -> Floats:
+    def path(self, here: Floats, there: Floats) -> Floats:
         """Places from here to there (x, y [m]), both included, shape (n, 2); a straight line where none is found."""
         start, goal = self._cell_of(here), self._cell_of(there)
         free, costs, rows, columns = self._free, self._costs, *self._free.shape

@@ -11,7 +11,8 @@ import numpy as np
 from sitl.autopilot.mission.item import MissionItem
 from sitl.client import Client
 from sitl.client.commands import command_number
-from sitl.client.controls import CUSTOM_MODE_ENABLED, POSITION_ONLY, VELOCITY_ONLY
+from sitl.client.controls import POSITION_ONLY, VELOCITY_ONLY
+from sitl.core.mavlink import MavFrame, MavModeFlag
 from sitl.errors import SitlError
 from sitl.simulation import Simulation
 
@@ -20,8 +21,6 @@ from .recording import COLUMNS, Recording
 __all__ = ["POSITION_ONLY", "VELOCITY_ONLY", "FlightError", "Pilot", "items"]
 
 ARM = command_number("COMPONENT_ARM_DISARM")
-LOCAL_NED = 1
-"""MAV_FRAME_LOCAL_NED"""
 SAMPLE_US = 40_000
 RATES_HZ = {"LOCAL_POSITION_NED": 25.0, "ATTITUDE": 25.0, "EKF_STATUS_REPORT": 5.0, "SYS_STATUS": 5.0}
 
@@ -74,7 +73,7 @@ class Pilot(Client):
 
     def choose_mode(self, name: str) -> None:
         """Ask for a mode by its name, and wait for nothing."""
-        self.send_command("DO_SET_MODE", CUSTOM_MODE_ENABLED, self._mode_number(name))
+        self.send_command("DO_SET_MODE", MavModeFlag.CUSTOM_MODE_ENABLED, self._mode_number(name))
 
     def boot(self) -> None:
         """Wait for a position and for the checks, 5 s more as the recordings did, then choose GUIDED."""
@@ -98,7 +97,7 @@ class Pilot(Client):
     ) -> None:
         """SET_POSITION_TARGET_LOCAL_NED in the local NED frame."""
         self.send(
-            "SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=LOCAL_NED, type_mask=mask,
+            "SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=MavFrame.LOCAL_NED, type_mask=mask,
             x=position[0], y=position[1], z=position[2], vx=velocity[0], vy=velocity[1], vz=velocity[2],
         )  # fmt: skip
 

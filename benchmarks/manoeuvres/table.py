@@ -115,7 +115,7 @@ def kept(kind: str) -> dict[str, Any]:
     Raises:
         KeptFiguresError: there are none.
     """
-    file = resources.files("sitl.missions") / "reference" / file_name(kind)
+    file = resources.files("benchmarks") / "reference" / file_name(kind)
     if not file.is_file():
         raise KeptFiguresError(f"no figures of a {kind} are kept: fly them with --ardupilot PATH --keep")
     found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.missions.engines``: the same flights, firmware and parameters on every physics engine.
+"""``python -m benchmarks.engines``: the same flights, firmware and parameters on every physics engine.
 
 Each vehicle goes through two scripts: commands in GUIDED, and a mission. All figures are of the simulator's truth, not
 of the estimate, at equal times since the beginning of each phase.
@@ -21,9 +21,9 @@ from sitl.logs.plot import new_figure
 from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
 
-from . import copter
-from .figures import shown
-from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
+from .recorded import copter
+from .recorded.figures import shown
+from .recorded.pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 ROVER_SQUARE = copter.SQUARE
@@ -266,7 +266,7 @@ def fly_all(frame: str, engines: list[str]) -> dict[str, dict[str, Flown]]:
 
 def main() -> None:
     """Print the tables; draw the pictures."""
-    parser = argparse.ArgumentParser(prog="python -m sitl.missions.engines", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.engines", description=__doc__)
     parser.add_argument("frame", nargs="?", choices=sorted(FLIGHTS), help="vehicle (default: all)")
     parser.add_argument(
         "--engine", action="append", choices=BACKENDS[1:], help="beside native (repeatable; default all)"

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from sitl.missions import compare
-from sitl.missions.figures import Figure, X, crossing, table
-from sitl.missions.recording import RecordingError, recorded
+from benchmarks.recorded import __main__ as compare
+from benchmarks.recorded.figures import Figure, X, crossing, table
+from benchmarks.recorded.recording import RecordingError, recorded
 
 LOOSER = {  # percent, where docs/comparison.md says why
     "take-off: 0.1 m": 10.0,
@@ -51,7 +51,7 @@ def test_places_agree_within_a_fifth_of_a_metre(figures: list[Figure]) -> None:
 @pytest.mark.parametrize(("kind", "estimator"), [(k, e) for k in ("copter", "rover") for e in ("ekf", "truth")])
 def test_the_page_shows_what_is_flown(kind: str, estimator: str) -> None:
     """Close, not equal: another processor's mathematics may round another way."""
-    page = (Path(__file__).parents[2] / "docs" / "comparison.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[1] / "docs" / "comparison.md").read_text(encoding="utf-8")
     title = f"{kind.title()}, with the " + {"ekf": "Kalman filter", "truth": "true state"}[estimator]
     section = next(s for s in page.split("\n## ") if s.startswith(title))
     rows = re.findall(r"^\| (.+?) \| \S+ \| (-?[\d.]+|-) \|", section, re.MULTILINE)

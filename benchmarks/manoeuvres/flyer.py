@@ -13,12 +13,11 @@ from sitl.bridge.services.setpoints import YAW_IGNORED, YAW_RATE_IGNORED
 from sitl.client import Client
 from sitl.client.connection import Connection
 from sitl.client.controls import POSITION_ONLY, VELOCITY_ONLY
+from sitl.core.mavlink import MavFrame
 from sitl.simulation import Simulation
 
 from .track import Track
 
-LOCAL_NED = 1
-"""MAV_FRAME_LOCAL_NED"""
 RATES_HZ = {"HEARTBEAT": 10.0, "GLOBAL_POSITION_INT": 10.0, "SYS_STATUS": 2.0, "EKF_STATUS_REPORT": 2.0}
 SETTLE_S = 5.0
 """Between being ready and the first command [s]."""
@@ -91,7 +90,7 @@ class Flyer(Client):
         """GUIDED set-point from the origin [m], yaw [deg]."""
         self._stop_sending("velocity")
         mask = POSITION_ONLY & ~(YAW_IGNORED if yaw is not None else 0)
-        self.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=LOCAL_NED, type_mask=mask,
+        self.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=MavFrame.LOCAL_NED, type_mask=mask,
                   x=north, y=east, z=-altitude, yaw=math.radians(yaw or 0.0))  # fmt: skip
 
     def velocity_at(self, seconds: float, interval: float, yaw_rate: float) -> Track:
@@ -99,7 +98,7 @@ class Flyer(Client):
         self._stop_sending("velocity")
         start, first = self.now, len(self._rows)
         while self.now < start + seconds:
-            self.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=LOCAL_NED,
+            self.send("SET_POSITION_TARGET_LOCAL_NED", coordinate_frame=MavFrame.LOCAL_NED,
                       type_mask=VELOCITY_ONLY & ~YAW_RATE_IGNORED, yaw_rate=math.radians(yaw_rate))  # fmt: skip
             self.delay(interval)
         return Track(np.array(self._rows[first - 1 :]), start)

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.manoeuvres import __main__ as manoeuvres
+from benchmarks.manoeuvres import executable, table
+from benchmarks.manoeuvres.table import Row
 from sitl.client.connection import RealTime
 from sitl.errors import LinkLostError, OptionError
-from sitl.missions.manoeuvres import __main__ as manoeuvres
-from sitl.missions.manoeuvres import executable, table
-from sitl.missions.manoeuvres.table import Row
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "comparison.md"
 AGREE = {"copter": 0.95, "rover": 0.9}
 BY_PERCENT = {"copter": 0.92, "rover": 0.87}
@@ -41,7 +41,7 @@ def test_nine_of_ten_figures_agree(flown: tuple[str, list[Row]]) -> None:
 def test_every_flight_has_all_its_kept_figures(flown: tuple[str, list[Row]]) -> None:
     kind, rows = flown
     kept = {(flight, name) for flight, figures in table.kept(kind)["figures"].items() for name in figures}
-    assert {(row.flight, row.name) for row in rows} == kept, "fly them: python -m sitl.missions.manoeuvres --ardupilot"
+    assert {(row.flight, row.name) for row in rows} == kept, "fly them: python -m benchmarks.manoeuvres --ardupilot"
 
 
 def test_the_page_shows_what_is_flown(flown: tuple[str, list[Row]]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``python -m sitl.missions.compare``: our flights beside the recorded ones, as Markdown tables."""
+"""``python -m benchmarks.recorded``: our flights beside the recorded ones, as Markdown tables."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
 
 def main() -> None:
     """Print the tables."""
-    parser = argparse.ArgumentParser(prog="python -m sitl.missions.compare", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.recorded", description=__doc__)
     parser.add_argument("kind", nargs="?", choices=sorted(FLIGHTS), help="of vehicle (default: all)")
     parser.add_argument("--estimator", choices=ESTIMATORS, default="ekf")
     parser.add_argument("--seed", type=int, default=0, help="of all sensor noise (default 0)")

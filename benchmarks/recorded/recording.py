@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Flights of a real ArduPilot SITL as columns at 8 Hz (``sitl/missions/reference``), and ours in the same form.
+"""Flights of a real ArduPilot SITL as columns at 8 Hz (``benchmarks/reference``), and ours in the same form.
 
 The recordings are of ArduCopter and ArduRover 4.7-dev (July 2025), unmodified, default frames, with their default SITL
 parameters.
@@ -100,7 +100,7 @@ def recorded(name: str) -> Recording:
     Raises:
         RecordingError: there is none of that name.
     """
-    file = resources.files("sitl.missions") / "reference" / f"ardupilot_{name}.csv.gz"
+    file = resources.files("benchmarks") / "reference" / f"ardupilot_{name}.csv.gz"
     if not file.is_file():
         raise RecordingError(f"no recording {name!r}; there are {', '.join(sorted(DISARMED))}")
     rows = list(csv.DictReader(gzip.decompress(file.read_bytes()).decode().splitlines()))
