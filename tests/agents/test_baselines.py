@@ -15,6 +15,9 @@ from sitl.envs import ids
 LIMITED = {"copter-trajectory-discrete": "which learns nothing more in the second half"}
 """Policies that solve fewer than nine of ten episodes -> what limits them, as the page says it."""
 
+OLDER = ("copter-rooms", "copter-rooms-discrete", "rover-labyrinth", "rover-labyrinth-discrete")
+"""Policies of ids "-v0", by what their recipes were then."""
+
 
 @pytest.mark.parametrize("name", baselines.names())
 def test_it_is_of_a_recipe_and_in_the_table(name: str) -> None:
@@ -22,7 +25,8 @@ def test_it_is_of_a_recipe_and_in_the_table(name: str) -> None:
     assert config.env in (env, *recipe.also) and ids.task_of({**ids.NEW, **ids.FIRST}[config.env].preset) in name
     assert (config.max_steps, config.algorithm) == (recipe.max_steps, recipe.algorithm)
     row = shipped.kept()[name]
-    assert (row["env"], row["recipe"], row["steps"]) == (config.env, recipe.name, recipe.steps)
+    assert (row["env"], row["recipe"]) == (config.env, recipe.name)
+    assert row["steps"] == recipe.steps or (name in OLDER and row["env"].endswith("-v0"))
     assert row["solved"] + row["crashed"] <= row["episodes"]
 
 
