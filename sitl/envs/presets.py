@@ -196,6 +196,8 @@ def options_of(preset: str, given: Mapping[str, Any]) -> dict[str, Any]:
     options = {**PRESETS[preset](), **given}
     if "world" not in given and _stays(given):
         options["world"] = PRESETS[preset.removesuffix("-v1")]()["world"]
+    if options.get("sensors") == "uwb" and "sensors" not in given and options.get("autopilot", "native") != "native":
+        options["sensors"] = "rtk"  # another autopilot simulates its receiver itself, and beacons are none of its own
     if options.get("connection", "inprocess") != "inprocess" and "randomise" not in given:
         options["randomise"] = None
     if "sensors" not in given and any(given.get(name, "inprocess") != "inprocess" for name in _OTHERS):

@@ -81,7 +81,7 @@ def test_home_and_origin(bench: Bench) -> None:
     bench.vehicle.locate()
     bench.bridge.get(
         type(next(s for s in bench.bridge.services.values() if type(s).__name__ == "HomeService"))
-    ).tell_changes()
+    ).report_changes()
     bench.bridge.flush()
     assert {m.get_type() for m in bench.client.receive()} == {"HOME_POSITION", "GPS_GLOBAL_ORIGIN"}
     bench.ask(mavlink.MAVLink_set_gps_global_origin_message(1, 2**31 - 1, 0, 0))

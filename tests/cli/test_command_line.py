@@ -325,7 +325,9 @@ def test_cache_lists_all_that_a_run_compiles(
     assert all(line.startswith("  to build  ") for line in lines)
     units = [line.removeprefix("  to build  ") for line in lines]
     assert len(set(units)) == len(units)
-    for kind, unit in ((kind, unit) for kind in ("copter", "rover") for unit in ("advance", "hear", "tell", "run")):
+    for kind, unit in (
+        (kind, unit) for kind in ("copter", "rover") for unit in ("advance", "receive", "transmit", "run")
+    ):
         package = "vehicle" if unit == "advance" else "bridge"
         assert any(line.startswith(f"{kind}: {package}.{kind}.") and line.endswith(f".{unit}") for line in units)
 

@@ -21,8 +21,9 @@ from sitl.bridge.wire.choose import message_of
 from sitl.client import connect
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink.telemetry import SCAN, SECTORS, StepTelemetry
-from sitl.envs.robots import autopilot
+from sitl.envs.robots import autopilot, in_process
 from sitl.envs.robots.in_process import InProcessVehicles
+from sitl.envs.robots.starts import Starts
 from sitl.errors import LinkLostError
 from tests.envs import lockstep_vehicle
 from tests.ports import free_port
@@ -210,6 +211,7 @@ def test_sectors_are_spread_over_the_readings(monkeypatch):
         make(self, vehicle, units._replace(builders=[b for b in units.builders if message_of(b).kind is not SCAN]))
 
     monkeypatch.setattr(CoreLink, "__init__", make_without_scans)
+    monkeypatch.setattr(in_process, "STARTS", Starts())
     monkeypatch.setattr(autopilot, "make_vehicles", lambda setup, choice: InProcessVehicles(setup))
     sectors = gym.make(COPTER, observation="scan")
     rough, _ = sectors.reset(seed=2)
