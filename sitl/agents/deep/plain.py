@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from enum import IntEnum
 from functools import cache
 from typing import Any
 
@@ -49,6 +50,8 @@ def encode(value: Any, arrays: Arrays) -> Any:
     """
     if value is None or isinstance(value, bool | str) or type(value) in (int, float):
         return value
+    if isinstance(value, IntEnum):
+        return int(value)
     if isinstance(value, np.ndarray | np.generic) and not value.dtype.hasobject:
         return {(_ARRAY if isinstance(value, np.ndarray) else _SCALAR): _keep(np.asarray(value), arrays)}
     if isinstance(value, bytes):
