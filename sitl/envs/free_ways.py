@@ -20,8 +20,11 @@ from .robots.robot import Floats, Robot, world_of
 from .starts import ReachableCells
 from .worlds import PerWorld
 
-CLEARANCE, BESIDE = 1.0, 5.0
-"""So far from where a robot can just pass, a route costs no more than its length; there it costs so much more [m]."""
+CLEARANCE = 1.0
+"""A route keeps so far away from cells where the robot has no room, if there is a way [m]."""
+BESIDE = 5.0
+"""A metre along the edge of such cells costs 1 + this; the excess falls with the square of the distance, to 0 at
+``CLEARANCE``."""
 CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))

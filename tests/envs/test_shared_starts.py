@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import gymnasium as gym
 import numpy as np
@@ -90,6 +91,19 @@ def test_origins_are_told_apart_by_all_that_a_start_depends_on():
     assert found[0] != "open"
 
 
+def test_a_world_that_can_be_changed_shares_nothing(kept):
+    """Its starts are as those of the same world of tuples."""
+    fixed = worlds.load("open")
+    (start,) = fixed.starts[:1]
+    loose = replace(fixed, starts=(replace(start, position=list(start.position)),))
+    options = {"frame": "erle_copter", "boots": 1}
+    robots = [AutopilotRobot(world, 1, **options) for world in (fixed, loose, loose)]
+    for robot in robots:
+        robot.reset(0, (1.0, 0.0, 0.0, 0.5), 3)
+    assert len(kept) == 3
+    assert np.array_equal(robots[0].state, robots[1].state) and np.array_equal(robots[1].state, robots[2].state)
+
+
 def test_in_plain_python_each_environment_has_its_own(monkeypatch):
     monkeypatch.setattr(starts, "unit_address", lambda unit, kind: 0)
     setup, world = _made("erle_copter", "open", {})
@@ -109,8 +123,12 @@ def test_a_message_that_is_asked_for_later_makes_other_starts(kept):
 def test_what_was_not_used_for_longest_goes_first():
     kept, made = Starts(2), []
 
+    def make(key):
+        made.append(key)
+        return key
+
     def of(key):
-        return kept.of(key, lambda: made.append(key) or key)
+        return kept.of(key, lambda: make(key))
 
     first = of("a")
     of("b")

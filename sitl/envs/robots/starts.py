@@ -41,11 +41,15 @@ class Origin:
         # own.
         code = unit_address(kind.advance, kind) or object()
         self._kind = setup.kind  # lives as long as its identity counts
-        self._all = (
+        self._all: tuple[object, ...] = (
             kind, code, id(setup.kind), _scenario(setup.scenario), _airframe(setup.airframe), world,
             setup.options.take_off, setup.angles.tobytes(),
         )  # fmt: skip
-        self._hash = hash(self._all)
+        try:
+            self._hash = hash(self._all)
+        except TypeError:  # a world with lists or arrays, which can be changed: nobody else has these starts
+            self._all = (object(),)
+            self._hash = hash(self._all)
 
     def __hash__(self) -> int:
         return self._hash
