@@ -59,7 +59,11 @@ def demo(options: argparse.Namespace) -> int:
     start = time.monotonic()
     command = [sys.executable, str(script), f"udpin://{runner.HOST}:{port}"]
     try:
-        with FlightProgress(simulation) as progress, shown(simulation, options, then=progress.refresh) as on_slice:
+        with (
+            execute.terminable(),
+            FlightProgress(simulation) as progress,
+            shown(simulation, options, then=progress.refresh) as on_slice,
+        ):
             code = execute.run_script(simulation, command, options.speedup, None, on_slice)
     finally:
         say_faults(simulation)

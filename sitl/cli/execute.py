@@ -74,10 +74,16 @@ def execute(options: argparse.Namespace) -> int:
     choice = choose(options.autopilot, options.vehicle)
     if (factor != 1.0 or choice is not None) and (reason := can_warp()):
         raise CannotBuild(reason)  # before a vehicle is started
-    if choice is not None:
-        return _execute_foreign(options, choice, command)
-    if options.count > 1:
-        return _execute_swarm(options, command)
+    with terminable():  # before anything is opened or said: whoever reads along may end it at once
+        if choice is not None:
+            return _execute_foreign(options, choice, command)
+        if options.count > 1:
+            return _execute_swarm(options, command)
+        return _execute(options, command)
+
+
+def _execute(options: argparse.Namespace, command: list[str]) -> int:
+    """``execute`` with one vehicle of ours."""
     simulation, tcp_port, _ = run.start(options)
     command = [word.replace("{tcp}", str(tcp_port)) for word in command]
     status = StatusLine(simulation, not options.quiet)
@@ -158,7 +164,6 @@ def run_script(
     if reason and (factor != 1.0 or isinstance(vehicle, SlicedSession | BetaflightSession)):
         raise CannotBuild(reason)
     with contextlib.ExitStack() as stack:
-        stack.enter_context(terminable())
         page = None if reason else stack.enter_context(ClockPage())
         pace = ScriptPace(Pacer(page, "max" if factor is None else factor)) if page is not None else None
         try:

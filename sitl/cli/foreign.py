@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import math
-import signal
 import sys
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -29,6 +28,7 @@ from ..physics.engines import BACKENDS
 from ..plants.local import LocalPlant, stand_alone
 from ..run import runner
 from ..run.pacing import parse_speedup
+from ..run.stop_signals import StopSignals
 from .link_options import link_faults
 from .options import open_folder, scenario_of
 from .progress import CompileProgress
@@ -60,7 +60,11 @@ class Flown:
 
 @contextlib.contextmanager
 def opened(
-    options: argparse.Namespace, choice: Choice, speedup: float | None, is_relayed_by_slice: bool = False
+    options: argparse.Namespace,
+    choice: Choice,
+    speedup: float | None,
+    is_relayed_by_slice: bool = False,
+    on_built: Callable[[], None] = lambda: None,
 ) -> Iterator[Flown]:
     """Physics, links, log and autopilot by the options, said on the terminal; all is closed at the end.
 
@@ -69,9 +73,11 @@ def opened(
         choice: the autopilot.
         speedup: times real time; None: as fast as it goes.
         is_relayed_by_slice: see ``ArduPilotSession``.
+        on_built: called when all is compiled, before anything is opened or started.
     """
     with contextlib.ExitStack() as undo, contextlib.ExitStack() as unless_opened:
         plant = build_plant(options, choice)
+        on_built()
         unless_opened.callback(plant.close)
         links: list[Link] = []
         log: TlogWriter | None = None
@@ -102,14 +108,12 @@ def opened(
 def fly(options: argparse.Namespace, choice: Choice) -> int:
     """Serve until Ctrl-C, SIGTERM, the end of ``--duration`` or of the autopilot."""
     check(options, choice)
-    stopped: list[int] = []
     until_us = int(options.duration * 1e6) if options.duration else math.inf
-    with opened(options, choice, parse_speedup(options.speedup)) as flown:
-        for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
-            signal.signal(number, lambda n, _: stopped.append(n))
+    speedup = parse_speedup(options.speedup)
+    with StopSignals() as signals, opened(options, choice, speedup, on_built=signals.catch) as flown:
         clock = flown.plant.vehicle.reader.field("time_us")
         with shown(flown.plant, options, then=flown.status.refresh) as on_turn:
-            flown.session.serve(lambda: not stopped and clock() < until_us, on_turn)
+            flown.session.serve(lambda: signals.go_on() and clock() < until_us, on_turn)
     return 0
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 from collections.abc import Callable
 from importlib import import_module
 
@@ -12,6 +11,7 @@ from ..errors import OptionError
 from ..physics.engines import BACKENDS, NATIVE
 from ..physics.native.power_on import DEFAULT_HOME
 from ..plants.local import LocalPlant, stand_alone
+from ..run.stop_signals import StopSignals
 from ..vehicle.kinds import KINDS
 from . import options as shared
 from .progress import CompileProgress
@@ -76,18 +76,17 @@ def physics(options: argparse.Namespace) -> int:
     with CompileProgress() as progress:
         plant = stand_alone(scenario, progress=progress)
         plant.load_tick()
-    print(f"{scenario.airframe.name}, {scenario.physics} physics, seed {options.seed}", flush=True)
-    stopped: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
-        signal.signal(number, lambda n, _: stopped.append(n))
-    try:
-        with shown(plant, options) as on_turn:
+    with StopSignals() as signals:
+        signals.catch()
+        print(f"{scenario.airframe.name}, {scenario.physics} physics, seed {options.seed}", flush=True)
+        try:
+            with shown(plant, options) as on_turn:
 
-            def running() -> bool:
-                on_turn()
-                return not stopped
+                def running() -> bool:
+                    on_turn()
+                    return signals.go_on()
 
-            serve(plant, address, options.instance, lambda text: print(text, flush=True), running)
-    finally:
-        plant.close()
+                serve(plant, address, options.instance, lambda text: print(text, flush=True), running)
+        finally:
+            plant.close()
     return 0

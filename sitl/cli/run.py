@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import argparse
-import signal
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from ..foreign.choice import choose
 from ..run import runner
 from ..run.pacing import StoppablePacing, parse_speedup
 from ..run.standstill import serve_lockstep
+from ..run.stop_signals import StopSignals
 from ..run.swarm import SwarmPacing, serve_swarm, serve_swarm_lockstep
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
@@ -75,8 +76,11 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     add_link_options(parser)
 
 
-def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
-    """Build the simulation, open its links and its log, and say where they are; also gives the first TCP port."""
+def start(options: argparse.Namespace, on_built: Callable[[], None] = lambda: None) -> tuple[Simulation, int, Path]:
+    """Build the simulation, open its links and its log, and say where they are; also gives the first TCP port.
+
+    ``on_built`` is called when all is compiled, before anything is written or said.
+    """
     step = 10 * options.instance
     if options.out is None:
         outputs = [f"udp:{runner.HOST}:{p + step}" for p in runner.OUTPUT_PORTS]
@@ -89,8 +93,10 @@ def start(options: argparse.Namespace) -> tuple[Simulation, int, Path]:
     links += servers
     if getattr(options, "from_file", None) is not None:
         simulation = recordings.resume(options)
+        on_built()
     else:
         simulation = build_simulation(options, {"MAV_SYSID": 1.0 + options.instance} if options.instance else {})
+        on_built()
         recordings.record(simulation, options)
     simulation.set_link_faults(faults)
     for link in links:
@@ -125,34 +131,29 @@ def run(options: argparse.Namespace) -> int:
     speedup = parse_speedup(options.speedup)
     if options.count > 1:
         return run_swarm(options, speedup)
-    simulation, _, _ = start(options)
-    stopped: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):  # not before: compiling may be broken off at once
-        signal.signal(number, lambda n, _: stopped.append(n))
-    status = StatusLine(simulation, not options.quiet)
-    until_us = simulation.time_us + int(options.duration * 1e6) if options.duration else None
-    pace = None if options.lockstep else StoppablePacing(speedup)
-    serve = serve_lockstep if pace is None else partial(runner.serve, pace=pace)
-    try:
-        with shown(simulation, options, pace, status.refresh) as on_slice:
-            serve(simulation, until_us=until_us, running=lambda: not stopped, on_slice=on_slice)
-        recordings.say_why(simulation, signal.Signals(stopped[0]).name if stopped else "--duration")
-    finally:
-        status.close()
-        say_faults(simulation)
-        simulation.close()
+    with StopSignals() as signals:
+        simulation, _, _ = start(options, signals.catch)
+        status = StatusLine(simulation, not options.quiet)
+        until_us = simulation.time_us + int(options.duration * 1e6) if options.duration else None
+        pace = None if options.lockstep else StoppablePacing(speedup)
+        serve = serve_lockstep if pace is None else partial(runner.serve, pace=pace)
+        try:
+            with shown(simulation, options, pace, status.refresh) as on_slice:
+                serve(simulation, until_us=until_us, running=signals.go_on, on_slice=on_slice)
+            recordings.say_why(simulation, next(iter(signals.received), "--duration"))
+        finally:
+            status.close()
+            say_faults(simulation)
+            simulation.close()
     return 0
 
 
 def run_swarm(options: argparse.Namespace, speedup: float | None) -> int:
     """The same with several vehicles in one world."""
-    stopped: list[int] = []
-    with swarm.opened(options) as (vehicles, _, status):
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda n, _: stopped.append(n))
+    with StopSignals() as signals, swarm.opened(options, signals.catch) as (vehicles, _, status):
         until_us = int(options.duration * 1e6) if options.duration else None
         pace = None if options.lockstep else StoppablePacing(speedup)
         serve = serve_swarm_lockstep if pace is None else partial(serve_swarm, pace=SwarmPacing(pace))
         with shown(vehicles, options, pace, status.refresh) as on_slice:
-            serve(vehicles, until_us=until_us, running=lambda: not stopped, on_slice=on_slice)
+            serve(vehicles, until_us=until_us, running=signals.go_on, on_slice=on_slice)
     return 0

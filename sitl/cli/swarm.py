@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 
 from ..autopilot.params import files
@@ -64,8 +64,12 @@ def add_swarm_options(parser: argparse.ArgumentParser) -> None:
 
 
 @contextlib.contextmanager
-def opened(options: argparse.Namespace) -> Iterator[tuple[Swarm, int, Line]]:
+def opened(
+    options: argparse.Namespace, on_built: Callable[[], None] = lambda: None
+) -> Iterator[tuple[Swarm, int, Line]]:
     """The vehicles, with links and logs by the options; the first TCP port; the status line. All is closed at the end.
+
+    ``on_built`` is called when all is compiled, before anything is opened or said.
 
     Raises:
         OptionError: an option that is for one vehicle only.
@@ -82,6 +86,7 @@ def opened(options: argparse.Namespace) -> Iterator[tuple[Swarm, int, Line]]:
     with contextlib.ExitStack() as stack:
         with CompileProgress() as progress:
             swarm = Swarm(scenario.airframe, options.count, spacing=options.spacing, progress=progress, **given)
+        on_built()
         stack.callback(swarm.close)
         for k, vehicle in enumerate(swarm.vehicles):
             vehicle.set_link_faults(replace(faults, seed=faults.seed + k) if faults is not None else None)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from ..logs.dataflash.log import DataFlash, attach
 from ..logs.dataflash.numbered import NumberedLogs
 from ..run import runner
 from ..run.pacing import Pacing
+from ..run.stop_signals import StopSignals
 from ..scenario import Scenario
 from ..simulation import Simulation
 from ..vehicle.kinds import KINDS
@@ -56,12 +56,20 @@ class Session:
         line: its command line.
         say: prints a line.
         progress: told of each unit that is compiled.
+        on_built: called when all is compiled, before ports and logs are opened.
 
     Raises:
         SitlError: an option, a file or a port that cannot be taken, named.
     """
 
-    def __init__(self, program: str, line: CommandLine, say: Say = print, progress: Progress | None = None) -> None:
+    def __init__(
+        self,
+        program: str,
+        line: CommandLine,
+        say: Say = print,
+        progress: Progress | None = None,
+        on_built: Callable[[], None] = lambda: None,
+    ) -> None:
         self._line, self._say = line, say
         path = Path(f"{program}-storage.json")
         self.storage = Storage.wiped(path) if line.wipe else Storage(path)
@@ -72,6 +80,7 @@ class Session:
         in_range = {name: table[name].used(value) for name, value in params.items()}
         scenario = Scenario(airframe, home=line.home, params=in_range, physics=physics)
         self.simulation = simulation = Simulation(scenario, progress=progress)
+        on_built()
         self._values = simulation.parameters
         self._values.update(params)  # values out of range are kept as they are, and told so
         self._values.defaults = {**simulation.airframe.parameters, **self._of_files}
@@ -260,13 +269,10 @@ def run(program: str, words: Sequence[str], progress: Progress | None = None) ->
     say: Say = lambda text: print(text, flush=True)  # noqa: E731 - tools read along
     if line.without_effect:
         say(f"no effect in this simulator: {', '.join(line.without_effect)}")
-    session = Session(program, line, say, progress)
-    stopped: list[int] = []
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), lambda number, _: stopped.append(number))
-    try:
-        session.serve(lambda: not stopped and os.getppid() == parent)
-    finally:
-        session.close()
+    with StopSignals("SIGINT", "SIGTERM", "SIGHUP") as signals:
+        session = Session(program, line, say, progress, signals.catch)
+        try:
+            session.serve(lambda: signals.go_on() and os.getppid() == parent)
+        finally:
+            session.close()
     return 0

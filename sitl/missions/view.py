@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import threading
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from sitl.cli.progress import CompileProgress
 from sitl.cli.view_options import open_browser
 from sitl.errors import OptionError
 from sitl.recording.entries import RecordingError
+from sitl.run.stop_signals import StopSignals
 from sitl.view import library
 from sitl.view.flight_page import FlightPage, Series
 from sitl.view.flights import Flight, of_track
@@ -72,12 +72,12 @@ def run(options: argparse.Namespace) -> int:
             page.save(options.save)
             print(f"page: {options.save}")
             return 0
-        print(f"page: {page.address}", flush=True)
         stopped = threading.Event()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda n, _: stopped.set())
-        open_browser(page.address)
-        stopped.wait()
+        with StopSignals(then=stopped.set) as signals:
+            signals.catch()
+            print(f"page: {page.address}", flush=True)
+            open_browser(page.address)
+            stopped.wait()
     finally:
         page.close()
     return 0
