@@ -25,10 +25,11 @@ from sitl.simulation import Core, Simulation
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
-from . import inputs, legs, parameters, streams
+from . import half_turns, inputs, legs, parameters, streams
 from .agreement import Agreement, Window, compare
 from .flight import LOG_BITMASK, Change, Segments, TwinFlight
 from .flight_log import FlightLog, TwinError
+from .half_turns import HalfTurn, heading
 from .inputs import Inputs
 from .judge import findings
 
@@ -191,17 +192,19 @@ class _Twins:
             went_changed = flight.notes
         found = Twin(self.log, self.airframe.name, flown, changed, self.change, self._notes(), went, went_changed)
         quantities = streams.QUANTITIES[self.log.kind]
-        all_of_it = [Window(0.0, self.log.span.length)]
-        found.whole = _compared(quantities, self.log, flown, all_of_it)
-        found.legs = _compared(quantities, self.log, flown, legs.windows(self.log, flown))
-        found.went += legs.late(legs.steps(self.log, flown))
+        all_of_it, in_step = [Window(0.0, self.log.span.length)], legs.windows(self.log, flown)
+        turns = half_turns.other_way(heading(self.log), heading(flown), in_step or all_of_it)
+        found.whole = _compared(quantities, self.log, flown, all_of_it, turns)
+        found.legs = _compared(quantities, self.log, flown, in_step, turns)
+        found.went += legs.late(legs.steps(self.log, flown)) + half_turns.words(turns)
         if changed is not None:
             found.difference = _compared(quantities, flown, changed, all_of_it)
         if segments and not (self.log.kind == "copter" and self.physics == NATIVE):
             found.notes.append("open segments are flown by copters on native physics only")
         elif segments:
-            found.segments, opened = self._segments("segments", SEGMENT_S, False, then)
-            found.model, _ = self._segments("model", MODEL_S, True, then)
+            found.segments, opened, turns = self._segments("segments", SEGMENT_S, False, then)
+            found.went += half_turns.words(turns, "in open segments ")
+            found.model, *_ = self._segments("model", MODEL_S, True, then)
             found.opened = tuple(opened)
             by_motors = _BY_THRUST if self._outputs_hz < RATES_HZ else (*_BY_THRUST, *_BY_TORQUE)
             found.model = [one for one in found.model if one.quantity.name in by_motors]
@@ -295,15 +298,17 @@ class _Twins:
 
     def _segments(
         self, name: str, seconds: float, driven: bool, change: Change
-    ) -> tuple[list[Agreement], list[Window]]:
-        """Agreement within segments, and these as they were flown."""
+    ) -> tuple[list[Agreement], list[Window], list[HalfTurn]]:
+        """Agreement within segments, these as they were flown, and half turns that were flown the other way."""
         planned = self._windows(seconds)
         if not planned:
-            return [], []
+            return [], [], []
         flown, flight = self._flown(name, self.airframe, change, Segments(planned, driven))
         opened = flight.opened
         judged = opened if driven else [one._replace(begin=one.begin + SETTLES_S) for one in opened]
-        return _compared(streams.QUANTITIES[self.log.kind], self.log, flown, judged, each=True), opened
+        turns = [] if driven else half_turns.other_way(heading(self.log), heading(flown), judged)
+        found = _compared(streams.QUANTITIES[self.log.kind], self.log, flown, judged, turns, each=True)
+        return found, opened, turns
 
     @property
     def _outputs_hz(self) -> float:
@@ -348,9 +353,11 @@ def _compared(
     log: FlightLog,
     flown: FlightLog,
     windows: Sequence[Window],
+    turns: Sequence[HalfTurn] = (),
     each: bool = False,
 ) -> list[Agreement]:
-    found = (compare(quantity, log, flown, windows, each=each) for quantity in quantities)
+    straight = half_turns.without(windows, turns, whole=each)
+    found = (compare(q, log, flown, straight if q.turns else windows, each=each) for q in quantities)
     return [one for one in found if one is not None]
 
 
