@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core import elementary_arrays as arrays
-from sitl.core.array_kernels import Kernel, Line, NarrowTable, Table
+from sitl.core.array_kernels import IntTable, Kernel, Line, NarrowTable, Table
 from sitl.core.elementary import sincos
 from sitl.core.kernels import law
 from sitl.worlds import World
@@ -27,7 +26,6 @@ BESIDE = 5.0
 ``CLEARANCE``."""
 CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
-_AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 
 
 class Around(NamedTuple):
@@ -110,7 +108,43 @@ def follow_ways(
         out[k, first], out[k, first + 1], out[k, first + 2] = x * c + y * s, y * c - x * s, length
 
 
+@law
+def pass_on(nearest: IntTable, squares: IntTable, down: int, right: int) -> bool:
+    """Offer to each cell what its neighbour at ``-down``, ``-right`` knows; whether any takes it.
+
+    Cells are gone through against that direction, so that each is offered what its neighbour knew before.
+    """
+    rows, columns, taken = nearest.shape[0], nearest.shape[1], False
+    up, left = (-1 if down > 0 else 1), (-1 if right > 0 else 1)
+    for i in range(rows - 1 if up < 0 else 0, down - 1 if up < 0 else rows + down, up):
+        for j in range(columns - 1 if left < 0 else 0, right - 1 if left < 0 else columns + right, left):
+            offered = nearest[i - down, j - right]
+            if offered >= 0 and offered != nearest[i, j]:
+                along, across = i - offered // columns, j - offered % columns
+                square = along * along + across * across
+                if square < squares[i, j]:
+                    nearest[i, j], squares[i, j], taken = offered, square, True
+    return taken
+
+
+@law
+def spread(nearest: IntTable, squares: IntTable) -> None:
+    """Spread from cell to cell which free one is the nearest, until no cell finds a nearer one.
+
+    Args:
+        nearest: number of the nearest free cell; at first each free one's own, elsewhere -1; shape (rows, columns).
+        squares: of the distance to it [cells]; at first 0, elsewhere more than there can be.
+    """
+    changed = True
+    while changed:
+        changed = False
+        for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+            if pass_on(nearest, squares, down, right):
+                changed = True
+
+
 _march = Kernel(march)
+_spread = Kernel(spread)
 _read = Kernel(read_ways)
 _follow = Kernel(follow_ways)
 
@@ -213,22 +247,7 @@ class FreeWays:
 
 def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:
     """Number of the nearest free cell of each cell, and how far it is [cells]."""
-    rows, columns = free.shape
-    at = np.arange(free.size).reshape(free.shape)
-    nearest = np.where(free, at, -1)
-    distance = np.where(free, 0.0, np.inf)
-    i, j = np.divmod(at, columns)
-    changed = True
-    while changed:
-        changed = False
-        for down, right in _AROUND:
-            here = slice(max(down, 0), rows + min(down, 0)), slice(max(right, 0), columns + min(right, 0))
-            there = slice(max(-down, 0), rows + min(-down, 0)), slice(max(-right, 0), columns + min(-right, 0))
-            offered = nearest[there]
-            a, b = np.divmod(offered, columns)
-            far = np.where(offered < 0, np.inf, arrays.hypot(i[here] - a, j[here] - b))
-            better = far < distance[here]
-            if better.any():
-                nearest[here][better], distance[here][better] = offered[better], far[better]
-                changed = True
-    return nearest.astype(np.int32), distance
+    nearest = np.where(free, np.arange(free.size).reshape(free.shape), -1)
+    squares = np.where(free, 0, np.iinfo(np.int64).max)
+    _spread.unchecked()(nearest, squares)
+    return nearest.astype(np.int32), np.sqrt(np.where(nearest < 0, math.inf, squares))
