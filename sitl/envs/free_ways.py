@@ -28,6 +28,10 @@ CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
 
 
+UNKNOWN = 1 << 62
+"""Square of a distance that is not known yet."""
+
+
 class Around(NamedTuple):
     """Where a place lies in a robot's grid."""
 
@@ -109,37 +113,37 @@ def follow_ways(
 
 
 @law
-def pass_on(nearest: IntTable, squares: IntTable, down: int, right: int) -> bool:
-    """Offer to each cell what its neighbour at ``-down``, ``-right`` knows; whether any takes it.
+def pass_on(down: IntTable, right: IntTable, squares: IntTable, i_step: int, j_step: int) -> bool:
+    """Offer to each cell what its neighbour at ``-i_step``, ``-j_step`` knows; whether any takes it.
 
     Cells are gone through against that direction, so that each is offered what its neighbour knew before.
     """
-    rows, columns, taken = nearest.shape[0], nearest.shape[1], False
-    up, left = (-1 if down > 0 else 1), (-1 if right > 0 else 1)
-    for i in range(rows - 1 if up < 0 else 0, down - 1 if up < 0 else rows + down, up):
-        for j in range(columns - 1 if left < 0 else 0, right - 1 if left < 0 else columns + right, left):
-            offered = nearest[i - down, j - right]
-            if offered >= 0 and offered != nearest[i, j]:
-                along, across = i - offered // columns, j - offered % columns
+    rows, columns, taken = squares.shape[0], squares.shape[1], False
+    up, left = (-1 if i_step > 0 else 1), (-1 if j_step > 0 else 1)
+    for i in range(rows - 1 if up < 0 else 0, i_step - 1 if up < 0 else rows + i_step, up):
+        for j in range(columns - 1 if left < 0 else 0, j_step - 1 if left < 0 else columns + j_step, left):
+            a, b = i - i_step, j - j_step
+            if squares[a, b] != UNKNOWN:
+                along, across = down[a, b] + i_step, right[a, b] + j_step
                 square = along * along + across * across
                 if square < squares[i, j]:
-                    nearest[i, j], squares[i, j], taken = offered, square, True
+                    down[i, j], right[i, j], squares[i, j], taken = along, across, square, True
     return taken
 
 
 @law
-def spread(nearest: IntTable, squares: IntTable) -> None:
+def spread(down: IntTable, right: IntTable, squares: IntTable) -> None:
     """Spread from cell to cell which free one is the nearest, until no cell finds a nearer one.
 
     Args:
-        nearest: number of the nearest free cell; at first each free one's own, elsewhere -1; shape (rows, columns).
-        squares: of the distance to it [cells]; at first 0, elsewhere more than there can be.
+        down, right: rows and columns from the nearest free cell, at first 0; shape (rows, columns).
+        squares: of the distance to it [cells]; at first 0 of free cells, ``UNKNOWN`` of others.
     """
     changed = True
     while changed:
         changed = False
-        for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-            if pass_on(nearest, squares, down, right):
+        for i_step, j_step in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+            if pass_on(down, right, squares, i_step, j_step):
                 changed = True
 
 
@@ -247,7 +251,10 @@ class FreeWays:
 
 def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:
     """Number of the nearest free cell of each cell, and how far it is [cells]."""
-    nearest = np.where(free, np.arange(free.size).reshape(free.shape), -1)
-    squares = np.where(free, 0, np.iinfo(np.int64).max)
-    _spread.unchecked()(nearest, squares)
-    return nearest.astype(np.int32), np.sqrt(np.where(nearest < 0, math.inf, squares))
+    down, right = np.zeros((2, *free.shape), np.int64)
+    squares = np.where(free, 0, UNKNOWN)
+    _spread.unchecked()(down, right, squares)
+    i, j = np.ogrid[: free.shape[0], : free.shape[1]]
+    known = squares != UNKNOWN
+    nearest = np.where(known, (i - down) * free.shape[1] + j - right, -1)
+    return nearest.astype(np.int32), np.sqrt(np.where(known, squares, math.inf))
