@@ -228,7 +228,9 @@ class TwinFlight:
             battery.full_voltage = rest
             if float(airframe.value("battery_capacity")) > 0.0:
                 battery.charge = 1.0
-                self.notes.append(f"the battery is one of {rest:.1f} V: that of the airframe never has so much")
+                text = f"the battery is one of {rest:.1f} V, which that of the airframe never has"
+                if text not in self.notes:  # it is charged at power-on, and again at arming
+                    self.notes.append(text)
 
     def _arm(self) -> None:
         self._charge()
@@ -291,6 +293,10 @@ class TwinFlight:
 
     def _blow(self, speed: float, direction: float) -> None:
         simulation = self.simulation
+        if not simulation.kind.flies:
+            if self.change.wind is not None:
+                self.notes.append(f"wind has no effect on a {simulation.kind.name}")
+            return
         for name, value in (("SIM_WIND_SPD", speed), ("SIM_WIND_DIR", direction)):
             try:
                 simulation.parameters.update({name: value})

@@ -31,7 +31,7 @@ from .flight import LOG_BITMASK, Change, Segments, TwinFlight
 from .flight_log import FlightLog, TwinError
 from .half_turns import HalfTurn, heading
 from .inputs import Inputs
-from .judge import findings
+from .judge import NOT_JUDGED, findings
 
 SEGMENT_S = 2.0
 """Length of an open segment."""
@@ -82,7 +82,12 @@ class Twin:
     @property
     def findings(self) -> list[str]:
         """Where model or autopilot differ, in words."""
-        return findings(self.whole, self.segments, self.model)
+        return findings(self.whole, self.segments, self.model, self.legs)
+
+    @property
+    def differences(self) -> list[str]:
+        """Those of the findings that are differences, not what could not be judged."""
+        return [text for text in self.findings if not text.startswith(NOT_JUDGED)]
 
     def figures(self) -> dict[str, float]:
         """All figures by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
@@ -235,14 +240,19 @@ class _Twins:
             notes.append(f"the log is damaged: {log.columns.skipped} bytes of it are no messages")
         if log.columns.truncated:
             notes.append("the log is cut off within a message")
-        if self.wind is not None:
-            notes.append(f"wind of the log's flight: {self.wind[0]:g} m/s from {self.wind[1]:g} deg, as given")
-        elif self.inputs.wind:
-            fast = max(wind.speed for wind in self.inputs.wind)
-            notes.append(f"wind as the log's estimator knew it, up to {fast:.1f} m/s")
-        elif not any(name.startswith("SIM_WIND_SPD") and value for name, value in self.taken.values.items()):
-            notes.append("the log has no estimate of the wind: the twin flies in calm air (--logged-wind)")
+        if self.kind.flies:
+            notes.append(self._wind_note())
         return notes + self.inputs.notes + ["both flights are aligned by the moment of arming"]
+
+    def _wind_note(self) -> str:
+        if self.wind is not None:
+            return f"wind of the log's flight: {self.wind[0]:g} m/s from {self.wind[1]:g} deg, as given"
+        if self.inputs.wind:
+            fast = max(wind.speed for wind in self.inputs.wind)
+            return f"wind as the log's estimator knew it, up to {fast:.1f} m/s"
+        if any(name.startswith("SIM_WIND_SPD") and value for name, value in self.taken.values.items()):
+            return "wind as the log's SIM_WIND_ parameters say"
+        return "the log has no estimate of the wind: the twin flies in calm air (--logged-wind)"
 
     def _flown(
         self, name: str, airframe: Airframe, change: Change, segments: Segments | None = None
