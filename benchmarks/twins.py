@@ -65,12 +65,12 @@ def square(vehicle: Client) -> None:
     fly_items(vehicle, vehicle.item("NAV_TAKEOFF", altitude=10), *go, vehicle.item("NAV_LAND"))
 
 
-def tour(vehicle: Client) -> None:
-    """AUTO for three minutes: waits, climbs, legs at three speeds, short legs."""
+def tour(vehicle: Client, speeds: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+    """AUTO for three minutes: waits, climbs, twelve legs, short legs; the mission sets speeds [m/s] that are not 0."""
     go = lambda north, east, up=15, hold=0: vehicle.item("NAV_WAYPOINT", north, east, altitude=up, hold=hold)  # noqa: E731
     items = [vehicle.item("NAV_TAKEOFF", altitude=15), go(0, 0, hold=15), go(0, 0, 25, 2), go(0, 0, 15, 2)]
-    for speed in (3, 6, 9):
-        items.append(vehicle.item("DO_CHANGE_SPEED", param1=1, param2=speed))
+    for speed in speeds:
+        items += [vehicle.item("DO_CHANGE_SPEED", param1=1, param2=speed)] * (speed > 0.0)
         items += [go(north, east) for north, east in ((40, 0), (40, 40), (0, 40), (0, 0))]
     items += [go(6 * (k % 4 in (1, 2)), 6 * (k % 4 in (2, 3))) for k in range(9)]
     fly_items(vehicle, *items, vehicle.item("NAV_RETURN_TO_LAUNCH"))
@@ -113,13 +113,12 @@ def sticks(vehicle: Client) -> None:
     vehicle.wait_disarmed(timeout=60)
 
 
-def drive(vehicle: Client) -> None:
-    """AUTO for three minutes: legs at three speeds, a slalom."""
-    speeds = (3.0, 5.0, 8.0) if vehicle.params["WP_SPEED"] > 2.0 else (0.7, 1.0, 1.4)
-    side = 10.0 * speeds[1]
+def drive(vehicle: Client, speeds: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+    """AUTO for two to three minutes: twelve legs, a slalom; the mission sets speeds [m/s] that are not 0."""
+    side = 10.0 * vehicle.params["WP_SPEED"]
     items = []
     for speed in speeds:
-        items.append(vehicle.item("DO_CHANGE_SPEED", param1=1, param2=speed))
+        items += [vehicle.item("DO_CHANGE_SPEED", param1=1, param2=speed)] * (speed > 0.0)
         items += [vehicle.item("NAV_WAYPOINT", *place) for place in ((side, 0), (side, side), (0, side), (0, 0))]
     items += [vehicle.item("NAV_WAYPOINT", side * (0.2 + 0.2 * k), 0.3 * side * (k % 2)) for k in range(5)]
     fly_items(vehicle, *items)
@@ -145,7 +144,9 @@ FLIGHTS = {
     "guided": Flight("copter", guided),
     "sticks": Flight("copter", sticks),
     "tour": Flight("copter", tour, {**LOGGED, **FAST}),
+    "tour at 3, 6, 9 m/s": Flight("copter", lambda vehicle: tour(vehicle, (3.0, 6.0, 9.0)), {**LOGGED, **FAST}),
     "drive": Flight("rover", drive),
+    "drive at 3, 5, 8 m/s": Flight("rover", lambda vehicle: drive(vehicle, (3.0, 5.0, 8.0))),
     "by sticks": Flight("rover", by_sticks),
 }
 IDENTIFIED_BY = {"tour": ("tour",), "drive": ("drive", "by sticks"), "by sticks": ("drive", "by sticks")}
@@ -174,10 +175,12 @@ ROWS = (
     Row("tour", QUAD, QUAD),
     Row("tour", "", QUAD),
     Row("tour", "", OWN),
+    Row("tour at 3, 6, 9 m/s", "", QUAD),
     Row("drive", ROVER, ROVER),
     Row("drive", "erle_rover", "erle_rover"),
     Row("drive", "", ROVER),
     Row("drive", "", OWN),
+    Row("drive at 3, 5, 8 m/s", "", ROVER),
     Row("by sticks", "", ROVER),
     Row("by sticks", "", OWN),
 )
@@ -196,7 +199,7 @@ def log_of(row: Row, programs: Path | None, folder: Path) -> Path:
             finally:
                 simulation.close()
         return path
-    own = folder / f"{row.flight}-real"
+    own = folder / f"{row.flight.replace('/', ' ')}-real"
     path = own / "logs" / "00000001.BIN"
     if not path.exists():
         assert programs is not None
