@@ -69,7 +69,10 @@ def test_arming_check_0_skips_everything() -> None:
     rover = Rover(ARMING_CHECK=0.0)
     request(rover.v, GUIDED, 2)
     rover.set_estimate(False)
+    rover.sticks(throttle=1800)
+    rover.run(0.1)
     rover.arm()
+    assert rover.v.autopilot.arming.armed
 
 
 def test_a_driving_rover_is_disarmed_by_command_but_not_by_stick() -> None:
