@@ -21,12 +21,13 @@ from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
 from sitl.bridge.telemetry.ranging import PART, DebugFloatArray, scan
 from sitl.bridge.telemetry.sensors import simstate
 from sitl.bridge.telemetry.shell import shell_builders
-from sitl.bridge.telemetry.status import ATTITUDE, PROPULSION, RATE, RECEIVER, YAW, system_time
+from sitl.bridge.telemetry.status import system_time
 from sitl.bridge.telemetry.units import boot_ms, heading_cdeg, int16, int32, percent, uint16
 from sitl.bridge.wire.choose import message_of
 from sitl.bridge.wire.port import Port
 from sitl.core.geodesy import METRES_PER_DEGE7, longitude_scale
 from sitl.core.kernels import law
+from sitl.core.mavlink import MavSysStatus
 from sitl.core.vectors import Vec2, Vec3
 from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
@@ -102,18 +103,28 @@ def test_attitude(v: Copter) -> None:
 
 def test_the_controllers_of_a_firmware_that_rests() -> None:
     for record, status, idle in (
-        (Copter(), copter.sys_status, RATE | ATTITUDE | YAW | PROPULSION),
+        (
+            Copter(),
+            copter.sys_status,
+            MavSysStatus.SENSOR_ANGULAR_RATE_CONTROL
+            | MavSysStatus.SENSOR_ATTITUDE_STABILIZATION
+            | MavSysStatus.SENSOR_YAW_POSITION
+            | MavSysStatus.SENSOR_PROPULSION,
+        ),
         (Rover(), rover.sys_status, 0),
     ):
         v: Any = record
-        assert not says(status, v).onboard_control_sensors_present & RECEIVER, "not seen yet"
+        assert not says(status, v).onboard_control_sensors_present & MavSysStatus.SENSOR_RC_RECEIVER, "not seen yet"
         v.autopilot.rc.receiver_us = 1
         m = says(status, v)
-        assert m.onboard_control_sensors_present & RECEIVER and not m.onboard_control_sensors_health & RECEIVER
+        assert (
+            m.onboard_control_sensors_present & MavSysStatus.SENSOR_RC_RECEIVER
+            and not m.onboard_control_sensors_health & MavSysStatus.SENSOR_RC_RECEIVER
+        )
         v.autopilot.rc.receiver_ok = True
         m = says(status, v)
         assert m.onboard_control_sensors_health & copter.CONTROLLERS == idle
-        assert m.onboard_control_sensors_health & RECEIVER
+        assert m.onboard_control_sensors_health & MavSysStatus.SENSOR_RC_RECEIVER
         assert (m.voltage_battery, m.current_battery, m.battery_remaining) == (65535, -1, 0)
 
 

@@ -54,7 +54,7 @@ from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
 from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl, Throw
 from sitl.autopilot.events import Events
-from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from sitl.autopilot.modes import ModeResult
 from sitl.autopilot.state import Arming, Estimate
 from sitl.core.algebra import dot2, quat_from_euler
 from sitl.core.scalars import wrap_pi
@@ -247,11 +247,11 @@ def test_the_way_home_is_not_below_the_vehicle(height: float, away: float, alt: 
 @pytest.mark.parametrize(
     ("armed", "landed", "count", "takes_off", "cause"),
     (
-        (False, True, 0, False, ACCEPTED),
-        (True, True, 1, False, INIT_FAILED),
-        (True, True, 3, False, MISSING_TAKEOFF),
-        (True, True, 3, True, ACCEPTED),
-        (True, False, 3, False, ACCEPTED),
+        (False, True, 0, False, ModeResult.ACCEPTED),
+        (True, True, 1, False, ModeResult.INIT_FAILED),
+        (True, True, 3, False, ModeResult.MISSING_TAKEOFF),
+        (True, True, 3, True, ModeResult.ACCEPTED),
+        (True, False, 3, False, ModeResult.ACCEPTED),
     ),
 )
 def test_auto_needs_a_mission(armed: bool, landed: bool, count: int, takes_off: bool, cause: int) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.modes import MODE_CHANGED
 from sitl.autopilot.navigation import state as kinds
 from sitl.autopilot.navigation.state import COMMAND_COMPLETE
@@ -15,7 +16,6 @@ from sitl.autopilot.rover.modes import auto, guided_setpoints
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
-from sitl.autopilot.rover.modes.guided_setpoints import NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
 from sitl.autopilot.rover.modes.state import Modes
@@ -122,11 +122,11 @@ def test_heading_and_speed(rover: Rover) -> None:
 
 
 def test_guided_until_its_place_or_limit(rover: Rover) -> None:
-    assert set_velocity(rover.v, 1.0, 0.0) == NOT_IN_GUIDED
+    assert set_velocity(rover.v, 1.0, 0.0) == CommandResult.WRONG_MODE
     guided_setpoints.set_limits(rover.ap.modes.guided, 4.0, 0.0)
     give(rover, kinds.GUIDED)
     rover.run(0.1)
-    assert set_velocity(rover.v, 2.0, 0.0) == OK
+    assert set_velocity(rover.v, 2.0, 0.0) == CommandResult.OK
     assert seconds_until_complete(rover, 10.0) == pytest.approx(4.0, abs=0.2)
     assert rover.position[0] > 2.0
     guided_setpoints.set_limits(rover.ap.modes.guided, 0.0, 0.0)
@@ -134,7 +134,7 @@ def test_guided_until_its_place_or_limit(rover: Rover) -> None:
     rover.ap.modes.nav.target = (30.0, 0.0, 0.0)
     rover.ap.modes.nav.has_place = 1
     rover.run(0.1)
-    assert drive_to(rover.v, 30.0, 0.0) == OK
+    assert drive_to(rover.v, 30.0, 0.0) == CommandResult.OK
     assert seconds_until_complete(rover, 20.0) < 15.0
 
 

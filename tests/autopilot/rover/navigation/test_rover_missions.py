@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
 from sitl.autopilot.events import emit
@@ -119,7 +120,7 @@ def test_guided_within_a_mission() -> None:
         at(WP, 10.0, 0.0),
     )
     p.run(0.1)
-    assert guided_setpoints.set_heading_and_speed(p.ap.modes, p.v.time_us, 0.0, 1.0) == guided_setpoints.OK
+    assert guided_setpoints.set_heading_and_speed(p.ap.modes, p.v.time_us, 0.0, 1.0) == CommandResult.OK
     begun = p.time
     second = p.until(2)
     assert p.position[0] > 1.0
