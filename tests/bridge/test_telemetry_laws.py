@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.autopilot.copter.modes.guided import ANGLE, GUIDED, POS_VEL_ACCEL
 from sitl.bridge.copter import targets as copter_targets
 from sitl.bridge.copter import telemetry as copter
 from sitl.bridge.dialect import message
@@ -99,6 +100,23 @@ def test_attitude(v: Copter) -> None:
     assert (m.roll, m.pitch, m.yaw) == pytest.approx((0.5, -0.25, 2.0))
     assert (m.rollspeed, m.pitchspeed) == (0.125, math.inf)
     assert math.isnan(m.yawspeed)
+
+
+def test_each_part_of_a_target_is_its_own(v: Copter) -> None:
+    control, guided = v.autopilot.control, v.autopilot.modes.guided
+    control.attitude.target_q, control.attitude.rate_target = (0.5, -0.25, 0.75, 0.125), (1.0, 2.0, 3.0)
+    control.motors.throttle_in = 0.375
+    m = says(copter_targets.attitude_target, v)
+    assert (m.time_boot_ms, m.q) == (12_345, (0.5, -0.25, 0.75, 0.125))
+    assert (m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate, m.thrust) == (1.0, 2.0, 3.0, 0.375)
+    assert says(copter_targets.position_target_local, v) is None  # of GUIDED
+    v.autopilot.modes.number, guided.submode = GUIDED, POS_VEL_ACCEL
+    guided.pos, guided.vel, guided.acc = (1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)
+    m = says(copter_targets.position_target_local, v)
+    assert (m.x, m.y, m.z, m.vx, m.vy, m.vz, m.afx, m.afy, m.afz) == tuple(range(1, 10))
+    assert (m.time_boot_ms, m.type_mask, m.coordinate_frame) == (12_345, 0xC00, 1)
+    guided.submode = ANGLE
+    assert says(copter_targets.position_target_local, v) is None
 
 
 def test_the_controllers_of_a_firmware_that_rests() -> None:

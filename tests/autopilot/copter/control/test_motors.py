@@ -107,6 +107,14 @@ def test_resistance_is_learnt_from_steps_of_current():
     assert voltage == pytest.approx(12.6, abs=0.05)
 
 
+def test_resistance_is_no_more_than_what_the_drop_since_the_highest_voltage_explains():
+    m = MotorsState()
+    m.voltage_reference, m.current_reference, m.current_max, m.resistance = 12.6, 1.0, 11.0, 1.0
+    m.voltage_slow, m.current_slow = 12.0, 10.0  # the same voltage at more current: no resistance
+    assert thrust_curve.resting_voltage(m, 12.0, 11.0) == pytest.approx(12.0 + 11.0 * 0.06)
+    assert m.resistance == pytest.approx(0.6 / 10.0)
+
+
 def test_air_is_thinner_up_high():
     assert thrust_curve.air_density_ratio(0.0) == 1.0
     assert thrust_curve.air_density_ratio(5000.0) == pytest.approx(0.601, abs=0.002)

@@ -77,6 +77,17 @@ def test_it_asks_for_both_legs_and_keeps_its_heading(flying):
     assert ap.control.motors.desired_spool == 2
 
 
+@pytest.mark.parametrize(("on", "kinds", "height"), ((1, 1, 13.0), (0, 1, 15.0), (1, 2, 15.0)))
+def test_the_way_home_stays_below_a_fence_that_is_on(flying, on, kinds, height):
+    """FENCE_ALT_MAX less FENCE_MARGIN, where FENCE_TYPE has the greatest height."""
+    ap = flying.autopilot
+    ap.estimate.pos = (20.0, 30.0, -10.0)
+    ap.params.FENCE.ALT_MAX, ap.params.FENCE.MARGIN, ap.params.FENCE.TYPE = 15.0, 2.0, kinds
+    ap.fence.on = on
+    assert set_mode.request(flying, RTL, ModeReason.GCS) == 0
+    assert ap.modes.rtl.return_d == pytest.approx(-height)
+
+
 @pytest.mark.parametrize(("final", "state"), ((0.0, rtl.LANDING), (500.0, rtl.FINAL_DESCENT)))
 def test_over_home_it_waits_then_lands_or_stays(flying, final, state):
     ap = flying.autopilot

@@ -166,6 +166,18 @@ def test_mission_done(rover: Rover, choice: int, mode: int, submode: int) -> Non
         assert rover.ap.modes.auto.submode == submode
 
 
+def test_a_mission_that_is_flown_again_is_done_again(rover: Rover) -> None:
+    rover.ap.params.MIS_DONE_BEHAVE = 1.0
+    for _ in range(2):
+        give(rover, kinds.WAYPOINT, (50.0, 0.0))
+        rover.ap.modes.nav.mission_state = kinds.RUNNING
+        rover.run(0.1)
+        assert rover.ap.modes.auto.submode == auto.ON_PATH
+        rover.ap.modes.nav.mission_state = kinds.COMPLETE
+        rover.run(0.1)
+        assert rover.ap.modes.auto.submode == auto.LOITERING
+
+
 def test_leaving_auto_is_told() -> None:
     rover = Rover().arm()
     rover.ap.modes.mission_count = 2
