@@ -61,7 +61,8 @@ def v() -> Copter:
         (uint16, 65534.9, 65534), (uint16, math.inf, 65535), (uint16, -0.1, 0), (uint16, math.nan, 0),
         (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647), (int32, math.nan, -2147483648),
         (percent, 99.9, 99), (percent, 1e30, 100), (percent, -0.1, -1), (percent, math.nan, -1),
-        (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
+        (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, -1e-300, 0),
+        (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
         (boot_ms, (1 << 32) * 1000 + 5999, 5),
     ],
 )  # fmt: skip
@@ -117,6 +118,18 @@ def test_each_part_of_a_target_is_its_own(v: Copter) -> None:
     assert (m.time_boot_ms, m.type_mask, m.coordinate_frame) == (12_345, 0xC00, 1)
     guided.submode = ANGLE
     assert says(copter_targets.position_target_local, v) is None
+
+
+@pytest.mark.parametrize("enabled", [0.0, 1.0])
+def test_terrain_data_are_shown_where_they_are_switched_on(v: Copter, enabled: float) -> None:
+    v.autopilot.params.TERRAIN.ENABLE = enabled
+    m = says(copter.sys_status, v)
+    for bits in (
+        m.onboard_control_sensors_present,
+        m.onboard_control_sensors_enabled,
+        m.onboard_control_sensors_health,
+    ):
+        assert (bits & MavSysStatus.TERRAIN != 0) == (enabled == 1.0)
 
 
 def test_the_controllers_of_a_firmware_that_rests() -> None:
