@@ -102,7 +102,11 @@ def with_registered(firmware: str, listed: Sequence[Event]) -> dict[int, Event]:
     """
     for before, event in pairwise(listed):
         if event <= before:
-            raise ValueError(f"events of the {firmware}: {int(event)} stands behind {int(before)}")
+            last = max(map(int, listed))
+            said = f"events of the {firmware}: {int(event)} stands behind {int(before)}; they are in the order of their"
+            raise ValueError(
+                f"{said} numbers, and a new one has one that no event of any firmware has (here {last} is the last)"
+            )
     events = {int(event): event for event in listed}
     for _, place, found in _PLACES.of(firmware):
         if not isinstance(found, Event):
