@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sitl.core import elementary_arrays as arrays
-from sitl.core.array_kernels import Kernel, Line, NarrowTable, Table
+from sitl.core.array_kernels import IntTable, Kernel, Line, NarrowTable, Table
 from sitl.core.elementary import sincos
 from sitl.core.kernels import law
 from sitl.worlds import World
@@ -27,7 +26,10 @@ BESIDE = 5.0
 ``CLEARANCE``."""
 CELLS = 20_000
 """About so many cells has the grid: a way to one goal is found in some milliseconds."""
-_AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
+
+
+UNKNOWN = 1 << 62
+"""Square of a distance that is not known yet."""
 
 
 class Around(NamedTuple):
@@ -110,7 +112,43 @@ def follow_ways(
         out[k, first], out[k, first + 1], out[k, first + 2] = x * c + y * s, y * c - x * s, length
 
 
+@law
+def pass_on(down: IntTable, right: IntTable, squares: IntTable, i_step: int, j_step: int) -> bool:
+    """Offer to each cell what its neighbour at ``-i_step``, ``-j_step`` knows; whether any takes it.
+
+    Cells are gone through against that direction, so that each is offered what its neighbour knew before.
+    """
+    rows, columns, taken = squares.shape[0], squares.shape[1], False
+    up, left = (-1 if i_step > 0 else 1), (-1 if j_step > 0 else 1)
+    for i in range(rows - 1 if up < 0 else 0, i_step - 1 if up < 0 else rows + i_step, up):
+        for j in range(columns - 1 if left < 0 else 0, j_step - 1 if left < 0 else columns + j_step, left):
+            a, b = i - i_step, j - j_step
+            if squares[a, b] != UNKNOWN:
+                along, across = down[a, b] + i_step, right[a, b] + j_step
+                square = along * along + across * across
+                if square < squares[i, j]:
+                    down[i, j], right[i, j], squares[i, j], taken = along, across, square, True
+    return taken
+
+
+@law
+def spread(down: IntTable, right: IntTable, squares: IntTable) -> None:
+    """Spread from cell to cell which free one is the nearest, until no cell finds a nearer one.
+
+    Args:
+        down, right: rows and columns from the nearest free cell, at first 0; shape (rows, columns).
+        squares: of the distance to it [cells]; at first 0 of free cells, ``UNKNOWN`` of others.
+    """
+    changed = True
+    while changed:
+        changed = False
+        for i_step, j_step in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+            if pass_on(down, right, squares, i_step, j_step):
+                changed = True
+
+
 _march = Kernel(march)
+_spread = Kernel(spread)
 _read = Kernel(read_ways)
 _follow = Kernel(follow_ways)
 
@@ -213,22 +251,10 @@ class FreeWays:
 
 def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:
     """Number of the nearest free cell of each cell, and how far it is [cells]."""
-    rows, columns = free.shape
-    at = np.arange(free.size).reshape(free.shape)
-    nearest = np.where(free, at, -1)
-    distance = np.where(free, 0.0, np.inf)
-    i, j = np.divmod(at, columns)
-    changed = True
-    while changed:
-        changed = False
-        for down, right in _AROUND:
-            here = slice(max(down, 0), rows + min(down, 0)), slice(max(right, 0), columns + min(right, 0))
-            there = slice(max(-down, 0), rows + min(-down, 0)), slice(max(-right, 0), columns + min(-right, 0))
-            offered = nearest[there]
-            a, b = np.divmod(offered, columns)
-            far = np.where(offered < 0, np.inf, arrays.hypot(i[here] - a, j[here] - b))
-            better = far < distance[here]
-            if better.any():
-                nearest[here][better], distance[here][better] = offered[better], far[better]
-                changed = True
-    return nearest.astype(np.int32), distance
+    down, right = np.zeros((2, *free.shape), np.int64)
+    squares = np.where(free, 0, UNKNOWN)
+    _spread.unchecked()(down, right, squares)
+    i, j = np.ogrid[: free.shape[0], : free.shape[1]]
+    known = squares != UNKNOWN
+    nearest = np.where(known, (i - down) * free.shape[1] + j - right, -1)
+    return nearest.astype(np.int32), np.sqrt(np.where(known, squares, math.inf))

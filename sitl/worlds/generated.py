@@ -40,12 +40,17 @@ def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0, scale: fl
         x, y = rng.uniform(-0.5 * size, 0.5 * size, 2).tolist()
         radius = float(rng.uniform(0.12, 0.2 + 0.2 * difficulty))
         is_free = hypot(x, y) > 3.0 * scale + radius
-        if is_free and all(hypot(x - a, y - b) > 1.2 * scale + radius + r for a, b, r in trees):
+        if is_free and all(_is_longer(x - a, y - b, 1.2 * scale + radius + r) for a, b, r in trees):
             trees.append((x, y, radius))
         if len(trees) == wanted:
             break
     solids = [Cylinder((x, y, 4.0), radius, 8.0, f"tree {k}", "brown") for k, (x, y, radius) in enumerate(trees, 1)]
     return made("forest", (seed, difficulty, size, scale), solids, f"A forest of {len(trees)} trees.")
+
+
+def _is_longer(x: float, y: float, length: float) -> bool:
+    """Whether (x, y) is longer than this; most are so along one axis alone."""
+    return abs(x) > length or abs(y) > length or hypot(x, y) > length
 
 
 def rooms(seed: int = 0, difficulty: float = 0.5, size: float = 20.0, scale: float = 1.0) -> World:

@@ -38,7 +38,7 @@ class World:
         """Arrays for ray casting and contacts, in the simulator's NED frame."""
         return compile_geometry(self.solids, self.floor_z)
 
-    @property
+    @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
         """Least x, least y, greatest x, greatest y of all solids and starts [m]."""
         points = [tuple(p) for s in self.solids for p in s.footprint()]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from sitl.core.algebra import ZERO2
+from sitl.envs import free_ways
 from sitl.envs.free_ways import FreeWays
 from sitl.envs.options import EnvOptionError
 from sitl.envs.parts import Route
@@ -93,6 +94,22 @@ def ends(pose, out):
     """Where routes lead, in the world."""
     c, s = np.cos(pose[:, 3]), np.sin(pose[:, 3])
     return pose[:, :2] + np.column_stack((out[:, 0] * c - out[:, 1] * s, out[:, 0] * s + out[:, 1] * c))
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 40), (40, 1), (37, 52)])
+@pytest.mark.parametrize("share", [0.01, 0.2, 0.95, 1.0])
+def test_the_nearest_free_cell_is_found(size: tuple[int, int], share: float) -> None:
+    rng = np.random.default_rng(3)
+    free = rng.random(size) < share
+    free[0, 0] = True
+    nearest, distance = free_ways._nearest(free)
+    places, cells = np.argwhere(free), np.argwhere(np.ones(size, np.bool_))
+    squares = ((cells[:, None] - places) ** 2).sum(axis=2)
+    i, j = np.divmod(nearest.ravel(), size[1])
+    assert free[i, j].all()
+    own = (cells[:, 0] - i) ** 2 + (cells[:, 1] - j) ** 2
+    assert (distance.ravel() == np.sqrt(own)).all()
+    assert (own == squares.min(axis=1)).mean() > 0.99  # spread from cell to cell, it may miss one around a corner
 
 
 def test_the_route_leads_so_far_along_a_way_that_keeps_clear_of_walls():
