@@ -102,10 +102,9 @@ def with_registered(firmware: str, listed: Sequence[Event]) -> dict[int, Event]:
     """
     for before, event in pairwise(listed):
         if event <= before:
-            last = max(map(int, listed))
-            said = f"events of the {firmware}: {int(event)} stands behind {int(before)}; they are in the order of their"
+            where = f"events of the {firmware}: {int(event)} stands behind {int(before)}"
             raise ValueError(
-                f"{said} numbers, and a new one has one that no event of any firmware has (here {last} is the last)"
+                f"{where}; they are in the order of their numbers, the greatest of which is {max(listed):d}"
             )
     events = {int(event): event for event in listed}
     for _, place, found in _PLACES.of(firmware):
