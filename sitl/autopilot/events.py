@@ -104,7 +104,7 @@ def with_registered(firmware: str, listed: Sequence[Event]) -> dict[int, Event]:
         if event <= before:
             where = f"events of the {firmware}: {int(event)} stands behind {int(before)}"
             raise ValueError(
-                f"{where}; they are in the order of their numbers, the greatest of which is {max(listed):d}"
+                f"{where}; they are in the order of their numbers; the greatest is {max(listed):d}"
             )
     events = {int(event): event for event in listed}
     for _, place, found in _PLACES.of(firmware):
