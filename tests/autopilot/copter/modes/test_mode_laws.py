@@ -21,6 +21,7 @@ from sitl.autopilot.copter.modes import (
     descent,
     drift,
     flip,
+    ground,
     guided,
     guided_setpoints,
     land,
@@ -196,6 +197,15 @@ def test_what_the_throttle_stick_does(
 )
 def test_a_take_off_ends_at_full_throttle_or_with_acceleration(throttle: float, accel_d: float, lifts: bool) -> None:
     assert takeoff.has_thrust(throttle, accel_d, 2.5, 0.8) == lifts
+
+
+def test_position_control_begins_where_the_vehicle_is_and_as_it_moves() -> None:
+    v = make()
+    control, est = v.autopilot.control, v.autopilot.estimate
+    est.pos, est.vel = Vec3(10.0, -20.0, -5.0), Vec3(1.0, 2.0, -0.5)
+    ground.start_position_control(control, est, v.autopilot.params)
+    assert (control.pos_ne.pos_desired, control.pos_ne.vel_desired) == (Vec2(10.0, -20.0), Vec2(1.0, 2.0))
+    assert (control.pos_d.pos_desired, control.pos_d.vel_desired) == (-5.0, -0.5)
 
 
 def test_loiter_turns_its_velocity_with_the_heading() -> None:
