@@ -60,7 +60,7 @@ from sitl.autopilot.state import Arming, Estimate
 from sitl.core.algebra import dot2, quat_from_euler
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Euler, Vec2, Vec3
-from tests.autopilot.copter.steady_copter import make
+from tests.autopilot.copter.steady_copter import codes, fly, make
 
 ANGLES = st.floats(-3.1, 3.1)
 
@@ -197,6 +197,48 @@ def test_what_the_throttle_stick_does(
 )
 def test_a_take_off_ends_at_full_throttle_or_with_acceleration(throttle: float, accel_d: float, lifts: bool) -> None:
     assert takeoff.has_thrust(throttle, accel_d, 2.5, 0.8) == lifts
+
+
+def test_a_take_off_raises_the_throttle_on_the_ground_and_climbs_in_the_air() -> None:
+    v = fly(make())
+    ap = v.autopilot
+    ap.params.WP.NAVALT_MIN = 2.0
+    ap.arming.landed = True
+    takeoff.begin(ap.modes.takeoff, -20.0, True, ap.control, ap.estimate, ap.params)
+    before = ap.control.attitude.throttle_in
+    for _ in range(10):
+        takeoff.run(v)
+    assert ap.arming.landed and ap.control.pos_d.vel_desired == 0.0
+    assert ap.control.attitude.throttle_in > before and ap.modes.takeoff.no_nav_active
+    ap.arming.landed = False
+    for _ in range(10):
+        takeoff.run(v)
+    assert ap.control.pos_d.vel_desired < 0.0 and ap.modes.takeoff.no_nav_active
+    ap.estimate.pos = Vec3(0.0, 0.0, -12.5)
+    takeoff.run(v)
+    assert not ap.modes.takeoff.no_nav_active
+
+
+def test_the_stages_of_a_throw_are_told_once() -> None:
+    v = make()
+    throw.run(v)
+    assert codes(v) == [], "disarmed"
+    v.autopilot.arming.armed = True
+    throw.run(v)
+    throw.run(v)
+    assert codes(v) == [throw.THROW_STAGE] and v.autopilot.modes.throw.stage == throw.WAITING
+    v.autopilot.arming.armed = False
+    throw.run(v)
+    assert codes(v) == [throw.THROW_STAGE] and v.autopilot.modes.throw.stage == throw.DISARMED
+
+
+def test_sticks_end_a_hold_and_both_axes_brake_from_then_on() -> None:
+    v = fly(make())
+    state = v.autopilot.modes.poshold
+    state.holding, v.autopilot.modes.pilot.roll = True, 0.5
+    poshold.fly(v)
+    assert not state.holding
+    assert (state.roll.since_us, state.pitch.since_us) == (v.time_us, v.time_us)
 
 
 def test_position_control_begins_where_the_vehicle_is_and_as_it_moves() -> None:
