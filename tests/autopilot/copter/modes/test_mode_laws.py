@@ -225,6 +225,7 @@ def test_the_stages_of_a_throw_are_told_once() -> None:
     assert codes(v) == [], "disarmed"
     v.autopilot.arming.armed = True
     throw.run(v)
+    assert codes(v) == [throw.THROW_STAGE]
     throw.run(v)
     assert codes(v) == [throw.THROW_STAGE] and v.autopilot.modes.throw.stage == throw.WAITING
     v.autopilot.arming.armed = False
