@@ -97,6 +97,15 @@ def test_compensation_is_off_by_default(ap):
     assert ap.control.motors.compensation_gain == 1.0
 
 
+@pytest.mark.parametrize(("mix", "after"), [(0.3004, 0.3), (0.5, 0.5 - 0.5 * 0.0025), (0.2, 0.2 + 2.0 * 0.0025)])
+def test_the_priority_of_attitude_falls_and_rises_no_further_than_its_goal(ap, mix, after):
+    attitude, m = ap.control.attitude, ap.control.motors
+    attitude.mix, attitude.mix_desired = mix, 0.3
+    m.throttle, m.throttle_out = 0.3, 0.5
+    throttle_mix.follow_mix(attitude, m, 0.4)
+    assert attitude.mix == pytest.approx(after, abs=1e-12)
+
+
 def test_resistance_is_learnt_from_steps_of_current():
     m = MotorsState()
     voltage = 0.0

@@ -13,6 +13,7 @@ from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.copter import pilot
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.state import AltitudeState, Control, MotorsState
+from sitl.autopilot.copter.mission import COMMANDS
 from sitl.autopilot.copter.modes import (
     acro,
     alt_hold,
@@ -55,9 +56,11 @@ from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
 from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl, Throw
 from sitl.autopilot.events import Events
+from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.modes import ModeResult
 from sitl.autopilot.state import Arming, Estimate
 from sitl.core.algebra import dot2, quat_from_euler
+from sitl.core.mavlink import MavCmd
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Euler, Vec2, Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, make
@@ -530,3 +533,21 @@ def test_drift_assists_the_throttle_around_its_middle_only(throttle: float, clim
     assert -0.3 - 1e-12 <= change <= 0.3 + 1e-12 and change * climb <= 0.0
     if abs(throttle - 0.5) > 0.29:
         assert change == 0.0
+
+
+def test_loiter_waits_before_it_brakes_also_when_it_begins() -> None:
+    v = fly(make())
+    v.autopilot.modes.loiter.brake_us = 0
+    assert loiter.start(v) == ModeResult.ACCEPTED
+    assert v.autopilot.modes.loiter.brake_us == v.time_us
+
+
+def test_a_mission_looks_at_a_place_until_it_says_no_more() -> None:
+    v = fly(make())
+    yaw = v.autopilot.modes.auto_yaw
+    COMMANDS.run(v, MissionItem(MavCmd.DO_SET_ROI_LOCATION, x=-353632621, y=1491652371, z=584.0))
+    assert yaw.mode == auto_yaw.ROI
+    COMMANDS.run(v, MissionItem(MavCmd.DO_SET_SERVO, p1=9.0, p2=1500.0))
+    assert yaw.mode == auto_yaw.ROI
+    COMMANDS.run(v, MissionItem(MavCmd.DO_SET_ROI_NONE))
+    assert yaw.mode == auto_yaw.LOOK_AT_NEXT_WP
