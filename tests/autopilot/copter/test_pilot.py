@@ -176,7 +176,7 @@ def test_positions_of_the_mode_switch(pulse, position):
 
 @pytest.mark.parametrize(
     ("armed", "yaw", "rudder", "after"),
-    ((0, 1900, 2, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)),
+    ((0, 1900, 2, 1), (0, 1900, 1, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)),
 )
 def test_yaw_stick_arms_and_disarms_after_two_seconds(vehicle, armed, yaw, rudder, after):
     ap = vehicle.autopilot
