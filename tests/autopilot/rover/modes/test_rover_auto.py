@@ -12,7 +12,7 @@ from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.modes import MODE_CHANGED
 from sitl.autopilot.navigation import state as kinds
 from sitl.autopilot.navigation.state import COMMAND_COMPLETE
-from sitl.autopilot.rover.modes import auto, guided_setpoints
+from sitl.autopilot.rover.modes import auto, circle, guided_setpoints
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
@@ -20,6 +20,7 @@ from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
 from sitl.autopilot.rover.modes.state import Modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
+from sitl.autopilot.state import Estimate
 from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
@@ -105,6 +106,15 @@ def test_turns_around_a_place(rover: Rover) -> None:
     assert seconds_until_complete(rover, 60.0) < 45.0
     assert rover.ap.modes.circle.total == pytest.approx(-2.0 * math.pi, abs=0.2)
     assert math.dist(rover.position, (0.0, 10.0)) == pytest.approx(8.0, abs=1.5)
+
+
+@pytest.mark.parametrize(
+    ("north", "east", "angle"), [(3.0, 0.0, 0.0), (0.0, 5.0, 90.0), (-4.0, 0.0, 180.0), (0.0, 0.0, 40.0)]
+)
+def test_in_which_direction_it_is_seen_from_a_centre(north: float, east: float, angle: float) -> None:
+    estimate = Estimate()
+    estimate.pos, estimate.euler = Vec3(10.0 + north, 20.0 + east, 0.0), (0.0, 0.0, math.radians(40.0))
+    assert math.degrees(circle.angle_from(Vec2(10.0, 20.0), estimate)) == pytest.approx(angle)
 
 
 def test_return(rover: Rover) -> None:
