@@ -29,6 +29,7 @@ class Figure:
         low, high: ends of its 95 % interval.
         data: what it rests on ("212 s of RCOU and IMU in the air").
         reason: why it is not observable.
+        least: of one that is not observable, what it is at least; nan: not known.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Figure:
     high: float = math.nan
     data: str = ""
     reason: str = ""
+    least: float = math.nan
 
     @property
     def is_observed(self) -> bool:
@@ -79,6 +81,6 @@ class Sought:
         """Observed, with an interval."""
         return Figure(self.name, self.unit, self.meaning, float(value), float(low), float(high), data)
 
-    def hidden(self, reason: str) -> Figure:
-        """Not observable."""
-        return Figure(self.name, self.unit, self.meaning, reason=reason)
+    def hidden(self, reason: str, least: float = math.nan) -> Figure:
+        """Not observable, but at least so much."""
+        return Figure(self.name, self.unit, self.meaning, reason=reason, least=least)

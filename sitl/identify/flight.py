@@ -31,9 +31,14 @@ _DRIVES = 0.1
 """A rover that never drove faster stood [m/s]."""
 _KINDS = ("copter", "rover")
 _NAMES = (
-    "ARM", "ATT", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN",
-    "RATE", "RCOU", "VIBE", "XKF1", "XKF4",
+    "ARM", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN", "RCOU", "VIBE", "XKF1",
+    "XKF4",
 )  # fmt: skip
+_FAST = {
+    "ATT": ("DesRoll", "Roll", "DesPitch", "Pitch", "DesYaw", "Yaw"),
+    "RATE": ("R", "ROut", "P", "POut", "Y", "YOut", "AOut"),
+}
+"""Messages of which there may be hundreds a second, and what of them is used."""
 _OLDEST = (4, 0)
 _READ = "logs of ArduPilot are read: on-board ones (.bin, .log), and telemetry (.tlog)"
 _NO_PARAMETERS = (
@@ -103,7 +108,7 @@ class FlightLog:
             return Telemetry(self.path, progress)
         if form != forms.DATAFLASH:
             raise IdentifyError(f"log {str(self.path)!r} is {form}; {_READ}")
-        return Columns(self.path, _NAMES, progress)
+        return Columns(self.path, {**dict.fromkeys(_NAMES), **_FAST}, progress)
 
     @property
     def is_telemetry(self) -> bool:

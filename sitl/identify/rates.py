@@ -107,6 +107,35 @@ class _Stretch(NamedTuple):
     """The angle that the path alone asks for, where it is logged."""
     conditions: Array
 
+    def with_one_angle(self, by_path: bool) -> _Stretch:
+        """Without the angle that is not used any more."""
+        kept = self.path if by_path else self.wanted
+        return self._replace(wanted=kept, path=kept)
+
+
+class _Filters(NamedTuple):
+    """Of all series of one length, in the frequency domain."""
+
+    s: Array
+    band: Array
+    gyro: Array
+
+
+def _filters(count: int, rate: float, cutoff: float) -> _Filters:
+    """What the axes share.
+
+    Args:
+        count: of samples.
+        rate: of these [Hz].
+        cutoff: of the rates' low-pass [rad/s].
+    """
+    s = 2j * np.pi * np.fft.rfftfreq(count, 1.0 / rate)
+    f = s.imag / (2.0 * np.pi)
+    low, high = (f / BAND_HZ[0]) ** 4, (f / BAND_HZ[1]) ** 8
+    band = low / (1.0 + low) / (1.0 + high)
+    gyro = np.ones_like(s) if cutoff <= 0.0 else 1.0 / (1.0 + np.sqrt(2.0) * s / cutoff + (s / cutoff) ** 2)
+    return _Filters(s, band, gyro)
+
 
 def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
     """All that RATE tells."""
@@ -122,9 +151,10 @@ def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
     """Stretches of an axis, and whether its instrument is the path: a block of all is large, and is made again."""
     weak: dict[str, str] = {}
     seconds, quantum = 0.0, max(resolution(log) for log in usable)
+    common: dict[tuple[int, float], _Filters] = {}
     for axis, letter, angle in AXES:
         begins(f"{axis} rate")
-        stretches = [part for log in usable for part in _stretches(log, letter, angle, rate)]
+        stretches = [part for log in usable for part in _stretches(log, letter, angle, rate, common)]
         seconds = sum(int(part.keep.sum()) for part in stretches) / rate
         if seconds < _LEAST_S:
             reason = f"{seconds:.0f} s in the air with RATE and free outputs; {_LEAST_S:.0f} s are needed"
@@ -144,7 +174,8 @@ def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
             weak[axis] = f"the {axis} rate was moved too little (F {strength:.0f}): fly doublets, or SYSTEMID"
         else:
             lags.append(first)
-            chosen[axis] = (stretches, by_path)
+            chosen[axis] = ([part.with_one_angle(by_path) for part in stretches], by_path)
+        del first, stretches  # each is as large as a part of the log
     if not chosen:
         return [sought.hidden("; ".join(weak.values())) for sought in _all()]
     begins("lag of the motors")
@@ -206,7 +237,10 @@ def _figures(found: JointFit, axes: list[str], weak: dict[str, str], data: str) 
     return [result[sought.name] for sought in _all()]
 
 
-def _stretches(log: FlightLog, letter: str, angle: str, rate: float) -> list[_Stretch]:
+def _stretches(
+    log: FlightLog, letter: str, angle: str, rate: float, shared: dict[tuple[int, float], _Filters]
+) -> list[_Stretch]:
+    """Of an axis; ``shared`` keeps what the axes have in common, by (samples, cutoff [rad/s])."""
     table, attitude, imu = log.stream("RATE"), log.stream("ATT"), log.stream("IMU", 0)
     cutoff = 2.0 * np.pi * log.parameter("INS_GYRO_FILTER", default=20.0)
     busy = saturated(log)
@@ -220,7 +254,7 @@ def _stretches(log: FlightLog, letter: str, angle: str, rate: float) -> list[_St
         wanted = means(attitude.time, np.unwrap(np.radians(attitude[f"Des{angle}"])), edges)
         path = _path(log, angle, edges, wanted)
         n = len(u)
-        s = 2j * np.pi * np.fft.rfftfreq(n, 1.0 / rate)
+        s, band, gyro = shared[n, cutoff] = shared.get((n, cutoff)) or _filters(n, rate, cutoff)
         slow = 1.0 / (1.0 + (s.imag / (2.0 * np.pi * _SLOW_HZ)) ** 4)
 
         def smooth(x: Array, slow: Array = slow, n: int = n) -> Array:
@@ -230,10 +264,6 @@ def _stretches(log: FlightLog, letter: str, angle: str, rate: float) -> list[_St
         moved = motion(log, edges)
         through = smooth(moved.along_body(moved.velocity)[:, 2])
         conditions = np.stack([thrust, through], -1)
-        f = s.imag / (2.0 * np.pi)
-        low, high = (f / BAND_HZ[0]) ** 4, (f / BAND_HZ[1]) ** 8
-        band = low / (1.0 + low) / (1.0 + high)
-        gyro = np.ones_like(s) if cutoff <= 0.0 else 1.0 / (1.0 + np.sqrt(2.0) * s / cutoff + (s / cutoff) ** 2)
         middle = 0.5 * (edges[1:] + edges[:-1])
         keep = (middle > span.begin + _EDGE_S) & (middle < span.end - _EDGE_S) & ~within(middle, busy)
         outputs = (spectrum(u), *(spectrum(u * column) for column in conditions.T))
@@ -275,6 +305,9 @@ def _block(stretches: list[_Stretch], spins_up: bool, rate: float, by_path: bool
             columns_of.append(np.fft.irfft(part.band * part.gyro * part.aside, n))
         for k, column in enumerate(columns_of):
             instruments[rows, k] = column[part.keep]
+
+    none = np.zeros(0)
+    stretches = [part._replace(wanted=none, path=none) for part in stretches]  # what is left is kept by the block
 
     def columns(shared: Array) -> tuple[Array, Array]:
         lag, dead = shared

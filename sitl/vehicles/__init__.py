@@ -29,6 +29,7 @@ __all__ = [
     "Rotor",
     "RoverAirframe",
     "apply",
+    "check_kind",
     "is_file",
     "load",
     "names",
@@ -88,6 +89,16 @@ def load(name: str | Airframe) -> Airframe:
     if not isinstance(found, Airframe):
         raise AirframeError(f"airframe {name!r}: {found!r} is no Airframe")
     return found
+
+
+def check_kind(airframe: Airframe, kind: str) -> None:
+    """Refuses an airframe where another kind of vehicle is wanted.
+
+    Raises:
+        AirframeError: it is of another kind; the message lists airframes of the wanted one.
+    """
+    if airframe.kind != kind:
+        raise AirframeError(f"{airframe.title} is a {airframe.kind}; those of a {kind} are {', '.join(names(kind))}")
 
 
 def is_file(name: str) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gymnasium.error import DependencyNotInstalled, InvalidAction, ResetNeeded
 
-from sitl import worlds
+from sitl import vehicles, worlds
 from sitl.envs import EnvOptionError
 from sitl.envs.actions import DRIVE, VELOCITY, Continuous, Discrete
 from sitl.envs.observations import Digits
@@ -50,6 +50,10 @@ def test_actions_outside_of_a_box_are_refused(action):
     [
         ({"robot": "turtelbot"}, r"robot 'turtelbot' is not known; .*did you mean 'turtlebot'"),
         ({"robot": 3}, r"robot 3 is neither a name"),
+        (
+            {"robot": "erle_copter", "frame": "erle_rover"},
+            r"airframe erle_rover is a rover; those of a copter are erle",
+        ),
         ({"world": "moon"}, r"world 'moon' is not known; it is one of circuit"),
         ({"task": "wonder"}, r"task 'wonder' .*did you mean 'wander'"),
         ({"task": Task}, r"task .* nor an object with judge"),
@@ -261,3 +265,13 @@ def test_an_unknown_option_is_an_unexpected_argument_in_pythons_words_too(robot)
     """TorchRL offers each environment a ``frameskip``, and goes without where this is what it hears."""
     with pytest.raises(TypeError, match=r"option 'frameskip' is not known.*unexpected keyword argument 'frameskip'"):
         gym.make("sitl/Navigate-v1", robot=robot, frameskip=1)
+
+
+def test_the_file_of_another_kind_of_vehicle_is_named(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(vehicles.to_toml(vehicles.load("erle_copter")))
+    for options in ({}, {"randomise": "identified"}):
+        with pytest.raises(
+            EnvOptionError, match=r"airframe file '.*mine\.toml' is a copter; those of a rover are erle_"
+        ):
+            gym.make("sitl/RoverWaypoint-v1", frame=str(path), **options)

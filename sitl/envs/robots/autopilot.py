@@ -32,7 +32,7 @@ from sitl.simulation import OptionError, Simulation
 from sitl.vehicle.equipment import Equipment
 from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
-from sitl.vehicles import AirframeError
+from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.airframe import Value
 from sitl.vehicles.figures.figure import Figure
 from sitl.vehicles.receivers import equipped
@@ -574,5 +574,19 @@ class AutopilotRobot:
         self.collided[:] = state["collided"]
 
 
-ErleRover = partial(AutopilotRobot, frame="erle_rover")
-ErleCopter = partial(AutopilotRobot, frame="erle_copter")
+def _of_one_kind(usual: str, *, frame: str | Airframe | None = None, **options: Any) -> AutopilotRobot:
+    """A robot with an airframe of one kind: what its tasks, actions and observations are made for.
+
+    Raises:
+        EnvOptionError: ``frame`` is of another kind than the usual airframe, or cannot be read.
+    """
+    try:
+        airframe = vehicles.load(usual if frame is None else frame)
+        vehicles.check_kind(airframe, vehicles.load(usual).kind)
+    except AirframeError as error:
+        raise EnvOptionError(str(error)) from None
+    return AutopilotRobot(frame=usual if frame is None else frame, **options)
+
+
+ErleRover = partial(_of_one_kind, "erle_rover")
+ErleCopter = partial(_of_one_kind, "erle_copter")

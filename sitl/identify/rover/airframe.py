@@ -49,6 +49,8 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Rov
         notes[name] = f"identified, by {found(source)}"
 
     _drive(found, take, changes)
+    if found("grip").least > float(base.value("grip")):
+        changes["grip"], notes["grip"] = found("grip").least, f"at least so much, by {found('grip')}"
     if skids:
         take("track", "turning_track", found("turning_track").value / float(base.value("track_slip")))
         size = changes["track"] / float(base.value("track"))

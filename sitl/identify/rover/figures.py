@@ -241,10 +241,12 @@ def _grip(fit: DriveFit) -> Figure:
     if "slip" in fit.names:
         value, error = fit.interval("slip")
         if value * _MOST_GRIP < 1.0:
-            return GRIP.hidden(f"{1.0 / value:.1f} is more than tyres hold: something else held the yaw rate back")
+            why = f"{1.0 / value:.1f} is more than tyres hold: something else held the yaw rate back"
+            return GRIP.hidden(why, least=1.0 / value)
         return _made(GRIP, fit, 1.0 / value, error / value**2)
     most = float(np.percentile(np.hypot(fit.courses.speed * fit.courses.yaw_rate, _accelerations(fit)), 99.9))
-    return GRIP.hidden(f"the limit was not reached: tyres held {most:.1f} m/s^2, {most / GRAVITY:.2f} of the weight")
+    held = most / GRAVITY
+    return GRIP.hidden(f"the limit was not reached: tyres held {most:.1f} m/s^2, {held:.2f} of the weight", least=held)
 
 
 def _axle(fit: DriveFit) -> Figure:

@@ -8,11 +8,12 @@ of the file, follows it. So pieces that a card lost, and marks that happen to st
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.lib import recfunctions
 
 from ..tlog import LogError
 from .formats import FMT, FMT_NUMBER, HEAD, TYPES, UNITS
@@ -26,6 +27,8 @@ _NUMPY = {letter: kind for letter, (kind, _, _) in TYPES.items()} | {"a": "(32,)
 _FMT, _FMT_LENGTH = np.dtype(FMT.columns()), FMT.packer.size
 _HELP = ("FMTU", "UNIT", "MULT", "PARM", "MSG", "VER")
 """Read besides those that are asked for."""
+_TIMES = ("TimeUS", "TimeMS")
+"""Fields that are always kept."""
 _PIECE = 1 << 21
 """Bytes that are read at once."""
 _LONGEST = 256
@@ -37,7 +40,7 @@ class Columns(Tables):
 
     Args:
         path: of a .bin, or a .log as text.
-        names: messages that are wanted; None: all.
+        names: messages that are wanted; None: all. A mapping says of each which fields are kept; None: all of them.
         progress: is told how far it is.
 
     Raises:
@@ -45,7 +48,10 @@ class Columns(Tables):
     """
 
     def __init__(
-        self, path: str | Path, names: Collection[str] | None = None, progress: Progress | None = None
+        self,
+        path: str | Path,
+        names: Collection[str] | Mapping[str, Collection[str] | None] | None = None,
+        progress: Progress | None = None,
     ) -> None:
         super().__init__(path)
         self.skipped = 0
@@ -54,6 +60,7 @@ class Columns(Tables):
         """Whether the file ends within a message."""
         log = DataFlash(path)
         wanted = None if names is None else {*names, *_HELP}
+        self._fields = {name: set(kept) for name, kept in names.items() if kept} if isinstance(names, Mapping) else {}
         try:
             self._tables = _of_text(log, wanted) if log.is_text else self._of_binary(wanted, progress)
         except OSError as error:
@@ -64,7 +71,7 @@ class Columns(Tables):
     # ------------------------------------------------------------------ binary
 
     def _of_binary(self, wanted: set[str] | None, progress: Progress | None) -> dict[str, Table]:
-        formats = _Formats()
+        formats = _Formats(self._fields)
         parts: dict[int, list[Array]] = {}
         with self.path.open("rb") as file:
             total = os.fstat(file.fileno()).st_size
@@ -80,7 +87,7 @@ class Columns(Tables):
             if of.name in tables:  # two numbers of one name: the longer table counts
                 if len(tables[of.name]) >= len(raw):
                     continue
-            tables[of.name] = Table(of.name, raw, of.letters, {})
+            tables[of.name] = Table(of.name, raw, {name: of.letters[name] for name in raw.dtype.names or ()}, {})
         return tables
 
     def _set_units(self) -> None:
@@ -98,15 +105,18 @@ class Columns(Tables):
 class _Format:
     """What an FMT says of a message."""
 
-    def __init__(self, name: str, letters: dict[str, str]) -> None:
+    def __init__(self, name: str, letters: dict[str, str], fields: Collection[str] = ()) -> None:
         self.name, self.letters = name, letters
         self.dtype = np.dtype([(label, _NUMPY[letter]) for label, letter in letters.items()])
+        self.kept = [label for label in letters if label in fields or label in _TIMES] if fields else None
+        """Fields that are kept, where not all are."""
 
 
 class _Formats:
     """The formats that are known so far, and the messages of a piece by them."""
 
-    def __init__(self) -> None:
+    def __init__(self, fields: Mapping[str, Collection[str]]) -> None:
+        self._fields = fields
         self.known: dict[int, _Format] = {FMT_NUMBER: _Format("FMT", {field.label: field.kind for field in FMT.fields})}
         self._lengths = np.zeros(256, np.int64)
         self._lengths[FMT_NUMBER] = _FMT_LENGTH
@@ -141,7 +151,8 @@ class _Formats:
             if wanted is not None and of.name not in wanted and of.name != "FMT":
                 continue
             begin, end = np.searchsorted(sorted_kinds, [kind, kind + 1])
-            yield kind, _gather(data, heads[order[begin:end]] + 3, of.dtype)
+            rows = _gather(data, heads[order[begin:end]] + 3, of.dtype)
+            yield kind, rows if of.kept is None else recfunctions.repack_fields(rows[of.kept])
 
     def _learn(self, data: Array, heads: Array, marks: Array) -> None:
         heads = heads[heads + _FMT_LENGTH <= len(data)]
@@ -154,7 +165,7 @@ class _Formats:
                 continue
             if not all(letter in _NUMPY for letter in letters):
                 continue
-            found = _Format(name, dict(zip(columns, letters)))
+            found = _Format(name, dict(zip(columns, letters)), self._fields.get(name, ()))
             if 3 + found.dtype.itemsize == length:
                 self.known[kind], self._lengths[kind] = found, length
 

@@ -143,6 +143,11 @@ class DataFlash:
             return encoder.sampler_address, NEVER
         return 0, self._next_us
 
+    @property
+    def paths(self) -> list[Path]:
+        """Of the logs that are kept, oldest first."""
+        return [file.path for file in self._files]
+
     def after_run(self) -> None:
         """What ``sitl.simulation.Logger`` says."""
         encoder = self._running

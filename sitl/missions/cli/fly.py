@@ -15,6 +15,7 @@ from sitl.cli.options import add_vehicle_options, build_simulation, open_folder,
 from sitl.cli.view_options import DEFAULT_TEXT, add_view_options, check_view, default_speedup, shown
 from sitl.core.mavlink import MavCmd, MavType
 from sitl.errors import OptionError
+from sitl.logs.dataflash.log import DataFlash
 from sitl.run import runner
 from sitl.run.pacing import StoppablePacing, parse_speedup
 from sitl.vehicle.kinds import DEFAULT, KINDS
@@ -111,7 +112,10 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
         simulation.close()
     print(summary(outcome))
     say_faults(simulation)
-    print(f"log: {log}" + (f"\nrecording: {options.rec}" if options.rec else ""))
+    for path in (log, *(simulation.logger.paths if isinstance(simulation.logger, DataFlash) else ())):
+        print(f"log: {path}")
+    if options.rec:
+        print(f"recording: {options.rec}")
     return 0 if outcome.completed else 1
 
 

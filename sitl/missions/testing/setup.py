@@ -163,8 +163,8 @@ def setup(
         frame = KINDS[kind or DEFAULT].default_frame
     elif not isinstance(frame, Airframe):
         frame = str(_beside(frame, defaults.folders)) if vehicles.is_file(str(frame)) else str(frame)
-    if kind is not None and vehicles.load(frame).kind != kind:
-        raise OptionError(f"frame {frame} is a {vehicles.load(frame).kind}, not a {kind}")
+    if kind is not None:
+        vehicles.check_kind(vehicles.load(frame), kind)
     if isinstance(world, str | Path) and str(world).endswith(".toml"):
         world = _beside(world, defaults.folders)
     values = defaults.params | values

@@ -42,6 +42,8 @@ _GRACE_S = 1.0
 """So long a twin has to change its mode by itself, where the log's vehicle did, before it is told to."""
 _LANDING_S = 20.0
 """Time to come to its end for a twin whose log's vehicle is disarmed [simulated s]."""
+_LATE_S = 0.1
+"""What ends nearer to the log's end is no note."""
 _STICK_S = 0.02
 """Between two frames of a receiver."""
 _STEERED = 4
@@ -226,7 +228,9 @@ class TwinFlight:
             battery.full_voltage = rest
             if float(airframe.value("battery_capacity")) > 0.0:
                 battery.charge = 1.0
-                self.notes.append(f"the battery is one of {rest:.1f} V: that of the airframe never has so much")
+                text = f"the battery is one of {rest:.1f} V, which that of the airframe never has"
+                if text not in self.notes:  # it is charged at power-on, and again at arming
+                    self.notes.append(text)
 
     def _arm(self) -> None:
         self._charge()
@@ -289,6 +293,10 @@ class TwinFlight:
 
     def _blow(self, speed: float, direction: float) -> None:
         simulation = self.simulation
+        if not simulation.kind.flies:
+            if self.change.wind is not None:
+                self.notes.append(f"wind has no effect on a {simulation.kind.name}")
+            return
         for name, value in (("SIM_WIND_SPD", speed), ("SIM_WIND_DIR", direction)):
             try:
                 simulation.parameters.update({name: value})
@@ -425,7 +433,8 @@ class TwinFlight:
                 self.station.step()
             elif self.station.passes(lambda: not self.station.armed, _LANDING_S):
                 late = (simulation.time_us - self._armed_us) * 1e-6 - log.span.length
-                self.notes.append(f"the twin is disarmed {late:.1f} s later than the log's vehicle")
+                if late >= _LATE_S:
+                    self.notes.append(f"the twin is disarmed {late:.1f} s later than the log's vehicle")
             else:
                 self.notes.append(f"the twin is still armed {_LANDING_S:g} s after the log's vehicle was disarmed")
         since = self._armed_us * 1e-6

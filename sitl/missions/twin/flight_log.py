@@ -23,8 +23,8 @@ _ESTIMATES = ("XKF1", "NKF1", "EKF1", "SIM2")
 """The last one is in logs of a vehicle that flies by its true state."""
 _PRIMARY = {"XKF1": "XKF4", "NKF1": "NKF4"}
 _NAMES = (
-    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC", "MODE", "MSG",
-    "NKF1", "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2", "STER", "THR",
+    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "DSF", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC", "MODE",
+    "MSG", "NKF1", "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2", "STER", "THR",
     "XKF1", "XKF2", "XKF4",
 )  # fmt: skip
 """Messages that are read."""

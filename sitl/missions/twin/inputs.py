@@ -22,6 +22,7 @@ from sitl.logs.dataflash.columns import Table
 from sitl.logs.kind import mode_name
 
 from ..tlog_replay.steps import QUESTIONS
+from . import gaps
 from .flight_log import FlightLog
 
 Array = np.ndarray[Any, Any]
@@ -49,6 +50,10 @@ _LONG_GAP_S = 0.25
 CHANNELS = 16
 _OPENING_S = 5.0
 """A mission that is written into a log so soon after its beginning was there before: arming opens logs."""
+_START_S = 0.1
+"""So long after AUTO a mission is begun whose start the log lacks."""
+_START = {"frame": 0, "command": int(MavCmd.MISSION_START), "x": 0, "y": 0, "z": 0.0,
+          "param1": 0.0, "param2": 0.0, "param3": 0.0, "param4": 0.0}  # fmt: skip
 _CALM = 0.05
 """A wind estimate that never exceeds it is none [m/s]."""
 
@@ -100,9 +105,16 @@ def of(log: FlightLog) -> Inputs:
     found = Inputs()
     found.missions = _missions(log)
     found.modes = _modes(log)
-    found.messages = sorted([*_commands(log, found.notes), *_positions(log, found.notes), *_attitudes(log)])
+    found.messages = _in_time([*_commands(log, found.notes), *_positions(log, found.notes), *_attitudes(log)])
     found.sticks = _sticks(log)
     found.wind = _wind(log)
+    if count := gaps.dropped(log):
+        found.notes.append(f"the vehicle could not write {count} messages of the flight into its log (DSF.Dp)")
+    commands = [(one.time, one.fields["command"]) for one in found.messages if "command" in one.fields]
+    start = gaps.untold_start(log, gaps.mode_names(log.kind, found.modes), commands, found.sticks)
+    if start is not None:
+        found.messages = _in_time([*found.messages, Message(start + _START_S, "COMMAND_INT", _START)])
+        found.notes.append("the log does not tell what began its mission on the ground: the twin is sent MISSION_START")
     if found.sticks is not None:
         gap = float(np.diff(found.sticks[0]).max(initial=0.0))
         if gap > _LONG_GAP_S:
@@ -112,6 +124,11 @@ def of(log: FlightLog) -> Inputs:
     if _guided_s(log, found.modes) > _LONG_GUIDED_S and not found.messages:
         found.notes.append("the log has no set-points of GUIDED (MAVC, GUIP, GUIA)")
     return found
+
+
+def _in_time(messages: list[Message]) -> list[Message]:
+    """Those of one time in the order in which they were logged."""
+    return sorted(messages, key=lambda message: message.time)
 
 
 def _guided_s(log: FlightLog, modes: list[Mode]) -> float:

@@ -17,11 +17,34 @@ _PUSH = 0.3
 _VOLTS = 0.02
 """Share by which voltages may differ."""
 _AXES = ("roll_rate", "pitch_rate", "yaw_rate")
+NOT_JUDGED = "not judged"
+"""Begins a sentence that is no difference."""
 _ANGLES = ("asked_roll", "asked_pitch")
 
 
-def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: Sequence[Agreement]) -> list[str]:
-    """Sentences, the model's first; none: they agree as far as these figures tell."""
+_MOTION = {
+    "climb": "thrust, mass or controllers differ",
+    "speed": "speed by throttle, lag, drag or the path differ",
+    "roll": "targets, model or controllers differ",
+    "pitch": "targets, model or controllers differ",
+    "yaw_rate": "steering, or the path that it follows, differ",
+}
+"""What is judged where there are no open segments, and what its difference may be."""
+
+
+def findings(
+    whole: Sequence[Agreement],
+    segments: Sequence[Agreement],
+    model: Sequence[Agreement],
+    in_step: Sequence[Agreement] = (),
+) -> list[str]:
+    """Sentences, the model's first; none: they agree as far as these figures tell.
+
+    Args:
+        whole: of the whole flight.
+        segments, model: of open segments, and of those that the model flies alone; none where none were flown.
+        in_step: in step by mission items; none without a mission.
+    """
     of_whole, of_segments, of_model = ({one.quantity.name: one for one in part} for part in (whole, segments, model))
     found: list[str] = []
     leans_alike = not any(_is_bad(of_segments[name]) for name in ("roll", "pitch") if name in of_segments)
@@ -64,14 +87,26 @@ def findings(whole: Sequence[Agreement], segments: Sequence[Agreement], model: S
         )
     if unjudged:
         found.append(
-            f"not judged: {', '.join(unjudged)} in open segments, for the twin was asked for other angles than the "
+            f"{NOT_JUDGED}: {', '.join(unjudged)} in open segments, for the twin was asked for other angles than the "
             "vehicle. In a mission with gusts one of the two is ahead on its path, and turns at another time: compare "
             "the whole flight, or a log of calm air"
         )
+    if not segments:
+        found += _of_motion(in_step or whole, "in step by mission items" if in_step else "over the whole flight")
     voltage = of_whole.get("voltage")
     if voltage is not None and voltage.logged.mean() > 1.0 and voltage.rms > _VOLTS * float(voltage.logged.mean()):
         found.append(f"model: battery voltage differs by {voltage.rms:.2f} V (RMS): resistance or capacity differ")
     return found
+
+
+def _of_motion(part: Sequence[Agreement], where: str) -> list[str]:
+    """Without open segments errors add up, so model and autopilot are not told apart."""
+    return [
+        f"{one.quantity.title} {where} accounts for {max(one.vaf, 0.0):.0f} % of its variance: "
+        f"{_MOTION[one.quantity.name]}"
+        for one in part
+        if one.quantity.name in _MOTION and _is_bad(one)
+    ]
 
 
 def _is_bad(one: Agreement) -> bool:

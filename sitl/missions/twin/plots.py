@@ -64,7 +64,7 @@ def plan(twin: Twin) -> bytes:
 
 def _mean(quantity: Quantity, values: Array) -> Array:
     """One line of a quantity: the mean of motors; a heading goes on beyond a full turn."""
-    line = values.mean(1)
+    line = np.unwrap(values[:, 0], period=360.0) if quantity.is_angle else values.mean(1)
     return line - 360.0 * np.floor(line[0] / 360.0 + 0.5) if quantity.is_angle and len(line) else line
 
 
@@ -96,10 +96,15 @@ def flown(twin: Twin, names: Sequence[str] = ()) -> bytes:
         axis.set_ylabel(_label(one.quantity), fontsize=9)
         _quiet(axis)
     handles = max((axis.get_legend_handles_labels() for axis in axes), key=lambda pair: len(pair[0]))
-    axes[0].legend(*handles, loc="upper right", ncols=3, fontsize=9, framealpha=0.9)
+    _legend_above(axes[0], *handles)
     figure.align_ylabels(axes)
     axes[-1].set_xlabel("time since arming [s]", fontsize=10)
     return _png(figure)
+
+
+def _legend_above(axis: Any, handles: Sequence[Any], labels: Sequence[str]) -> None:
+    """Where it hides no line."""
+    axis.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, fontsize=9, frameon=False)
 
 
 def _label(quantity: Quantity) -> str:
@@ -123,7 +128,7 @@ def opened(twin: Twin) -> bytes:
         axis.set_ylabel(_label(one.quantity), fontsize=9)
         _quiet(axis)
     axes[0].plot([], [], color=FLOWN, lw=1.0, label="twin, from the logged state at each grey line")
-    axes[0].legend(loc="upper right", ncols=2, fontsize=9, framealpha=0.9)
+    _legend_above(axes[0], *axes[0].get_legend_handles_labels())
     figure.align_ylabels(axes)
     axes[-1].set_xlabel("time since arming [s]", fontsize=10)
     return _png(figure)

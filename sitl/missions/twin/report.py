@@ -9,6 +9,8 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
 
+import numpy as np
+
 from sitl.core.whole_file import write_whole
 from sitl.errors import MissingExtra, OptionError
 
@@ -30,6 +32,49 @@ _MEANING = (
 )
 
 
+_OWN_STYLE = """header.unsure { border-color: #b8860b; } header.unsure h1 { color: #8a6508; }
+header b.verdict { font-size: 17px; } td:first-child { min-width: 150px; }"""
+_SHOWN = ("height", "position", "speed")
+_EFFECTS = (
+    ("height", "greatest height", np.max), ("speed", "greatest speed", np.max),
+    ("roll", "largest roll", lambda x: np.max(np.abs(x))), ("pitch", "largest pitch", lambda x: np.max(np.abs(x))),
+    ("throttle", "mean throttle output", np.mean), ("current", "mean battery current", np.mean),
+    ("voltage", "lowest battery voltage", np.min), ("consumed", "charge drawn", lambda x: x[-1, 0]),
+)  # fmt: skip
+"""Quantity, what is told of it, and how it follows from the values."""
+
+
+def verdict_of(twin: Twin) -> str:
+    """Whether the twin flies as the log's vehicle did, in a sentence."""
+    flies, count = "flies" if twin.log.kind == "copter" else "drives", len(twin.differences)
+    if not count:
+        return f"The twin {flies} as the log's vehicle did, as far as these figures tell"
+    return f"The twin {flies} otherwise than the log's vehicle did: {count} difference{'s' * (count > 1)}"
+
+
+def _sizes(twin: Twin) -> str:
+    """How far the two are apart, in a sentence."""
+    texts = []
+    for part, where in ((twin.whole, "over the whole flight"), (twin.legs, "in step by mission items")):
+        found = {one.quantity.name: one for one in part}
+        sizes = [
+            f"{name} by {_number(found[name].rms, 2)} {found[name].quantity.unit}" for name in _SHOWN if name in found
+        ]
+        if sizes:
+            texts.append(f"{', '.join(sizes)} {where}")
+    return f"They differ (RMS) in {'; '.join(texts)}." if texts else ""
+
+
+def effects(twin: Twin) -> list[tuple[str, str, float, float]]:
+    """What a change does: (what, unit, of the twin, of the changed twin), within the time of the log."""
+    found = {one.quantity.name: one for one in twin.difference}
+    return [
+        (title, found[name].quantity.unit, float(of(found[name].logged)), float(of(found[name].flown)))
+        for name, title, of in _EFFECTS
+        if name in found
+    ]
+
+
 def _number(value: float, digits: int = 3) -> str:
     return "-" if not math.isfinite(value) else f"{value:.{digits}g}"
 
@@ -46,6 +91,7 @@ def lines(twin: Twin, verdicts: Sequence[Verdict]) -> list[str]:
     found = [
         f"{log.name}: {log.columns.firmware or log.kind}, flight of {log.span.length:.1f} s; twin on frame {twin.frame}"
     ]
+    found.append(f"  {verdict_of(twin)}. {_sizes(twin)}".rstrip())
     found += [f"  note: {note}" for note in twin.notes]
     found += [f"  twin: {note}" for note in twin.went]
     parts = [("whole flight", twin.whole)]
@@ -68,6 +114,7 @@ def lines(twin: Twin, verdicts: Sequence[Verdict]) -> list[str]:
     if twin.changed is not None:
         found.append(f"changed: {', '.join(twin.change.words)}")
         found += [f"  changed twin: {note}" for note in twin.went_changed]
+        found += [f"  {what:32} {'[' + unit + ']':7}{a:>12.4g} -> {b:.4g}" for what, unit, a, b in effects(twin)]
     found += [f"{'ok' if verdict.ok else 'LIMIT'}: {verdict.words}" for verdict in verdicts]
     return found
 
@@ -86,27 +133,26 @@ def html(twin: Twin, verdicts: Sequence[Verdict]) -> str:
     log = twin.log
     failed = [verdict for verdict in verdicts if not verdict.ok]
     title = f"Twin of {log.name}"
-    if verdicts:
-        result = f"{len(verdicts) - len(failed)} of {len(verdicts)} limits are kept"
-    else:
-        result = "No limits were given: figures only"
+    judged = "unsure" if twin.differences else ""
     parts = [
-        f'<header class="{"bad" if failed else ""}"><h1>{escape(title)}</h1><p>{escape(result)}</p>',
+        f'<header class="{"bad" if failed else judged}"><h1>{escape(title)}</h1>'
+        f'<p><b class="verdict">{escape(verdict_of(twin))}.</b></p><p>{escape(_sizes(twin))}</p>',
+        f"<p>{len(verdicts) - len(failed)} of {len(verdicts)} limits are kept</p>" if verdicts else "",
         f'<p class="soft">{escape(log.columns.firmware)}, flight {log.number} of {len(log.flights)}, '
         f"{log.span.length:.1f} s from arming; twin on airframe <b>{escape(twin.frame)}</b>; "
         "both are aligned by the moment of arming</p>",
         f"<p><b>Changed:</b> {escape(', '.join(twin.change.words))}</p></header>" if twin.changed else "</header>",
         _list("Limits that are not kept", [verdict.words for verdict in failed]),
         _list("Where model or autopilot differ", twin.findings or ["Nowhere, as far as these figures tell."]),
-        _list("What was taken over, and what was not", twin.notes),
         _list("What the twin did otherwise", twin.went),
-        _list("What the changed twin did", twin.went_changed),
-        "<h2>Figures</h2><section>" + _table(twin) + f'<p class="soft">{_MEANING}</p></section>',
+        _effects(twin),
         *_pictures(twin),
+        "<h2>Figures</h2><section>" + _table(twin) + f'<p class="soft">{_MEANING}</p></section>',
+        _list("What was taken over, and what was not", twin.notes),
     ]
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style></head><body><main>\n'
+        f'<meta name="viewport" content="width=device-width"><style>{STYLE}{_OWN_STYLE}</style></head><body><main>\n'
         + "\n".join(part for part in parts if part)
         + "\n</main></body></html>\n"
     )
@@ -117,6 +163,20 @@ def _list(heading: str, texts: Iterable[str]) -> str:
     return f"<h2>{heading}</h2><section><ul>{rows}</ul></section>" if rows else ""
 
 
+def _effects(twin: Twin) -> str:
+    """What the change does, beside what the changed twin says."""
+    if twin.changed is None:
+        return ""
+    rows = "".join(
+        f"<tr><td>{escape(what)}</td><td>{unit}</td><td class=n>{_number(before, 4)}</td>"
+        f"<td class=n>{_number(after, 4)}</td></tr>"
+        for what, unit, before, after in effects(twin)
+    )
+    head = "<tr><th>within the time of the log</th><th>unit</th><th class=n>twin</th><th class=n>changed twin</th></tr>"
+    notes = "".join(f"<li>{escape(note)}</li>" for note in twin.went_changed)
+    return f"<h2>What the change does</h2><section><table>{head}{rows}</table><ul>{notes}</ul></section>"
+
+
 def _table(twin: Twin) -> str:
     parts: list[tuple[str, list[Agreement]]] = [("Whole flight", twin.whole)]
     if twin.legs:
@@ -125,8 +185,6 @@ def _table(twin: Twin) -> str:
         parts.append((f"Open segments of {SEGMENT_S:g} s", twin.segments))
     if twin.model:
         parts.append((f"Model alone, {MODEL_S:g} s, by the log's motor outputs", twin.model))
-    if twin.difference:
-        parts.append(("Changed twin from twin", twin.difference))
     head = "".join(f'<th class=n colspan=3 title="{escape(title)}">{escape(title)}</th>' for title, _ in parts)
     names = "<th class=n>RMS</th><th class=n>largest</th><th class=n>VAF %</th>" * len(parts)
     rows = []

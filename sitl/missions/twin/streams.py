@@ -47,6 +47,8 @@ class Quantity:
     """In open segments it counts from the beginning of each."""
     is_asked: bool = False
     """The autopilot's, not the vehicle's: what it asks for."""
+    turns: bool = False
+    """Tells of turning: it does not count where the twin turned the other way round."""
 
 
 def _fields(name: str, *fields: str, scale: float = 1.0, instance: int | None = None) -> Callable[..., Stream | None]:
@@ -136,7 +138,7 @@ _PLACE = Quantity(
     "position", "horizontal position", "m", 0.3, _from_arming(_estimate("PN", "PE")), ("north", "east"),
     is_vector=True, adds_up=True,
 )  # fmt: skip
-_HEADING = Quantity("yaw", "heading", "deg", 2.0, _fields("ATT", "Yaw"), is_angle=True)
+_HEADING = Quantity("yaw", "heading", "deg", 2.0, _fields("ATT", "Yaw"), is_angle=True, turns=True)
 
 COPTER = (
     Quantity("height", "height above the place of arming", "m", 0.3, _from_arming(_estimate("PD"), -1.0),
@@ -149,7 +151,7 @@ COPTER = (
     _HEADING,
     Quantity("roll_rate", "roll rate", "deg/s", 2.0, _fields("RATE", "R")),
     Quantity("pitch_rate", "pitch rate", "deg/s", 2.0, _fields("RATE", "P")),
-    Quantity("yaw_rate", "yaw rate", "deg/s", 2.0, _fields("RATE", "Y")),
+    Quantity("yaw_rate", "yaw rate", "deg/s", 2.0, _fields("RATE", "Y"), turns=True),
     Quantity("acceleration", "upward acceleration", "m/s^2", 0.3, _acceleration("A")),
     Quantity("asked_roll", "desired roll", "deg", 1.0, _fields("ATT", "DesRoll"), is_asked=True),
     Quantity("asked_pitch", "desired pitch", "deg", 1.0, _fields("ATT", "DesPitch"), is_asked=True),
@@ -164,11 +166,13 @@ ROVER = (
     _PLACE,
     Quantity("speed", "speed", "m/s", 0.1, _fields("THR", "Speed")),
     _HEADING,
-    Quantity("yaw_rate", "turn rate", "deg/s", 2.0, _fields("STER", "TurnRate")),
+    Quantity("yaw_rate", "turn rate", "deg/s", 2.0, _fields("STER", "TurnRate"), turns=True),
     Quantity("asked_speed", "desired speed", "m/s", 0.1, _fields("THR", "DesSpeed"), is_asked=True),
-    Quantity("asked_yaw_rate", "desired turn rate", "deg/s", 2.0, _fields("STER", "DesTurnRate"), is_asked=True),
+    Quantity(
+        "asked_yaw_rate", "desired turn rate", "deg/s", 2.0, _fields("STER", "DesTurnRate"), is_asked=True, turns=True
+    ),
     Quantity("throttle", "throttle output", "%", 2.0, _fields("THR", "ThrOut")),
-    Quantity("steering", "steering output", "%", 2.0, _fields("STER", "SteerOut", scale=1.0 / 45.0)),
+    Quantity("steering", "steering output", "%", 2.0, _fields("STER", "SteerOut", scale=1.0 / 45.0), turns=True),
     *_BATTERY,
 )
 QUANTITIES = {"copter": COPTER, "rover": ROVER}

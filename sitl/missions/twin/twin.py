@@ -25,12 +25,13 @@ from sitl.simulation import Core, Simulation
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
-from . import inputs, legs, parameters, streams
+from . import half_turns, inputs, legs, parameters, streams
 from .agreement import Agreement, Window, compare
 from .flight import LOG_BITMASK, Change, Segments, TwinFlight
 from .flight_log import FlightLog, TwinError
+from .half_turns import HalfTurn, heading
 from .inputs import Inputs
-from .judge import findings
+from .judge import NOT_JUDGED, findings
 
 SEGMENT_S = 2.0
 """Length of an open segment."""
@@ -81,7 +82,12 @@ class Twin:
     @property
     def findings(self) -> list[str]:
         """Where model or autopilot differ, in words."""
-        return findings(self.whole, self.segments, self.model)
+        return findings(self.whole, self.segments, self.model, self.legs)
+
+    @property
+    def differences(self) -> list[str]:
+        """Those of the findings that are differences, not what could not be judged."""
+        return [text for text in self.findings if not text.startswith(NOT_JUDGED)]
 
     def figures(self) -> dict[str, float]:
         """All figures by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
@@ -191,17 +197,19 @@ class _Twins:
             went_changed = flight.notes
         found = Twin(self.log, self.airframe.name, flown, changed, self.change, self._notes(), went, went_changed)
         quantities = streams.QUANTITIES[self.log.kind]
-        all_of_it = [Window(0.0, self.log.span.length)]
-        found.whole = _compared(quantities, self.log, flown, all_of_it)
-        found.legs = _compared(quantities, self.log, flown, legs.windows(self.log, flown))
-        found.went += legs.late(legs.steps(self.log, flown))
+        all_of_it, in_step = [Window(0.0, self.log.span.length)], legs.windows(self.log, flown)
+        turns = half_turns.other_way(heading(self.log), heading(flown), in_step or all_of_it)
+        found.whole = _compared(quantities, self.log, flown, all_of_it, turns)
+        found.legs = _compared(quantities, self.log, flown, in_step, turns)
+        found.went += legs.late(legs.steps(self.log, flown)) + half_turns.words(turns)
         if changed is not None:
             found.difference = _compared(quantities, flown, changed, all_of_it)
         if segments and not (self.log.kind == "copter" and self.physics == NATIVE):
             found.notes.append("open segments are flown by copters on native physics only")
         elif segments:
-            found.segments, opened = self._segments("segments", SEGMENT_S, False, then)
-            found.model, _ = self._segments("model", MODEL_S, True, then)
+            found.segments, opened, turns = self._segments("segments", SEGMENT_S, False, then)
+            found.went += half_turns.words(turns, "in open segments ")
+            found.model, *_ = self._segments("model", MODEL_S, True, then)
             found.opened = tuple(opened)
             by_motors = _BY_THRUST if self._outputs_hz < RATES_HZ else (*_BY_THRUST, *_BY_TORQUE)
             found.model = [one for one in found.model if one.quantity.name in by_motors]
@@ -232,14 +240,19 @@ class _Twins:
             notes.append(f"the log is damaged: {log.columns.skipped} bytes of it are no messages")
         if log.columns.truncated:
             notes.append("the log is cut off within a message")
-        if self.wind is not None:
-            notes.append(f"wind of the log's flight: {self.wind[0]:g} m/s from {self.wind[1]:g} deg, as given")
-        elif self.inputs.wind:
-            fast = max(wind.speed for wind in self.inputs.wind)
-            notes.append(f"wind as the log's estimator knew it, up to {fast:.1f} m/s")
-        elif not any(name.startswith("SIM_WIND_SPD") and value for name, value in self.taken.values.items()):
-            notes.append("the log has no estimate of the wind: the twin flies in calm air (--logged-wind)")
+        if self.kind.flies:
+            notes.append(self._wind_note())
         return notes + self.inputs.notes + ["both flights are aligned by the moment of arming"]
+
+    def _wind_note(self) -> str:
+        if self.wind is not None:
+            return f"wind of the log's flight: {self.wind[0]:g} m/s from {self.wind[1]:g} deg, as given"
+        if self.inputs.wind:
+            fast = max(wind.speed for wind in self.inputs.wind)
+            return f"wind as the log's estimator knew it, up to {fast:.1f} m/s"
+        if any(name.startswith("SIM_WIND_SPD") and value for name, value in self.taken.values.items()):
+            return "wind as the log's SIM_WIND_ parameters say"
+        return "the log has no estimate of the wind: the twin flies in calm air (--logged-wind)"
 
     def _flown(
         self, name: str, airframe: Airframe, change: Change, segments: Segments | None = None
@@ -295,15 +308,17 @@ class _Twins:
 
     def _segments(
         self, name: str, seconds: float, driven: bool, change: Change
-    ) -> tuple[list[Agreement], list[Window]]:
-        """Agreement within segments, and these as they were flown."""
+    ) -> tuple[list[Agreement], list[Window], list[HalfTurn]]:
+        """Agreement within segments, these as they were flown, and half turns that were flown the other way."""
         planned = self._windows(seconds)
         if not planned:
-            return [], []
+            return [], [], []
         flown, flight = self._flown(name, self.airframe, change, Segments(planned, driven))
         opened = flight.opened
         judged = opened if driven else [one._replace(begin=one.begin + SETTLES_S) for one in opened]
-        return _compared(streams.QUANTITIES[self.log.kind], self.log, flown, judged, each=True), opened
+        turns = [] if driven else half_turns.other_way(heading(self.log), heading(flown), judged)
+        found = _compared(streams.QUANTITIES[self.log.kind], self.log, flown, judged, turns, each=True)
+        return found, opened, turns
 
     @property
     def _outputs_hz(self) -> float:
@@ -348,9 +363,11 @@ def _compared(
     log: FlightLog,
     flown: FlightLog,
     windows: Sequence[Window],
+    turns: Sequence[HalfTurn] = (),
     each: bool = False,
 ) -> list[Agreement]:
-    found = (compare(quantity, log, flown, windows, each=each) for quantity in quantities)
+    straight = half_turns.without(windows, turns, whole=each)
+    found = (compare(q, log, flown, straight if q.turns else windows, each=each) for q in quantities)
     return [one for one in found if one is not None]
 
 

@@ -100,6 +100,15 @@ def test_a_mass_that_the_battery_contradicts_is_doubted(found) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("held", "grip"), [(0.3, 1.0), (5.8, 5.8)])
+def test_the_airframes_tyres_hold_at_least_what_the_logs_held(found, held, grip) -> None:
+    said = dataclasses.replace(found["grip"], least=held)
+    others = (figure for figure in found.figures if figure.name != "grip")
+    assert dataclasses.replace(found, figures=(*others, said)).airframe().value("grip") == grip
+    assert 0.0 < found["grip"].least < 1.0, "what this log held is less than the shipped airframe's"
+
+
+@pytest.mark.slow
 def test_tyres_that_slide_tell_their_grip(tmp_path) -> None:
     airframe = vehicles.load("erle_rover").changed(grip=0.06)
     drive(airframe, tmp_path / "slippery.bin")

@@ -54,6 +54,16 @@ def test_only_what_is_asked_for_is_kept_and_progress_is_told(driven) -> None:
         log["ATT"]["Rol"]
 
 
+def test_of_a_message_only_the_fields_that_are_asked_for_are_kept(driven) -> None:
+    whole, some = Columns(driven.path), Columns(driven.path, {"ATT": ("Yaw", "Roll", "NoField"), "GPS": None})
+    assert some["ATT"].fields == ("TimeUS", "Roll", "Yaw") and some["GPS"].fields == whole["GPS"].fields
+    for field in ("TimeUS", "Roll", "Yaw"):
+        assert np.array_equal(some["ATT"][field], whole["ATT"][field])
+    assert some["ATT"].raw.nbytes < 0.6 * whole["ATT"].raw.nbytes
+    with pytest.raises(LogError, match=r"ATT of this log has no field 'Pitch'; it has TimeUS, Roll, Yaw"):
+        some["ATT"]["Pitch"]
+
+
 @pytest.mark.usefixtures("piece")
 def test_damaged_pieces_and_marks_within_messages_are_passed_over(driven, tmp_path) -> None:
     data = bytearray(driven.path.read_bytes())

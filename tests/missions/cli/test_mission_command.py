@@ -55,6 +55,8 @@ def test_fly_a_file(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     out = capsys.readouterr().out
     assert "item 2 of 3 WP done" in out
     assert "mission completed\n  time " in out
+    assert out.endswith("log: logs/hop.tlog\nlog: logs/hop.bin\n")
+    assert Path("logs/hop.bin").stat().st_size > 10_000
     assert (tmp_path / "logs" / "hop.tlog").stat().st_size > 1000
 
 

@@ -50,7 +50,7 @@ def test_fixtures_and_markers(project: pytest.Pytester) -> None:
             assert vehicle_factory(mission="rover/maze_route").simulation.world is not None
 
         def test_errors(vehicle_factory):
-            with pytest.raises(ValueError, match="is a rover, not a copter"):
+            with pytest.raises(ValueError, match="airframe erle_rover is a rover; those of a copter are erle_copter"):
                 vehicle_factory("copter", frame="erle_rover")
             with pytest.raises(ValueError, match="'boat' is none of copter, rover"):
                 vehicle_factory("boat")

@@ -28,6 +28,15 @@ def test_throttle_of_segments_tells_of_thrust_where_the_copter_leans_as_the_logs
     assert any("the thrust over weight of the airframe is less" in text for text in found) == told
 
 
+def test_without_open_segments_the_motion_is_judged_in_step() -> None:
+    bad, good = replace(agreement("speed", (5.0, 3.0), 40.0), rms=2.0), agreement("speed", (5.0, 5.0))
+    (text,) = findings([good], [], [], [bad])
+    assert text.startswith("ground speed in step by mission items accounts for 40 % of its variance")
+    (text,) = findings([bad], [], [])
+    assert "over the whole flight" in text
+    assert findings([bad], [good], [], [bad]) == [], "open segments tell more"
+
+
 @pytest.mark.parametrize(("vaf", "judged"), [(95.0, True), (10.0, False)])
 def test_rates_of_segments_are_judged_only_where_the_twin_wants_the_angles_of_the_log(vaf: float, judged: bool) -> None:
     segments = [agreement("roll_rate", (0.0, 9.0), 5.0), agreement("asked_roll", (0.0, 9.0), vaf)]

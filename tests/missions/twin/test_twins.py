@@ -62,6 +62,8 @@ def test_another_airframe_is_a_misfit(own_log: Path, core: Core) -> None:
     assert figures["throttle.bias"] < -1.0 and figures["model.acceleration.bias"] > 0.3
     assert any(text.startswith("model: mean throttle output") for text in found.findings)
     assert any("more up than the vehicle did" in text for text in found.findings)
+    assert "The twin flies otherwise than the log's vehicle did" in report.verdict_of(found)
+    assert 'class="unsure"' in report.html(found, [])
 
 
 def test_what_if(own_log: Path, own_twin: Twin, core: Core) -> None:
@@ -70,6 +72,10 @@ def test_what_if(own_log: Path, own_twin: Twin, core: Core) -> None:
     assert found.figures()["height.rms"] == own_twin.figures()["height.rms"]  # the twin stays what it was
     figures = found.figures()
     assert figures["changed.throttle.bias"] > 3.0 and figures["changed.position.max"] > 1.0
+    told = {what: (before, after) for what, _, before, after in report.effects(found)}
+    assert told["mean throttle output"][1] > told["mean throttle output"][0] + 3.0
+    assert 1.4 < told["greatest speed"][1] < 1.6 < told["greatest speed"][0], "it flies at WPNAV_SPEED"
+    assert "What the change does" in report.html(found, [])
     assert found.change.words == ["WPNAV_SPEED = 150", "wind of 6 m/s from 270 deg", "mass +0.5 kg"]
 
 
@@ -94,6 +100,8 @@ def test_the_report_is_one_file_with_all_that_matters(own_twin: Twin, tmp_path: 
     report.write(own_twin, limits.judge(own_twin.figures(), {"height.rms": 1e-6}), page)
     text = page.read_text()
     assert "0 of 1 limits are kept" in text and "height.rms is" in text and text.count("data:image/png") == 3
+    verdict = "The twin flies as the log&#x27;s vehicle did, as far as these figures tell"
+    assert 0 < text.index(verdict) < text.index("What was taken over"), "the verdict is first"
     assert "http" not in text and "<script" not in text and 'src="data:' in text
 
 
