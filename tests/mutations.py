@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Seeded damage to files, so that every reader meets what no writer writes."""
+"""Seeded damage to files, so that every reader meets what no writer writes; how readers answer it."""
 
 from __future__ import annotations
 
 import copy
 import random
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 _EXTREMES = (
     b"\0",
@@ -77,6 +79,15 @@ def of_json(value: Any, count: int, seed: int = 0) -> Iterator[Any]:
             else:
                 holder[key] = copy.deepcopy(random_.choice(_VALUES))
         yield found
+
+
+def read_or_refused(read: Callable[[], T], refusal: type[Exception], name: str) -> T | None:
+    """What ``read`` makes of damage; None where it is refused: by this exception, whose message names the file."""
+    try:
+        return read()
+    except refusal as error:
+        assert name in str(error)
+        return None
 
 
 def _holders(value: Any) -> Iterator[tuple[Any, Any]]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 
 from sitl.agents import baselines, recipes
@@ -52,6 +52,7 @@ class Entry:
         parts = (
             self.env, recipe.algorithm, dict(recipe.options), dict(recipe.settings), recipe.max_steps,
             recipe.episodes, self.steps or recipe.steps, dict(plan.options), plan.max_steps,
+            *([asdict(stage) for stage in recipe.curriculum],) * bool(recipe.curriculum),
         )  # fmt: skip
         return digest("training", parts, env_digest, seed)
 

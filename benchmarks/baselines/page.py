@@ -155,16 +155,6 @@ def _counted(record: Record | None) -> str:
     return f"{record['reached'].count('1')} of {len(record['reached'])}{crashed}"
 
 
-def older() -> str:
-    """Policies that come with the package and are of older versions of their environments."""
-    rows = []
-    for name, one in shipped.kept().items():
-        if "key" not in one:
-            solved = shipped.share(one["solved"], one["episodes"])
-            rows.append((f"`{name}`", f"`{one['env']}`", f"{one['steps']:,}", "{} ± {}".format(*one["reward"]), solved))
-    return table(("policy", "environment", "training steps", "mean return", "success by the estimate"), rows, 2)
-
-
 def tables(found: Campaign) -> dict[str, str]:
     """Mark on the page of baselines -> what stands there."""
     return {
@@ -172,7 +162,6 @@ def tables(found: Campaign) -> dict[str, str]:
         "suites": suites(found),
         **{f"{ROBUST} {kind}": elsewhere(found, kind) for kind in KINDS},
         "defaults": table(("id", "PPO", "SAC, or DQN of discrete actions"), defaults.table_rows(found), 3),
-        "older": older(),
     }
 
 

@@ -17,6 +17,7 @@ from . import algorithms
 from .errors import AgentError
 from .runs import cores
 from .runs.config import RunConfig
+from .runs.curriculum import Curriculum
 
 _Env = TypeVar("_Env")
 _OF_GYMNASIUM = {name for make in (gym.make, gym.make_vec) for name in inspect.signature(make).parameters} - {"kwargs"}
@@ -55,6 +56,10 @@ def try_all(configs: Iterable[RunConfig]) -> None:
                 env.close()
                 tried.append((config.env, options, spaces))
             check(config, *spaces)
+        for stage in config.curriculum:
+            env = make(config, world=stage.world)
+            Curriculum(config.curriculum, env)
+            env.close()
 
 
 def make_many(config: RunConfig, count: int, **options: Any) -> gym.vector.VectorEnv[Any, Any, Any]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from enum import IntEnum
 from typing import Any
 
 from ..core import border
@@ -29,22 +30,26 @@ from .sensor_calibration import differs, is_received, shown_field
 from .state import Arming as ArmingState
 from .state import BatteryState, Sensors, Vehicle
 
-# Who arms or disarms (ArduPilot's AP_Arming::Method)
-BY_RUDDER = 0
-BY_MAVLINK = 1
-BY_SWITCH = 2
-BY_MOTOR_TEST = 3
-BY_TERMINATION = 5
-BY_BATTERY_FAILSAFE = 7
-BY_CRASH = 12
-BY_LANDING = 13
-BY_MISSION_EXIT = 14
-BY_FENCE = 15
-BY_RADIO_FAILSAFE = 16
-BY_DELAY = 17
-BY_GCS_FAILSAFE = 18
-BY_TERRAIN_FAILSAFE = 19
-BY_PARACHUTE = 34
+
+class ArmingMethod(IntEnum):
+    """Who arms or disarms: ArduPilot's AP_Arming::Method, which its logs carry."""
+
+    RUDDER = 0
+    MAVLINK = 1
+    SWITCH = 2
+    MOTOR_TEST = 3
+    TERMINATION = 5
+    BATTERY_FAILSAFE = 7
+    CRASH = 12
+    LANDING = 13
+    MISSION_EXIT = 14
+    FENCE = 15
+    RADIO_FAILSAFE = 16
+    DELAY = 17
+    GCS_FAILSAFE = 18
+    TERRAIN_FAILSAFE = 19
+    PARACHUTE = 34
+
 
 # Checks (those of the radio: radio_checks.py)
 NOT_INITIALISED = 1
@@ -170,7 +175,7 @@ def refusal(a: float, b: float) -> tuple[int, int]:
 
 def _refusal_notes(v: Any, a: float, b: float) -> list[ChecksFailed]:
     failed, method = refusal(a, b)
-    return [] if method == BY_MAVLINK else [ChecksFailed(failed)]  # a command tells of its own
+    return [] if method == ArmingMethod.MAVLINK else [ChecksFailed(failed)]  # a command tells of its own
 
 
 def _arm(v: Any, is_armed: bool, method: float) -> Row:

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from ..core.geodesy import add_offset
 from ..core.mavlink import MavCmd, MavFrame, MavSeverity
 from . import payload
-from .arming_checks import BY_SWITCH
+from .arming_checks import ArmingMethod
 from .aux_switch import AUX_SWITCH, HIGH, LOW, MIDDLE
 from .estimation.sources import choose_set
 from .events import EVENT_RING
@@ -23,7 +23,7 @@ from .mission.item import MissionItem, home_item
 from .mission.mission import Mission
 from .mission.notes import Note
 from .mission.sequencer import Sequencer
-from .modes import REASON_RC, shown
+from .modes import ModeReason, shown
 from .notes import Switched, Text
 
 POSITIONS = {LOW: "LOW", MIDDLE: "MIDDLE", HIGH: "HIGH"}
@@ -124,7 +124,7 @@ def change_mode(number: int, name: str, mode: int, request: Callable[[Any, int, 
     def act(holder: Holder, position: int) -> list[Note]:
         modes = holder.v.autopilot.modes
         if position == HIGH:
-            request(holder.v, mode, REASON_RC)
+            request(holder.v, mode, ModeReason.RC)
         elif shown(modes) == mode:
             modes.pilot.switch_position = modes.pilot.switch_candidate = -1  # the mode switch is read anew
         return []
@@ -137,9 +137,9 @@ def arm_or_disarm(number: int, arming: Any) -> AuxFunction:
 
     def act(holder: Holder, position: int) -> list[Note]:
         if position == HIGH:
-            arming.try_arm(holder.v, BY_SWITCH, False)
+            arming.try_arm(holder.v, ArmingMethod.SWITCH, False)
         elif position == LOW:
-            arming.disarm(holder.v, BY_SWITCH, False)
+            arming.disarm(holder.v, ArmingMethod.SWITCH, False)
         return []
 
     return AuxFunction(number, act, "high: arms; low: disarms", needs_change=True)
@@ -150,7 +150,7 @@ def disarm(arming: Any) -> AuxFunction:
 
     def act(holder: Holder, position: int) -> list[Note]:
         if position == HIGH:
-            arming.disarm(holder.v, BY_SWITCH, False)
+            arming.disarm(holder.v, ArmingMethod.SWITCH, False)
         return []
 
     return AuxFunction(81, act, "high: disarms", needs_change=True)
@@ -162,7 +162,7 @@ def arm_or_stop(arming: Any) -> AuxFunction:
     def act(holder: Holder, position: int) -> list[Note]:
         holder.v.autopilot.arming.emergency_stop = position == LOW
         if position == HIGH:
-            arming.try_arm(holder.v, BY_SWITCH, False)
+            arming.try_arm(holder.v, ArmingMethod.SWITCH, False)
         return []
 
     return AuxFunction(

@@ -102,7 +102,8 @@ def with_registered(firmware: str, listed: Sequence[Event]) -> dict[int, Event]:
     """
     for before, event in pairwise(listed):
         if event <= before:
-            raise ValueError(f"events of the {firmware}: {int(event)} stands behind {int(before)}")
+            where = f"events of the {firmware}: {int(event)} stands behind {int(before)}"
+            raise ValueError(f"{where}; they are in the order of their numbers; the greatest is {max(listed):d}")
     events = {int(event): event for event in listed}
     for _, place, found in _PLACES.of(firmware):
         if not isinstance(found, Event):

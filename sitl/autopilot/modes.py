@@ -11,6 +11,7 @@ import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any, Generic, TypeVar
 
 from ..core.kernels import law
@@ -20,39 +21,46 @@ from .events import Event, Events, emit, err
 from .log_events import LogErrorSubsystem
 from .state import Modes
 
-# Why a mode changed (ArduPilot's ModeReason, the number that its logs carry)
-REASON_RC = 1
-REASON_GCS = 2
-REASON_RADIO_FAILSAFE = 3
-REASON_BATTERY_FAILSAFE = 4
-REASON_GCS_FAILSAFE = 5
-REASON_EKF_FAILSAFE = 6
-REASON_MISSION_END = 8
-REASON_THROTTLE_LAND_ESCAPE = 9
-REASON_FENCE_BREACHED = 10
-REASON_TERRAIN_FAILSAFE = 11
-REASON_FLIP_COMPLETE = 13
-REASON_THROW_COMPLETE = 16
-REASON_CRASH_FAILSAFE = 19
-REASON_FAILSAFE = 25
-REASON_INITIALISED = 26
-REASON_AUTO_RTL_EXIT = 44
 
-# Why it did not
-ACCEPTED = 0
-NO_SUCH_MODE = 1
-INIT_FAILED = 2
-REQUIRES_POSITION = 3
-THROTTLE_TOO_HIGH = 4
-NEEDS_ALTITUDE = 5
-MISSING_TAKEOFF = 6
-NO_MISSION = 7
-NO_RETURN = 8
-NO_PATH = 9
-NO_LANDING = 10
-IN_FENCE_RECOVERY = 11
-NO_RADIO = 12
-GCS_BLOCKED = 13
+class ModeReason(IntEnum):
+    """Why a mode changed: ArduPilot's number, which its logs carry."""
+
+    RC = 1
+    GCS = 2
+    RADIO_FAILSAFE = 3
+    BATTERY_FAILSAFE = 4
+    GCS_FAILSAFE = 5
+    EKF_FAILSAFE = 6
+    MISSION_END = 8
+    THROTTLE_LAND_ESCAPE = 9
+    FENCE_BREACHED = 10
+    TERRAIN_FAILSAFE = 11
+    FLIP_COMPLETE = 13
+    THROW_COMPLETE = 16
+    CRASH_FAILSAFE = 19
+    FAILSAFE = 25
+    INITIALISED = 26
+    AUTO_RTL_EXIT = 44
+
+
+class ModeResult(IntEnum):
+    """Whether a mode can be entered, or why not."""
+
+    ACCEPTED = 0
+    NO_SUCH_MODE = 1
+    INIT_FAILED = 2
+    REQUIRES_POSITION = 3
+    THROTTLE_TOO_HIGH = 4
+    NEEDS_ALTITUDE = 5
+    MISSING_TAKEOFF = 6
+    NO_MISSION = 7
+    NO_RETURN = 8
+    NO_PATH = 9
+    NO_LANDING = 10
+    IN_FENCE_RECOVERY = 11
+    NO_RADIO = 12
+    GCS_BLOCKED = 13
+
 
 MODE_CHANGED = Event(3, log=lambda v, a, b: [("MODE", (int(a) & 255, int(a) & 255, int(b) & 255))])
 """a: number, b: reason"""
@@ -60,11 +68,11 @@ MODE_REFUSED = Event(19, log=lambda v, a, b: [err(LogErrorSubsystem.FLIGHT_MODE,
 """a: number, b: cause"""
 
 _NO_SEQUENCE = "Unable to start landing sequence"
-_HINTS = {
-    MISSING_TAKEOFF: "Auto: Missing Takeoff Cmd",
-    NO_MISSION: "No Mission. Can't set AUTO.",
-    NO_RETURN: _NO_SEQUENCE,
-    NO_LANDING: _NO_SEQUENCE,
+_HINTS: dict[int, str] = {
+    ModeResult.MISSING_TAKEOFF: "Auto: Missing Takeoff Cmd",
+    ModeResult.NO_MISSION: "No Mission. Can't set AUTO.",
+    ModeResult.NO_RETURN: _NO_SEQUENCE,
+    ModeResult.NO_LANDING: _NO_SEQUENCE,
 }
 
 NUMBER_MAX = 2**24 - 1
@@ -80,7 +88,7 @@ S = TypeVar("S", bound=Modes)
 @law
 def accept(v: object) -> int:
     """Start of a mode that needs no preparation."""
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -125,9 +133,9 @@ def refusal_texts(number: int, cause: int, failed: str) -> list[str]:
 
     ``failed``: the firmware's own text of all causes but an unknown number.
     """
-    if cause == ACCEPTED:
+    if cause == ModeResult.ACCEPTED:
         return []
-    if cause == NO_SUCH_MODE:
+    if cause == ModeResult.NO_SUCH_MODE:
         return [f"No such mode {number}"]
     return [_HINTS[cause], failed] if cause in _HINTS else [failed]
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..autopilot import battery, home, modes, parameter_checks, sensor_calibration
-from ..autopilot.arming_checks import BY_MAVLINK
+from ..autopilot.arming_checks import ArmingMethod
 from ..autopilot.estimation import aiding, sources
 from ..autopilot.events import emit
 from ..autopilot.mission.item import MissionItem
@@ -15,6 +15,7 @@ from ..autopilot.mission.mission import Mission
 from ..autopilot.mission.notes import Note
 from ..autopilot.mission.storage import stored_home
 from ..autopilot.mission.validate import check_all
+from ..autopilot.modes import ModeResult
 from ..autopilot.navigation.state import RUNNING
 from ..autopilot.notes import Text
 from ..autopilot.radio_checks import PARAMETERS
@@ -69,7 +70,7 @@ class BaseAutopilot:
 
     def arm(self, force: bool) -> bool:
         self.check_parameters()
-        ok, texts = self._arming.arm(self._v, BY_MAVLINK, force)
+        ok, texts = self._arming.arm(self._v, ArmingMethod.MAVLINK, force)
         if not (ok or force):
             texts = [*texts, *self._parameter_texts(self._arming.check(self._v) == 0, "Arm: ")]
         elif not force:
@@ -78,7 +79,7 @@ class BaseAutopilot:
         return bool(ok)
 
     def disarm(self, force: bool) -> bool:
-        return bool(self._arming.disarm(self._v, BY_MAVLINK, force))
+        return bool(self._arming.disarm(self._v, ArmingMethod.MAVLINK, force))
 
     def run_prearm_checks(self) -> None:
         self.check_parameters()
@@ -148,7 +149,7 @@ class BaseAutopilot:
         order, v = self._block_order, self._v
         blocked = number in order and modes.is_blocked(number, order, self._vehicle.parameters[MODE_BLOCK])
         if blocked:
-            emit(v.autopilot.events, v.time_us, modes.MODE_REFUSED, float(number), float(modes.GCS_BLOCKED))
+            emit(v.autopilot.events, v.time_us, modes.MODE_REFUSED, float(number), float(ModeResult.GCS_BLOCKED))
         return blocked
 
     def run_aux_function(self, number: int, position: int) -> bool:

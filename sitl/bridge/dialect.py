@@ -23,7 +23,7 @@ from typing import Any, NamedTuple, cast
 from fastcrc import crc16
 from pymavlink.dialects.v20 import ardupilotmega
 
-from ..errors import SitlError
+from ..errors import SitlError, did_you_mean
 
 
 class AvailableModes:
@@ -144,7 +144,7 @@ def _allowed(code: str, length: int) -> str:
     """What a field of this struct code takes, in words; ``length`` 0 is no array."""
     bits = _INTEGER_BITS.get(code.lower())
     if code.endswith("s"):
-        return f"at most {code[:-1]} bytes"
+        return f"bytes (b'...'), at most {code[:-1]}"
     if code == "c":
         return "one byte"
     if bits is None:
@@ -291,5 +291,5 @@ def message_by_id(number: int) -> MessageType:
 def message(name: str) -> MessageType:
     """The message type with this name, for example ``message("ATTITUDE")``."""
     if name not in _BY_NAME:
-        raise UnknownMessageError(f"message {name!r} is not in the ardupilotmega dialect")
+        raise UnknownMessageError(f"message {name!r} is not in the ardupilotmega dialect{did_you_mean(name, _BY_NAME)}")
     return message_by_id(_BY_NAME[name])

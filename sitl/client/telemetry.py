@@ -9,13 +9,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from ..core.geodesy import offset_ne
-from ..core.mavlink import MavAutopilot, MavModeFlag
+from ..core.mavlink import MavAutopilot, MavModeFlag, MavSysStatus
 from . import px4
 
 READY_BITS = 0x10 | 0x01
 """EKF_STATUS_REPORT: attitude, absolute position."""
-PREARM_BIT = 0x10000000
-"""SYS_STATUS: MAV_SYS_STATUS_PREARM_CHECK."""
 NO_MISSION = 1
 """MISSION_CURRENT: MISSION_STATE_NO_MISSION."""
 
@@ -215,7 +213,7 @@ class Telemetry:
         elif name == "ESTIMATOR_STATUS" and self.is_px4:
             self.has_position = m.flags & px4.VALID == px4.VALID
         elif name == "SYS_STATUS":
-            self.checked = bool(m.onboard_control_sensors_health & PREARM_BIT)
+            self.checked = bool(m.onboard_control_sensors_health & MavSysStatus.PREARM_CHECK)
             self.voltage, self.remaining = m.voltage_battery * 1e-3, float(m.battery_remaining)
         elif name == "HOME_POSITION":
             self.home = (m.latitude, m.longitude, m.altitude * 1e-3)

@@ -17,6 +17,7 @@ import queue
 import signal
 import subprocess
 import sys
+import textwrap
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -41,6 +42,10 @@ Progress = Callable[[str, float, float], None]
 """Called as ``progress(unit name, work done, work of all)``, several times a second, in estimated seconds of work."""
 _TOLD_S = 0.2
 """Progress is told at least so often [s]."""
+_SHOWN = 3000
+"""Characters of each end of a long text."""
+_WHY = "Rejected as the implementation raised a specific error:\n"
+"""In Numba's message, once for each law; the last one is before the reason."""
 _START_S, _BYTES_A_SECOND = 1.0, 5000.0
 """From measured units: what each takes, and how fast source is compiled."""
 
@@ -306,7 +311,13 @@ def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress)
             progress(name, work.done(now), work.total)
     if process.wait() != 0:
         what = f"unit {failed}" if failed else "the core"
-        raise BuildError(f"compiling {what} failed:\n{''.join(said)[-4000:]}")
+        raise BuildError(f"compiling {what} failed:\n{_reason(''.join(said))}")
+
+
+def _reason(said: str) -> str:
+    """What a worker said, from where Numba says why: laws by which it got there come before it, and again behind it."""
+    text = textwrap.dedent(said.rpartition(_WHY)[2]).strip()
+    return text if len(text) <= 2 * _SHOWN else f"{text[:_SHOWN]}\n...\n{text[-_SHOWN:]}"
 
 
 def _weight(unit: Unit) -> float:

@@ -30,6 +30,7 @@ from numba.np.arrayobj import record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
 from ..errors import did_you_mean
+from . import numba_enums  # noqa: F401  members in laws
 from .memory import bytes_at, call_unit, fetch_ahead, floats_at, ints_at, record_at, table_at, words_of
 from .numba_vectors import TYPES, components, make_value
 from .records import Field, Record

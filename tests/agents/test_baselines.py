@@ -15,9 +15,6 @@ from sitl.envs import ids
 LIMITED = {"copter-trajectory-discrete": "which learns nothing more in the second half"}
 """Policies that solve fewer than nine of ten episodes -> what limits them, as the page says it."""
 
-OLDER = ("copter-rooms", "copter-rooms-discrete", "rover-labyrinth", "rover-labyrinth-discrete")
-"""Policies of ids "-v0", by what their recipes were then."""
-
 
 @pytest.mark.parametrize("name", baselines.names())
 def test_it_is_of_a_recipe_and_in_the_table(name: str) -> None:
@@ -26,7 +23,7 @@ def test_it_is_of_a_recipe_and_in_the_table(name: str) -> None:
     assert (config.max_steps, config.algorithm) == (recipe.max_steps, recipe.algorithm)
     row = shipped.kept()[name]
     assert (row["env"], row["recipe"]) == (config.env, recipe.name)
-    assert row["steps"] == recipe.steps or (name in OLDER and row["env"].endswith("-v0"))
+    assert row["steps"] == recipe.steps
     assert row["solved"] + row["crashed"] <= row["episodes"]
 
 

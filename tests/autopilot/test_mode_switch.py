@@ -9,7 +9,7 @@ from sitl.autopilot import modes
 from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.events import Events
 from sitl.autopilot.mode_switch import RUDDER_US, is_rudder_held, rudder_command
-from sitl.autopilot.modes import MODE_CHANGED
+from sitl.autopilot.modes import MODE_CHANGED, ModeReason, ModeResult
 from sitl.autopilot.state import Modes
 
 AUTO = 3
@@ -45,27 +45,27 @@ def test_a_mode_begins_and_the_shell_is_told_at_once_of_the_one_that_flies_missi
     state, events = Modes(), Events()
     for number, attention in ((5, False), (AUTO, True), (5, True), (6, False)):
         events.attention = False
-        modes.enter(state, events, 0, number, modes.REASON_GCS, AUTO)
+        modes.enter(state, events, 0, number, ModeReason.GCS, AUTO)
         assert (state.number, events.attention) == (number, attention)
-    assert (state.previous, state.reason, events.code[0]) == (5, modes.REASON_GCS, MODE_CHANGED)
+    assert (state.previous, state.reason, events.code[0]) == (5, ModeReason.GCS, MODE_CHANGED)
 
 
 def test_a_mode_asks_for_another_once() -> None:
     state = Modes()
     assert modes.take_asked(state) == -1
-    modes.ask(state, 0, modes.REASON_MISSION_END)
-    assert (modes.take_asked(state), state.wanted_reason) == (0, modes.REASON_MISSION_END)
+    modes.ask(state, 0, ModeReason.MISSION_END)
+    assert (modes.take_asked(state), state.wanted_reason) == (0, ModeReason.MISSION_END)
     assert modes.take_asked(state) == -1
 
 
 @pytest.mark.parametrize(
     ("cause", "texts"),
     (
-        (modes.ACCEPTED, []),
-        (modes.NO_SUCH_MODE, ["No such mode 42"]),
-        (modes.REQUIRES_POSITION, ["failed"]),
-        (modes.MISSING_TAKEOFF, ["Auto: Missing Takeoff Cmd", "failed"]),
-        (modes.NO_MISSION, ["No Mission. Can't set AUTO.", "failed"]),
+        (ModeResult.ACCEPTED, []),
+        (ModeResult.NO_SUCH_MODE, ["No such mode 42"]),
+        (ModeResult.REQUIRES_POSITION, ["failed"]),
+        (ModeResult.MISSING_TAKEOFF, ["Auto: Missing Takeoff Cmd", "failed"]),
+        (ModeResult.NO_MISSION, ["No Mission. Can't set AUTO.", "failed"]),
     ),
 )
 def test_why_a_mode_was_refused_is_said(cause: int, texts: list[str]) -> None:

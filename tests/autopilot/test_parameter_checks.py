@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot.arming_checks import BY_SWITCH
+from sitl.autopilot.arming_checks import ArmingMethod
 from sitl.autopilot.copter import arming as copter_arming
 from sitl.autopilot.copter.events import EVENTS
 from sitl.autopilot.copter.parameters import TABLE as COPTER
@@ -141,7 +141,7 @@ def test_the_core_knows_and_a_switch_is_refused_too() -> None:
     vehicle.parameters["ANGLE_MAX"] = 500.0
     autopilot.parameter_changed("ANGLE_MAX")
     assert v.autopilot.calibrated.state == PARAMETERS_BAD
-    assert copter_arming.try_arm(v, BY_SWITCH, False) != 0
+    assert copter_arming.try_arm(v, ArmingMethod.SWITCH, False) != 0
     events = v.autopilot.events
     at = int(events.count) - 1
     (note,) = EVENTS[int(events.code[at])].notes(v, float(events.a[at]), float(events.b[at]))
@@ -149,7 +149,7 @@ def test_the_core_knows_and_a_switch_is_refused_too() -> None:
     vehicle.parameters["ANGLE_MAX"] = 3000.0
     autopilot.parameter_changed("ANGLE_MAX")
     assert v.autopilot.calibrated.state == 0
-    assert copter_arming.try_arm(v, BY_SWITCH, False) == 0
+    assert copter_arming.try_arm(v, ArmingMethod.SWITCH, False) == 0
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot.arming_checks import BY_MAVLINK, BY_RUDDER, BY_SWITCH, refusal
+from sitl.autopilot.arming_checks import ArmingMethod, refusal
 from sitl.autopilot.copter import arming as copter_arming
 from sitl.autopilot.copter.events import EVENTS
 from sitl.autopilot.copter.parameters import TABLE as COPTER
@@ -34,7 +34,7 @@ def copter(mode: int = STABILIZE, **params: float) -> Any:
     return v
 
 
-def copter_texts(v: Any, method: int = BY_MAVLINK) -> list[str]:
+def copter_texts(v: Any, method: int = ArmingMethod.MAVLINK) -> list[str]:
     return copter_arming.arm(v, method, False)[1]
 
 
@@ -64,7 +64,7 @@ def test_where_the_throttle_makes_thrust_its_own_check_speaks_alone() -> None:
 def test_yaw_may_be_off_when_it_is_the_arming_stick() -> None:
     v = copter()
     v.autopilot.rc.channels[3] = 2000
-    assert copter_texts(v, BY_RUDDER) == []
+    assert copter_texts(v, ArmingMethod.RUDDER) == []
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_texts_name_the_channel_of_a_stick() -> None:
     assert copter_texts(v) == ["Arm: Roll (RC2) is not neutral"]
 
 
-def rover_texts(rover: Rover, method: int = BY_MAVLINK) -> list[str]:
+def rover_texts(rover: Rover, method: int = ArmingMethod.MAVLINK) -> list[str]:
     return rover_arming.arm(rover.v, method, False)[1]
 
 
@@ -145,11 +145,11 @@ def test_a_refusal_keeps_all_its_bits_in_the_event() -> None:
     v = copter()
     v.autopilot.calibrated.state = PARAMETERS_BAD
     v.autopilot.rc.receiver_ok, v.autopilot.rc.receiver_us = False, 0
-    failed = copter_arming.try_arm(v, BY_SWITCH, False)
+    failed = copter_arming.try_arm(v, ArmingMethod.SWITCH, False)
     events = v.autopilot.events
     assert failed & PARAMETERS and failed & 2048
     a, b = float(events.a[0]), float(events.b[0])
-    assert refusal(a, b) == (failed, BY_SWITCH)
+    assert refusal(a, b) == (failed, ArmingMethod.SWITCH)
     assert refusal(float((1 << 48) - 1), float(OFF_CENTRE[3] >> 48 << 5 | 18)) == ((1 << 48) - 1 | OFF_CENTRE[3], 18)
 
 
@@ -157,7 +157,7 @@ def test_a_refused_switch_says_all() -> None:
     v = copter()
     v.autopilot.calibrated.state = PARAMETERS_BAD
     v.autopilot.rc.receiver_ok, v.autopilot.rc.receiver_us = False, 0
-    copter_arming.try_arm(v, BY_SWITCH, False)
+    copter_arming.try_arm(v, ArmingMethod.SWITCH, False)
     events = v.autopilot.events
     pilot = CopterAutopilot.__new__(CopterAutopilot)
     pilot._v, pilot._found = v, [Found("Roll radio min too high", False, True)]

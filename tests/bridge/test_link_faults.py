@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from sitl.bridge.faulty_links import FaultyLinks
 from sitl.bridge.links import InProcessLink, LinkFaults
 from sitl.bridge.links.faulty_way import FaultyWay, cut, is_of_clock
 from sitl.client.endpoint import Endpoint
@@ -16,6 +18,13 @@ from sitl.errors import OptionError
 
 FRAMES = [bytes([0xFD, 3, 0, 0, k & 0xFF, 1, 1, 0, k >> 8, 9, 1, 2, 3, 4, 5]) for k in range(2000)]
 EVERY_US = 10_000
+
+
+def test_a_log_has_no_faults() -> None:
+    links = FaultyLinks()
+    links.set(LinkFaults(loss=0.5), None)
+    client, log = (SimpleNamespace(peer=SimpleNamespace(is_log=is_log)) for is_log in (False, True))
+    assert links.of(client) == LinkFaults(loss=0.5) and links.of(log) is None
 
 
 def carried(faults: LinkFaults, frames: list[bytes] = FRAMES, stream: int = 0) -> list[tuple[int, bytes]]:

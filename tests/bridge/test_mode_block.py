@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot import modes
 from sitl.autopilot.copter.modes import set_mode as copter_set_mode
 from sitl.autopilot.copter.modes import table as copter_table
+from sitl.autopilot.modes import ModeReason, ModeResult
 from sitl.autopilot.rover.modes import set_mode as rover_set_mode
 from sitl.autopilot.rover.modes import table as rover_table
 from sitl.autopilot.shell_parameters import MODE_BLOCK
@@ -36,7 +36,7 @@ def test_a_blocked_mode_is_refused_to_ground_stations_only(copter: FirmwareBench
     assert copter.command(176, 1, 5) == FAILED
     assert copter.command(17) == FAILED  # NAV_LOITER_UNLIM
     assert copter.command(176, 1, 2) == ACCEPTED
-    assert copter_set_mode.request(copter.vehicle.v, 5, modes.REASON_RC) == modes.ACCEPTED
+    assert copter_set_mode.request(copter.vehicle.v, 5, ModeReason.RC) == ModeResult.ACCEPTED
     assert copter.command(176, 1, 5) == ACCEPTED  # it is in that mode
 
 
@@ -55,4 +55,4 @@ def test_a_rover_says_it_in_its_own_words(rover: FirmwareBench) -> None:
     said = texts(rover, long(176, 1, 12))
     assert "".join(said) == "Mode change to SRTL denied, GCS entry disabled (FLTMODE_GCSBLOCK)"
     assert rover.command(176, 1, 12) == FAILED
-    assert rover_set_mode.request(rover.vehicle.v, 0, modes.REASON_GCS) == modes.ACCEPTED
+    assert rover_set_mode.request(rover.vehicle.v, 0, ModeReason.GCS) == ModeResult.ACCEPTED

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.autopilot.copter.modes.guided import ANGLE, GUIDED, POS_VEL_ACCEL
 from sitl.bridge.copter import targets as copter_targets
 from sitl.bridge.copter import telemetry as copter
 from sitl.bridge.dialect import message
@@ -21,12 +22,13 @@ from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
 from sitl.bridge.telemetry.ranging import PART, DebugFloatArray, scan
 from sitl.bridge.telemetry.sensors import simstate
 from sitl.bridge.telemetry.shell import shell_builders
-from sitl.bridge.telemetry.status import ATTITUDE, PROPULSION, RATE, RECEIVER, YAW, system_time
+from sitl.bridge.telemetry.status import system_time
 from sitl.bridge.telemetry.units import boot_ms, heading_cdeg, int16, int32, percent, uint16
 from sitl.bridge.wire.choose import message_of
 from sitl.bridge.wire.port import Port
 from sitl.core.geodesy import METRES_PER_DEGE7, longitude_scale
 from sitl.core.kernels import law
+from sitl.core.mavlink import MavSysStatus
 from sitl.core.vectors import Vec2, Vec3
 from sitl.physics.carried import Carried, carried
 from sitl.vehicle.copter import Copter
@@ -59,7 +61,8 @@ def v() -> Copter:
         (uint16, 65534.9, 65534), (uint16, math.inf, 65535), (uint16, -0.1, 0), (uint16, math.nan, 0),
         (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647), (int32, math.nan, -2147483648),
         (percent, 99.9, 99), (percent, 1e30, 100), (percent, -0.1, -1), (percent, math.nan, -1),
-        (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
+        (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, -1e-300, 0),
+        (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
         (boot_ms, (1 << 32) * 1000 + 5999, 5),
     ],
 )  # fmt: skip
@@ -100,20 +103,59 @@ def test_attitude(v: Copter) -> None:
     assert math.isnan(m.yawspeed)
 
 
+def test_each_part_of_a_target_is_its_own(v: Copter) -> None:
+    control, guided = v.autopilot.control, v.autopilot.modes.guided
+    control.attitude.target_q, control.attitude.rate_target = (0.5, -0.25, 0.75, 0.125), (1.0, 2.0, 3.0)
+    control.motors.throttle_in = 0.375
+    m = says(copter_targets.attitude_target, v)
+    assert (m.time_boot_ms, m.q) == (12_345, (0.5, -0.25, 0.75, 0.125))
+    assert (m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate, m.thrust) == (1.0, 2.0, 3.0, 0.375)
+    assert says(copter_targets.position_target_local, v) is None  # of GUIDED
+    v.autopilot.modes.number, guided.submode = GUIDED, POS_VEL_ACCEL
+    guided.pos, guided.vel, guided.acc = (1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)
+    m = says(copter_targets.position_target_local, v)
+    assert (m.x, m.y, m.z, m.vx, m.vy, m.vz, m.afx, m.afy, m.afz) == tuple(range(1, 10))
+    assert (m.time_boot_ms, m.type_mask, m.coordinate_frame) == (12_345, 0xC00, 1)
+    guided.submode = ANGLE
+    assert says(copter_targets.position_target_local, v) is None
+
+
+@pytest.mark.parametrize("enabled", [0.0, 1.0])
+def test_terrain_data_are_shown_where_they_are_switched_on(v: Copter, enabled: float) -> None:
+    v.autopilot.params.TERRAIN.ENABLE = enabled
+    m = says(copter.sys_status, v)
+    for bits in (
+        m.onboard_control_sensors_present,
+        m.onboard_control_sensors_enabled,
+        m.onboard_control_sensors_health,
+    ):
+        assert (bits & MavSysStatus.TERRAIN != 0) == (enabled == 1.0)
+
+
 def test_the_controllers_of_a_firmware_that_rests() -> None:
     for record, status, idle in (
-        (Copter(), copter.sys_status, RATE | ATTITUDE | YAW | PROPULSION),
+        (
+            Copter(),
+            copter.sys_status,
+            MavSysStatus.SENSOR_ANGULAR_RATE_CONTROL
+            | MavSysStatus.SENSOR_ATTITUDE_STABILIZATION
+            | MavSysStatus.SENSOR_YAW_POSITION
+            | MavSysStatus.SENSOR_PROPULSION,
+        ),
         (Rover(), rover.sys_status, 0),
     ):
         v: Any = record
-        assert not says(status, v).onboard_control_sensors_present & RECEIVER, "not seen yet"
+        assert not says(status, v).onboard_control_sensors_present & MavSysStatus.SENSOR_RC_RECEIVER, "not seen yet"
         v.autopilot.rc.receiver_us = 1
         m = says(status, v)
-        assert m.onboard_control_sensors_present & RECEIVER and not m.onboard_control_sensors_health & RECEIVER
+        assert (
+            m.onboard_control_sensors_present & MavSysStatus.SENSOR_RC_RECEIVER
+            and not m.onboard_control_sensors_health & MavSysStatus.SENSOR_RC_RECEIVER
+        )
         v.autopilot.rc.receiver_ok = True
         m = says(status, v)
         assert m.onboard_control_sensors_health & copter.CONTROLLERS == idle
-        assert m.onboard_control_sensors_health & RECEIVER
+        assert m.onboard_control_sensors_health & MavSysStatus.SENSOR_RC_RECEIVER
         assert (m.voltage_battery, m.current_battery, m.battery_remaining) == (65535, -1, 0)
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -120,6 +121,10 @@ def test_a_guided_drive(core: Core) -> None:
     vehicle.wait_ready(90.0)
     vehicle.guided_and_armed()
     vehicle.goto(15.0, 5.0)
+    there = vehicle.position
     vehicle.goto(0.0, 0.0, accuracy=2.0)
+    back = vehicle.position
     vehicle.disarm()
+    assert math.hypot(there.north - 15.0, there.east - 5.0) < 3.0 and math.hypot(back.north, back.east) < 3.0
+    assert not vehicle.armed
     vehicle.close()

@@ -176,4 +176,6 @@ def test_one_that_falls_gets_there(copter):
     copter.take_off(15)
     copter.disarm(force=True)
     copter.wait_climb_rate(-math.inf, -5, timeout=5)
+    assert 2.0 < copter.altitude < 15.0
     copter.wait_altitude(-1, 2, timeout=10)
+    assert copter.altitude <= 2.0

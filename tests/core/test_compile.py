@@ -208,6 +208,15 @@ def test_a_unit_that_cannot_be_compiled_says_which_and_why(toy: Toy) -> None:
     assert "nothing" in said
 
 
+def test_the_reason_is_shown_however_deep_the_law_is(toy: Toy) -> None:
+    calls = "".join(f"\n@law\ndef law{k}(x):\n    return law{k - 1}(x)\n" for k in range(1, 12))
+    deep = LAWS.replace("GAIN * x", "law11(x)") + "\n@law\ndef law0(x):\n    return x.nothing\n" + calls
+    toy.write(deep)
+    said = failed(toy)
+    reason = said.partition("compiling unit toy.first failed:\n")[2].splitlines()
+    assert reason[0].startswith("TypingError") and "nothing" in "".join(reason[:4]), reason[:4]
+
+
 @pytest.mark.parametrize(("old", "new"), [("inner(v.x)", "inner(v.z)"), ("v.x = inner", "v.z = inner")])
 def test_a_field_that_a_record_does_not_have_is_named_with_its_line(toy: Toy, old: str, new: str) -> None:
     (toy.folder / "toy.py").write_text(ENTRY.replace(old, new))

@@ -12,6 +12,7 @@ from sitl.core import mavlink
 
 BEGIN = {
     mavlink.MavMissionResult: ("MAV_MISSION_RESULT", "MAV_MISSION_"),
+    mavlink.MavSysStatus: ("MAV_SYS_STATUS_SENSOR", "MAV_SYS_STATUS_"),
     mavlink.MotorTestThrottleType: ("MOTOR_TEST_THROTTLE_TYPE", "MOTOR_TEST_THROTTLE_"),
 }
 """Group of the dialect and what its names begin with, where that is not the group's name."""

@@ -85,7 +85,10 @@ def test_what_a_lost_transmitter_does(core: Core, action: int, mode: int) -> Non
 def test_termination(core: Core) -> None:
     d = Driver(core, "erle_rover", FS_ACTION=5).armed_in(MANUAL)
     d.set_parameter("SIM_RC_FAIL", 1)
-    d.wait_disarmed(6.0)
+    d.fly(2.0)
+    assert d.armed, "RC_FS_TIMEOUT and FS_TIMEOUT are not over"
+    d.wait_disarmed(4.0)
+    assert d.mode == MANUAL and d.said("Radio Failsafe")
 
 
 @pytest.mark.parametrize(("choice", "mode"), [(0, MANUAL), (1, HOLD), (2, HOLD)])

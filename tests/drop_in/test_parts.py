@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 import os
@@ -129,10 +128,11 @@ def test_storage_with_any_damage_is_read_or_named(tmp_path: Path) -> None:
     storage.write()
     content = path.read_bytes()
     changed = (json.dumps(value).encode() for value in mutations.of_json(json.loads(content), 300))
+    kinds = set()
     for damaged in (*changed, *mutations.of_bytes(content, 100)):
         path.write_bytes(damaged)
-        with contextlib.suppress(StorageError):
-            Storage(path)
+        kinds.add(type(mutations.read_or_refused(lambda: Storage(path), StorageError, str(path))))
+    assert kinds == {Storage, type(None)}
 
 
 def test_storage_that_cannot_be_written_stays_as_it_was(tmp_path: Path) -> None:

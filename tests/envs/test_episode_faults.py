@@ -172,8 +172,13 @@ def test_sensors_that_are_not_there_are_refused_at_once(options: dict[str, Any],
 
 
 def test_sensors_that_parameters_switch_on_are_there() -> None:
-    gym.make(OFFICE, faults={"gps:2": 0.5, "avoidance": 0.5}, params=SECOND).close()
-    gym.make(OFFICE, faults={"optical_flow": 0.5}, params={"SIM_FLOW_ENABLE": 1}).close()
+    for faults, params in (
+        ({"gps:2": 0.5, "avoidance": 0.5}, SECOND),
+        ({"optical_flow": 0.5}, {"SIM_FLOW_ENABLE": 1}),
+    ):
+        env = gym.make(OFFICE, faults=faults, params=params)
+        assert env.unwrapped.spec.kwargs["faults"] == faults
+        env.close()
 
 
 def test_a_time_that_no_episode_reaches_is_told() -> None:

@@ -12,6 +12,7 @@ from sitl.worlds import Box, Cylinder, World
 CORNERS = (
     Box((2.0, 1.0, 0.5), (3.0, 0.2, 1.0), 0.7, "turned"),
     Box((-2.0, 0.0, 3.0), (1.0, 1.0, 1.0), 0.0, "overhead"),
+    Box((-1.0, 2.5, 0.3), (0.8, 0.8, 0.1), 0.0, "shelf"),
     Cylinder((0.0, -2.0, 0.5), 0.6, 1.0, "post"),
 )
 OWN = World("own", CORNERS, worlds.load("open").starts)

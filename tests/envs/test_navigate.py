@@ -230,9 +230,13 @@ def test_pieces_of_ones_own():
 
 def test_numpy_integers_are_actions():
     env = make()
-    env.reset()
     for action in (np.int64(1), np.array(1), np.uint8(2)):
-        env.step(action)
+        after = []
+        for given in (action, int(action)):
+            env.reset(seed=1)
+            env.step(given)
+            after.append(env.robot.pose[0].tolist())
+        assert after[0] == after[1]
 
 
 @pytest.mark.parametrize("step_time", [np.float32(0.1), 0.1 + 0.2 - 0.2, 0.100000005])

@@ -222,8 +222,9 @@ def test_a_step_before_the_first_reset_is_refused(name):
     other.close()
 
 
-def test_a_vector_that_was_refused_while_it_was_made_closes_in_silence():
+def test_a_vector_that_was_refused_while_it_was_made_closes_in_silence(recwarn, capfd):
     NavigateVector.__new__(NavigateVector).close()  # as older Gymnasiums do when it is deleted
+    assert not recwarn.list and capfd.readouterr() == ("", "")
 
 
 def test_a_window_needs_a_screen(monkeypatch, capfd):

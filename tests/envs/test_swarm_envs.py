@@ -60,7 +60,7 @@ def equal(a: Any, b: Any) -> bool:
 
 
 def test_the_rules_of_the_interface_are_kept(env: SwarmEnv) -> None:
-    parallel_api_test(env, num_cycles=60)
+    parallel_api_test(env, num_cycles=60)  # PettingZoo's, which asserts
 
 
 def test_the_same_seed_gives_the_same_episode(env: SwarmEnv) -> None:

@@ -64,7 +64,7 @@ def test_late_pictures_show_where_the_others_were():
 
 def test_pettingzoos_rules_are_kept():
     env = SwarmEnv("crossing", steps=10, observation="state+scan+depth")
-    parallel_api_test(env, num_cycles=12)
+    parallel_api_test(env, num_cycles=12)  # PettingZoo's, which asserts
     env.close()
 
 

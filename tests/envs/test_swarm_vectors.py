@@ -112,6 +112,7 @@ def test_a_pickled_swarm_goes_on(steps: int | None) -> None:
 
 @pytest.mark.slow
 def test_both_interfaces_of_pettingzoo_are_kept() -> None:
+    """By PettingZoo's own tests, which assert."""
     parallel_seed_test(lambda: swarm.parallel_env("escort", steps=10), num_cycles=15)
     api_test(swarm.env("crossing", steps=10), num_cycles=30)
 

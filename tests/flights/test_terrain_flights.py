@@ -213,6 +213,7 @@ def test_rtl_without_heights_says_so(core: Core) -> None:
     f.client.set_mode("RTL")
     f.client.wait_statustext("RTL: no terrain data, using alt-above-home", timeout=1.0)
     f.client.wait_altitude(14.5, 15.5, timeout=20.0)  # RTL_ALT
+    assert f.client.mode == "RTL" and f.client.position.north > 5.0, "it climbs before it returns"
 
 
 def test_it_lands_on_the_ground_that_was_told(core: Core) -> None:

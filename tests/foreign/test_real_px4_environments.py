@@ -131,7 +131,8 @@ def test_two_fly_side_by_side():
                        autopilot=f"px4:{PROGRAM}")  # fmt: skip
     env.reset(seed=1)
     for _ in range(5):
-        env.step(env.action_space.sample())
+        _, rewards, terminated, _, _ = env.step(env.action_space.sample())
+        assert rewards.shape == (2,) and np.isfinite(rewards).all() and not terminated.any()
     env.close()
 
 

@@ -185,6 +185,8 @@ def test_a_plan_that_changes_is_drawn_anew_without_a_warning(page: LivePage) -> 
         for heights in ((5.0, 0.0), (7.0,), ()):
             marks = tuple(Mark(f"item {k}", Vec3(k, 0.0, -height)) for k, height in enumerate(heights))
             nodes._draw(Plan(items=marks))
+            balls_and_labels, heights_above = 2 * len(marks), sum(height > 1.0 for height in heights)
+            assert len(nodes._nodes) == balls_and_labels + heights_above + (len(marks) > 1)
 
 
 def test_plots_take_signals_by_name(page: LivePage) -> None:

@@ -16,6 +16,7 @@ from sitl.errors import SitlError
 from .. import environments
 from ..errors import AgentError
 from ..runs.config import RunConfig
+from ..runs.curriculum import Curriculum
 from ..runs.folder import ENOUGH, RunFolder
 from ..runs.watch import Watch
 from . import checkpoint, models
@@ -96,6 +97,8 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     if path.exists():
         checkpoint.resume(path, model, robots)
     folder.episodes.keep(tally.done)
+    curriculum = Curriculum(config.curriculum, env)
+    curriculum.follow(tally.done_steps)
     checks = Checks(config, figures, folder.path / BEST, model.num_timesteps)
     last, spent = time.monotonic(), 0.0
 
@@ -117,6 +120,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
         if rows:
             watch.on_progress(rows)
             unwritten.extend(rows)
+        curriculum.follow(tally.done_steps)
         done = config.episodes is not None and tally.done >= config.episodes
         done = done or (config.steps is not None and tally.done_steps >= config.steps)
         solved = checks.after(model, done)  # before the model is kept: one that is gone on with has been checked

@@ -17,6 +17,7 @@ from .. import algorithms, environments
 from ..errors import AgentError
 from ..runs import folder as folders
 from ..runs.config import MAX_STEPS, RunConfig, code_of, versions
+from ..runs.curriculum import Stage, stages_of
 from ..runs.folder import RunFolder
 from ..runs.plan import EvaluationPlan
 
@@ -48,6 +49,8 @@ class Recipe:
     settings: Mapping[str, Any] = field(default_factory=dict)
     """Settings of the algorithm; the others have their defaults."""
     evaluation: EvaluationPlan = field(default_factory=EvaluationPlan)
+    curriculum: Sequence[Stage] = ()
+    """Worlds that follow on those of the options."""
 
     def __post_init__(self) -> None:
         module = algorithms.load(self.algorithm)
@@ -98,6 +101,7 @@ class Recipe:
             max_steps=max_steps or self.max_steps,
             versions=versions(*module.LIBRARIES),
             evaluation=self.evaluation,
+            curriculum=self.curriculum,
             **length,
         )
 
@@ -113,6 +117,7 @@ KEYS: dict[str, tuple[type, str]] = {
     "options": (dict, "a table"),
     "settings": (dict, "a table"),
     "evaluation": (dict, "a table"),
+    "curriculum": (list, "a list of tables"),
 }
 """Key -> type of its value, and what that is called."""
 _REQUIRED = ("env", "algorithm")
@@ -154,20 +159,20 @@ def _recipe(name: str, values: dict[str, Any]) -> Recipe:
     for key in _REQUIRED:
         if key not in values:
             raise AgentError(f"key {key!r} is missing")
-    plan = EvaluationPlan.of(values.pop("evaluation", {}))
-    refused = code_in_files.refusal("it", _code(values, plan))
+    plan, stages = EvaluationPlan.of(values.pop("evaluation", {})), stages_of(values.pop("curriculum", []))
+    refused = code_in_files.refusal("it", _code(values, plan, stages))
     if refused is not None:
         raise AgentError(refused)
-    return Recipe(name=name, evaluation=plan, **values)
+    return Recipe(name=name, evaluation=plan, curriculum=stages, **values)
 
 
-def _code(values: dict[str, Any], plan: EvaluationPlan) -> list[str]:
+def _code(values: dict[str, Any], plan: EvaluationPlan, stages: Sequence[Stage]) -> list[str]:
     """What of a recipe runs code of others; raises AgentError when ``also`` holds no ids."""
     also = values.get("also", [])
     if not all(isinstance(name, str) for name in also):
         raise AgentError(f"also = {also!r}; it must be a list of ids")
     return [
-        *code_of(values["env"], values.get("options", {}), plan.options),
+        *code_of(values["env"], values.get("options", {}), plan.options, *({"world": s.world} for s in stages)),
         *(code for n in also for code in code_of(n)),
     ]
 

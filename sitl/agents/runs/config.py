@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Container, Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from importlib import metadata
 from pathlib import Path
@@ -17,6 +17,7 @@ from sitl.core import code_in_files, documents
 from sitl.version import __version__
 
 from ..errors import AgentError
+from .curriculum import Stage, stages_of
 from .files import write_json
 from .plan import EvaluationPlan
 
@@ -75,6 +76,8 @@ class RunConfig:
     """Versions that the run was started with."""
     evaluation: EvaluationPlan = field(default_factory=EvaluationPlan)
     """Default plan of evaluations."""
+    curriculum: Sequence[Stage] = ()
+    """Worlds that follow on those of the options."""
 
     def __post_init__(self) -> None:
         for name in ("episodes", "steps", "max_steps"):
@@ -99,7 +102,7 @@ class RunConfig:
 
     def code_but(self, replaced: Container[str]) -> list[str]:
         """The same without what of the options is replaced."""
-        tables = (self.env_options, self.evaluation.options)
+        tables = (self.env_options, self.evaluation.options, *({"world": stage.world} for stage in self.curriculum))
         return code_of(self.env, *(code_in_files.without(table, replaced) for table in tables))
 
     def with_(self, **changes: Any) -> RunConfig:
@@ -136,7 +139,8 @@ class RunConfig:
         if not isinstance(values, dict) or not {"env", "algorithm"} <= values.keys() or not values.keys() <= known:
             raise AgentError(f"{path} does not describe a run")
         try:
-            found = cls(**{**values, "evaluation": EvaluationPlan.of(values.get("evaluation", {}))})
+            plan, stages = EvaluationPlan.of(values.get("evaluation", {})), stages_of(values.get("curriculum", ()))
+            found = cls(**{**values, "evaluation": plan, "curriculum": stages})
         except AgentError as error:
             raise AgentError(f"{path}: {error}") from None
         refused = code_in_files.refusal(path, found.code_but(replaced))

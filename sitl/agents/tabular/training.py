@@ -24,6 +24,7 @@ from ..errors import AgentError, ResumeError
 from ..evaluate import moved_starts
 from ..policies import OneEach
 from ..runs.config import EPISODES, RunConfig
+from ..runs.curriculum import Curriculum
 from ..runs.episodes import Episode
 from ..runs.files import read_arrays, write_arrays
 from ..runs.folder import Keeper, RunFolder
@@ -172,6 +173,7 @@ def train(folder: RunFolder, watch: Watch) -> None:
     episode_of, by_steps = loop_of(env, learner), partial(learn_episode, env, learner)
     wants_steps = watch.shows(env)
     checks = Checks(env, learner, folder.path / BEST)
+    curriculum = Curriculum(config.curriculum, env)
 
     def checkpoint() -> None:
         progress = {"episodes": np.array(done), "steps": np.array(steps)}
@@ -182,6 +184,7 @@ def train(folder: RunFolder, watch: Watch) -> None:
         while not _is_done(config.episodes, done) and not _is_done(config.steps, steps) and not watch.stop:
             start = time.perf_counter()
             learner.begin(done)
+            curriculum.follow(steps)
             outcome = (by_steps if wants_steps() else episode_of)(environments.seed_of(config.seed, done))
             checks.after(done + 1)
             row = Episode(

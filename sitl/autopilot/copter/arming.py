@@ -6,7 +6,7 @@ from __future__ import annotations
 from ...core.kernels import inlined, law
 from ...core.mavlink import MavSeverity
 from .. import arming_checks, home, smart_rtl_path
-from ..arming_checks import BY_DELAY, BY_MAVLINK, BY_RUDDER, MODE, refuse
+from ..arming_checks import MODE, ArmingMethod, refuse
 from ..events import emit
 from ..fence.checks import switch_on_arming
 from ..state import Arming
@@ -59,9 +59,9 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
 @law
 def may_disarm(landed: bool, mode: int, method: int) -> bool:
     """Whether ``method`` may disarm now: in flight neither by command nor, but in STABILIZE, by stick."""
-    if method == BY_MAVLINK:
+    if method == ArmingMethod.MAVLINK:
         return landed
-    if method == BY_RUDDER:
+    if method == ArmingMethod.RUDDER:
         return landed or has_manual_throttle(mode)
     return True
 
@@ -98,7 +98,7 @@ def disarm_idle(v: Vehicle) -> None:
     stands = ap.arming.landed and ap.control.motors.spool_state <= SpoolState.GROUND_IDLE
     idle = stands and ap.modes.pilot.throttle_zero and not idles_armed(ap.modes.number)
     if was_idle(ap.arming, idle, v.time_us, ap.params.DISARM_DELAY):
-        ground.disarm(v, BY_DELAY)
+        ground.disarm(v, ArmingMethod.DELAY)
 
 
 @law

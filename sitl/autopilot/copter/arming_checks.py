@@ -11,8 +11,6 @@ from ...core.vectors import Vec3
 from .. import radio, radio_checks
 from ..arming_checks import (
     BAROMETER,
-    BY_MAVLINK,
-    BY_RUDDER,
     CHECK_BARO,
     CHECK_GPS,
     CHECK_INS,
@@ -35,6 +33,7 @@ from ..arming_checks import (
     RUDDER_DISABLED,
     THROTTLE_HIGH,
     WAITING_FOR_HOME,
+    ArmingMethod,
     battery_checks,
     calibration_checks,
     obstacle_check,
@@ -197,9 +196,9 @@ def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, cos_lean: fl
         failed |= lean_check(cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     if not may_arm(mode, p, method):
         failed |= MODE
-    if method == BY_RUDDER and p.ARMING.RUDDER < 1.0:
+    if method == ArmingMethod.RUDDER and p.ARMING.RUDDER < 1.0:
         failed |= RUDDER_DISABLED
-    if method != BY_MAVLINK or not arms_at_any_throttle(mode):
+    if method != ArmingMethod.MAVLINK or not arms_at_any_throttle(mode):
         if has_manual_throttle(mode):
             if modes.pilot.throttle > 0.0:
                 failed |= THROTTLE_HIGH
@@ -217,7 +216,7 @@ def stick_checks(rc: Radio, p: Parameters, method: int, state: int) -> int:
     if not rc.receiver_ok or not wants(p.ARMING, CHECK_RC):
         return 0
     failed = radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF) | radio_checks.off_centre(rc, p, PITCH, _PITCH_OFF)
-    if method != BY_RUDDER:
+    if method != ArmingMethod.RUDDER:
         failed |= radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
     channel = radio.stick_channel(p.RCMAP, THROTTLE)
     failed |= switch_checks(state, rc.receiver_ok)

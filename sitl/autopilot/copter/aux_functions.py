@@ -10,6 +10,7 @@ from .. import aux_functions as shared
 from .. import payload
 from ..aux_functions import AuxFunction, Holder
 from ..aux_switch import HIGH, LOW, MIDDLE, MOTOR_INTERLOCK
+from ..command_results import CommandResult
 from ..mission.item import MissionItem
 from ..mission.notes import Note
 from ..notes import Text
@@ -121,7 +122,7 @@ def _hold_over_target(holder: Holder, position: int) -> list[Note]:
 def _pause(holder: Holder, position: int) -> list[Note]:
     if position == MIDDLE:
         return []
-    done = commands.set_paused(holder.v.autopilot.modes, position == HIGH) == commands.OK
+    done = commands.set_paused(holder.v.autopilot.modes, position == HIGH) == CommandResult.OK
     return [Text(MavSeverity.WARNING, "Flight Mode Pause failed")] if position == HIGH and not done else []
 
 

@@ -14,7 +14,7 @@ from ...core.elementary import cos
 from ...core.kernels import inlined
 from ...core.mavlink import MavSeverity
 from ...core.vectors import Vec3
-from ..arming_checks import BY_CRASH
+from ..arming_checks import ArmingMethod
 from ..events import Event, emit, err
 from ..log_events import LogErrorSubsystem
 from ..state import Estimate
@@ -73,7 +73,7 @@ def check(v: Vehicle) -> None:
     if ap.arming.crash_ticks >= (TRIGGER_TICKS if crashed else STILL_TICKS):
         error = math.degrees(attitude.thrust_error_angle)
         emit(ap.events, v.time_us, CRASH_DISARM, error, landing.acceleration(detector))
-        ground.disarm(v, BY_CRASH)
+        ground.disarm(v, ArmingMethod.CRASH)
 
 
 def text(angle_error_deg: float, acceleration: float) -> str:

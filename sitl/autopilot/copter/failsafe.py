@@ -8,7 +8,7 @@ from typing import Any
 from ...core.kernels import law
 from ...core.mavlink import MavSeverity
 from .. import failsafe_checks
-from ..arming_checks import BY_BATTERY_FAILSAFE, BY_GCS_FAILSAFE, BY_RADIO_FAILSAFE, BY_TERMINATION, BY_TERRAIN_FAILSAFE
+from ..arming_checks import ArmingMethod
 from ..estimation.status import GPS_GLITCHING
 from ..events import emit
 from ..failsafe_checks import (
@@ -28,14 +28,7 @@ from ..failsafe_checks import (
     report_battery,
     watch_monitor,
 )
-from ..modes import (
-    ACCEPTED,
-    REASON_BATTERY_FAILSAFE,
-    REASON_EKF_FAILSAFE,
-    REASON_GCS_FAILSAFE,
-    REASON_RADIO_FAILSAFE,
-    REASON_TERRAIN_FAILSAFE,
-)
+from ..modes import ModeReason, ModeResult
 from ..notes import Text
 from ..state import Arming, Failsafe
 from ..terrain.ground import is_long_missing
@@ -135,7 +128,7 @@ def watch_radio(v: Vehicle) -> None:
         return
     if fs.radio:
         how = follows(modes, ap.arming, without_radio(modes.number, options), options, battery_lands(fs, p.BATT))
-        lose(v, RADIO, how, radio_action(enabled), REASON_RADIO_FAILSAFE, BY_RADIO_FAILSAFE)
+        lose(v, RADIO, how, radio_action(enabled), ModeReason.RADIO_FAILSAFE, ArmingMethod.RADIO_FAILSAFE)
     else:
         report(ap.events, v.time_us, RADIO, False)
 
@@ -218,7 +211,7 @@ def watch_gcs(v: Vehicle) -> None:
     fs.gcs = lost
     if lost:
         how = follows(modes, ap.arming, without_gcs(modes.number, options), options, False)
-        lose(v, GCS, how, gcs_action(int(p.GCS_ENABLE)), REASON_GCS_FAILSAFE, BY_GCS_FAILSAFE)
+        lose(v, GCS, how, gcs_action(int(p.GCS_ENABLE)), ModeReason.GCS_FAILSAFE, ArmingMethod.GCS_FAILSAFE)
     else:
         report(ap.events, v.time_us, GCS, False)
 
@@ -232,7 +225,7 @@ def watch_battery(v: Vehicle) -> None:
     watch_monitor(ap.modes.failsafe, ap.battery, ap.arming.armed, ap.events, v.time_us)
     if level != 0:
         choice = int(p.BATT.FS_CRT_ACT) if level == 2 else int(p.BATT.FS_LOW_ACT)
-        act(v, battery_action(choice), REASON_BATTERY_FAILSAFE, BY_BATTERY_FAILSAFE)
+        act(v, battery_action(choice), ModeReason.BATTERY_FAILSAFE, ArmingMethod.BATTERY_FAILSAFE)
 
 
 @law
@@ -298,10 +291,10 @@ def act_on_estimate(v: Vehicle) -> int:
         if (
             action == 2
             and not ap.modes.failsafe.radio
-            and set_mode.request(v, ALT_HOLD, REASON_EKF_FAILSAFE) == ACCEPTED
+            and set_mode.request(v, ALT_HOLD, ModeReason.EKF_FAILSAFE) == ModeResult.ACCEPTED
         ):
             return EKF_HOLDS
-        land_with_pause(v, REASON_EKF_FAILSAFE)
+        land_with_pause(v, ModeReason.EKF_FAILSAFE)
         follows = EKF_LANDS
     ap.modes.land.with_position = False
     return follows
@@ -328,15 +321,15 @@ def watch_terrain(v: Vehicle) -> None:
     emit(ap.events, v.time_us, TERRAIN_DID, float(GROUND_MISSING), 0.0)
     report(ap.events, v.time_us, TERRAIN, True)
     if is_idle(modes, ap.arming.landed):
-        ground.disarm(v, BY_TERRAIN_FAILSAFE)
+        ground.disarm(v, ArmingMethod.TERRAIN_FAILSAFE)
     elif modes.number == RTL:
         emit(ap.events, v.time_us, TERRAIN_DID, float(RTL_BEGINS_ANEW), 0.0)
         rtl.prepare(v, False)
-    elif set_mode.request(v, RTL, REASON_TERRAIN_FAILSAFE) != ACCEPTED:
-        land_with_pause(v, REASON_TERRAIN_FAILSAFE)
+    elif set_mode.request(v, RTL, ModeReason.TERRAIN_FAILSAFE) != ModeResult.ACCEPTED:
+        land_with_pause(v, ModeReason.TERRAIN_FAILSAFE)
 
 
 def terminate(v: Vehicle) -> None:
     """MAV_CMD_DO_FLIGHTTERMINATION: stop the motors."""
-    ground.disarm(v, BY_TERMINATION)
+    ground.disarm(v, ArmingMethod.TERMINATION)
     ground.set_landed(v.autopilot.arming, True)

@@ -8,7 +8,7 @@ from typing import Any
 from ...core.kernels import law
 from ...core.mavlink import MavSeverity
 from ..events import Event, emit
-from ..modes import ACCEPTED
+from ..modes import ModeResult
 from ..notes import Text
 from .modes import ground, set_mode
 from .modes.auto import AUTO_RTL
@@ -75,7 +75,7 @@ def is_idle(modes: Modes, landed: bool) -> bool:
 @law
 def land_with_pause(v: Vehicle, reason: int) -> None:
     """LAND, and wait 4 s before the descent."""
-    if set_mode.request(v, LAND, reason) == ACCEPTED:
+    if set_mode.request(v, LAND, reason) == ModeResult.ACCEPTED:
         v.autopilot.modes.land.pause = True
 
 
@@ -92,20 +92,20 @@ def act(v: Vehicle, action: int, reason: int, method: int) -> None:
     if mode == LAND and (int(ap.params.FS.OPTIONS) & CONTINUE_LANDING) != 0:
         return
     if action in (DO_SMART_RTL, DO_SMART_RTL_OR_LAND):
-        if set_mode.request(v, SMART_RTL, reason) == ACCEPTED:
+        if set_mode.request(v, SMART_RTL, reason) == ModeResult.ACCEPTED:
             return
         action = DO_RTL if action == DO_SMART_RTL else DO_LAND
         emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 0.0)
     if action == DO_AUTO_RTL:
-        if set_mode.request(v, AUTO_RTL, reason) == ACCEPTED:
+        if set_mode.request(v, AUTO_RTL, reason) == ModeResult.ACCEPTED:
             return
         action = DO_RTL
         emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 1.0)
     if action == DO_RTL:
-        if mode != RTL and set_mode.request(v, RTL, reason) != ACCEPTED:
+        if mode != RTL and set_mode.request(v, RTL, reason) != ModeResult.ACCEPTED:
             land_with_pause(v, reason)
     elif action == DO_BRAKE:
-        if set_mode.request(v, BRAKE, reason) != ACCEPTED:
+        if set_mode.request(v, BRAKE, reason) != ModeResult.ACCEPTED:
             land_with_pause(v, reason)
     elif mode != LAND:
         land_with_pause(v, reason)

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from ..arming_checks import BY_FENCE
+from ..arming_checks import ArmingMethod
 from ..fence.checks import GIVE_UP, check, farthest, report
 from ..fence.state import MAX_ALT
-from ..modes import ACCEPTED, REASON_FENCE_BREACHED
+from ..modes import ModeReason, ModeResult
 from .failsafe_actions import is_idle
 from .modes import ground, set_mode
 from .modes.brake import BRAKE
@@ -47,18 +47,18 @@ def act(v: Vehicle, new: int) -> None:
     action = int(ap.params.FENCE.ACTION)
     is_excused = ap.modes.failsafe.radio or ap.fence.breached & MAX_ALT != 0  # who is too high closes the throttle
     if ap.arming.landed or (is_idle(ap.modes, False) and not is_excused):
-        ground.disarm(v, BY_FENCE)
+        ground.disarm(v, ArmingMethod.FENCE)
         return
     if farthest(ap.fence, new) > GIVE_UP:
         action = _LAND
     if action in (_SMART_RTL, _SMART_RTL_OR_LAND):
-        if set_mode.request(v, SMART_RTL, REASON_FENCE_BREACHED) == ACCEPTED:
+        if set_mode.request(v, SMART_RTL, ModeReason.FENCE_BREACHED) == ModeResult.ACCEPTED:
             return
         action = _RTL if action == _SMART_RTL else _LAND
     if action == _BRAKE:
-        if set_mode.request(v, BRAKE, REASON_FENCE_BREACHED) == ACCEPTED:
+        if set_mode.request(v, BRAKE, ModeReason.FENCE_BREACHED) == ModeResult.ACCEPTED:
             return
     elif action != _LAND:
-        if set_mode.request(v, RTL, REASON_FENCE_BREACHED) == ACCEPTED:
+        if set_mode.request(v, RTL, ModeReason.FENCE_BREACHED) == ModeResult.ACCEPTED:
             return
-    set_mode.request(v, LAND, REASON_FENCE_BREACHED)
+    set_mode.request(v, LAND, ModeReason.FENCE_BREACHED)

@@ -14,7 +14,7 @@ import math
 from ...core.algebra import euler_of, norm
 from ...core.kernels import inlined, law
 from ...core.vectors import Quat
-from ..arming_checks import BY_LANDING
+from ..arming_checks import ArmingMethod
 from ..events import Event, emit
 from ..state import Arming
 from .control import throttle_mix
@@ -90,7 +90,7 @@ def detect(v: Vehicle) -> None:
     elif count_rest(arming, is_at_rest(ap.control, modes, ap.estimate.vel.z, ap.params.ATC)):
         emit(ap.events, v.time_us, LANDED, 0.0, 0.0)
         if disarms(modes.number, ap.params):
-            ground.disarm(v, BY_LANDING)
+            ground.disarm(v, ArmingMethod.LANDING)
 
 
 @law
@@ -98,7 +98,7 @@ def disarms(mode: int, p: Parameters) -> bool:
     """Whether a vehicle that has landed in a ``mode`` disarms at once (PILOT_THR_BHV)."""
     if int(p.PILOT.THR_BHV) & _DISARM_BEHAVIOUR == 0 or table.has_manual_throttle(mode):
         return False
-    return table.may_arm(mode, p, BY_LANDING)
+    return table.may_arm(mode, p, ArmingMethod.LANDING)
 
 
 @inlined

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ...core.kernels import inlined
 from ...core.mavlink import MavSeverity
 from ...core.scalars import constrain
-from ..arming_checks import BY_MOTOR_TEST
+from ..arming_checks import ArmingMethod
 from ..events import Event, emit
 from ..state import Arming
 from .control.spool import DesiredSpoolState
@@ -76,4 +76,4 @@ def run(v: Vehicle) -> None:
     if v.time_us >= motors.test_until_us or not ap.arming.landed or not ap.arming.armed:
         motors.test_motor = 0
         emit(ap.events, v.time_us, MOTOR_TEST, 0.0, 0.0)
-        ground.disarm(v, BY_MOTOR_TEST)
+        ground.disarm(v, ArmingMethod.MOTOR_TEST)

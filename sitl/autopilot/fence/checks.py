@@ -15,7 +15,7 @@ from ...core.mavlink import MavSeverity
 from ...core.vectors import Vec2, Vec3
 from ..events import Event, Events, Row, emit, err, ev
 from ..log_events import LogErrorSubsystem, LogEvent
-from ..modes import REASON_FENCE_BREACHED
+from ..modes import ModeReason
 from ..notes import Text
 from ..params.fence import Fence
 from ..state import Estimate, HomeState, Vehicle
@@ -306,7 +306,7 @@ def report(fence: FenceState, before: int, new: int, reported: bool, events: Eve
 def keeps_mode(fence: FenceState, reason: int, params: Fence) -> bool:
     """FENCE_OPTIONS 1: whether a mode that was entered for a breached fence (``reason``) is kept until it is not."""
     kept = int(params.OPTIONS) & NO_OTHER_MODE != 0
-    return kept and reason == REASON_FENCE_BREACHED and active(fence, params) & fence.breached != 0
+    return kept and reason == ModeReason.FENCE_BREACHED and active(fence, params) & fence.breached != 0
 
 
 @law

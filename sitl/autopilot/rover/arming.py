@@ -7,7 +7,7 @@ from ...core.algebra import horizontal, with_down
 from ...core.kernels import law
 from ...core.mavlink import MavSeverity
 from .. import arming_checks, smart_rtl_path
-from ..arming_checks import BY_RUDDER, refuse
+from ..arming_checks import ArmingMethod, refuse
 from ..events import Events, emit, emit_and_return
 from ..mode_switch import rudder_command
 from ..state import Arming
@@ -62,7 +62,7 @@ def set_disarmed(arming: Arming, events: Events, time_us: int, method: int) -> N
 def disarm(v: Vehicle, method: int, force: bool) -> bool:
     """Disarm from the shell. Whether it is disarmed (or was already); not by stick while the motors turn."""
     ap = v.autopilot
-    if not force and method == BY_RUDDER and is_moving(ap.control.motors, ap.arming.armed, ap.params):
+    if not force and method == ArmingMethod.RUDDER and is_moving(ap.control.motors, ap.arming.armed, ap.params):
         return False
     set_disarmed(ap.arming, ap.events, v.time_us, method)
     return True

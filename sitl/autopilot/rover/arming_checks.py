@@ -8,7 +8,6 @@ from .. import arming_checks, radio_checks
 from ..arming_checks import (
     AHRS_TYPE,
     BAROMETER,
-    BY_RUDDER,
     CHECK_BARO,
     CHECK_GPS,
     CHECK_PARAMETERS,
@@ -24,6 +23,7 @@ from ..arming_checks import (
     NOT_INITIALISED,
     RADIO_FAILSAFE,
     RUDDER_DISABLED,
+    ArmingMethod,
     battery_checks,
     calibration_checks,
     proximity_checks,
@@ -111,7 +111,7 @@ def check(v: Vehicle) -> int:
 def stick_checks(rc: Radio, p: Parameters, method: int) -> int:
     """Sticks that are not at rest; by stick the steering cannot be."""
     failed = radio_checks.off_centre(rc, p, THROTTLE, _THROTTLE_OFF) | radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
-    return failed if method == BY_RUDDER else failed | radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF)
+    return failed if method == ArmingMethod.RUDDER else failed | radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF)
 
 
 @law
@@ -123,7 +123,7 @@ def method_checks(modes: Modes, rc: Radio, method: int, p: Parameters, state: in
     failed = 0
     if rc.receiver_ok and wants(p.ARMING, CHECK_RC):
         failed |= stick_checks(rc, p, method) | switch_checks(state, rc.receiver_ok)
-    if method == BY_RUDDER:
+    if method == ArmingMethod.RUDDER:
         if p.ARMING.RUDDER < 1.0:
             failed |= RUDDER_DISABLED
         if not allows_arming_by_stick(modes.number):

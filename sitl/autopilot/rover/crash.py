@@ -12,10 +12,10 @@ from ...core.elementary import hypot
 from ...core.kernels import law
 from ...core.mavlink import MavSeverity
 from ...core.vectors import Euler
-from ..arming_checks import BY_CRASH
+from ..arming_checks import ArmingMethod
 from ..events import Event, emit, err
 from ..log_events import LogErrorSubsystem
-from ..modes import REASON_CRASH_FAILSAFE
+from ..modes import ModeReason
 from ..state import Arming, Estimate
 from . import motor_test
 from .arming import set_disarmed
@@ -84,6 +84,6 @@ def check(v: Vehicle) -> None:
         ap.arming.crash_ticks = 0
     elif detect_crash(ap.arming, ap.estimate, m.throttle, math.radians(p.CRASH_ANGLE)):
         emit(ap.events, v.time_us, CRASH_HOLD, 0.0, 0.0)
-        set_mode.request(v, HOLD, REASON_CRASH_FAILSAFE)
+        set_mode.request(v, HOLD, ModeReason.CRASH_FAILSAFE)
         if p.FS.CRASH_CHECK == HOLD_AND_DISARM:
-            set_disarmed(ap.arming, ap.events, v.time_us, BY_CRASH)
+            set_disarmed(ap.arming, ap.events, v.time_us, ArmingMethod.CRASH)

@@ -11,10 +11,10 @@ from typing import Any
 from ...core.kernels import law
 from ...core.mavlink import MavSeverity
 from .. import failsafe_checks
-from ..arming_checks import BY_BATTERY_FAILSAFE
+from ..arming_checks import ArmingMethod
 from ..estimation.state import Ekf
 from ..failsafe_checks import EKF, GCS, RADIO, VARIANCE, is_estimate_bad, report
-from ..modes import ACCEPTED, REASON_EKF_FAILSAFE, REASON_FAILSAFE
+from ..modes import ModeReason, ModeResult
 from ..notes import Text
 from ..state import Estimate, Failsafe
 from . import motor_test
@@ -73,16 +73,16 @@ def act(v: Vehicle, action: int, reason: int) -> None:
     if action == NOTHING:
         return
     if action == TERMINATE:
-        set_disarmed(v.autopilot.arming, v.autopilot.events, v.time_us, BY_BATTERY_FAILSAFE)
+        set_disarmed(v.autopilot.arming, v.autopilot.events, v.time_us, ArmingMethod.BATTERY_FAILSAFE)
         return
     if action in (DO_SMART_RTL, DO_SMART_RTL_OR_HOLD):
-        if set_mode.request(v, SMART_RTL, reason) == ACCEPTED:
+        if set_mode.request(v, SMART_RTL, reason) == ModeResult.ACCEPTED:
             return
     if action in (DO_RTL, DO_SMART_RTL):
-        if set_mode.request(v, RTL, reason) == ACCEPTED:
+        if set_mode.request(v, RTL, reason) == ModeResult.ACCEPTED:
             return
     if action == DO_LOITER_OR_HOLD:
-        if set_mode.request(v, LOITER, reason) == ACCEPTED:
+        if set_mode.request(v, LOITER, reason) == ModeResult.ACCEPTED:
             return
     set_mode.request(v, HOLD, reason)
 
@@ -137,7 +137,7 @@ def watch(v: Vehicle, bit: int, bad: bool) -> None:
     if goes_on(bit, ap.modes.number, p):
         report(ap.events, v.time_us, CONTINUES, True)
     else:
-        act(v, int(p.ACTION), REASON_FAILSAFE)
+        act(v, int(p.ACTION), ModeReason.FAILSAFE)
 
 
 @law
@@ -209,5 +209,5 @@ def check_ekf(v: Vehicle) -> None:
         action = int(ap.params.FS.EKF_ACTION)
         if requires_position(ap.modes.number) and action != EKF_NOTHING:
             if action != EKF_REPORT:
-                set_mode.request(v, HOLD, REASON_EKF_FAILSAFE)
+                set_mode.request(v, HOLD, ModeReason.EKF_FAILSAFE)
             report(ap.events, v.time_us, EKF, True)

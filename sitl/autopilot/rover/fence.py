@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from ..arming_checks import BY_FENCE
+from ..arming_checks import ArmingMethod
 from ..fence.checks import GIVE_UP, check, farthest, report
-from ..modes import ACCEPTED, REASON_FENCE_BREACHED
+from ..modes import ModeReason, ModeResult
 from .arming import set_disarmed
 from .heights import HEIGHTS
 from .modes import set_mode
@@ -37,15 +37,15 @@ def watch(v: Vehicle) -> None:
 def act(v: Vehicle, action: int) -> None:
     """Do what FENCE_ACTION says; what cannot be entered becomes the next best, HOLD at last."""
     if action == _TERMINATE:
-        set_disarmed(v.autopilot.arming, v.autopilot.events, v.time_us, BY_FENCE)
+        set_disarmed(v.autopilot.arming, v.autopilot.events, v.time_us, ArmingMethod.FENCE)
     if not _NOTHING < action <= _LOITER or action == _TERMINATE:
         return
-    if action == _LOITER and set_mode.request(v, LOITER, REASON_FENCE_BREACHED) == ACCEPTED:
+    if action == _LOITER and set_mode.request(v, LOITER, ModeReason.FENCE_BREACHED) == ModeResult.ACCEPTED:
         return
     if action in (_SMART_RTL, _SMART_RTL_OR_HOLD):
-        if set_mode.request(v, SMART_RTL, REASON_FENCE_BREACHED) == ACCEPTED:
+        if set_mode.request(v, SMART_RTL, ModeReason.FENCE_BREACHED) == ModeResult.ACCEPTED:
             return
     if action in (_RTL, _SMART_RTL):
-        if set_mode.request(v, RTL, REASON_FENCE_BREACHED) == ACCEPTED:
+        if set_mode.request(v, RTL, ModeReason.FENCE_BREACHED) == ModeResult.ACCEPTED:
             return
-    set_mode.request(v, HOLD, REASON_FENCE_BREACHED)
+    set_mode.request(v, HOLD, ModeReason.FENCE_BREACHED)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ...core.scalars import constrain
-from ..arming_checks import BY_MOTOR_TEST
+from ..arming_checks import ArmingMethod
 from ..events import Event, Events, emit
 from ..state import Arming
 from .arming import set_disarmed, try_arm
@@ -53,11 +53,11 @@ def start(v: Vehicle, motor: int, throttle: float, pulse: int, seconds: float) -
     """
     ap = v.autopilot
     motors = ap.control.motors
-    if not is_running(motors) and not ap.arming.armed and try_arm(v, BY_MOTOR_TEST, False) != 0:
+    if not is_running(motors) and not ap.arming.armed and try_arm(v, ArmingMethod.MOTOR_TEST, False) != 0:
         return NOT_ARMABLE
     cause = refusal(is_skid(ap.params), motor, throttle, pulse)
     if cause != OK:
-        set_disarmed(ap.arming, ap.events, v.time_us, BY_MOTOR_TEST)
+        set_disarmed(ap.arming, ap.events, v.time_us, ArmingMethod.MOTOR_TEST)
         return cause
     if not is_running(motors):
         emit(ap.events, v.time_us, MOTOR_TEST, 1.0, float(motor))
@@ -85,4 +85,4 @@ def control(motors: MotorsState, arming: Arming, events: Events, time_us: int) -
         motors.test_motor = 0
         motors.test_pulse = 0
         emit(events, time_us, MOTOR_TEST, 0.0, 0.0)
-        set_disarmed(arming, events, time_us, BY_MOTOR_TEST)
+        set_disarmed(arming, events, time_us, ArmingMethod.MOTOR_TEST)

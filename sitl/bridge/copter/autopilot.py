@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...autopilot import arming_checks, radio
+from ...autopilot import radio
+from ...autopilot.arming_checks import ArmingMethod
 from ...autopilot.copter import arming, failsafe, motor_test, parameter_checks
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
@@ -165,7 +166,7 @@ class CopterAutopilot(BaseAutopilot):
         """Note that it is released: the vehicle is not armed again before the next boot."""
         self._v.autopilot.arming.parachute_released = True
         if stop_motors:
-            ground.disarm(self._v, arming_checks.BY_PARACHUTE)
+            ground.disarm(self._v, ArmingMethod.PARACHUTE)
 
     # ------------------------------------------------------------------ GUIDED
 

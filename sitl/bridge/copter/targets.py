@@ -19,6 +19,7 @@ from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.vectors import Vec2, Vec3
 from ...vehicle.copter import Copter
+from ..services.setpoints import ACCELERATION_IGNORED, POSITION_IGNORED, VELOCITY_IGNORED, YAWS_IGNORED
 from ..telemetry.own import NavControllerOutput, PositionTargetGlobalInt
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
 from ..wire.message import Message
@@ -61,14 +62,13 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     return True
 
 
-IGNORE_POS, IGNORE_VEL, IGNORE_ACC, IGNORE_YAW, IGNORE_YAW_RATE = 0x007, 0x038, 0x1C0, 0x400, 0x800
-PLACE = IGNORE_VEL | IGNORE_ACC | IGNORE_YAW | IGNORE_YAW_RATE
+PLACE = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
 TARGET_MASKS = (
     PLACE,  # TAKEOFF
     PLACE,  # POSITION
-    IGNORE_YAW | IGNORE_YAW_RATE,  # POS_VEL_ACCEL
-    IGNORE_POS | IGNORE_YAW | IGNORE_YAW_RATE,  # VELOCITY_ACCEL
-    IGNORE_POS | IGNORE_VEL | IGNORE_YAW | IGNORE_YAW_RATE,  # ACCEL
+    YAWS_IGNORED,  # POS_VEL_ACCEL
+    POSITION_IGNORED | YAWS_IGNORED,  # VELOCITY_ACCEL
+    POSITION_IGNORED | VELOCITY_IGNORED | YAWS_IGNORED,  # ACCEL
 )
 """By GUIDED's submode: what of the target does not count; others have no such target."""
 LAST_BITS = 0xF000

@@ -14,7 +14,7 @@ from ...autopilot.copter.modes.guided import GUIDED
 from ...autopilot.copter.modes.table import NEED_POSITION
 from ...autopilot.navigation.state import TAKEOFF
 from ...core.kernels import law
-from ...core.mavlink import MavLandedState, MavModeFlag, MavState, MavType
+from ...core.mavlink import MavLandedState, MavModeFlag, MavState, MavSysStatus, MavType
 from ...core.records import Ints
 from ...vehicle.copter import Copter
 from ..telemetry import channels, motion, status
@@ -22,19 +22,7 @@ from ..telemetry.channels import RcChannels
 from ..telemetry.heartbeat import Heartbeat, fill_heartbeat
 from ..telemetry.motion import VfrHud
 from ..telemetry.own import ExtendedSysState, Wind
-from ..telemetry.status import (
-    ALTITUDE,
-    ATTITUDE,
-    POSITION,
-    PROPULSION,
-    PROXIMITY,
-    RATE,
-    TERRAIN,
-    VISION,
-    YAW,
-    MissionCurrent,
-    SysStatus,
-)
+from ..telemetry.status import MissionCurrent, SysStatus
 from ..telemetry.tuning import PITCH, ROLL, VERTICAL, YAW_LOOP, PidTuning, fill_tuning, next_loop
 from ..telemetry.units import uint8, uint16
 from ..wire.message import Message
@@ -65,18 +53,30 @@ def heartbeat(m: Heartbeat, v: Copter) -> bool:
     return fill_heartbeat(m, v, mav_type(v.autopilot.control.motors.count), base, state)
 
 
-CONTROLLERS = RATE | ATTITUDE | YAW | ALTITUDE | POSITION | PROPULSION
+CONTROLLERS = (
+    MavSysStatus.SENSOR_ANGULAR_RATE_CONTROL
+    | MavSysStatus.SENSOR_ATTITUDE_STABILIZATION
+    | MavSysStatus.SENSOR_YAW_POSITION
+    | MavSysStatus.SENSOR_Z_ALTITUDE_CONTROL
+    | MavSysStatus.SENSOR_XY_POSITION_CONTROL
+    | MavSysStatus.SENSOR_PROPULSION
+)
 """Bits of SYS_STATUS"""
 
 
 @law
 def controllers_at_work(control: Control) -> int:
     """Bits of the controllers that run."""
-    bits = RATE | ATTITUDE | YAW | PROPULSION
+    bits = (
+        MavSysStatus.SENSOR_ANGULAR_RATE_CONTROL
+        | MavSysStatus.SENSOR_ATTITUDE_STABILIZATION
+        | MavSysStatus.SENSOR_YAW_POSITION
+        | MavSysStatus.SENSOR_PROPULSION
+    )
     if is_active_ne(control):
-        bits |= POSITION
+        bits |= MavSysStatus.SENSOR_XY_POSITION_CONTROL
     if is_active_d(control):
-        bits |= ALTITUDE
+        bits |= MavSysStatus.SENSOR_Z_ALTITUDE_CONTROL
     return bits
 
 
@@ -85,15 +85,15 @@ def sys_status(m: SysStatus, v: Copter) -> bool:
     """SYS_STATUS: sensor bits (the pre-arm checks are bit 0x10000000), mV, cA, %; load and error counts are 0."""
     ap = v.autopilot
     at_work = controllers_at_work(ap.control)
-    healthy = at_work & ~PROPULSION if ap.control.motors.boosting else at_work
-    looks = PROXIMITY if ap.proximity.kind != 0 else 0
-    sees = PROXIMITY if looks == 0 or has_data(ap.proximity, v.time_us) else 0
+    healthy = at_work & ~MavSysStatus.SENSOR_PROPULSION if ap.control.motors.boosting else at_work
+    looks = MavSysStatus.SENSOR_PROXIMITY if ap.proximity.kind != 0 else 0
+    sees = MavSysStatus.SENSOR_PROXIMITY if looks == 0 or has_data(ap.proximity, v.time_us) else 0
     if ap.params.PLND.ENABLED != 0.0:
-        looks |= VISION
-        sees |= VISION if ap.landing_target.sees else 0
+        looks |= MavSysStatus.SENSOR_VISION_POSITION
+        sees |= MavSysStatus.SENSOR_VISION_POSITION if ap.landing_target.sees else 0
     if ap.params.TERRAIN.ENABLE != 0.0:
-        looks |= TERRAIN
-        sees |= TERRAIN
+        looks |= MavSysStatus.TERRAIN
+        sees |= MavSysStatus.TERRAIN
     return status.sys_status(m, v, CONTROLLERS | looks, at_work | looks, healthy | sees)
 
 

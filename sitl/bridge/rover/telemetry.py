@@ -11,7 +11,7 @@ from ...autopilot.rover.modes.hold import HOLD
 from ...autopilot.rover.modes.initialising import INITIALISING
 from ...autopilot.rover.modes.table import MODES, is_autonomous
 from ...core.kernels import law
-from ...core.mavlink import MavModeFlag, MavState, MavType
+from ...core.mavlink import MavModeFlag, MavState, MavSysStatus, MavType
 from ...core.records import Floats
 from ...vehicle.rover import Rover
 from ..telemetry import channels, motion, status
@@ -19,7 +19,7 @@ from ..telemetry.channels import RcChannels
 from ..telemetry.heartbeat import Heartbeat, fill_heartbeat
 from ..telemetry.motion import VfrHud
 from ..telemetry.own import ExtendedSysState
-from ..telemetry.status import ATTITUDE, POSITION, RATE, YAW, MissionCurrent, SysStatus
+from ..telemetry.status import MissionCurrent, SysStatus
 from ..telemetry.tuning import STEERING, VERTICAL, PidTuning, fill_tuning, next_loop
 from ..telemetry.units import DEG, boot_ms, int16
 from ..wire.message import Message
@@ -50,7 +50,12 @@ def heartbeat(m: Heartbeat, v: Rover) -> bool:
     return fill_heartbeat(m, v, MavType.GROUND_ROVER, base, state)
 
 
-CONTROLLERS = RATE | ATTITUDE | YAW | POSITION
+CONTROLLERS = (
+    MavSysStatus.SENSOR_ANGULAR_RATE_CONTROL
+    | MavSysStatus.SENSOR_ATTITUDE_STABILIZATION
+    | MavSysStatus.SENSOR_YAW_POSITION
+    | MavSysStatus.SENSOR_XY_POSITION_CONTROL
+)
 """Bits of SYS_STATUS"""
 CONTROLLED_MODES = numbers(MODES, "controlled")
 
@@ -60,9 +65,9 @@ def controllers_at_work(mode: int) -> int:
     """Bits of the controllers that a mode uses."""
     bits = 0
     if mode in CONTROLLED_MODES:
-        bits |= RATE | ATTITUDE
+        bits |= MavSysStatus.SENSOR_ANGULAR_RATE_CONTROL | MavSysStatus.SENSOR_ATTITUDE_STABILIZATION
     if is_autonomous(mode):
-        bits |= YAW | POSITION
+        bits |= MavSysStatus.SENSOR_YAW_POSITION | MavSysStatus.SENSOR_XY_POSITION_CONTROL
     return bits
 
 

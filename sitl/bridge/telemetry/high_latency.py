@@ -3,22 +3,21 @@
 
 from __future__ import annotations
 
-from ...core.mavlink import MavAutopilot
+from ...core.mavlink import MavAutopilot, MavSysStatus
 from ..autopilot_api import Vehicle
 from ..dialect import message
 from ..mavlink_firmware import MavlinkFirmware
 from .motion import global_position
 from .plain import built
-from .status import ACCEL, AHRS, BARO, BATTERY, GEOFENCE, GPS, GYRO, MAG, RECEIVER, TERRAIN
 from .units import boot_ms, heading_cdeg, int16, percent, uint8, uint16
 
-DIFFERENTIAL_PRESSURE = 0x10
-"""Bit of SYS_STATUS; no vehicle has an airspeed sensor."""
 FAILURES = {
-    GPS: 0x1, DIFFERENTIAL_PRESSURE: 0x2, BARO: 0x4, ACCEL: 0x8, GYRO: 0x10, MAG: 0x20, TERRAIN: 0x40, BATTERY: 0x80,
-    RECEIVER: 0x100, GEOFENCE: 0x800, AHRS: 0x1000,
+    MavSysStatus.SENSOR_GPS: 0x1, MavSysStatus.SENSOR_DIFFERENTIAL_PRESSURE: 0x2,
+    MavSysStatus.SENSOR_ABSOLUTE_PRESSURE: 0x4, MavSysStatus.SENSOR_3D_ACCEL: 0x8, MavSysStatus.SENSOR_3D_GYRO: 0x10,
+    MavSysStatus.SENSOR_3D_MAG: 0x20, MavSysStatus.TERRAIN: 0x40, MavSysStatus.SENSOR_BATTERY: 0x80,
+    MavSysStatus.SENSOR_RC_RECEIVER: 0x100, MavSysStatus.GEOFENCE: 0x800, MavSysStatus.AHRS: 0x1000,
 }  # fmt: skip
-"""Bit of SYS_STATUS' health -> HL_FAILURE_FLAG, set while that is not healthy."""
+"""Bit of SYS_STATUS' health -> HL_FAILURE_FLAG, set while that is not healthy. No vehicle has an airspeed sensor."""
 NO_TEMPERATURE = -128
 UNIT = 5.0
 """Of speeds [1/(m/s)]."""

@@ -10,6 +10,7 @@ from ...autopilot.optical_flow import is_healthy
 from ...autopilot.sensor_calibration import is_received
 from ...core.border import ACC_SILENT, GYRO_SILENT
 from ...core.kernels import law
+from ...core.mavlink import MavSysStatus
 from ...core.records import Ints
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
@@ -17,12 +18,14 @@ from ..wire.port import Port
 from .fence import is_at_work
 from .units import boot_ms, int16, int32, percent, uint16
 
-GYRO, ACCEL, MAG, BARO, GPS = 0x1, 0x2, 0x4, 0x8, 0x20
-RATE, ATTITUDE, YAW, ALTITUDE, POSITION, MOTORS = 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000
-RECEIVER, GEOFENCE, AHRS, BATTERY, PREARM = 0x10000, 0x100000, 0x200000, 0x2000000, 0x10000000
-TERRAIN, LOGGING, PROPULSION = 0x400000, 0x1000000, 0x40000000
-PROXIMITY, FLOW, VISION = 0x4000000, 0x40, 0x80
-PRESENT = GYRO | ACCEL | MAG | BARO | AHRS | PREARM
+PRESENT = (
+    MavSysStatus.SENSOR_3D_GYRO
+    | MavSysStatus.SENSOR_3D_ACCEL
+    | MavSysStatus.SENSOR_3D_MAG
+    | MavSysStatus.SENSOR_ABSOLUTE_PRESSURE
+    | MavSysStatus.AHRS
+    | MavSysStatus.PREARM_CHECK
+)
 """In every firmware, besides its controllers; a GPS receiver once it has said something, until it is silent."""
 SAMPLE_US = 500_000
 """A sensor is healthy while the filter's last sane sample of it is no older."""
@@ -41,19 +44,19 @@ def sensor_health(v: Vehicle) -> int:
     """
     t, s, ekf = v.time_us, v.sensors, v.autopilot.ekf
     watched = ekf.yaw_aligned and not ekf.use_external
-    health = GEOFENCE if v.autopilot.fence.breached == 0 else 0
+    health = MavSysStatus.GEOFENCE if v.autopilot.fence.breached == 0 else 0
     if s.time_us > 0 and (ekf.use_external or ekf.bad_imu == 0):
-        health |= GYRO if s.imu_state & 3 * GYRO_SILENT == 0 else 0
-        health |= ACCEL if s.imu_state & 3 * ACC_SILENT == 0 else 0
+        health |= MavSysStatus.SENSOR_3D_GYRO if s.imu_state & 3 * GYRO_SILENT == 0 else 0
+        health |= MavSysStatus.SENSOR_3D_ACCEL if s.imu_state & 3 * ACC_SILENT == 0 else 0
     if s.mag_count > 0 and is_received(0, s, t) and not (watched and t - ekf.mag_us > SAMPLE_US):
-        health |= MAG
+        health |= MavSysStatus.SENSOR_3D_MAG
     if s.baro_count > 0 and not (watched and t - ekf.baro_us > SAMPLE_US):
-        health |= BARO
+        health |= MavSysStatus.SENSOR_ABSOLUTE_PRESSURE
     receiver = v.autopilot.gps.primary
     if has_fix(receiver, s) and t - time_of(receiver, s) <= GPS_US:
-        health |= GPS
+        health |= MavSysStatus.SENSOR_GPS
     if v.autopilot.estimate.attitude_ok:
-        health |= AHRS
+        health |= MavSysStatus.AHRS
     return health
 
 
@@ -70,29 +73,29 @@ class SysStatus(Message, name="SYS_STATUS"):
 def sys_status(m: SysStatus, v: Vehicle, controllers: int, at_work: int, healthy: int) -> bool:
     """SYS_STATUS of a firmware with these controllers and sensors, of which some are at work and healthy (bits)."""
     ap, battery, monitor = v.autopilot, v.autopilot.battery, v.autopilot.params.BATT.MONITOR
-    common = PRESENT | MOTORS
-    health = healthy | sensor_health(v) | MOTORS
+    common = PRESENT | MavSysStatus.SENSOR_MOTOR_OUTPUTS
+    health = healthy | sensor_health(v) | MavSysStatus.SENSOR_MOTOR_OUTPUTS
     if fix_of(ap.gps.primary, v.sensors).gps_fix > 0:
-        common |= GPS
+        common |= MavSysStatus.SENSOR_GPS
     if ap.rc.receiver_us > 0:
-        common |= RECEIVER
-        health |= RECEIVER if ap.rc.receiver_ok else 0
+        common |= MavSysStatus.SENSOR_RC_RECEIVER
+        health |= MavSysStatus.SENSOR_RC_RECEIVER if ap.rc.receiver_ok else 0
     if monitor >= VOLTAGE_MONITOR:
-        common |= BATTERY
+        common |= MavSysStatus.SENSOR_BATTERY
         if ap.modes.failsafe.battery == 0 and battery.healthy:
-            health |= BATTERY
+            health |= MavSysStatus.SENSOR_BATTERY
     if ap.arming.prearm_ok or ap.arming.armed:
-        health |= PREARM
-    logs = LOGGING if ap.params.LOG.BACKEND_TYPE != 0.0 else 0
+        health |= MavSysStatus.PREARM_CHECK
+    logs = MavSysStatus.LOGGING if ap.params.LOG.BACKEND_TYPE != 0.0 else 0
     logs_now = logs if ap.arming.armed_us > 0 or ap.params.LOG.DISARMED != 0.0 else 0
     health |= logs
     if ap.flow.kind != 0:
-        common |= FLOW
-        health |= FLOW if is_healthy(ap.flow, v.time_us) else 0
+        common |= MavSysStatus.SENSOR_OPTICAL_FLOW
+        health |= MavSysStatus.SENSOR_OPTICAL_FLOW if is_healthy(ap.flow, v.time_us) else 0
     if ap.odometry.kind != 0:
-        common |= VISION
-        health |= VISION if visual_odometry.is_healthy(ap.odometry, v.time_us) else 0
-    fence = GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
+        common |= MavSysStatus.SENSOR_VISION_POSITION
+        health |= MavSysStatus.SENSOR_VISION_POSITION if visual_odometry.is_healthy(ap.odometry, v.time_us) else 0
+    fence = MavSysStatus.GEOFENCE if kinds(ap.fence, ap.params.FENCE) != 0 else 0
     m.onboard_control_sensors_present = common | controllers | fence | logs
     m.onboard_control_sensors_enabled = common | at_work | (fence if is_at_work(v) else 0) | logs_now
     m.onboard_control_sensors_health = health

@@ -10,7 +10,7 @@ from ...bridge.dialect import message
 from ...core.algebra import euler_of
 from ...core.elementary import hypot
 from ...core.geodesy import add_offset
-from ...core.mavlink import MavLandedState
+from ...core.mavlink import MavLandedState, MavSysStatus
 from ...physics.native.records import GROUND_AIRBORNE
 from ...plants.local import LocalPlant
 from . import wire
@@ -18,8 +18,6 @@ from .sticks import Sticks
 
 _UNKNOWN16, _UNKNOWN8 = 65535, 255
 _CELLS = 10
-_PREARM = 0x10000000
-"""MAV_SYS_STATUS_PREARM_CHECK"""
 _KNOWN = 0x01 | 0x02 | 0x04 | 0x08 | 0x10 | 0x20
 """Of EKF_STATUS_REPORT: attitude, velocity, place and height are known; this is the true state."""
 
@@ -133,8 +131,9 @@ class Telemetry:
     def _status(self) -> bytes:
         sensors, charge = self._v.sensors, float(self._v.physics.battery.charge)
         return message("SYS_STATUS").payload(
-            onboard_control_sensors_present=_PREARM, onboard_control_sensors_enabled=_PREARM,
-            onboard_control_sensors_health=_PREARM if self.may_arm else 0,
+            onboard_control_sensors_present=MavSysStatus.PREARM_CHECK,
+            onboard_control_sensors_enabled=MavSysStatus.PREARM_CHECK,
+            onboard_control_sensors_health=MavSysStatus.PREARM_CHECK if self.may_arm else 0,
             voltage_battery=round(1e3 * float(sensors.battery_voltage)),
             current_battery=round(100.0 * float(sensors.battery_current)), battery_remaining=round(100.0 * charge),
         )  # fmt: skip

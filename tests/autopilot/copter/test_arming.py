@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot.arming_checks import ARMED, ARMING_REFUSED, BY_CRASH, BY_MAVLINK, BY_RUDDER, DISARMED
+from sitl.autopilot.arming_checks import ARMED, ARMING_REFUSED, DISARMED, ArmingMethod
 from sitl.autopilot.copter import arming
 from sitl.autopilot.copter.modes.table import TITLES
 from sitl.core.vectors import Vec3
@@ -43,7 +43,7 @@ def booting(v, mode, seconds):
 def test_a_start_as_recorded(vehicle, mode, seconds, texts):
     booting(vehicle, mode, seconds)
     assert arming.texts(vehicle, arming.check(vehicle), "") == texts
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (not texts, [f"Arm: {t}" for t in texts])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (not texts, [f"Arm: {t}" for t in texts])
 
 
 def test_imus_that_differed_are_trusted_after_ten_seconds(vehicle):
@@ -66,27 +66,27 @@ def test_imus_that_differed_are_trusted_after_ten_seconds(vehicle):
 
 def test_forcing_skips_all_but_the_position_that_the_mode_needs(vehicle):
     booting(vehicle, GUIDED, 14)
-    assert arming.arm(vehicle, BY_MAVLINK, True) == (
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, True) == (
         False,
         ["Arm: Need Position Estimate", "Arm: Gyros inconsistent", "Arm: AHRS: waiting for home"],
     )
     vehicle.autopilot.modes.number = STABILIZE
-    assert arming.arm(vehicle, BY_MAVLINK, True) == (True, [])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, True) == (True, [])
 
 
 @pytest.mark.parametrize("mode", (RTL, LAND, BRAKE, AUTO, SMART_RTL))
 def test_modes_that_cannot_be_armed(vehicle, mode):
     vehicle.autopilot.modes.number = mode
     vehicle.autopilot.modes.mission_count = 2
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (False, [f"Arm: {TITLES[mode]} mode not armable"])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (False, [f"Arm: {TITLES[mode]} mode not armable"])
 
 
 def test_auto_can_be_armed_with_the_option(vehicle):
     vehicle.autopilot.modes.number = AUTO
     vehicle.autopilot.params.AUTO_OPTIONS = 1.0
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (False, ["Arm: Mode requires mission"])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (False, ["Arm: Mode requires mission"])
     vehicle.autopilot.modes.mission_count = 2
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (True, [])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (True, [])
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_throttle(vehicle, mode, throttle, ok):
     vehicle.autopilot.modes.number = mode
     vehicle.autopilot.modes.pilot.throttle = throttle
     texts = [] if ok else ["Arm: Throttle too high"]
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (ok, texts)
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (ok, texts)
 
 
 def set_fields(v, **fields):
@@ -135,26 +135,26 @@ def set_fields(v, **fields):
 )
 def test_other_checks(vehicle, fields, text):
     set_fields(vehicle, **fields)
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (False, [f"Arm: {text}"])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (False, [f"Arm: {text}"])
     assert codes(vehicle) == [ARMING_REFUSED]
-    assert arming.arm(vehicle, BY_MAVLINK, True)[0]
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, True)[0]
 
 
 def test_checks_can_be_switched_off(vehicle):
     booting(vehicle, STABILIZE, 12)
     vehicle.autopilot.params.ARMING_CHECK = 0.0
-    assert arming.arm(vehicle, BY_MAVLINK, False) == (True, [])
+    assert arming.arm(vehicle, ArmingMethod.MAVLINK, False) == (True, [])
 
 
 def test_arming_moves_home_here_unless_it_is_locked(vehicle):
     ap = vehicle.autopilot
     ap.estimate.pos = (3.0, 4.0, -1.0)
     ap.home.locked = 1
-    arming.arm(vehicle, BY_MAVLINK, False)
+    arming.arm(vehicle, ArmingMethod.MAVLINK, False)
     assert list(ap.home.pos) == [0.0, 0.0, 0.0]
-    arming.disarm(vehicle, BY_MAVLINK, 0)
+    arming.disarm(vehicle, ArmingMethod.MAVLINK, 0)
     ap.home.locked = 0
-    arming.arm(vehicle, BY_MAVLINK, False)
+    arming.arm(vehicle, ArmingMethod.MAVLINK, False)
     assert list(ap.home.pos) == [3.0, 4.0, -1.0]
     assert ap.home.alt == 585.0
     assert codes(vehicle) == [ARMED, DISARMED, ARMED]
@@ -162,7 +162,7 @@ def test_arming_moves_home_here_unless_it_is_locked(vehicle):
 
 def test_motors_wait_two_seconds(vehicle):
     ap = vehicle.autopilot
-    arming.arm(vehicle, BY_MAVLINK, False)
+    arming.arm(vehicle, ArmingMethod.MAVLINK, False)
     for seconds, waits in ((0.0, 1), (1.9, 1), (0.2, 0)):
         wait(vehicle, seconds)
         arming.follow_throttle(ap.arming, ap.modes, vehicle.time_us)
@@ -172,13 +172,13 @@ def test_motors_wait_two_seconds(vehicle):
 @pytest.mark.parametrize(
     ("mode", "landed", "method", "force", "done"),
     (
-        (GUIDED, 0, BY_MAVLINK, 0, 0),
-        (GUIDED, 0, BY_MAVLINK, 1, 1),
-        (GUIDED, 1, BY_MAVLINK, 0, 1),
-        (GUIDED, 0, BY_RUDDER, 0, 0),
-        (STABILIZE, 0, BY_RUDDER, 0, 1),
-        (STABILIZE, 0, BY_MAVLINK, 0, 0),
-        (GUIDED, 0, BY_CRASH, 0, 1),
+        (GUIDED, 0, ArmingMethod.MAVLINK, 0, 0),
+        (GUIDED, 0, ArmingMethod.MAVLINK, 1, 1),
+        (GUIDED, 1, ArmingMethod.MAVLINK, 0, 1),
+        (GUIDED, 0, ArmingMethod.RUDDER, 0, 0),
+        (STABILIZE, 0, ArmingMethod.RUDDER, 0, 1),
+        (STABILIZE, 0, ArmingMethod.MAVLINK, 0, 0),
+        (GUIDED, 0, ArmingMethod.CRASH, 0, 1),
     ),
 )
 def test_who_may_disarm(flying, mode, landed, method, force, done):
@@ -190,12 +190,12 @@ def test_who_may_disarm(flying, mode, landed, method, force, done):
 
 
 def test_disarming_what_is_disarmed_is_accepted_silently(vehicle):
-    assert arming.disarm(vehicle, BY_MAVLINK, 0) == 1
+    assert arming.disarm(vehicle, ArmingMethod.MAVLINK, 0) == 1
     assert codes(vehicle) == []
 
 
 def test_left_alone_it_disarms_after_the_delay(vehicle):
-    arming.arm(vehicle, BY_MAVLINK, False)
+    arming.arm(vehicle, ArmingMethod.MAVLINK, False)
     wait(vehicle, 9.9)
     arming.disarm_idle(vehicle)
     assert vehicle.autopilot.arming.armed == 1
@@ -208,7 +208,7 @@ def test_left_alone_it_disarms_after_the_delay(vehicle):
     "busy", ({"arming__landed": 0}, {"modes__pilot__throttle_zero": 0}, {"control__motors__spool_state": 3})
 )
 def test_the_delay_starts_again_while_it_is_busy(vehicle, busy):
-    arming.arm(vehicle, BY_MAVLINK, False)
+    arming.arm(vehicle, ArmingMethod.MAVLINK, False)
     set_fields(vehicle, **busy)
     wait(vehicle, 60.0)
     arming.disarm_idle(vehicle)
@@ -217,7 +217,7 @@ def test_the_delay_starts_again_while_it_is_busy(vehicle, busy):
 
 def test_auto_armed_follows_the_throttle(vehicle):
     ap = vehicle.autopilot
-    arming.arm(vehicle, BY_MAVLINK, False)
+    arming.arm(vehicle, ArmingMethod.MAVLINK, False)
     ap.modes.pilot.throttle_zero = 0
     arming.follow_throttle(ap.arming, ap.modes, vehicle.time_us)
     assert ap.arming.auto_armed == 1

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from sitl.autopilot import failsafe_checks, smart_rtl_path
-from sitl.autopilot.arming_checks import BY_RADIO_FAILSAFE
+from sitl.autopilot.arming_checks import ArmingMethod
 from sitl.autopilot.copter import failsafe, pilot
 from sitl.autopilot.copter.failsafe_actions import NO_WAY_BACK
 from sitl.autopilot.failsafe_checks import FAILSAFE
@@ -183,7 +183,7 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
     ("action", "mode"), ((failsafe.DO_SMART_RTL, RTL), (failsafe.DO_SMART_RTL_OR_LAND, LAND)), ids=("rtl", "land")
 )
 def test_without_a_path_smart_rtl_becomes_another_mode_and_that_is_told(flying, action, mode):
-    failsafe.act(flying, action, 3, BY_RADIO_FAILSAFE)
+    failsafe.act(flying, action, 3, ArmingMethod.RADIO_FAILSAFE)
     assert flying.autopilot.modes.number == mode
     assert codes(flying)[:2] == [MODE_REFUSED, NO_WAY_BACK]
 
@@ -191,7 +191,7 @@ def test_without_a_path_smart_rtl_becomes_another_mode_and_that_is_told(flying, 
 def test_rtl_without_position_becomes_a_landing_that_waits(flying):
     fly(flying, ALT_HOLD)
     flying.autopilot.estimate.position_ok = 0
-    failsafe.act(flying, failsafe.DO_RTL, 3, BY_RADIO_FAILSAFE)
+    failsafe.act(flying, failsafe.DO_RTL, 3, ArmingMethod.RADIO_FAILSAFE)
     assert flying.autopilot.modes.number == LAND
     assert flying.autopilot.modes.land.pause == 1
 

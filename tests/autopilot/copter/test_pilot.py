@@ -53,6 +53,18 @@ def send(v, *pulses):
         v.autopilot.rc.override_us[k] = v.time_us
 
 
+@pytest.mark.parametrize(("silent_s", "timeout", "there"), ((0.5, 1.0, True), (1.5, 1.0, False), (1.5, 2.0, True)))
+def test_a_receiver_is_there_until_its_frames_stop(vehicle, silent_s, timeout, there):
+    ap, sensors = vehicle.autopilot, vehicle.sensors
+    sensors.rc_count, sensors.rc_channels[:4] = 8, (1500, 1500, 1200, 1500)
+    sensors.rc_time_us = vehicle.time_us - round(silent_s * 1e6)
+    ap.rc.receiver_us = ap.rc.override_us[:] = 0
+    ap.rc.has_receiver = True
+    radio.receive(ap.rc, sensors, ap.params, vehicle.time_us, 1000, timeout)
+    assert ap.rc.receiver_ok == there
+    assert list(ap.rc.channels[:4]) == [1500, 1500, 1200, 1500]
+
+
 def test_overrides_last_three_seconds(vehicle):
     rc = vehicle.autopilot.rc
     send(vehicle, 1700, 1500, 1600)
@@ -176,7 +188,7 @@ def test_positions_of_the_mode_switch(pulse, position):
 
 @pytest.mark.parametrize(
     ("armed", "yaw", "rudder", "after"),
-    ((0, 1900, 2, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)),
+    ((0, 1900, 2, 1), (0, 1900, 1, 1), (0, 1100, 2, 0), (1, 1100, 2, 0), (1, 1100, 1, 1), (0, 1900, 0, 0)),
 )
 def test_yaw_stick_arms_and_disarms_after_two_seconds(vehicle, armed, yaw, rudder, after):
     ap = vehicle.autopilot

@@ -30,6 +30,7 @@ def test_the_circle_and_areas_may_have_another_one(horizontal: float, sideways: 
     [
         (2.0, 5.0, ""), (2.0, -1.0, "Invalid FENCE_MARGIN_XY value"), (-1.0, -1.0, "Invalid FENCE_MARGIN value"),
         (2.0, 31.0, "Circle FENCE_MARGIN is greater than FENCE_RADIUS"), (31.0, 5.0, ""),
+        (2.0, 0.5, ""), (0.5, 0.0, ""),
     ],
 )  # fmt: skip
 def test_what_arming_says_of_them(margin: float, horizontal: float, said: str) -> None:

@@ -69,7 +69,10 @@ def test_arming_check_0_skips_everything() -> None:
     rover = Rover(ARMING_CHECK=0.0)
     request(rover.v, GUIDED, 2)
     rover.set_estimate(False)
+    rover.sticks(throttle=1800)
+    rover.run(0.1)
     rover.arm()
+    assert rover.v.autopilot.arming.armed
 
 
 def test_a_driving_rover_is_disarmed_by_command_but_not_by_stick() -> None:
@@ -78,8 +81,11 @@ def test_a_driving_rover_is_disarmed_by_command_but_not_by_stick() -> None:
     rover.run(2.0)
     assert rover.speed > 1.0
     assert arming.disarm(rover.v, 0, 0) == 0
+    rover.v.autopilot.arming.auto_armed, rover.v.autopilot.arming.crash_ticks = True, 5
     assert arming.disarm(rover.v, 1, 0) == 1
     assert rover.texts()[-1] == "Throttle disarmed"
+    state = rover.v.autopilot.arming
+    assert (state.armed, state.auto_armed, state.landed, state.crash_ticks) == (False, False, True, 0)
 
 
 def test_steering_stick_arms_and_disarms_after_two_seconds() -> None:

@@ -83,6 +83,7 @@ def test_pilots_modes_are_not_watched() -> None:
 def test_a_crash_is_two_seconds_without_a_break_or_a_lean() -> None:
     arming, estimate = Arming(), Estimate()
     assert [crash.detect_crash(arming, estimate, 0.5, 0.0) for _ in range(20)] == [False] * 19 + [True]
+    assert arming.crash_ticks == 0, "the next one takes two seconds, too"
     crash.detect_crash(arming, estimate, 0.5, 0.0)
     estimate.vel = Vec3(0.1, 0.0, 0.0)
     assert not crash.detect_crash(arming, estimate, 0.5, 0.0)

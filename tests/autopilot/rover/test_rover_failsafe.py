@@ -32,6 +32,16 @@ def driving(**params: float) -> Rover:
     return rover
 
 
+@pytest.mark.parametrize(("place", "mode"), [(20.0, MANUAL), (40.0, HOLD)])
+def test_a_fence_is_watched_while_it_drives(place: float, mode: int) -> None:
+    rover = driving(FENCE_ENABLE=1.0, FENCE_TYPE=2.0, FENCE_RADIUS=30.0, FENCE_ACTION=2.0)
+    assert request(rover.v, MANUAL, 1) == 0
+    rover.place(place, 0.0)
+    rover.run(0.5)
+    assert rover.ap.modes.number == mode
+    assert (rover.ap.fence.breached != 0) == (mode == HOLD)
+
+
 def lose_radio(rover: Rover, seconds: float) -> None:
     rover.sticks(throttle=890)
     rover.run(seconds)

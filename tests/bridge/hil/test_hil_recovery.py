@@ -156,6 +156,7 @@ def test_an_autopilot_that_joins_in_mid_world_gets_ready_to_arm(beside) -> None:
     pilot = Pilot(Simulation(physics=address))
     pilot.boot()
     pilot.arm()
+    assert pilot.simulation.v.autopilot.arming.armed
     pilot.simulation.close()
 
 

@@ -42,6 +42,7 @@ def test_rovers_and_programs_that_run_already_are_refused():
 
 @pytest.mark.parametrize("name", ["erle_copter", "ardupilot_x"])
 def test_quadrotors_in_an_x_are_flown(name):
+    """The check raises for all others, as the next test shows."""
     airframe.check(load(name))
 
 

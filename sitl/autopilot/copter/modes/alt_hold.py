@@ -7,7 +7,7 @@ import math
 
 from ....core.kernels import law
 from ....core.scalars import constrain
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ...state import Arming, Estimate, Radio
 from .. import avoidance, pilot
 from ..control import altitude, altitude_start, attitude
@@ -35,7 +35,7 @@ def start(v: Vehicle) -> int:
     """Enter from the present vertical motion."""
     ap = v.autopilot
     start_vertical(ap.modes.takeoff, ap.control, ap.estimate, ap.params)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -10,9 +10,9 @@ from __future__ import annotations
 from ....core.algebra import horizontal
 from ....core.kernels import law
 from ....core.mavlink import MavSeverity
-from ...arming_checks import BY_MISSION_EXIT
+from ...arming_checks import ArmingMethod
 from ...events import Event, Events, emit
-from ...modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF, MODE_CHANGED, REASON_AUTO_RTL_EXIT
+from ...modes import MODE_CHANGED, ModeReason, ModeResult
 from ...navigation import state as kinds
 from ...navigation.command import check_condition, complete
 from ...navigation.state import COMPLETE, LAND, LOITER_TO_ALT, NONE, OUTWARD, PASSED_OVER, PAYLOAD_PLACE, RTL, TAKEOFF
@@ -62,10 +62,10 @@ def may_arm(p: Parameters, method: int) -> bool:
 def refusal(modes: Modes, arming: Arming) -> int:
     """ACCEPTED, or why not: armed it needs a mission, on the ground one that begins with a take-off."""
     if arming.armed and modes.mission_count < 2:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     if arming.armed and arming.landed and not modes.mission_takes_off:
-        return MISSING_TAKEOFF
-    return ACCEPTED
+        return ModeResult.MISSING_TAKEOFF
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -87,7 +87,7 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     cause = refusal(modes, ap.arming)
-    if cause != ACCEPTED:
+    if cause != ModeResult.ACCEPTED:
         return cause
     reset(modes.auto, modes.nav)
     guided.clear_limits(modes.guided)
@@ -96,7 +96,7 @@ def start(v: Vehicle) -> int:
     auto_yaw.set_default(modes.auto_yaw, p.WP, False, control.attitude, est)
     ground.set_waypoint_limits(control, p)
     ground.continue_position_control(control, est, p)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 def start_mission(auto: AutoState, arming: Arming) -> None:
@@ -168,8 +168,8 @@ def end_return(v: Vehicle) -> None:
     nav = modes.nav
     if modes.shown == AUTO_RTL and nav.mission_part == OUTWARD and nav.mission_state != COMPLETE:
         modes.shown = 0
-        modes.reason = REASON_AUTO_RTL_EXIT
-        emit(v.autopilot.events, v.time_us, MODE_CHANGED, float(AUTO), float(REASON_AUTO_RTL_EXIT))
+        modes.reason = ModeReason.AUTO_RTL_EXIT
+        emit(v.autopilot.events, v.time_us, MODE_CHANGED, float(AUTO), float(ModeReason.AUTO_RTL_EXIT))
 
 
 @law
@@ -207,7 +207,7 @@ def run_path(v: Vehicle, kind: int) -> bool:
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         if ap.arming.armed and ap.arming.landed and modes.nav.mission_state == COMPLETE:
-            ground.disarm(v, BY_MISSION_EXIT)
+            ground.disarm(v, ArmingMethod.MISSION_EXIT)
         return kind == kinds.DELAY and command.has_waited(modes.nav, v.time_us)
     if not command.follows_path(kind):
         ground.hold(modes.auto_yaw, control, est, p)

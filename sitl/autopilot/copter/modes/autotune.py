@@ -20,7 +20,7 @@ from ....core.scalars import PI, constrain, wrap_pi
 from ....core.vectors import Euler, Vec3
 from ...events import Row, ev
 from ...log_events import LogEvent
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...notes import EventNote, ParametersFound, Text
 from .. import pilot
 from ..control import attitude
@@ -157,17 +157,17 @@ def start(v: Vehicle) -> int:
     flies = ap.arming.armed and not ap.arming.landed and not modes.pilot.throttle_zero
     by_hand = from_mode in (STABILIZE, ALT_HOLD, LOITER, POSHOLD)
     if not by_hand or not flies:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     is_new = t.phase != PAUSED and not gains.has_found(t)
     if is_new and next_axis(int(ap.params.AUTOTUNE.AXES), 0) == gains.AXES:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     alt_hold.start_vertical(modes.takeoff, ap.control, ap.estimate, ap.params)
     t.holds_place = from_mode in (LOITER, POSHOLD) and ap.estimate.position_ok
     t.overridden_us = 0
     stay_here(v)
     if gains.has_found(t):
         gains.try_gains(v, True)
-        return ACCEPTED
+        return ModeResult.ACCEPTED
     gains.report(v, gains.STARTED, 0.0)
     if is_new:
         begin(v)
@@ -175,7 +175,7 @@ def start(v: Vehicle) -> int:
         t.phase = TUNING
         gains.remember(v)
         level_first(v)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.elementary import hypot
 from ....core.kernels import law
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ..control import altitude, altitude_start, attitude, position, position_start
 from ..control.spool import DesiredSpoolState
 from ..state import Vehicle
@@ -31,7 +31,7 @@ def start(v: Vehicle) -> int:
     down, up = max(SPEED_D, vel.z), max(SPEED_D, -vel.z)
     altitude_start.set_max_speed_accel_d(control.pos_d, p.PSC, down, up, DECELERATION)
     altitude_start.init_d(control, est, p)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -14,7 +14,7 @@ from ....core.elementary import atan2, sincos
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec3
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ..control import altitude, altitude_start, position_start
 from ..control.spool import DesiredSpoolState
 from ..control.state import DT
@@ -62,7 +62,7 @@ def start(v: Vehicle) -> int:
     circle.start(nav, Vec3(stop.x, stop.y, est.pos.z), est.yaw)
     apply(nav, state, p)
     auto_yaw.set_mode(ap.modes.auto_yaw, auto_yaw.CIRCLE, control.attitude, est)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -10,6 +10,7 @@ from math import trunc
 
 from ....core.kernels import law
 from ....core.vectors import Vec3
+from ...command_results import CommandResult
 from ..control import altitude_start, position_start
 from ..control.state import Control
 from ..parameters import Parameters
@@ -21,17 +22,6 @@ from .guided import GUIDED, GUIDED_NOGPS
 from .rtl import RTL
 from .state import Modes
 from .table import has_climb_stick
-
-OK = 0
-NOT_FINITE = 1  # NaN, infinite or so large that arithmetic with it would be
-WRONG_MODE = 2
-OUT_OF_RANGE = 3
-NOT_ARMED = 4
-ALREADY_FLYING = 5
-TOO_LOW = 6
-BEYOND_FENCE = 7
-NOT_ON_A_WAY = 8
-NO_GROUND = 9  # its height is above the ground, of which nothing is known
 
 LARGEST = 1e9
 """Metres, metres a second, radians beyond this are refused; what is on the globe is less."""
@@ -56,19 +46,19 @@ def take_off(ap: Autopilot, height: float) -> int:
     """MAV_CMD_NAV_TAKEOFF to ``height`` [m] above home."""
     mode = ap.modes.number
     if not is_usable(height):
-        return NOT_FINITE
+        return CommandResult.NOT_FINITE
     if not ap.arming.armed:
-        return NOT_ARMED
+        return CommandResult.NOT_ARMED
     if not ap.arming.landed and not (mode == GUIDED and guided.is_taking_off(ap.modes)):
-        return ALREADY_FLYING
+        return CommandResult.ALREADY_FLYING
     if mode != GUIDED and not has_climb_stick(mode):
-        return WRONG_MODE
+        return CommandResult.WRONG_MODE
     target_d = ap.home.pos.z - height
     if height <= trunc(100.0 * (ap.home.pos.z - ap.estimate.pos.z)) / 100.0:  # in centimetres, as ArduPilot has it
-        return TOO_LOW
+        return CommandResult.TOO_LOW
     if not ap.arming.landed:  # repeated in the climb: a client that missed the acknowledgement
         ap.modes.takeoff.target_d = target_d
-        return OK
+        return CommandResult.OK
     control, est, p = ap.control, ap.estimate, ap.params
     if mode == GUIDED:
         ap.modes.guided.submode = guided.TAKEOFF
@@ -77,26 +67,26 @@ def take_off(ap: Autopilot, height: float) -> int:
     else:
         takeoff.begin_user(ap.modes.takeoff, height, control, est, p)
     ap.arming.auto_armed = True
-    return OK
+    return CommandResult.OK
 
 
 def condition_yaw(ap: Autopilot, turn: Turn) -> int:
     """MAV_CMD_CONDITION_YAW: in modes that turn the nose by themselves, until the next one; nothing in others."""
     if not (is_usable(turn.angle) and is_usable(turn.rate)):
-        return NOT_FINITE
+        return CommandResult.NOT_FINITE
     if turn.rate < 0.0:
-        return OUT_OF_RANGE
+        return CommandResult.OUT_OF_RANGE
     start = ap.control.attitude.target_euler.yaw
     auto_yaw.turn_to(ap.modes.auto_yaw, turn, start, auto_yaw.slew_max(ap.params.ATC))
-    return OK
+    return CommandResult.OK
 
 
 def set_roi(ap: Autopilot, place: Vec3) -> int:
     """Keep the nose on a point, NED [m]."""
     if not is_usable_vector(place):
-        return NOT_FINITE
+        return CommandResult.NOT_FINITE
     auto_yaw.look_at(ap.modes.auto_yaw, place, ap.control.attitude, ap.estimate)
-    return OK
+    return CommandResult.OK
 
 
 def clear_roi(ap: Autopilot) -> int:
@@ -104,7 +94,7 @@ def clear_roi(ap: Autopilot) -> int:
     yaw = ap.modes.auto_yaw
     if yaw.mode == auto_yaw.ROI:
         auto_yaw.set_default(yaw, ap.params.WP, ap.modes.number == RTL, ap.control.attitude, ap.estimate)
-    return OK
+    return CommandResult.OK
 
 
 def change_speed(control: Control, p: Parameters, kind: int, speed: float) -> int:
@@ -112,9 +102,9 @@ def change_speed(control: Control, p: Parameters, kind: int, speed: float) -> in
     kind of set-point changes.
     """
     if not is_usable(speed):
-        return NOT_FINITE
+        return CommandResult.NOT_FINITE
     if speed <= 0.0:
-        return OUT_OF_RANGE
+        return CommandResult.OUT_OF_RANGE
     path = control.pos_d
     if kind == HORIZONTAL:
         position_start.set_max_speed_accel_ne(control.pos_ne, p, speed, control.pos_ne.accel_max)
@@ -123,8 +113,8 @@ def change_speed(control: Control, p: Parameters, kind: int, speed: float) -> in
     elif kind == DESCENT:
         altitude_start.set_max_speed_accel_d(path, p.PSC, speed, path.speed_up, path.accel_max)
     else:
-        return OUT_OF_RANGE
-    return OK
+        return CommandResult.OUT_OF_RANGE
+    return CommandResult.OK
 
 
 def set_paused(modes: Modes, paused: bool) -> int:
@@ -132,9 +122,9 @@ def set_paused(modes: Modes, paused: bool) -> int:
     if modes.number in (GUIDED, GUIDED_NOGPS):
         modes.guided.paused = paused
     elif modes.number == AUTO and paused and not auto.is_on_a_way(modes.nav):
-        return NOT_ON_A_WAY
+        return CommandResult.NOT_ON_A_WAY
     elif modes.number == AUTO:
         modes.nav.paused = paused
     else:
-        return WRONG_MODE
-    return OK
+        return CommandResult.WRONG_MODE
+    return CommandResult.OK

@@ -14,7 +14,7 @@ from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Euler, Quat, Vec3
-from ...modes import ACCEPTED, INIT_FAILED, REASON_FLIP_COMPLETE, ask
+from ...modes import ModeReason, ModeResult, ask
 from .. import pilot
 from ..control import attitude, throttle_mix
 from ..control.motors import hover_throttle
@@ -64,17 +64,17 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     modes, est = ap.modes, ap.estimate
     if modes.number not in (STABILIZE, ACRO, ALT_HOLD):
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     throttle_down = modes.number != ALT_HOLD and modes.pilot.throttle_zero
     lean = euler_of(est.q)
     if throttle_down or not ap.arming.armed or ap.arming.landed or abs(lean.roll) >= _LEAN_MAX:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     flip = modes.flip
     choose(flip, modes.pilot)
     flip.phase = BEGINNING
     flip.start_us = v.time_us
     flip.level = quat_from_euler(Euler(constrain(lean.roll, -_LEAN_MAX, _LEAN_MAX), lean.pitch, lean.yaw))
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -114,7 +114,7 @@ def run(v: Vehicle) -> None:
     pushed = abs(sticks.roll) >= _STICK_ENDS or abs(sticks.pitch) >= _STICK_ENDS
     late = v.time_us - flip.start_us > _TIME_MAX_US
     if advance(flip, est.q) or pushed or late or not ap.arming.armed or ap.arming.landed:
-        ask(modes, modes.previous, REASON_FLIP_COMPLETE)
+        ask(modes, modes.previous, ModeReason.FLIP_COMPLETE)
     control.motors.desired_spool = (
         DesiredSpoolState.THROTTLE_UNLIMITED if ap.arming.armed else DesiredSpoolState.SHUT_DOWN
     )

@@ -14,7 +14,7 @@ from ....core.algebra import ZERO2, limit_length, norm2, turned
 from ....core.kernels import law
 from ....core.scalars import TWO_PI, constrain
 from ....core.vectors import Vec2
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...optical_flow import OpticalFlow, is_healthy
 from ...state import Estimate
 from .. import pilot
@@ -45,12 +45,12 @@ def start(v: Vehicle) -> int:
     """Enter level, with a sensor that works."""
     ap = v.autopilot
     if not is_healthy(ap.flow, v.time_us):
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     state = ap.modes.flowhold
     state.shown, state.against_wind = ZERO2, ZERO2
     state.braking, state.brake_us = True, v.time_us
     alt_hold.start_vertical(ap.modes.takeoff, ap.control, ap.estimate, ap.params)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

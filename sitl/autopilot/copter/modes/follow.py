@@ -11,7 +11,7 @@ from ... import follow as lead_motion
 from ...control.shaping import Motion, Motion2
 from ...events import emit
 from ...follow import FOLLOW_OFF, FOLLOW_OFFSET
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...state import FollowState
 from ..control import altitude, position
 from ..control.spool import DesiredSpoolState
@@ -33,11 +33,11 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     if ap.params.FOLL.ENABLE == 0.0:
         emit(ap.events, v.time_us, FOLLOW_OFF, 0.0, 0.0)
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     lead_motion.begin(ap.modes.follow)
     auto_yaw.set_default(ap.modes.auto_yaw, ap.params.WP, False, ap.control.attitude, ap.estimate)
     ground.start_position_control(ap.control, ap.estimate, ap.params)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

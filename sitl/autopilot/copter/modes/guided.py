@@ -27,10 +27,10 @@ from ....core.algebra import (
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Euler, Vec2, Vec3
-from ...arming_checks import BY_RUDDER
+from ...arming_checks import ArmingMethod
 from ...control.shaping import Motion, Motion2
 from ...events import Event, Events, emit
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ...state import Arming, Estimate
 from ...terrain.ground import lose_ground
 from .. import avoidance, terrain
@@ -71,7 +71,7 @@ def start(v: Vehicle) -> int:
     start_submode(modes.guided, VELOCITY_ACCEL, control, est, p)
     modes.guided.paused = False
     modes.guided.update_us = v.time_us
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -297,7 +297,7 @@ def is_taking_off(modes: Modes) -> bool:
 @law
 def may_arm(p: Parameters, method: int) -> bool:
     """Whether it may be armed: by stick when GUID_OPTIONS says so."""
-    return method != BY_RUDDER or (int(p.GUID.OPTIONS) & _ARM_BY_STICK) != 0
+    return method != ArmingMethod.RUDDER or (int(p.GUID.OPTIONS) & _ARM_BY_STICK) != 0
 
 
 MODE = CopterMode(

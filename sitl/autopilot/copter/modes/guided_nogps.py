@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ..state import Vehicle
 from . import guided
 from .guided import GUIDED_NOGPS
@@ -21,7 +21,7 @@ def start(v: Vehicle) -> int:
     state.use_thrust = False
     guided.level_off(state, ap.control, ap.estimate, ap.params)
     state.update_us = v.time_us
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

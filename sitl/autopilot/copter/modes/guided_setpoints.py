@@ -13,15 +13,16 @@ from ....core.algebra import quat_norm_squared
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Quat, Vec3
+from ...command_results import CommandResult
 from ...fence.checks import allows
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from .. import terrain
 from ..control.state import AltitudeState
 from ..state import Autopilot, Vehicle
 from ..terrain import ground_below
 from . import auto_yaw, guided
 from .auto import is_guided
-from .commands import BEYOND_FENCE, NO_GROUND, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE, is_usable, is_usable_vector
+from .commands import is_usable, is_usable_vector
 from .guided import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
 from .state import GuidedState, Modes
 
@@ -46,8 +47,8 @@ NO_YAW = YawSetpoint(False, 0.0, False, 0.0, False)
 def refusal(modes: Modes, usable: bool, yaw: YawSetpoint) -> int:
     """OK, or why a set-point is not taken; ``usable``: its numbers are."""
     if not (usable and is_usable(yaw.angle) and is_usable(yaw.rate)):
-        return NOT_FINITE
-    return OK if is_guided(modes) else WRONG_MODE
+        return CommandResult.NOT_FINITE
+    return CommandResult.OK if is_guided(modes) else CommandResult.WRONG_MODE
 
 
 @law
@@ -88,9 +89,9 @@ def begin(v: Vehicle, submode: int) -> GuidedState:
 def set_position(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
     """Fly to a point, NED [m] from the origin, and stay."""
     code = refusal(v.autopilot.modes, is_usable_vector(pos), yaw)
-    if code == OK and is_beyond_fence(v.autopilot, pos):
-        code = BEYOND_FENCE
-    if code == OK:
+    if code == CommandResult.OK and is_beyond_fence(v.autopilot, pos):
+        code = CommandResult.BEYOND_FENCE
+    if code == CommandResult.OK:
         begin(v, POSITION).pos = pos
         set_yaw(v.autopilot, yaw)
     return code
@@ -101,11 +102,11 @@ def set_position_over_ground(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
     """Fly to a point and stay, its height above the ground: NE from the origin, -height [m]."""
     nav, ground = v.autopilot.modes.nav, ground_below(v)
     code = refusal(v.autopilot.modes, is_usable_vector(pos), yaw)
-    if code == OK and not ground.is_known:
-        code = NO_GROUND
-    if code == OK and is_beyond_fence(v.autopilot, Vec3(pos.x, pos.y, pos.z + ground.d)):
-        code = BEYOND_FENCE
-    if code == OK:
+    if code == CommandResult.OK and not ground.is_known:
+        code = CommandResult.NO_GROUND
+    if code == CommandResult.OK and is_beyond_fence(v.autopilot, Vec3(pos.x, pos.y, pos.z + ground.d)):
+        code = CommandResult.BEYOND_FENCE
+    if code == CommandResult.OK:
         follows = nav.over_ground
         begin(v, POSITION).pos = pos
         if follows:
@@ -120,7 +121,7 @@ def set_position_over_ground(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
 def set_velocity(v: Vehicle, vel: Vec3, acc: Vec3, yaw: YawSetpoint) -> int:
     """Fly a velocity [m/s] that changes with an acceleration [m/s^2], NED."""
     code = refusal(v.autopilot.modes, is_usable_vector(vel) and is_usable_vector(acc), yaw)
-    if code == OK:
+    if code == CommandResult.OK:
         target = begin(v, VELOCITY_ACCEL)
         target.vel, target.acc = vel, acc
         set_yaw(v.autopilot, yaw)
@@ -131,7 +132,7 @@ def set_velocity(v: Vehicle, vel: Vec3, acc: Vec3, yaw: YawSetpoint) -> int:
 def set_accel(v: Vehicle, acc: Vec3, yaw: YawSetpoint) -> int:
     """Fly an acceleration, NED [m/s^2]."""
     code = refusal(v.autopilot.modes, is_usable_vector(acc), yaw)
-    if code == OK:
+    if code == CommandResult.OK:
         begin(v, ACCEL).acc = acc
         set_yaw(v.autopilot, yaw)
     return code
@@ -142,9 +143,9 @@ def set_pos_vel_accel(v: Vehicle, pos: Vec3, vel: Vec3, acc: Vec3, yaw: YawSetpo
     """Follow a point (NED [m]) that moves with a velocity [m/s] and an acceleration [m/s^2]."""
     usable = is_usable_vector(pos) and is_usable_vector(vel) and is_usable_vector(acc)
     code = refusal(v.autopilot.modes, usable, yaw)
-    if code == OK and is_beyond_fence(v.autopilot, pos):
-        code = BEYOND_FENCE
-    if code == OK:
+    if code == CommandResult.OK and is_beyond_fence(v.autopilot, pos):
+        code = CommandResult.BEYOND_FENCE
+    if code == CommandResult.OK:
         target = begin(v, POS_VEL_ACCEL)
         target.pos, target.vel, target.acc = pos, vel, acc
         set_yaw(v.autopilot, yaw)
@@ -159,13 +160,13 @@ def set_attitude(v: Vehicle, use_attitude: bool, q: Quat, rates: Vec3, thrust: f
     GUID_OPTIONS bit 8 the thrust.
     """
     ap = v.autopilot
-    code = OK if takes_attitudes(ap.modes) else WRONG_MODE
+    code = CommandResult.OK if takes_attitudes(ap.modes) else CommandResult.WRONG_MODE
     if not (is_usable_vector(rates) and is_usable(thrust)):
-        code = NOT_FINITE
+        code = CommandResult.NOT_FINITE
     size = math.sqrt(quat_norm_squared(q)) if use_attitude else 1.0
-    if code == OK and not 0.5 <= size <= 2.0:
-        code = OUT_OF_RANGE if size == size else NOT_FINITE
-    if code != OK:
+    if code == CommandResult.OK and not 0.5 <= size <= 2.0:
+        code = CommandResult.OUT_OF_RANGE if size == size else CommandResult.NOT_FINITE
+    if code != CommandResult.OK:
         return code
     target = begin(v, ANGLE)
     target.use_attitude = use_attitude
@@ -194,5 +195,5 @@ def climb_of_thrust(thrust: float, limits: AltitudeState) -> float:
 def stop(v: Vehicle) -> int:
     """Come to a stop and hold, as when the mode is entered; a pause ends."""
     if not is_guided(v.autopilot.modes):
-        return WRONG_MODE
-    return OK if guided.start(v) == ACCEPTED else WRONG_MODE
+        return CommandResult.WRONG_MODE
+    return CommandResult.OK if guided.start(v) == ModeResult.ACCEPTED else CommandResult.WRONG_MODE

@@ -8,8 +8,8 @@ where one is seen (PLND_*).
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...arming_checks import BY_LANDING
-from ...modes import ACCEPTED, REASON_THROTTLE_LAND_ESCAPE, ask
+from ...arming_checks import ArmingMethod
+from ...modes import ModeReason, ModeResult, ask
 from ..control.spool import DesiredSpoolState, SpoolState
 from ..parameters.flight import Pilot
 from ..state import Vehicle
@@ -36,7 +36,7 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     descent.begin(ap.modes, v.time_us, ap.control, ap.estimate, ap.params)
     ap.modes.land.with_position = ap.estimate.position_ok
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -53,7 +53,7 @@ def run(v: Vehicle) -> None:
     control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
     height = height_over_ground(v)
     if is_cancelled(modes.pilot, p.PILOT):
-        ask(modes, LOITER if est.position_ok else ALT_HOLD, REASON_THROTTLE_LAND_ESCAPE)
+        ask(modes, LOITER if est.position_ok else ALT_HOLD, ModeReason.THROTTLE_LAND_ESCAPE)
     elif modes.land.with_position:
         precision_land.descend(v)
     else:
@@ -74,7 +74,7 @@ def finish(v: Vehicle) -> None:
     """Disarm when landed and the motors have come down to idle."""
     ap = v.autopilot
     if ap.arming.landed and ap.control.motors.spool_state == SpoolState.GROUND_IDLE:
-        ground.disarm(v, BY_LANDING)
+        ground.disarm(v, ArmingMethod.LANDING)
 
 
 @law

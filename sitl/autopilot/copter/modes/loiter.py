@@ -19,7 +19,7 @@ from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Euler, Vec2
 from ...avoidance.limit import is_active
 from ...control.shaping import Motion2, shape_angle, sqrt_controller
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ...state import Estimate
 from .. import avoidance, pilot
 from ..control import attitude, position, position_start
@@ -88,7 +88,7 @@ def start(v: Vehicle) -> int:
     start_prediction(ap.modes.loiter, control.attitude.target_euler, est.yaw)
     ap.modes.loiter.brake_us = v.time_us
     alt_hold.start_vertical(ap.modes.takeoff, control, est, p)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -15,7 +15,7 @@ from ....core.elementary import atan, cos, sincos
 from ....core.kernels import law
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ...state import Estimate
 from .. import pilot
 from ..control import attitude, position, position_start
@@ -119,7 +119,7 @@ def start(v: Vehicle) -> int:
     if not position_start.is_active_ne(control):
         position_start.init_ne(control, est, p)
     alt_hold.start_vertical(ap.modes.takeoff, control, est, p)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

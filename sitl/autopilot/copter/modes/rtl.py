@@ -13,7 +13,7 @@ from ... import rally
 from ...control.shaping import Motion
 from ...events import Events, emit
 from ...fence.state import MAX_ALT
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...navigation import path
 from ...state import Estimate
 from ...terrain.state import RTL_WITHOUT, TERRAIN_DID
@@ -50,9 +50,9 @@ _NO_PILOT_YAW = 4
 def start(v: Vehicle) -> int:
     """Enter; armed it needs a home."""
     if v.autopilot.arming.armed and not v.autopilot.home.is_set:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     begin(v)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -11,24 +11,7 @@ from ... import modes as all_modes
 from ...events import emit, emit_and_return
 from ...fence.checks import begin_recovery, keeps_mode
 from ...mission.returning import RETURN_ACTIVE, RETURN_WANTED
-from ...modes import (
-    ACCEPTED,
-    GCS_BLOCKED,
-    IN_FENCE_RECOVERY,
-    INIT_FAILED,
-    MISSING_TAKEOFF,
-    MODE_CHANGED,
-    NEEDS_ALTITUDE,
-    NO_LANDING,
-    NO_PATH,
-    NO_RADIO,
-    NO_RETURN,
-    NO_SUCH_MODE,
-    REQUIRES_POSITION,
-    THROTTLE_TOO_HIGH,
-    enter,
-    shown,
-)
+from ...modes import MODE_CHANGED, ModeResult, enter, shown
 from ...navigation.state import BEST, BY_LANDING, BY_PATH, LANDING, OUTWARD
 from ...notes import Text
 from ...state import Arming, Estimate
@@ -42,18 +25,18 @@ from .drift import DRIFT
 from .state import Modes
 from .table import TITLES, has_manual_throttle, is_known, requires_pilot, requires_position, start
 
-_CAUSES = {
-    INIT_FAILED: "init failed",
-    REQUIRES_POSITION: "requires position",
-    THROTTLE_TOO_HIGH: "throttle too high",
-    NEEDS_ALTITUDE: "need alt estimate",
-    MISSING_TAKEOFF: "init failed",
-    IN_FENCE_RECOVERY: "in fence recovery",
-    NO_RADIO: "in RC failsafe",
-    GCS_BLOCKED: "GCS entry disabled (FLTMODE_GCSBLOCK)",
-    NO_RETURN: "No return path or landing sequence found",
-    NO_PATH: "No return path found",
-    NO_LANDING: "No landing sequence found",
+_CAUSES: dict[int, str] = {
+    ModeResult.INIT_FAILED: "init failed",
+    ModeResult.REQUIRES_POSITION: "requires position",
+    ModeResult.THROTTLE_TOO_HIGH: "throttle too high",
+    ModeResult.NEEDS_ALTITUDE: "need alt estimate",
+    ModeResult.MISSING_TAKEOFF: "init failed",
+    ModeResult.IN_FENCE_RECOVERY: "in fence recovery",
+    ModeResult.NO_RADIO: "in RC failsafe",
+    ModeResult.GCS_BLOCKED: "GCS entry disabled (FLTMODE_GCSBLOCK)",
+    ModeResult.NO_RETURN: "No return path or landing sequence found",
+    ModeResult.NO_PATH: "No return path found",
+    ModeResult.NO_LANDING: "No landing sequence found",
 }
 
 
@@ -61,19 +44,19 @@ _CAUSES = {
 def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Parameters) -> int:
     """ACCEPTED, or why the mode cannot be entered, its own conditions aside. Disarmed any mode may be."""
     if not is_known(number):
-        return NO_SUCH_MODE
+        return ModeResult.NO_SUCH_MODE
     if not arming.armed:
-        return ACCEPTED
+        return ModeResult.ACCEPTED
     manual_now = has_manual_throttle(modes.number)
     by_stick = has_manual_throttle(number) or number == DRIFT
     if arming.landed and by_stick and not manual_now:
         if stabilize.throttle(modes.pilot, p) > 0.5 * hover_throttle(p.MOT):
-            return THROTTLE_TOO_HIGH
+            return ModeResult.THROTTLE_TOO_HIGH
     if requires_position(number) and not estimate.position_ok:
-        return REQUIRES_POSITION
+        return ModeResult.REQUIRES_POSITION
     if manual_now and not has_manual_throttle(number) and not estimate.attitude_ok:
-        return NEEDS_ALTITUDE
-    return ACCEPTED
+        return ModeResult.NEEDS_ALTITUDE
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -87,7 +70,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
         return go_back(v, BEST, reason)
     if number == shown(v.autopilot.modes):
         v.autopilot.modes.reason = reason
-        return ACCEPTED
+        return ModeResult.ACCEPTED
     return change(v, number, reason)
 
 
@@ -99,14 +82,14 @@ def change(v: Vehicle, number: int, reason: int) -> int:
     pending, over_ground = modes.nav.request_pending, modes.nav.over_ground
     cause = refusal(number, modes, ap.arming, ap.estimate, ap.params)
     if ap.arming.armed and not ap.arming.landed and keeps_mode(ap.fence, modes.reason, ap.params.FENCE):
-        cause = IN_FENCE_RECOVERY
-    if cause == ACCEPTED and modes.failsafe.radio and requires_pilot(number):
-        cause = NO_RADIO
-    if cause == ACCEPTED:
+        cause = ModeResult.IN_FENCE_RECOVERY
+    if cause == ModeResult.ACCEPTED and modes.failsafe.radio and requires_pilot(number):
+        cause = ModeResult.NO_RADIO
+    if cause == ModeResult.ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         modes.nav.over_ground = False
         cause = start(number, v)
-    if cause != ACCEPTED:
+    if cause != ModeResult.ACCEPTED:
         modes.nav.request_pending, modes.nav.over_ground = pending, over_ground
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
@@ -128,17 +111,21 @@ def go_back(v: Vehicle, way: int, reason: int) -> int:
     modes = ap.modes
     flies_mission = modes.number == AUTO
     if way == BEST and modes.shown == AUTO_RTL:
-        return ACCEPTED
+        return ModeResult.ACCEPTED
     if way != BY_LANDING and modes.nav.mission_part != OUTWARD:
         emit(ap.events, v.time_us, RETURN_ACTIVE, float(modes.nav.mission_part), 0.0)
     elif may_go_back(modes, way):
         emit_and_return(ap.events, v.time_us, RETURN_WANTED, float(way), 1.0 if flies_mission else 0.0)
     else:
-        cause = NO_LANDING if way == BY_LANDING else NO_PATH if way == BY_PATH else NO_RETURN
+        cause: int = ModeResult.NO_RETURN
+        if way == BY_LANDING:
+            cause = ModeResult.NO_LANDING
+        elif way == BY_PATH:
+            cause = ModeResult.NO_PATH
         emit(ap.events, v.time_us, MODE_REFUSED, float(AUTO_RTL), float(cause))
         return cause
-    cause = ACCEPTED if flies_mission else change(v, AUTO, reason)
-    if cause == ACCEPTED:
+    cause = ModeResult.ACCEPTED if flies_mission else change(v, AUTO, reason)
+    if cause == ModeResult.ACCEPTED:
         if modes.nav.mission_part == OUTWARD:
             modes.nav.mission_part = LANDING  # until the shell, at the end of this tick, has looked for the part
         modes.shown = AUTO_RTL

@@ -10,7 +10,7 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import smart_rtl_path
 from ...events import Events
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...navigation.path import request_leg, request_legs
 from ...state import PathState
 from ..navigation import waypoint
@@ -50,7 +50,7 @@ def start(v: Vehicle) -> int:
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     nav = modes.nav
     if not modes.path.active or modes.path.points == 0:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     waypoint.stop(nav)
     nav.speed_ne = nav.speed_up = nav.speed_down = 0.0
     ground.set_waypoint_limits(control, p)
@@ -58,7 +58,7 @@ def start(v: Vehicle) -> int:
     modes.rtl.state = CLEAN_UP
     modes.rtl.descent_d = ap.home.pos.z - p.RTL.ALT_FINAL * 0.01
     auto_yaw.set_default(modes.auto_yaw, p.WP, True, control.attitude, est)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

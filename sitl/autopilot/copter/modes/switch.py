@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from ....core.kernels import law
 from ... import aux_switch
-from ...arming_checks import BY_RUDDER
+from ...arming_checks import ArmingMethod
 from ...mode_switch import is_rudder_held, moved_to, rudder_command
-from ...modes import ACCEPTED, REASON_RC
+from ...modes import ModeReason, ModeResult
 from .. import arming
 from ..state import Vehicle
 from . import simple
@@ -21,7 +21,7 @@ def read_switches(v: Vehicle) -> None:
     if ap.modes.failsafe.radio:
         return
     now = moved_to(ap.modes.pilot, ap.rc, int(ap.params.FLTMODE_CH), v.time_us)
-    if now >= 0 and request(v, int(ap.params.FLTMODE[now]), REASON_RC) == ACCEPTED:
+    if now >= 0 and request(v, int(ap.params.FLTMODE[now]), ModeReason.RC) == ModeResult.ACCEPTED:
         simple.follow_mode_switch(v, now)
     aux_switch.watch(ap.rc, ap.arming, ap.events, v.time_us, ap.params)
 
@@ -39,6 +39,6 @@ def read_rudder(v: Vehicle) -> None:
     if is_rudder_held(pilot, command, v.time_us):
         pilot.rudder_done = True
         if command > 0:
-            arming.try_arm(v, BY_RUDDER, False)
+            arming.try_arm(v, ArmingMethod.RUDDER, False)
         else:
-            arming.disarm(v, BY_RUDDER, False)
+            arming.disarm(v, ArmingMethod.RUDDER, False)

@@ -19,7 +19,7 @@ from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion2
 from ...events import Event, Row, emit
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...notes import Text
 from .. import pilot
 from ..control import altitude, attitude, position, throttle_mix
@@ -187,14 +187,14 @@ def start(v: Vehicle) -> int:
     why = refusal(v, axis)
     if why != 0:
         report(v, why, 0.0)
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     state.time = 0.0
     state.testing = True
     state.holds_place = POSITION_RIGHT <= axis <= SPEED_FORWARD
     state.place = ap.control.pos_ne.pos_desired
     state.vel = Vec2(0.0, 0.0)
     report(v, STARTED, float(axis))
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -17,7 +17,7 @@ from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion
 from ...events import Event, emit
-from ...modes import ACCEPTED, INIT_FAILED, REASON_THROW_COMPLETE, ask
+from ...modes import ModeReason, ModeResult, ask
 from ...state import Estimate
 from ..control import altitude, altitude_start, attitude, position, position_start, throttle_mix
 from ..control.spool import DesiredSpoolState, SpoolState
@@ -73,11 +73,11 @@ def start(v: Vehicle) -> int:
     """Enter, disarmed."""
     ap = v.autopilot
     if ap.arming.armed:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     ap.modes.throw.stage = DISARMED
     ap.modes.throw.released_us = 0
     ap.modes.throw.passed_on = False
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -191,7 +191,7 @@ def pass_on(v: Vehicle) -> None:
         state.passed_on = True
         number = int(ap.params.THROW.NEXTMODE)
         if number in NEXT_MODES:
-            ask(ap.modes, number, REASON_THROW_COMPLETE)
+            ask(ap.modes, number, ModeReason.THROW_COMPLETE)
 
 
 @law

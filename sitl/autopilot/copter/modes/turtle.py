@@ -6,7 +6,7 @@ The simulated motors have no such controllers, as in ArduPilot's own simulator."
 from __future__ import annotations
 
 from ....core.kernels import law
-from ...modes import INIT_FAILED
+from ...modes import ModeResult
 from ..state import Vehicle
 from . import stabilize
 from .mode import CopterMode, never_arms
@@ -17,7 +17,7 @@ TURTLE = 28
 @law
 def start(v: Vehicle) -> int:
     """It cannot be entered."""
-    return INIT_FAILED
+    return ModeResult.INIT_FAILED
 
 
 @law

@@ -8,7 +8,7 @@ from ....core.records import Records
 from ... import battery, home, optical_flow, visual_odometry
 from ...avoidance import bendy_ruler, proximity
 from ...events import emit_and_return
-from ...modes import REASON_INITIALISED, take_asked
+from ...modes import ModeReason, take_asked
 from ...navigation.path import areas_of, watch_detour
 from ...navigation.state import DETOUR_REQUEST, GO_ON, LEG_ENDING
 from ...radio import RC_TICKS
@@ -54,7 +54,7 @@ def init(v: Vehicle) -> None:
     number = int(ap.params.INITIAL_MODE)
     ap.modes.number = number if table.is_known(number) else STABILIZE
     ap.modes.previous = ap.modes.number
-    ap.modes.reason = REASON_INITIALISED
+    ap.modes.reason = ModeReason.INITIALISED
     ap.arming.landed = True
     ap.arming.landed_maybe = True
     battery.power_on(ap.battery, ap.params.BATT)

@@ -13,7 +13,7 @@ from ....core.algebra import horizontal, norm2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
-from ...modes import ACCEPTED, NO_MISSION, REASON_MISSION_END, ask
+from ...modes import ModeReason, ModeResult, ask
 from ...navigation import command
 from ...navigation import state as kinds
 from .. import pilot
@@ -44,7 +44,7 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     modes, auto = ap.modes, ap.modes.auto
     if modes.mission_count < 2:
-        return NO_MISSION
+        return ModeResult.NO_MISSION
     waypoint.start(modes.nav, ap.control.position, ap.params)
     modes.guided.limit_us = 0
     modes.guided.limit_distance = 0.0
@@ -52,7 +52,7 @@ def start(v: Vehicle) -> int:
     modes.nav.command_kind = kinds.NONE
     auto.submode = STOPPED
     auto.complete = False
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -79,7 +79,7 @@ def begin(v: Vehicle) -> None:
     nav.completed = False
     nav.since_us = v.time_us if nav.command_kind == kinds.DELAY else 0
     auto.submode = first_submode(nav.command_kind)
-    cause = ACCEPTED
+    cause: int = ModeResult.ACCEPTED
     if auto.submode == CIRCLING:
         cause = circle.begin(v, circle.circuit_around(horizontal(nav.target), nav.circle_radius, ap.estimate))
     elif auto.submode == RETURNING:
@@ -89,7 +89,7 @@ def begin(v: Vehicle) -> None:
         guided.begin_limits(ap.modes.guided, v.time_us, horizontal(ap.estimate.pos))
     elif auto.submode == TURNING:
         begin_turn(auto, nav, ap.params.WP.SPEED)
-    if cause != ACCEPTED:
+    if cause != ModeResult.ACCEPTED:
         auto.submode = STOPPED
 
 
@@ -112,7 +112,7 @@ def run(v: Vehicle) -> None:
         begin(v)
     if nav.mission_state == kinds.COMPLETE and not auto.complete:
         finish(ap.modes, ap.params.MIS.DONE_BEHAVE)
-        if ap.params.MIS.DONE_BEHAVE == LOITER_WHEN_DONE and loiter.start(v) == ACCEPTED:
+        if ap.params.MIS.DONE_BEHAVE == LOITER_WHEN_DONE and loiter.start(v) == ModeResult.ACCEPTED:
             auto.submode = LOITERING
     run_command(v)
     if has_arrived(nav):
@@ -187,7 +187,7 @@ def finish(modes: Modes, wanted: float) -> None:
     modes.auto.complete = True
     modes.auto.submode = STOPPED
     if wanted in (ACRO_WHEN_DONE, MANUAL_WHEN_DONE):
-        ask(modes, ACRO if wanted == ACRO_WHEN_DONE else MANUAL, REASON_MISSION_END)
+        ask(modes, ACRO if wanted == ACRO_WHEN_DONE else MANUAL, ModeReason.MISSION_END)
 
 
 def change_speed(v: Vehicle, wanted: float) -> bool:

@@ -18,7 +18,7 @@ from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
 from ...control.shaping import Motion2
 from ...events import Event, Events, emit
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...state import Estimate
 from ..control import position, speed
 from ..control.state import DT, PositionState
@@ -117,11 +117,11 @@ def begin(v: Vehicle, wanted: Circuit) -> int:
     """Drive to a circle and along it. ACCEPTED, or INIT_FAILED without an origin."""
     ap = v.autopilot
     if not ap.estimate.origin_set:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     set_up(ap.modes.circle, wanted, ap.events, v.time_us, ap.params)
     set_limits(ap.control.position, ap.modes.circle, ap.params)
     position.init(ap.control.position, ap.estimate)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -12,7 +12,7 @@ from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...events import Event, emit
 from ...landing_target.estimator import target_place
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ..control import position, speed
 from ..control.steering import lat_accel_max
 from ..parameters import Parameters
@@ -50,17 +50,17 @@ def start(v: Vehicle) -> int:
     p, control = ap.params, ap.control
     if p.PLND.ENABLED == 0.0 or not ap.landing_target.acquired:
         emit(ap.events, v.time_us, DOCK_DID, float(NO_TARGET), 0.0)
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     if p.DOCK.HDG_CORR_EN != 0.0 and p.DOCK.DIR < 0.0:
         emit(ap.events, v.time_us, DOCK_DID, float(NO_DIRECTION), 0.0)
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     accel = p.ATC.ACCEL_MAX
     speed_max = p.DOCK.SPEED if p.DOCK.SPEED > 0.0 else p.WP.SPEED
     position.set_limits(control.position, speed_max, accel, lat_accel_max(p.ATC), accel)
     position.init(control.position, ap.estimate)
     control.position.reversed = int(p.PLND.ORIENT) == BACK
     ap.modes.dock.done = False
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -10,7 +10,7 @@ from ....core.vectors import Vec2
 from ... import follow as lead_motion
 from ...events import emit
 from ...follow import FOLLOW_OFF, FOLLOW_OFFSET
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from .. import pilot
 from ..control import speed
 from ..control.state import DT
@@ -27,9 +27,9 @@ def start(v: Vehicle) -> int:
     ap = v.autopilot
     if ap.params.FOLL.ENABLE == 0.0:
         emit(ap.events, v.time_us, FOLLOW_OFF, 0.0, 0.0)
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     lead_motion.begin(ap.modes.follow)
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

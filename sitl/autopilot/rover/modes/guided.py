@@ -12,7 +12,7 @@ from ....core.kernels import law
 from ....core.mavlink import MavSeverity
 from ....core.vectors import Vec2
 from ...events import Event, Events, emit
-from ...modes import ACCEPTED
+from ...modes import ModeResult
 from ...notes import ItemReached
 from .. import pilot
 from ..control import motors, speed
@@ -42,7 +42,7 @@ def start(v: Vehicle) -> int:
     guided.submode = STOP
     guided.has_target = False
     guided.arrival_reported = True
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -12,6 +12,7 @@ from ....core.kernels import law
 from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
+from ...command_results import CommandResult
 from ...events import Event
 from ...navigation.path import request_leg
 from ..navigation import waypoint
@@ -19,11 +20,6 @@ from ..state import Vehicle
 from .auto import AUTO, GUIDED_IN_MISSION
 from .guided import GUIDED, HEADING_AND_SPEED, POSITION, STEERING_AND_THROTTLE, STOP, TURN_RATE_AND_SPEED
 from .state import GuidedState, Modes
-
-OK = 0
-NOT_FINITE = 1  # NaN, infinite or so large that arithmetic with it would be
-NOT_IN_GUIDED = 2
-OUT_OF_RANGE = 3
 
 _IGNORED = {
     84: "Ignoring SET_POSITION_TARGET_LOCAL_NED; set ACC_IGNORE in mask",
@@ -54,8 +50,8 @@ def is_open(modes: Modes) -> bool:
 def refusal(modes: Modes, x: float, y: float) -> int:
     """OK, or why a set-point with these numbers is not taken."""
     if not are_finite(x, y):
-        return NOT_FINITE
-    return OK if is_open(modes) else NOT_IN_GUIDED
+        return CommandResult.NOT_FINITE
+    return CommandResult.OK if is_open(modes) else CommandResult.WRONG_MODE
 
 
 @law
@@ -71,7 +67,7 @@ def set_position(v: Vehicle, point: Vec2) -> int:
     """Drive to a point and stop there; arrival is GUIDED_REACHED."""
     ap = v.autopilot
     code = refusal(ap.modes, point.x, point.y)
-    if code != OK:
+    if code != CommandResult.OK:
         return code
     if (int(ap.params.GUID_OPTIONS) & PLANNED) != 0 or ap.params.OA.TYPE != 0.0:
         request_leg(ap.modes.nav, ap.events, v.time_us, with_down(point, 0.0))
@@ -80,7 +76,7 @@ def set_position(v: Vehicle, point: Vec2) -> int:
     begin(ap.modes.guided, v.time_us, POSITION)
     ap.modes.guided.pos = point
     ap.modes.guided.arrival_reported = False
-    return OK
+    return CommandResult.OK
 
 
 @law
@@ -88,7 +84,7 @@ def set_heading_and_speed(modes: Modes, time_us: int, heading: float, speed: flo
     """Turn to a heading and drive."""
     guided = modes.guided
     code = refusal(modes, heading, speed)
-    if code == OK:
+    if code == CommandResult.OK:
         begin(guided, time_us, HEADING_AND_SPEED)
         guided.heading = wrap_pi(heading)
         guided.speed = speed
@@ -100,7 +96,7 @@ def set_turn_rate_and_speed(modes: Modes, time_us: int, turn_rate: float, speed:
     """Turn steadily and drive."""
     guided = modes.guided
     code = refusal(modes, turn_rate, speed)
-    if code == OK:
+    if code == CommandResult.OK:
         begin(guided, time_us, TURN_RATE_AND_SPEED)
         guided.turn_rate = turn_rate
         guided.speed = speed
@@ -112,7 +108,7 @@ def set_steering_and_throttle(modes: Modes, time_us: int, steering: float, throt
     """Steering and throttle -1 .. 1 directly (ArduRover: for scripts on board; no message asks for it)."""
     guided = modes.guided
     code = refusal(modes, steering, throttle)
-    if code == OK:
+    if code == CommandResult.OK:
         begin(guided, time_us, STEERING_AND_THROTTLE)
         guided.steering = constrain(steering, -1.0, 1.0)
         guided.throttle = constrain(throttle, -1.0, 1.0)
@@ -123,19 +119,19 @@ def set_steering_and_throttle(modes: Modes, time_us: int, steering: float, throt
 def stop(modes: Modes) -> int:
     """Stop and stay."""
     if not is_open(modes):
-        return NOT_IN_GUIDED
+        return CommandResult.WRONG_MODE
     modes.guided.submode = STOP
     modes.guided.has_target = False
-    return OK
+    return CommandResult.OK
 
 
 @law
 def set_limits(guided: GuidedState, seconds: float, distance: float) -> int:
     """DO_GUIDED_LIMITS of a mission: guided ends after so long [s] and so far [m] from its beginning; 0 never."""
     if not are_finite(seconds, distance):
-        return NOT_FINITE
+        return CommandResult.NOT_FINITE
     if seconds < 0.0 or distance < 0.0:
-        return OUT_OF_RANGE
+        return CommandResult.OUT_OF_RANGE
     guided.limit_us = int(seconds * 1e6)
     guided.limit_distance = distance
-    return OK
+    return CommandResult.OK

@@ -10,7 +10,7 @@ from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.scalars import constrain, wrap_pi
 from ....core.vectors import Vec2
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ..control import speed
 from ..control.forward_speed import sense
 from ..navigation import waypoint
@@ -31,14 +31,14 @@ def start(v: Vehicle) -> int:
     """Enter; needs an origin."""
     ap = v.autopilot
     if not ap.estimate.origin_set:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     loiter = ap.modes.loiter
     loiter.place = waypoint.stopping_point(ap.estimate, ap.params.ATC)
     sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
     loiter.speed = ap.control.speed.forward
     loiter.heading = ap.estimate.yaw
     loiter.distance = 0.0
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

@@ -8,7 +8,7 @@ from ....core.kernels import law
 from ....core.mavlink import MavSeverity
 from ... import rally
 from ...events import Event, emit
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...navigation.path import request_leg
 from ..control import speed
 from ..heights import HEIGHTS
@@ -27,13 +27,13 @@ def start(v: Vehicle) -> int:
     """Enter; needs a home."""
     ap = v.autopilot
     if not ap.home.is_set:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     nav = ap.modes.nav
     drive.begin_return(nav, ap.control.position, ap.params)
     target = rally.best(ap.rally, ap.estimate, ap.home, ap.fence, ap.params, HEIGHTS)
     request_leg(nav, ap.events, v.time_us, with_down(horizontal(target), 0.0))
     ap.modes.rtl.told = False
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

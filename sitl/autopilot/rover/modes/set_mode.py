@@ -10,7 +10,7 @@ from ....core.mavlink import MavSeverity
 from ... import modes as all_modes
 from ...events import emit
 from ...fence.checks import begin_recovery
-from ...modes import ACCEPTED, GCS_BLOCKED, NO_MISSION, NO_SUCH_MODE, REASON_INITIALISED, REQUIRES_POSITION, enter
+from ...modes import ModeReason, ModeResult, enter
 from ...notes import Text
 from ..control.motors import is_skid
 from ..navigation import waypoint
@@ -27,10 +27,10 @@ def enter_first(v: Vehicle) -> None:
     """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a place, home, a mission)."""
     modes = v.autopilot.modes
     number = int(v.autopilot.params.INITIAL_MODE)
-    possible = table.is_known(number) and table.start(number, v) == ACCEPTED
+    possible = table.is_known(number) and table.start(number, v) == ModeResult.ACCEPTED
     modes.number = number if possible else INITIALISING
     modes.previous = INITIALISING
-    modes.reason = REASON_INITIALISED
+    modes.reason = ModeReason.INITIALISED
 
 
 @law
@@ -40,12 +40,12 @@ def refusal(number: int, free: bool, speed_known: bool, skid: bool) -> int:
     ``free``: any mode may be, disarmed or with a good position; ``skid``: the vehicle is skid-steered.
     """
     if not table.is_known(number):
-        return NO_SUCH_MODE
+        return ModeResult.NO_SUCH_MODE
     if free:
-        return ACCEPTED
+        return ModeResult.ACCEPTED
     if table.requires_position(number) or (table.requires_velocity(number, skid) and not speed_known):
-        return REQUIRES_POSITION
-    return ACCEPTED
+        return ModeResult.REQUIRES_POSITION
+    return ModeResult.ACCEPTED
 
 
 @law
@@ -58,14 +58,14 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     ap = v.autopilot
     modes = ap.modes
     if number == modes.number:
-        return ACCEPTED
+        return ModeResult.ACCEPTED
     pending = modes.nav.request_pending
     free = not ap.arming.armed or (ap.estimate.position_ok and modes.failsafe.ekf == 0)
     cause = refusal(number, free, ap.control.speed.forward_ok, is_skid(ap.params))
-    if cause == ACCEPTED:
+    if cause == ModeResult.ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
         cause = table.start(number, v)
-    if cause != ACCEPTED:
+    if cause != ModeResult.ACCEPTED:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
         return cause
@@ -83,14 +83,14 @@ def change_speed(v: Vehicle, speed: float) -> bool:
 def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts of a refused mode change; empty when it was accepted."""
     failed = "Flight mode change failed"
-    if cause == GCS_BLOCKED:
+    if cause == ModeResult.GCS_BLOCKED:
         failed = f"Mode change to {table.SHORT_NAMES[number]} denied, GCS entry disabled (FLTMODE_GCSBLOCK)"
     return all_modes.refusal_texts(number, cause, failed)
 
 
 def _told(v: Any, number: float, cause: float) -> list[Text]:
     said = refusal_texts(int(number), int(cause))
-    mild = said if cause == GCS_BLOCKED else said[:1] if cause == NO_MISSION else []
+    mild = said if cause == ModeResult.GCS_BLOCKED else said[:1] if cause == ModeResult.NO_MISSION else []
     return [Text(MavSeverity.NOTICE if text in mild else MavSeverity.WARNING, text) for text in said]
 
 

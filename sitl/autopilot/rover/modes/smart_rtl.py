@@ -13,7 +13,7 @@ from ....core.kernels import law
 from ....core.vectors import Vec3
 from ... import smart_rtl_path
 from ...events import Events, emit
-from ...modes import ACCEPTED, INIT_FAILED
+from ...modes import ModeResult
 from ...navigation.path import request_leg, request_legs
 from ...state import PathState
 from ..control import speed
@@ -36,10 +36,10 @@ def start(v: Vehicle) -> int:
     """Enter; needs a path."""
     ap = v.autopilot
     if not ap.estimate.origin_set or not ap.modes.path.active:
-        return INIT_FAILED
+        return ModeResult.INIT_FAILED
     drive.begin_return(ap.modes.nav, ap.control.position, ap.params)
     ap.modes.smart_rtl.state = CLEAN_UP
-    return ACCEPTED
+    return ModeResult.ACCEPTED
 
 
 @law

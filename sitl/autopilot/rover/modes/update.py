@@ -8,12 +8,12 @@ from ....core.kernels import law, unit
 from ....core.records import Records
 from ....core.vectors import Vec3
 from ... import aux_switch, battery, home, optical_flow, smart_rtl_path, visual_odometry
-from ...arming_checks import BY_RUDDER
+from ...arming_checks import ArmingMethod
 from ...avoidance import bendy_ruler, limit, proximity
 from ...events import Events, emit_and_return
 from ...failsafe_checks import battery_fell_to, is_gcs_lost, is_radio_bad, report_battery, watch_monitor
 from ...mode_switch import is_rudder_held, moved_to
-from ...modes import REASON_BATTERY_FAILSAFE, REASON_RC, take_asked
+from ...modes import ModeReason, take_asked
 from ...navigation.path import areas_of, watch_detour
 from ...navigation.state import DETOUR_REQUEST, GO_ON, LEG_ENDING
 from ...params.system import SmartRtl
@@ -88,7 +88,7 @@ def read_transmitter(v: Vehicle) -> None:
     if not lost:
         now = moved_to(sticks, ap.rc, int(p.MODE_CH), v.time_us)
         if now >= 0:
-            set_mode.request(v, int(p.MODE[now]), REASON_RC)
+            set_mode.request(v, int(p.MODE[now]), ModeReason.RC)
         aux_switch.watch(ap.rc, ap.arming, ap.events, v.time_us, p)
     armed = ap.arming.armed
     moving = is_moving(ap.control.motors, armed, p)
@@ -96,9 +96,9 @@ def read_transmitter(v: Vehicle) -> None:
     if is_rudder_held(sticks, command, v.time_us):
         sticks.rudder_us = 0
         if command > 0:
-            try_arm(v, BY_RUDDER, False)
+            try_arm(v, ArmingMethod.RUDDER, False)
         else:
-            set_disarmed(ap.arming, ap.events, v.time_us, BY_RUDDER)
+            set_disarmed(ap.arming, ap.events, v.time_us, ArmingMethod.RUDDER)
 
 
 @law
@@ -112,7 +112,7 @@ def check_slowly(v: Vehicle) -> None:
     level = battery_fell_to(fs, ap.battery, ap.arming.armed, v.time_us, p.BATT)
     report_battery(ap.events, v.time_us, level, ap.battery)
     watch_monitor(fs, ap.battery, ap.arming.armed, ap.events, v.time_us)
-    failsafe.act(v, failsafe.battery_action(level, p.BATT), REASON_BATTERY_FAILSAFE)
+    failsafe.act(v, failsafe.battery_action(level, p.BATT), ModeReason.BATTERY_FAILSAFE)
     failsafe.check_ekf(v)
     fence.watch(v)
     crash.check(v)

@@ -169,6 +169,14 @@ def test_outputs_follow_their_functions():
     assert list(motors.output) == [8, 1, 2, 3, 4, 5, -1, -1]
 
 
+def test_a_plain_quad_has_four_motors_on_the_first_four_outputs():
+    assert made((QUAD, X))[0].is_plain_quad and not made((HEXA, X))[0].is_plain_quad
+    motors, params = made((QUAD, X))
+    params.SERVO[0].FUNCTION, params.SERVO[1].FUNCTION = 34, 33
+    load_frame(motors, params)
+    assert not motors.is_plain_quad
+
+
 def fail_motor(motors: MotorsState, demands: Demands, ticks: int) -> float:
     """Let the mixer work for a while as it does in flight; returns what it gave."""
     out = 0.0

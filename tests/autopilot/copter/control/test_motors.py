@@ -97,6 +97,15 @@ def test_compensation_is_off_by_default(ap):
     assert ap.control.motors.compensation_gain == 1.0
 
 
+@pytest.mark.parametrize(("mix", "after"), [(0.3004, 0.3), (0.5, 0.5 - 0.5 * 0.0025), (0.2, 0.2 + 2.0 * 0.0025)])
+def test_the_priority_of_attitude_falls_and_rises_no_further_than_its_goal(ap, mix, after):
+    attitude, m = ap.control.attitude, ap.control.motors
+    attitude.mix, attitude.mix_desired = mix, 0.3
+    m.throttle, m.throttle_out = 0.3, 0.5
+    throttle_mix.follow_mix(attitude, m, 0.4)
+    assert attitude.mix == pytest.approx(after, abs=1e-12)
+
+
 def test_resistance_is_learnt_from_steps_of_current():
     m = MotorsState()
     voltage = 0.0
@@ -105,6 +114,14 @@ def test_resistance_is_learnt_from_steps_of_current():
         voltage = thrust_curve.resting_voltage(m, 12.6 - 0.02 * current, current)
     assert m.resistance == pytest.approx(0.02, rel=0.1)
     assert voltage == pytest.approx(12.6, abs=0.05)
+
+
+def test_resistance_is_no_more_than_what_the_drop_since_the_highest_voltage_explains():
+    m = MotorsState()
+    m.voltage_reference, m.current_reference, m.current_max, m.resistance = 12.6, 1.0, 11.0, 1.0
+    m.voltage_slow, m.current_slow = 12.0, 10.0  # the same voltage at more current: no resistance
+    assert thrust_curve.resting_voltage(m, 12.0, 11.0) == pytest.approx(12.0 + 11.0 * 0.06)
+    assert m.resistance == pytest.approx(0.6 / 10.0)
 
 
 def test_air_is_thinner_up_high():

@@ -274,6 +274,15 @@ def test_the_path_learns_in_which_direction_thrust_is_used_up(blocked, limit):
     assert c.limit == limit
 
 
+@pytest.mark.parametrize(("error", "ratio"), [(5.0, 2.0), (-5.0, 0.0), (-1.25, 1.0)])
+def test_how_well_a_descent_is_held_is_a_ratio_between_0_and_2(error, ratio):
+    c = AltitudeState()
+    c.control_ratio, c.speed_down, c.vel.error = 1.0, 2.5, error
+    for _ in range(8000):
+        altitude.note_limits(c, Blocked(False, False))
+    assert c.control_ratio == pytest.approx(ratio)
+
+
 @given(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
 def test_a_vehicle_stops_ahead_of_where_it_is(north, east):
     stop = position_start.stopping_point(Vec2(1.0, 2.0), Vec2(north, east), 1.0, 5.0, 2.5) - Vec2(1.0, 2.0)

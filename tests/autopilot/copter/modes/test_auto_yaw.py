@@ -124,6 +124,13 @@ def test_nose_follows_the_desired_velocity_but_not_a_slow_one():
     assert heading(yaw, path, estimate, target) == pytest.approx(0.7)
 
 
+def test_the_nose_stays_where_it_is_until_the_vehicle_moves():
+    yaw, path, estimate = AutoYaw(), PositionState(), Estimate()
+    estimate.euler = (0.0, 0.0, 0.8)
+    auto_yaw.set_mode(yaw, auto_yaw.LOOK_AHEAD, AttitudeState(), estimate)
+    assert heading(yaw, path, estimate) == pytest.approx(0.8)
+
+
 def test_roi_is_looked_at_from_anywhere(flying):
     ap = flying.autopilot
     commands.set_roi(ap, Vec3(10.0, 10.0, 0.0))

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.copter.modes import auto_yaw, commands, guided, guided_setpoints
-from sitl.autopilot.copter.modes.commands import LARGEST, NOT_FINITE, OK, OUT_OF_RANGE, WRONG_MODE
+from sitl.autopilot.copter.modes.commands import LARGEST
 from sitl.autopilot.copter.modes.guided import ACCEL, GUIDED_TIMEOUT, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
 from sitl.autopilot.copter.modes.guided_setpoints import NO_YAW, YawSetpoint
 from sitl.core.algebra import euler_of
@@ -30,7 +31,7 @@ SETTERS = (
 
 @pytest.mark.parametrize(("setter", "count", "submode"), SETTERS)
 def test_a_set_point_selects_its_kind(flying, setter, count, submode):
-    assert setter(flying, *[GOOD] * count, NO_YAW) == OK
+    assert setter(flying, *[GOOD] * count, NO_YAW) == CommandResult.OK
     assert flying.autopilot.modes.guided.submode == submode
 
 
@@ -38,7 +39,7 @@ def test_a_set_point_selects_its_kind(flying, setter, count, submode):
 def test_only_in_guided(flying, setter, count, _):
     flying.autopilot.modes.number = 5
     before = snapshot(flying)
-    assert setter(flying, *[GOOD] * count, NO_YAW) == WRONG_MODE
+    assert setter(flying, *[GOOD] * count, NO_YAW) == CommandResult.WRONG_MODE
     assert snapshot(flying) == before
 
 
@@ -59,7 +60,7 @@ def test_a_number_that_is_none_leaves_everything_as_it_was(case, numbers, place,
         yaw = yaw._replace(angle=bad)
     args = [Vec3(*numbers[3 * k : 3 * k + 3]) for k in range(count)]
     before = snapshot(v)
-    assert setter(v, *args, yaw) == NOT_FINITE
+    assert setter(v, *args, yaw) == CommandResult.NOT_FINITE
     assert snapshot(v) == before
 
 
@@ -71,12 +72,12 @@ def test_attitude_takes_unit_quaternions_and_finite_numbers_only(numbers):
     code = guided_setpoints.set_attitude(v, True, Quat(*numbers[:4]), Vec3(*numbers[4:7]), numbers[7])
     norm = math.sqrt(sum(x * x for x in numbers[:4])) if not any(map(math.isnan, numbers)) else math.nan
     if math.isnan(norm) or not all(abs(x) <= LARGEST for x in numbers[4:]):
-        assert code == NOT_FINITE
+        assert code == CommandResult.NOT_FINITE
     elif not 0.5 <= norm <= 2.0:
-        assert code == OUT_OF_RANGE
+        assert code == CommandResult.OUT_OF_RANGE
     else:
-        assert code == OK
-    if code == OK:
+        assert code == CommandResult.OK
+    if code == CommandResult.OK:
         q = [float(x) for x in v.autopilot.modes.guided.q]
         assert sum(x * x for x in q) == pytest.approx(1.0)
     else:
@@ -169,8 +170,8 @@ def ticks(v, count):
 @pytest.mark.parametrize("name", SET_POINTS)
 def test_a_pause_holds_against_new_set_points_and_flies_on_when_it_ends(flying, name):
     modes = flying.autopilot.modes
-    assert commands.set_paused(modes, True) == OK
-    assert SET_POINTS[name](flying) == OK
+    assert commands.set_paused(modes, True) == CommandResult.OK
+    assert SET_POINTS[name](flying) == CommandResult.OK
     assert ticks(flying, 40) == 0.0 and modes.guided.paused
     commands.set_paused(modes, False)
     assert ticks(flying, 40) > 0.01
@@ -179,7 +180,7 @@ def test_a_pause_holds_against_new_set_points_and_flies_on_when_it_ends(flying, 
 def test_a_pause_holds_against_an_attitude_and_a_lean_ends(flying):
     q = Quat(math.cos(0.1), 0.0, math.sin(0.1), 0.0)
     commands.set_paused(flying.autopilot.modes, True)
-    assert guided_setpoints.set_attitude(flying, True, q, STILL, 0.5) == OK
+    assert guided_setpoints.set_attitude(flying, True, q, STILL, 0.5) == CommandResult.OK
     ticks(flying, 200)
     assert abs(flying.autopilot.control.attitude.target_euler[1]) < 0.02
     commands.set_paused(flying.autopilot.modes, False)
@@ -189,7 +190,7 @@ def test_a_pause_holds_against_an_attitude_and_a_lean_ends(flying):
 
 def test_what_stops_the_vehicle_ends_a_pause_too(flying):
     commands.set_paused(flying.autopilot.modes, True)
-    assert guided_setpoints.stop(flying) == OK
+    assert guided_setpoints.stop(flying) == CommandResult.OK
     assert not flying.autopilot.modes.guided.paused
 
 
@@ -207,21 +208,22 @@ def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
     ap = vehicle.autopilot
     ap.modes.number, ap.home.pos = 4, (0.0, 0.0, 1.5)
     ap.estimate.pos = ap.estimate.pos.replace(z=1.5)
-    assert commands.take_off(vehicle.autopilot, 10.0) == commands.NOT_ARMED
+    assert commands.take_off(vehicle.autopilot, 10.0) == CommandResult.NOT_ARMED
     ap.arming.armed = 1
-    assert commands.take_off(vehicle.autopilot, math.nan) == commands.NOT_FINITE
-    assert commands.take_off(vehicle.autopilot, -1.0) == commands.TOO_LOW
-    assert commands.take_off(vehicle.autopilot, 10.0) == commands.OK
+    assert commands.take_off(vehicle.autopilot, math.nan) == CommandResult.NOT_FINITE
+    assert commands.take_off(vehicle.autopilot, -1.0) == CommandResult.TOO_LOW
+    assert commands.take_off(vehicle.autopilot, 10.0) == CommandResult.OK
     assert (ap.modes.guided.submode, ap.modes.takeoff.target_d, ap.arming.auto_armed) == (TAKEOFF, -8.5, 1)
     ap.arming.landed = 0
-    assert commands.take_off(vehicle.autopilot, 12.0) == commands.OK, "repeated in the climb"
+    assert commands.take_off(vehicle.autopilot, 12.0) == CommandResult.OK, "repeated in the climb"
     assert ap.modes.takeoff.target_d == -10.5
     ap.modes.takeoff.complete = 1
-    assert commands.take_off(vehicle.autopilot, 10.0) == commands.ALREADY_FLYING
+    assert commands.take_off(vehicle.autopilot, 10.0) == CommandResult.ALREADY_FLYING
 
 
 @pytest.mark.parametrize(
-    ("mode", "answer"), ((3, commands.WRONG_MODE), (6, commands.WRONG_MODE), (2, commands.OK), (5, commands.OK))
+    ("mode", "answer"),
+    ((3, CommandResult.WRONG_MODE), (6, CommandResult.WRONG_MODE), (2, CommandResult.OK), (5, CommandResult.OK)),
 )
 def test_take_off_in_other_modes(vehicle, mode, answer):
     vehicle.autopilot.modes.number, vehicle.autopilot.arming.armed = mode, 1
@@ -231,20 +233,26 @@ def test_take_off_in_other_modes(vehicle, mode, answer):
 def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
     ap = vehicle.autopilot
     ap.modes.number, ap.arming.armed = 4, 1
-    assert guided_setpoints.set_position(vehicle, Vec3(20.0, 0.0, -10.0), NO_YAW) == OK
+    assert guided_setpoints.set_position(vehicle, Vec3(20.0, 0.0, -10.0), NO_YAW) == CommandResult.OK
     guided.run(vehicle)
     assert ap.control.motors.desired_spool == 1
     assert ap.arming.auto_armed == 0
 
 
 @pytest.mark.parametrize(
-    ("speed", "answer"), ((3.0, OK), (-5.0, OUT_OF_RANGE), (0.0, OUT_OF_RANGE), (math.nan, NOT_FINITE))
+    ("speed", "answer"),
+    (
+        (3.0, CommandResult.OK),
+        (-5.0, CommandResult.OUT_OF_RANGE),
+        (0.0, CommandResult.OUT_OF_RANGE),
+        (math.nan, CommandResult.NOT_FINITE),
+    ),
 )
 def test_change_speed(flying, speed, answer):
     ap = flying.autopilot
     before = float(ap.control.pos_ne.speed_max)
     assert commands.change_speed(ap.control, ap.params, commands.HORIZONTAL, speed) == answer
-    assert ap.control.pos_ne.speed_max == (speed if answer == OK else before)
+    assert ap.control.pos_ne.speed_max == (speed if answer == CommandResult.OK else before)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.copter import pilot
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.state import AltitudeState, Control, MotorsState
+from sitl.autopilot.copter.mission import COMMANDS
 from sitl.autopilot.copter.modes import (
     acro,
     alt_hold,
@@ -21,6 +22,7 @@ from sitl.autopilot.copter.modes import (
     descent,
     drift,
     flip,
+    ground,
     guided,
     guided_setpoints,
     land,
@@ -54,12 +56,14 @@ from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
 from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl, Throw
 from sitl.autopilot.events import Events
-from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MISSING_TAKEOFF
+from sitl.autopilot.mission.item import MissionItem
+from sitl.autopilot.modes import ModeResult
 from sitl.autopilot.state import Arming, Estimate
 from sitl.core.algebra import dot2, quat_from_euler
+from sitl.core.mavlink import MavCmd
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Euler, Vec2, Vec3
-from tests.autopilot.copter.steady_copter import make
+from tests.autopilot.copter.steady_copter import codes, fly, make
 
 ANGLES = st.floats(-3.1, 3.1)
 
@@ -198,6 +202,58 @@ def test_a_take_off_ends_at_full_throttle_or_with_acceleration(throttle: float, 
     assert takeoff.has_thrust(throttle, accel_d, 2.5, 0.8) == lifts
 
 
+def test_a_take_off_raises_the_throttle_on_the_ground_and_climbs_in_the_air() -> None:
+    v = fly(make())
+    ap = v.autopilot
+    ap.params.WP.NAVALT_MIN = 2.0
+    ap.arming.landed = True
+    takeoff.begin(ap.modes.takeoff, -20.0, True, ap.control, ap.estimate, ap.params)
+    before = ap.control.attitude.throttle_in
+    for _ in range(10):
+        takeoff.run(v)
+    assert ap.arming.landed and ap.control.pos_d.vel_desired == 0.0
+    assert ap.control.attitude.throttle_in > before and ap.modes.takeoff.no_nav_active
+    ap.arming.landed = False
+    for _ in range(10):
+        takeoff.run(v)
+    assert ap.control.pos_d.vel_desired < 0.0 and ap.modes.takeoff.no_nav_active
+    ap.estimate.pos = Vec3(0.0, 0.0, -12.5)
+    takeoff.run(v)
+    assert not ap.modes.takeoff.no_nav_active
+
+
+def test_the_stages_of_a_throw_are_told_once() -> None:
+    v = make()
+    throw.run(v)
+    assert codes(v) == [], "disarmed"
+    v.autopilot.arming.armed = True
+    throw.run(v)
+    assert codes(v) == [throw.THROW_STAGE]
+    throw.run(v)
+    assert codes(v) == [throw.THROW_STAGE] and v.autopilot.modes.throw.stage == throw.WAITING
+    v.autopilot.arming.armed = False
+    throw.run(v)
+    assert codes(v) == [throw.THROW_STAGE] and v.autopilot.modes.throw.stage == throw.DISARMED
+
+
+def test_sticks_end_a_hold_and_both_axes_brake_from_then_on() -> None:
+    v = fly(make())
+    state = v.autopilot.modes.poshold
+    state.holding, v.autopilot.modes.pilot.roll = True, 0.5
+    poshold.fly(v)
+    assert not state.holding
+    assert (state.roll.since_us, state.pitch.since_us) == (v.time_us, v.time_us)
+
+
+def test_position_control_begins_where_the_vehicle_is_and_as_it_moves() -> None:
+    v = make()
+    control, est = v.autopilot.control, v.autopilot.estimate
+    est.pos, est.vel = Vec3(10.0, -20.0, -5.0), Vec3(1.0, 2.0, -0.5)
+    ground.start_position_control(control, est, v.autopilot.params)
+    assert (control.pos_ne.pos_desired, control.pos_ne.vel_desired) == (Vec2(10.0, -20.0), Vec2(1.0, 2.0))
+    assert (control.pos_d.pos_desired, control.pos_d.vel_desired) == (-5.0, -0.5)
+
+
 def test_loiter_turns_its_velocity_with_the_heading() -> None:
     state = LoiterState()
     vel = Vec2(3.0, 4.0)
@@ -247,11 +303,11 @@ def test_the_way_home_is_not_below_the_vehicle(height: float, away: float, alt: 
 @pytest.mark.parametrize(
     ("armed", "landed", "count", "takes_off", "cause"),
     (
-        (False, True, 0, False, ACCEPTED),
-        (True, True, 1, False, INIT_FAILED),
-        (True, True, 3, False, MISSING_TAKEOFF),
-        (True, True, 3, True, ACCEPTED),
-        (True, False, 3, False, ACCEPTED),
+        (False, True, 0, False, ModeResult.ACCEPTED),
+        (True, True, 1, False, ModeResult.INIT_FAILED),
+        (True, True, 3, False, ModeResult.MISSING_TAKEOFF),
+        (True, True, 3, True, ModeResult.ACCEPTED),
+        (True, False, 3, False, ModeResult.ACCEPTED),
     ),
 )
 def test_auto_needs_a_mission(armed: bool, landed: bool, count: int, takes_off: bool, cause: int) -> None:
@@ -477,3 +533,21 @@ def test_drift_assists_the_throttle_around_its_middle_only(throttle: float, clim
     assert -0.3 - 1e-12 <= change <= 0.3 + 1e-12 and change * climb <= 0.0
     if abs(throttle - 0.5) > 0.29:
         assert change == 0.0
+
+
+def test_loiter_waits_before_it_brakes_also_when_it_begins() -> None:
+    v = fly(make())
+    v.autopilot.modes.loiter.brake_us = 0
+    assert loiter.start(v) == ModeResult.ACCEPTED
+    assert v.autopilot.modes.loiter.brake_us == v.time_us
+
+
+def test_a_mission_looks_at_a_place_until_it_says_no_more() -> None:
+    v = fly(make())
+    yaw = v.autopilot.modes.auto_yaw
+    COMMANDS.run(v, MissionItem(MavCmd.DO_SET_ROI_LOCATION, x=-353632621, y=1491652371, z=584.0))
+    assert yaw.mode == auto_yaw.ROI
+    COMMANDS.run(v, MissionItem(MavCmd.DO_SET_SERVO, p1=9.0, p2=1500.0))
+    assert yaw.mode == auto_yaw.ROI
+    COMMANDS.run(v, MissionItem(MavCmd.DO_SET_ROI_NONE))
+    assert yaw.mode == auto_yaw.LOOK_AT_NEXT_WP

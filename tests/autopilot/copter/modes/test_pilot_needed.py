@@ -16,7 +16,7 @@ from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
 from sitl.autopilot.copter.modes.turtle import TURTLE
-from sitl.autopilot.modes import ACCEPTED, NO_RADIO
+from sitl.autopilot.modes import ModeReason, ModeResult
 from tests.autopilot.copter.steady_copter import fly
 
 REASONS = [value for name, value in vars(all_modes).items() if name.startswith("REASON_")]
@@ -34,20 +34,20 @@ def test_they_are_refused_for_every_reason(vehicle, number, armed) -> None:
     ap.modes.number = GUIDED
     ap.modes.failsafe.radio = True
     for reason in REASONS:
-        assert set_mode.request(vehicle, number, reason) == NO_RADIO
+        assert set_mode.request(vehicle, number, reason) == ModeResult.NO_RADIO
         assert ap.modes.number == GUIDED
-    assert set_mode.refusal_texts(STABILIZE, NO_RADIO) == ["Mode change to STABILIZE failed: in RC failsafe"]
+    assert set_mode.refusal_texts(STABILIZE, ModeResult.NO_RADIO) == ["Mode change to STABILIZE failed: in RC failsafe"]
 
 
 @pytest.mark.parametrize("number", (ALT_HOLD, LOITER, LAND))
 def test_the_others_are_not(flying, number) -> None:
     flying.autopilot.modes.failsafe.radio = True
-    assert set_mode.request(flying, number, all_modes.REASON_GCS) == ACCEPTED
+    assert set_mode.request(flying, number, ModeReason.GCS) == ModeResult.ACCEPTED
 
 
 def test_with_a_radio_they_are_entered(flying) -> None:
     for number in (STABILIZE, ACRO, DRIFT):
-        assert set_mode.request(flying, number, all_modes.REASON_GCS) == ACCEPTED
+        assert set_mode.request(flying, number, ModeReason.GCS) == ModeResult.ACCEPTED
 
 
 @pytest.mark.parametrize(("radio_lost", "mode"), ((False, ALT_HOLD), (True, LAND)))

@@ -16,7 +16,7 @@ from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters.flight import Rtl
-from sitl.autopilot.modes import REASON_GCS
+from sitl.autopilot.modes import ModeReason
 from sitl.autopilot.navigation.state import LEG_ENDING
 from tests.autopilot.copter.steady_copter import codes, wait
 
@@ -69,7 +69,7 @@ def test_the_way_home_is_never_below_the_vehicle(height, distance, wanted, climb
 def test_it_asks_for_both_legs_and_keeps_its_heading(flying):
     ap = flying.autopilot
     ap.estimate.pos = (20.0, 30.0, -10.0)
-    assert set_mode.request(flying, RTL, REASON_GCS) == 0
+    assert set_mode.request(flying, RTL, ModeReason.GCS) == 0
     assert codes(flying)[0] == LEG_ENDING
     assert list(ap.modes.nav.request) == pytest.approx([20.0, 30.0, -15.0])
     assert ap.modes.auto_yaw.mode == 0
@@ -77,10 +77,21 @@ def test_it_asks_for_both_legs_and_keeps_its_heading(flying):
     assert ap.control.motors.desired_spool == 2
 
 
+@pytest.mark.parametrize(("on", "kinds", "height"), ((1, 1, 13.0), (0, 1, 15.0), (1, 2, 15.0)))
+def test_the_way_home_stays_below_a_fence_that_is_on(flying, on, kinds, height):
+    """FENCE_ALT_MAX less FENCE_MARGIN, where FENCE_TYPE has the greatest height."""
+    ap = flying.autopilot
+    ap.estimate.pos = (20.0, 30.0, -10.0)
+    ap.params.FENCE.ALT_MAX, ap.params.FENCE.MARGIN, ap.params.FENCE.TYPE = 15.0, 2.0, kinds
+    ap.fence.on = on
+    assert set_mode.request(flying, RTL, ModeReason.GCS) == 0
+    assert ap.modes.rtl.return_d == pytest.approx(-height)
+
+
 @pytest.mark.parametrize(("final", "state"), ((0.0, rtl.LANDING), (500.0, rtl.FINAL_DESCENT)))
 def test_over_home_it_waits_then_lands_or_stays(flying, final, state):
     ap = flying.autopilot
-    set_mode.request(flying, RTL, REASON_GCS)
+    set_mode.request(flying, RTL, ModeReason.GCS)
     ap.params.RTL_ALT_FINAL = final
     ap.modes.rtl.state, ap.modes.rtl.loiter_us = rtl.LOITER, flying.time_us
     wait(flying, 4.9)
@@ -105,14 +116,14 @@ def settled_descent(v, seconds=6.0):
     ((30.0, 0.0, 1.5), (30.0, 100.0, 1.0), (9.0, 0.0, 0.5), (10.0, 0.0, 0.5), (-2.0, 0.0, 0.5)),
 )
 def test_descent(flying, height, fast, speed):
-    set_mode.request(flying, LAND, REASON_GCS)
+    set_mode.request(flying, LAND, ModeReason.GCS)
     flying.autopilot.params.LAND_SPEED_HIGH = fast
     flying.autopilot.estimate.pos = flying.autopilot.estimate.pos.replace(z=-height)
     assert settled_descent(flying) == pytest.approx(speed, abs=0.01)
 
 
 def test_a_landing_after_a_failsafe_waits_four_seconds(flying):
-    set_mode.request(flying, LAND, REASON_GCS)
+    set_mode.request(flying, LAND, ModeReason.GCS)
     flying.autopilot.modes.land.pause = 1
     wait(flying, 3.9)
     land.run(flying)
@@ -124,7 +135,7 @@ def test_a_landing_after_a_failsafe_waits_four_seconds(flying):
 
 def test_it_disarms_when_landed_and_idling(flying):
     ap = flying.autopilot
-    set_mode.request(flying, LAND, REASON_GCS)
+    set_mode.request(flying, LAND, ModeReason.GCS)
     ap.arming.landed = 1
     land.run(flying)
     assert ap.arming.armed == 1 and ap.control.motors.desired_spool == 1
@@ -144,7 +155,7 @@ def test_sticks_move_the_landing_place_in_the_direction_of_the_nose(flying):
 
 def test_a_high_throttle_cancels_the_landing_only_with_the_option(flying):
     ap = flying.autopilot
-    set_mode.request(flying, LAND, REASON_GCS)
+    set_mode.request(flying, LAND, ModeReason.GCS)
     ap.modes.pilot.throttle = 0.8
     land.run(flying)
     assert ap.modes.wanted == 0

@@ -183,6 +183,9 @@ def test_free_outputs_belong_to_do_set_servo():
     v.autopilot.params.SERVO3_FUNCTION = 0.0
     finish(v)
     assert pulses(v)[2] == 0
+    assert set_servo(v, 2, 1900)
+    finish(v)
+    assert pulses(v)[2] == 1900, "it falls silent once"
 
 
 def test_receiver_through():

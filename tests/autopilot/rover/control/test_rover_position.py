@@ -14,8 +14,9 @@ from sitl.autopilot.control.pid import Gains
 from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.rover.control import motors, position, speed, steering
 from sitl.autopilot.rover.control.state import DT, PositionState
+from sitl.autopilot.state import Estimate
 from sitl.core.algebra import ZERO2, dot2, horizontal, norm2
-from sitl.core.vectors import Vec2
+from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.control.rover_car import RECORDED, Car, arm, finish, make_vehicle, sense
 
 number = st.floats(-50.0, 50.0)
@@ -122,6 +123,17 @@ def test_target_follows_a_jump_of_the_estimate():
     ap.estimate.reset_ne_count += 1
     follow_target(ap)
     assert pos_error(ap) == pytest.approx(before, abs=0.05)
+
+
+def test_the_velocity_wanted_follows_a_jump_too():
+    c, estimate = PositionState(), Estimate()
+    c.pos_error, c.vel_error, c.vel_desired = Vec2(1.0, 2.0), Vec2(0.5, -0.25), Vec2(9.0, 9.0)
+    estimate.pos, estimate.vel, estimate.reset_ne_count = Vec3(10.0, 20.0, -1.0), Vec3(3.0, 4.0, 5.0), 1
+    position.follow_reset(c, estimate)
+    assert (c.pos_target, c.vel_desired) == (Vec2(11.0, 22.0), Vec2(3.5, 3.75))
+    c.vel_error = Vec2(0.0, 0.0)
+    position.follow_reset(c, estimate)  # once a jump
+    assert c.vel_desired == Vec2(3.5, 3.75)
 
 
 def test_disarmed_or_lost_it_brakes():

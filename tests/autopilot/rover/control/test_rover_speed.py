@@ -146,6 +146,12 @@ def test_speed_from_the_wheels():
         sense(v)
         v.time_us += PERIOD_US
     assert forward(v) == (True, pytest.approx(-1.5))
+    v.sensors.wheel_count += 1
+    v.time_us += 600_000
+    assert forward(v) == (False, 0.0), "the first sample after a gap is no speed"
+    v.sensors.wheel_count += 1
+    v.time_us += PERIOD_US
+    assert forward(v) == (True, 0.0), "the distance is the same"
     v.time_us += 600_000
     assert forward(v) == (False, 0.0)
 

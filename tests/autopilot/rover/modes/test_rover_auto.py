@@ -8,18 +8,19 @@ from typing import Any
 
 import pytest
 
+from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.modes import MODE_CHANGED
 from sitl.autopilot.navigation import state as kinds
 from sitl.autopilot.navigation.state import COMMAND_COMPLETE
-from sitl.autopilot.rover.modes import auto, guided_setpoints
+from sitl.autopilot.rover.modes import auto, circle, guided_setpoints
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
-from sitl.autopilot.rover.modes.guided_setpoints import NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
 from sitl.autopilot.rover.modes.state import Modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
+from sitl.autopilot.state import Estimate
 from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover, drive_to, set_velocity
 
@@ -107,6 +108,15 @@ def test_turns_around_a_place(rover: Rover) -> None:
     assert math.dist(rover.position, (0.0, 10.0)) == pytest.approx(8.0, abs=1.5)
 
 
+@pytest.mark.parametrize(
+    ("north", "east", "angle"), [(3.0, 0.0, 0.0), (0.0, 5.0, 90.0), (-4.0, 0.0, 180.0), (0.0, 0.0, 40.0)]
+)
+def test_in_which_direction_it_is_seen_from_a_centre(north: float, east: float, angle: float) -> None:
+    estimate = Estimate()
+    estimate.pos, estimate.euler = Vec3(10.0 + north, 20.0 + east, 0.0), (0.0, 0.0, math.radians(40.0))
+    assert math.degrees(circle.angle_from(Vec2(10.0, 20.0), estimate)) == pytest.approx(angle)
+
+
 def test_return(rover: Rover) -> None:
     rover.place(15.0, 0.0, math.pi)
     give(rover, kinds.RTL)
@@ -122,11 +132,11 @@ def test_heading_and_speed(rover: Rover) -> None:
 
 
 def test_guided_until_its_place_or_limit(rover: Rover) -> None:
-    assert set_velocity(rover.v, 1.0, 0.0) == NOT_IN_GUIDED
+    assert set_velocity(rover.v, 1.0, 0.0) == CommandResult.WRONG_MODE
     guided_setpoints.set_limits(rover.ap.modes.guided, 4.0, 0.0)
     give(rover, kinds.GUIDED)
     rover.run(0.1)
-    assert set_velocity(rover.v, 2.0, 0.0) == OK
+    assert set_velocity(rover.v, 2.0, 0.0) == CommandResult.OK
     assert seconds_until_complete(rover, 10.0) == pytest.approx(4.0, abs=0.2)
     assert rover.position[0] > 2.0
     guided_setpoints.set_limits(rover.ap.modes.guided, 0.0, 0.0)
@@ -134,7 +144,7 @@ def test_guided_until_its_place_or_limit(rover: Rover) -> None:
     rover.ap.modes.nav.target = (30.0, 0.0, 0.0)
     rover.ap.modes.nav.has_place = 1
     rover.run(0.1)
-    assert drive_to(rover.v, 30.0, 0.0) == OK
+    assert drive_to(rover.v, 30.0, 0.0) == CommandResult.OK
     assert seconds_until_complete(rover, 20.0) < 15.0
 
 
@@ -164,6 +174,18 @@ def test_mission_done(rover: Rover, choice: int, mode: int, submode: int) -> Non
     assert rover.ap.modes.number == mode
     if submode >= 0:
         assert rover.ap.modes.auto.submode == submode
+
+
+def test_a_mission_that_is_flown_again_is_done_again(rover: Rover) -> None:
+    rover.ap.params.MIS_DONE_BEHAVE = 1.0
+    for _ in range(2):
+        give(rover, kinds.WAYPOINT, (50.0, 0.0))
+        rover.ap.modes.nav.mission_state = kinds.RUNNING
+        rover.run(0.1)
+        assert rover.ap.modes.auto.submode == auto.ON_PATH
+        rover.ap.modes.nav.mission_state = kinds.COMPLETE
+        rover.run(0.1)
+        assert rover.ap.modes.auto.submode == auto.LOITERING
 
 
 def test_leaving_auto_is_told() -> None:

@@ -7,9 +7,9 @@ import math
 
 import pytest
 
+from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.rover.modes import guided_setpoints
 from sitl.autopilot.rover.modes.guided import GUIDED, GUIDED_REACHED, GUIDED_TIMEOUT, STOP
-from sitl.autopilot.rover.modes.guided_setpoints import NOT_FINITE, NOT_IN_GUIDED, OK
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.set_mode import change_speed, request
 from tests.autopilot.rover.modes.driven_rover import (
@@ -32,7 +32,7 @@ def rover() -> Rover:
 def stream(rover: Rover, seconds: float, setter: object, *numbers: float) -> None:
     """Send a set-point ten times a second."""
     for _ in range(round(seconds * 10)):
-        assert setter(rover.v, *numbers) == OK  # type: ignore[operator]
+        assert setter(rover.v, *numbers) == CommandResult.OK  # type: ignore[operator]
         rover.run(0.1)
 
 
@@ -95,7 +95,7 @@ def test_a_position_beside_the_way_is_not_circled_for_ever(rover: Rover, aside: 
     stream(rover, 15.0, set_velocity, 5.0, 0.0)
     assert rover.speed > 4.5
     north, east = rover.position
-    assert drive_to(rover.v, north, east + aside) == OK
+    assert drive_to(rover.v, north, east + aside) == CommandResult.OK
     rover.events()
     rover.run(60.0)
     assert (GUIDED_REACHED, 0.0, 0.0) in rover.events()
@@ -132,7 +132,7 @@ def test_steering_and_throttle(rover: Rover) -> None:
 
 def test_stop(rover: Rover) -> None:
     stream(rover, 4.0, set_velocity, 2.0, 0.0)
-    assert guided_setpoints.stop(rover.ap.modes) == OK
+    assert guided_setpoints.stop(rover.ap.modes) == CommandResult.OK
     rover.run(3.0)
     assert abs(rover.speed) < 0.1
     assert rover.ap.modes.guided.submode == STOP
@@ -142,7 +142,11 @@ def test_stop(rover: Rover) -> None:
 def test_refusals_change_nothing(setter: object) -> None:
     rover = Rover().arm()
     before = bytes(rover.v._bytes)
-    for numbers, code in (((1.0, 1.0), NOT_IN_GUIDED), ((math.nan, 0.0), NOT_FINITE), ((0.0, math.inf), NOT_FINITE)):
+    for numbers, code in (
+        ((1.0, 1.0), CommandResult.WRONG_MODE),
+        ((math.nan, 0.0), CommandResult.NOT_FINITE),
+        ((0.0, math.inf), CommandResult.NOT_FINITE),
+    ):
         assert setter(rover.v, *numbers) == code  # type: ignore[operator]
     assert bytes(rover.v._bytes) == before
 

@@ -8,7 +8,7 @@ import pytest
 from sitl.autopilot.arming_checks import ARMED, DISARMED
 from sitl.autopilot.aux_switch import AUX_SWITCH
 from sitl.autopilot.failsafe_checks import FAILSAFE
-from sitl.autopilot.modes import ACCEPTED, INIT_FAILED, MODE_REFUSED, NO_MISSION, NO_SUCH_MODE, REQUIRES_POSITION
+from sitl.autopilot.modes import MODE_REFUSED, ModeResult
 from sitl.autopilot.rover import failsafe
 from sitl.autopilot.rover.crash import CRASH_HOLD
 from sitl.autopilot.rover.events import EVENTS
@@ -59,12 +59,12 @@ def test_initial_mode_is_one_that_can_be_entered_at_power_on(wanted: int, got: i
         (DISARMED, 1, 0, [(6, "Throttle disarmed")]),
         (GUIDED_TIMEOUT, 3, 0, [(4, "target not received last 3secs, stopping")]),
         (DESTINATION_REACHED, 11, 0, [(6, "Reached destination")]),
-        (MODE_REFUSED, 99, NO_SUCH_MODE, [(4, "No such mode 99")]),
-        (MODE_REFUSED, 11, INIT_FAILED, [(4, "Flight mode change failed")]),
+        (MODE_REFUSED, 99, ModeResult.NO_SUCH_MODE, [(4, "No such mode 99")]),
+        (MODE_REFUSED, 11, ModeResult.INIT_FAILED, [(4, "Flight mode change failed")]),
         (
             MODE_REFUSED,
             10,
-            NO_MISSION,
+            ModeResult.NO_MISSION,
             [(5, "No Mission. Can't set AUTO."), (4, "Flight mode change failed")],
         ),
         (CRASH_HOLD, 0, 0, [(0, "Crash: Going to HOLD")]),
@@ -84,8 +84,12 @@ def test_what_is_said(code: int, a: float, b: float, said: list[tuple[int, str]]
 @pytest.mark.parametrize("number", [*table.NAMES, 2, 99])
 @pytest.mark.parametrize("speed_known", [False, True])
 def test_a_mode_is_refused_only_for_what_it_lacks(number: int, speed_known: bool) -> None:
-    assert set_mode.refusal(number, True, speed_known, False) == (ACCEPTED if number in table.NAMES else NO_SUCH_MODE)
+    assert set_mode.refusal(number, True, speed_known, False) == (
+        ModeResult.ACCEPTED if number in table.NAMES else ModeResult.NO_SUCH_MODE
+    )
     if number in table.NAMES:
         needs = table.requires_velocity(number, False)
         refused = table.requires_position(number) or (needs and not speed_known)
-        assert set_mode.refusal(number, False, speed_known, False) == (REQUIRES_POSITION if refused else ACCEPTED)
+        assert set_mode.refusal(number, False, speed_known, False) == (
+            ModeResult.REQUIRES_POSITION if refused else ModeResult.ACCEPTED
+        )

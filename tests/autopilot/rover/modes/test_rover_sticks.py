@@ -115,6 +115,18 @@ def test_steering_turns_right_forwards_and_backwards() -> None:
         assert turned * (1 if throttle > 1500 else -1) > 0.05  # like a car's wheel
 
 
+def test_a_skid_steered_rover_turns_on_the_spot_at_the_turn_rate_of_the_stick() -> None:
+    """ACRO_TURN_RATE [deg/s] at full stick, while the throttle is in its middle; else the stick is an acceleration."""
+    skid = {"SERVO1_FUNCTION": 73.0, "SERVO3_FUNCTION": 74.0}
+    rates = []
+    for throttle in (1500, 1700):
+        rover = in_mode(STEERING, ACRO_TURN_RATE=90.0, ATC_STR_ACC_MAX=0.0, **skid)
+        rover.sticks(steering=1500 + 30 + 235, throttle=throttle)
+        rover.run(0.1)
+        rates.append(math.degrees(rover.ap.control.steering.turn_rate))
+    assert rates[0] == pytest.approx(45.0, abs=0.5) and rates[1] != pytest.approx(45.0, abs=5.0)
+
+
 def test_velocity_modes_rest_without_a_speed() -> None:
     rover = in_mode(STEERING)
     rover.set_estimate(False)

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
 from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
 from sitl.autopilot.events import emit
@@ -22,6 +23,7 @@ from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.core.mavlink import MavCmd, MavMissionResult
+from tests.autopilot.rover.modes.driven_rover import Rover
 from tests.autopilot.rover.navigation.rover_on_mission import Missionary, at
 
 WP = MavCmd.NAV_WAYPOINT
@@ -119,7 +121,7 @@ def test_guided_within_a_mission() -> None:
         at(WP, 10.0, 0.0),
     )
     p.run(0.1)
-    assert guided_setpoints.set_heading_and_speed(p.ap.modes, p.v.time_us, 0.0, 1.0) == guided_setpoints.OK
+    assert guided_setpoints.set_heading_and_speed(p.ap.modes, p.v.time_us, 0.0, 1.0) == CommandResult.OK
     begun = p.time
     second = p.until(2)
     assert p.position[0] > 1.0
@@ -211,3 +213,10 @@ def test_what_it_does_not_carry_out_is_passed_over() -> None:
         "Skipping invalid cmd #115",
     ]
     assert ItemReached(2) in notes and p.ap.modes.nav.command_seq == 3
+
+
+@pytest.mark.parametrize(("given", "delay"), [(0.25, 0.25), (3.0, 3.0), (-1.0, 0.0)])
+def test_a_delay_is_what_its_item_says(given: float, delay: float) -> None:
+    rover = Rover()
+    COMMANDS.give(rover.v, 1, MissionItem(MavCmd.NAV_DELAY, p1=given))
+    assert rover.ap.modes.nav.delay == delay
