@@ -120,6 +120,9 @@ class Connection:
         """The same for a vehicle whose clock may not be known yet."""
         self.run(us)
 
+    def catch_up(self) -> None:
+        """Take in what has come while nobody listened: a vehicle whose clock is not held has gone on meanwhile."""
+
     def reopen(self) -> bool:
         """Connect again to a vehicle that has closed the connection to boot, and listen until it is heard; False: this
         kind of connection cannot.
@@ -443,6 +446,9 @@ class RealTime(Remote):
             return
         goal = self.inbox.time_ms + max(us // 1000 - 1, 1)
         self.exchange(lambda: self.inbox.time_ms >= goal, repeat=False, within=self.patience + 1e-6 * us)
+
+    def catch_up(self) -> None:
+        self.pause(0)
 
     def wait_answer(self, done: Callable[[], bool]) -> bool:
         self.exchange(done, within=self.patience)

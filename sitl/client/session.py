@@ -240,6 +240,7 @@ class Session:
 
     def delay(self, seconds: float) -> None:
         """Let simulated time pass [s]."""
+        self.connection.catch_up()
         stop = self.connection.time_us + round(seconds * 1e6)
         while self.connection.time_us < stop:
             self.step(stop)
@@ -316,6 +317,7 @@ class Session:
         """
         if not hold <= timeout:
             raise OptionError(f"{what}: hold = {hold:g} s within timeout = {timeout:g} s cannot be")
+        self.connection.catch_up()
         begin = self.connection.time_us
         stop, since = begin + round(timeout * 1e6), -1
         while True:
