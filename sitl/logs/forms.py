@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .dataflash.reader import is_binary, is_text
+from .dataflash.formats import is_binary, is_text
 from .tlog import LogError
 
 RECORDING, TLOG, DATAFLASH = "a recording", "a .tlog", "a DataFlash log"

@@ -7,203 +7,38 @@ Messages: https://ardupilot.org/copter/docs/logmessages.html
 
 from __future__ import annotations
 
-import math
 import re
-from collections import Counter, defaultdict
+from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..autopilot.log_events import LogEvent
 from ..core.mavlink import MavSeverity
-from . import firmwares
-from .dataflash.reader import DataFlash, Row
+from .dataflash.columns import Columns
+from .dataflash.tables import Table
 from .kind import mode_name
 from .track import Track
-from .track_columns import TrackError
-from .track_rows import complete, integrated, place_row
+from .track_columns import Array, TrackError
+from .track_rows import MOST_DEG, complete, integrated
 
 _PLACES = ("POS", "AHR2", "GPS")
 """Messages with places, the best first: the estimate that is flown by, the backup's, the first receiver's."""
 _FILTERS = {"XKF1": 3, "NKF1": 2, "EKF1": 2}
 """Messages with velocities -> the filter of ATT.AEKF."""
-_PRIMARY = {"XKF4": "XKF1", "NKF4": "NKF1"}
-_NAMES = (
-    *_PLACES, *_FILTERS, *_PRIMARY, "ATT", "BAT", "CURR", "MODE", "ARM", "EV", "MSG", "ORGN", "CMD", "VER", "PARM",
-)  # fmt: skip
+_PRIMARY = {"XKF1": "XKF4", "NKF1": "NKF4"}
+_FIELDS = {
+    "ATT": ("Roll", "Pitch", "Yaw", "AEKF"), "BAT": ("Inst", "Instance", "Volt", "Curr", "EnrgTot"),
+    "CURR": ("Volt", "Curr"), "XKF1": ("C", "VN", "VE", "VD"), "NKF1": ("C", "VN", "VE", "VD"),
+    "EKF1": ("VN", "VE", "VD"), "XKF4": ("C", "PI"), "NKF4": ("C", "PI"),
+}  # fmt: skip
+_NAMES = dict.fromkeys((*_PLACES, "MODE", "ARM", "EV", "ORGN")) | _FIELDS
 _HOME = 1
 _FIX_3D = 3
 _REACHED = re.compile(r"Reached (?:command|waypoint) #(\d+)")
 _STARTED = re.compile(r"Mission: (\d+) (\S+)")
 _WHOLE = "bBhHiI"
 """Letters of whole numbers: voltage and current were in hundredths then (ArduPilot 3.3 and before)."""
-
-
-class _Reader:
-    """Takes in what a log says."""
-
-    def __init__(self) -> None:
-        self.track = Track("", np.zeros((0, 11)))
-        self.rows: dict[str, list[tuple[float, ...]]] = defaultdict(list)
-        self.modes: list[tuple[float, float | str]] = []
-        self.filters: Counter[int] = Counter()
-        """ATT.AEKF"""
-        self.primary: dict[str, int] = defaultdict(int)
-        self.kinds: list[tuple[str, str]] = []
-        """Kind of vehicle, or what it is else, by all that tells it, the first that is sure before others."""
-        self.homes: list[tuple[float, ...]] = []
-        self._takes_off = 0
-        self._has_name = False
-        self._time = 0.0
-        self.began: float | None = None
-        """Time of the first message [s]."""
-
-    def take(self, row: Row) -> None:
-        """One message; one without a time is of the time of the message before, if there was one."""
-        if row.time is not None:
-            self._time = row.time
-            if self.began is None:
-                self.began = row.time
-        if self.began is None and row.name not in ("MSG", "PARM", "MODE"):
-            return
-        take = getattr(self, "_" + row.name.lower(), None)
-        if row.name in _PLACES:
-            self._place(row)
-        elif row.name in _FILTERS:
-            self._speed(row)
-        elif row.name in _PRIMARY:
-            self.primary[_PRIMARY[row.name]] = int(row.fields.get("PI", 0))
-        elif take is not None:
-            take(row.fields, row.letters)
-
-    def _add(self, what: str, *values: float) -> None:
-        if all(math.isfinite(value) for value in values):
-            self.rows[what].append((self._time, *values))
-
-    def _place(self, row: Row) -> None:
-        f = row.fields
-        if row.name == "GPS" and (f.get("I", 0) or f.get("Status", _FIX_3D) < _FIX_3D):
-            return
-        place = place_row(self._time, *(f.get(name, math.nan) for name in ("Lat", "Lng", "Alt")))
-        if place is not None:
-            self.rows[row.name].append(place)
-
-    def _speed(self, row: Row) -> None:
-        if row.fields.get("C", 0) == self.primary[row.name]:
-            self._add(row.name, *(row.fields.get(name, math.nan) for name in ("VN", "VE", "VD")))
-
-    def _att(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        self._add("attitude", *(math.radians(f.get(name, math.nan)) for name in ("Roll", "Pitch", "Yaw")))
-        if "AEKF" in f:
-            self.filters[int(f["AEKF"])] += 1
-
-    def _bat(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        if f.get("Inst", f.get("Instance", 0)) != 0:
-            return
-        self._add("energy", f.get("EnrgTot", math.nan))
-        scale = 0.01 if letters.get("Curr", "f") in _WHOLE else 1.0
-        self._add("power", f.get("Volt", math.nan) * f.get("Curr", math.nan) * scale * scale)
-
-    _curr = _bat
-
-    def _mode(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        mode = f.get("ModeNum", f.get("Mode"))
-        if mode is not None and (not self.modes or self.modes[-1][1] != mode):
-            self.modes.append((self._time, mode))
-
-    def _arm(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        if "ArmState" in f:
-            self._armed(bool(f["ArmState"]))
-
-    def _ev(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        if f.get("Id") in (LogEvent.ARMED, LogEvent.DISARMED):
-            self._armed(f["Id"] == LogEvent.ARMED)
-
-    def _armed(self, state: bool) -> None:
-        track = self.track
-        if not track.armed and not state:  # LOG_DISARMED 0: the log was opened by the arming, which it misses
-            track.armed.append((self._time if self.began is None else self.began, True))
-        if not track.armed or track.armed[-1][1] != state:
-            track.armed.append((self._time, state))
-
-    def _orgn(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        if f.get("Type") == _HOME:
-            place = place_row(self._time, *(f.get(name, math.nan) for name in ("Lat", "Lng", "Alt")))
-            self.homes += [place] if place is not None else []
-
-    def _ver(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        self.kinds.append(firmwares.of_build(int(f.get("BU", 0))))
-
-    def _parm(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        found = firmwares.of_parameter(str(f.get("Name", "")))
-        if found != ("", ""):
-            self.kinds.append(found)
-
-    def _msg(self, f: dict[str, Any], letters: dict[str, str]) -> None:
-        text = str(f.get("Message", ""))
-        if not self._has_name:
-            found = firmwares.of_text(text)
-            self._has_name = found != ("", "")
-            if self._has_name:
-                self.kinds.insert(0, found)
-        self.track.texts.append((self._time, MavSeverity.INFO, text))
-        reached, started = _REACHED.match(text), _STARTED.match(text)
-        if started is not None:
-            if self._takes_off:
-                self.track.items.append((self._time, self._takes_off))
-            self._takes_off = int(started[1]) if started[2] == "Takeoff" else 0
-        elif reached is not None:
-            self.track.items.append((self._time, int(reached[1])))
-
-    def finish(self, log: DataFlash) -> Track:
-        """The track.
-
-        Raises:
-            TrackError: the log is of another kind of vehicle, or tells of no way.
-        """
-        track, title = self.track, f"log {str(log.path)!r}"
-        track.kind, other = next((kind for kind in self.kinds if kind != ("", "")), ("", ""))
-        if other:
-            raise TrackError(f"{title} is of {other}: copters and rovers can be shown and compared")
-        if not track.kind:
-            raise TrackError(f"{title} does not say what vehicle it is of: no firmware is named (MSG, VER, PARM)")
-        places = next((name for name in _PLACES if len(self.rows[name]) > 1), "")
-        if not places:
-            there = ", ".join(name for name in _PLACES if name in log.names) or "none of them has a format"
-            raise TrackError(
-                f"{title} tells no way: it has no two places in POS, AHR2 or GPS (formats: {there}); a vehicle without "
-                "GPS logs none"
-            )
-        if places != "POS":
-            track.notes.append(f"places are those of {places}: it has no POS")
-        if log.skipped:
-            track.notes.append(f"{log.skipped} bytes of it are no messages, and left out")
-        if log.left_out:
-            track.notes.append(f"{log.left_out} messages of it have times that cannot be, and are left out")
-        track.modes = [
-            (t, mode if isinstance(mode, str) else mode_name(track.kind, int(mode))) for t, mode in self.modes
-        ]
-        if not track.modes:
-            track.notes.append("it has no MODE")
-        if not track.armed:
-            track.notes.append("it tells of no arming (ARM, EV)")
-        energies = self.rows["energy"]
-        if not energies and self.rows["power"]:
-            energies = integrated(self.rows["power"])
-            track.notes.append("energy is summed up from voltage and current: it has no EnrgTot")
-        speeds = self.rows[self._filter()]
-        return complete(track, title, self.rows[places], self.homes, speeds, self.rows["attitude"], energies)
-
-    def _filter(self) -> str:
-        """The message with the velocities of the filter that was flown by."""
-        there = [name for name in _FILTERS if self.rows[name]]
-        if not there:
-            return ""
-        flown, _ = self.filters.most_common(1)[0] if self.filters else (0, 0)
-        return next(
-            (name for name in there if _FILTERS[name] == flown), max(there, key=lambda name: len(self.rows[name]))
-        )
 
 
 def read(path: str | Path) -> Track:
@@ -214,7 +49,150 @@ def read(path: str | Path) -> Track:
     Raises:
         LogError: the file cannot be read, or it tells of no copter and no rover that moves.
     """
-    log, reader = DataFlash(path), _Reader()
-    for row in log.rows(_NAMES):
-        reader.take(row)
-    return reader.finish(log)
+    log, title = Columns(path, _NAMES), f"log {str(path)!r}"
+    track = Track(log.kind, np.zeros((0, 11)))
+    places = {name: _places(log, name) for name in _PLACES}
+    best = next((name for name in _PLACES if len(places[name]) > 1), "")
+    if not best:
+        there = ", ".join(name for name in _PLACES if name in log.formats) or "none of them has a format"
+        raise TrackError(
+            f"{title} tells no way: it has no two places in POS, AHR2 or GPS (formats: {there}); a vehicle without GPS "
+            "logs none"
+        )
+    if best != "POS":
+        track.notes.append(f"places are those of {best}: it has no POS")
+    if log.skipped:
+        track.notes.append(f"{log.skipped} bytes of it are no messages, and left out")
+    if log.left_out:
+        track.notes.append(f"{log.left_out} messages of it have times that cannot be, and are left out")
+    track.modes = _modes(log)
+    if not track.modes:
+        track.notes.append("it has no MODE")
+    track.armed = armings(log)
+    if not track.armed:
+        track.notes.append("it tells of no arming (ARM, EV)")
+    track.texts = [(time, MavSeverity.INFO, text) for time, text in log.texts]
+    track.items = _items(log.texts)
+    energies = _energies(log, track)
+    attitude = _numbers(log, "ATT", "Roll", "Pitch", "Yaw")
+    attitude[:, 1:] = np.radians(attitude[:, 1:])
+    return complete(track, title, places[best], _places(log, "ORGN").tolist(), _velocities(log), attitude, energies)
+
+
+def armings(log: Columns) -> list[tuple[float, bool]]:
+    """(Time since boot [s], armed) whenever that changed."""
+    found: list[tuple[float, bool]] = []
+    if "ARM" in log and "ArmState" in log["ARM"]:
+        found += zip(log["ARM"].time.tolist(), (log["ARM"]["ArmState"] != 0.0).tolist())
+    if "EV" in log and "Id" in log["EV"]:
+        event = log["EV"].where(np.isin(log["EV"]["Id"], (LogEvent.ARMED, LogEvent.DISARMED)))
+        found += zip(event.time.tolist(), (event["Id"] == LogEvent.ARMED).tolist())
+    changes: list[tuple[float, bool]] = []
+    for time, state in sorted(found, key=lambda change: change[0]):
+        if not changes and not state:  # LOG_DISARMED 0: the log was opened by the arming, which it misses
+            changes.append((log.began, True))
+        if not changes or changes[-1][1] != state:
+            changes.append((time, state))
+    return changes
+
+
+def _numbers(log: Columns, name: str, *fields: str) -> Array:
+    """Times and these fields of all messages of a name; no rows when it lacks one of them."""
+    if name not in log or not all(field in log[name] for field in fields):
+        return np.zeros((0, 1 + len(fields)))
+    return _rows(log[name], *fields)
+
+
+def _rows(table: Table, *fields: str) -> Array:
+    return np.column_stack([table.time, *(table[field] for field in fields)])
+
+
+def _places(log: Columns, name: str) -> Array:
+    """Time [s], latitude, longitude [deg], altitude above sea level [m]: of a filter, of the first receiver with a fix,
+    or of home. Before it knows where it is, an autopilot is at 0, 0."""
+    found = _numbers(log, name, "Lat", "Lng", "Alt")
+    if not len(found):
+        return found
+    table, good = log[name], np.isfinite(found).all(axis=1)
+    if name == "GPS":
+        good &= (table["Status"] >= _FIX_3D) if "Status" in table else True
+        good &= (table["I"] == 0) if "I" in table else True
+    elif name == "ORGN":
+        good &= (table["Type"] == _HOME) if "Type" in table else False
+    lat, lon = found[:, 1], found[:, 2]
+    good &= (np.abs(lat) <= MOST_DEG[0]) & (np.abs(lon) <= MOST_DEG[1]) & ((lat != 0.0) | (lon != 0.0))
+    return np.asarray(found[good])
+
+
+def _modes(log: Columns) -> list[tuple[float, str]]:
+    if "MODE" not in log:
+        return []
+    table = log["MODE"]
+    field = next((field for field in ("ModeNum", "Mode") if field in table), "")
+    if not field:
+        return []
+    found: list[tuple[float, str]] = []
+    kind = log.kind
+    for time, mode in zip(table.time.tolist(), table[field].tolist()):
+        if isinstance(mode, float) and not np.isfinite(mode):
+            continue
+        words = isinstance(mode, str) and not mode.isdigit()
+        name = str(mode) if words else mode_name(kind, int(mode))
+        if not found or found[-1][1] != name:
+            found.append((time, name))
+    return found
+
+
+def _items(texts: list[tuple[float, str]]) -> list[tuple[float, int]]:
+    """(Time [s], mission item) as they were reached."""
+    found, takes_off = [], 0
+    for time, text in texts:
+        reached, started = _REACHED.match(text), _STARTED.match(text)
+        if started is not None:
+            if takes_off:
+                found.append((time, takes_off))
+            takes_off = int(started[1]) if started[2] == "Takeoff" else 0
+        elif reached is not None:
+            found.append((time, int(reached[1])))
+    return found
+
+
+def _energies(log: Columns, track: Track) -> Array:
+    """Time [s], energy taken from the first battery [Wh]."""
+    name = next((name for name in ("BAT", "CURR") if name in log), "")
+    if not name:
+        return np.zeros((0, 2))
+    table = log[name]
+    label = next((label for label in ("Inst", "Instance") if label in table), "")
+    if label:
+        table = table.where(table[label] == 0)
+    if "EnrgTot" in table and np.isfinite(table["EnrgTot"]).any():
+        return _rows(table, "EnrgTot")
+    if "Volt" not in table or "Curr" not in table:
+        return np.zeros((0, 2))
+    scale = 0.01 if table.letters["Curr"] in _WHOLE else 1.0
+    power = np.column_stack([table.time, table["Volt"] * table["Curr"] * scale * scale])
+    track.notes.append("energy is summed up from voltage and current: it has no EnrgTot")
+    return integrated(power[np.isfinite(power).all(axis=1)])
+
+
+def _velocities(log: Columns) -> Array:
+    """Time [s], north, east, down [m/s] of the filter, and of its lane, that was flown by."""
+    found = {name: _numbers(log, name, "VN", "VE", "VD") for name in _FILTERS}
+    there = [name for name in _FILTERS if len(found[name])]
+    if not there:
+        return np.zeros((0, 4))
+    flown = 0
+    if "ATT" in log and "AEKF" in log["ATT"]:
+        flown, _ = Counter(log["ATT"]["AEKF"].astype(int).tolist()).most_common(1)[0]
+    of_flown = (name for name in there if _FILTERS[name] == flown)
+    name = next(of_flown, max(there, key=lambda name: len(found[name])))
+    table = log[name]
+    if "C" not in table:
+        return found[name]
+    lanes = np.zeros(len(table))
+    primary = _PRIMARY.get(name, "")
+    if primary in log and "PI" in log[primary]:
+        before = np.searchsorted(log[primary].time, table.time, "right") - 1
+        lanes = np.where(before >= 0, log[primary]["PI"][np.maximum(before, 0)], 0.0)
+    return np.asarray(found[name][table["C"] == lanes])

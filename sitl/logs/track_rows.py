@@ -12,7 +12,7 @@ from ..core.geodesy import offset_ne
 from .track import Track, is_angle, sample_times, sampled
 from .track_columns import Array, TrackError
 
-Rows = Sequence[tuple[float, ...]]
+Rows = Sequence[tuple[float, ...]] | Array
 MOST_DEG = (90.0, 180.0)
 
 
@@ -29,7 +29,7 @@ def complete(
     track: Track,
     title: str,
     places: Rows,
-    homes: Rows,
+    homes: Sequence[tuple[float, ...]],
     speeds: Rows = (),
     attitudes: Rows = (),
     energies: Rows = (),
@@ -78,13 +78,11 @@ def complete(
     return track
 
 
-def integrated(powers: Rows) -> list[tuple[float, ...]]:
-    """Energy [Wh] from (time [s], power [W])."""
-    if not powers:
-        return []
+def integrated(powers: Rows) -> Array:
+    """(Time [s], energy [Wh]) from (time [s], power [W])."""
     power = _array(powers, 2)
     steps = np.diff(power[:, 0], prepend=power[:1, 0]) * power[:, 1] / 3600.0
-    return list(zip(power[:, 0].tolist(), np.cumsum(steps).tolist(), strict=True))
+    return np.column_stack([power[:, 0], np.cumsum(steps)])
 
 
 def _array(rows: Rows, columns: int) -> Array:
@@ -94,7 +92,7 @@ def _array(rows: Rows, columns: int) -> Array:
     return np.asarray(found[np.argsort(found[:, 0], kind="stable")])
 
 
-def _home(track: Track, homes: Rows, place: Array) -> tuple[float, float, float]:
+def _home(track: Track, homes: Sequence[tuple[float, ...]], place: Array) -> tuple[float, float, float]:
     """Home as of the first arming, or what comes nearest to it."""
     armed = next((t for t, state in track.armed if state), float(place[0, 0]))
     known = [home for home in homes if home[0] <= armed + 1.0] or homes

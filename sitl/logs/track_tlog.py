@@ -16,7 +16,7 @@ from .kind import kind_of_mav_type, mode_name
 from .tlog import LogError, read_steady
 from .track import Track
 from .track_columns import STEP_US, TrackError
-from .track_rows import complete, integrated, place_row
+from .track_rows import Rows, complete, integrated, place_row
 
 _STEP = STEP_US * 1e-6
 _PIECE = 50
@@ -156,8 +156,8 @@ def read(path: str | Path, system: int | None = None) -> Track:
     track.kind = reader.kind
     if reader.bad:
         track.notes.append(f"{reader.bad} of its frames are damaged, and left out")
-    energies = rows["energy"]
-    if not energies and rows["power"]:
+    energies: Rows = rows["energy"]
+    if not rows["energy"] and rows["power"]:
         energies = integrated(rows["power"])
         track.notes.append("energy is summed up from SYS_STATUS: it has no BATTERY_STATUS")
     return complete(track, title, rows["place"], rows["home"], rows["speed"], rows["attitude"], energies)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A DataFlash log as NumPy columns: long logs, read fast (``reader`` gives the messages of one in their order).
+"""A DataFlash log, binary (.bin) or text (.log), as NumPy columns: long logs of any version, read fast.
 
-The file is read in pieces. In each, NumPy finds the heads of messages; a message counts when another head, or the end
-of the file, follows it. So pieces that a card lost, and marks that happen to stand within a message, are passed over.
+A log describes itself (FMT), and each version of ArduPilot has other messages and fields; nothing here knows them.
+A binary file is read in pieces. In each, NumPy finds the heads of messages; a message counts when another head, or the
+end of the file, follows it. So pieces that a card lost, and marks that happen to stand within a message, are passed
+over.
 """
 
 from __future__ import annotations
@@ -16,8 +18,8 @@ import numpy as np
 from numpy.lib import recfunctions
 
 from ..tlog import LogError
-from .formats import FMT, FMT_NUMBER, HEAD, TYPES, UNITS
-from .reader import DataFlash
+from . import text
+from .formats import CLOCK_FIELDS, FMT, FMT_NUMBER, HEAD, TYPES, UNITS, clock, is_binary, is_text
 from .tables import Array, Table, Tables
 
 Progress = Callable[[int, int], None]
@@ -27,10 +29,14 @@ _NUMPY = {letter: kind for letter, (kind, _, _) in TYPES.items()} | {"a": "(32,)
 _FMT, _FMT_LENGTH = np.dtype(FMT.columns()), FMT.packer.size
 _HELP = ("FMTU", "UNIT", "MULT", "PARM", "MSG", "VER")
 """Read besides those that are asked for."""
-_TIMES = ("TimeUS", "TimeMS")
-"""Fields that are always kept."""
+_START = 1 << 16
+"""Bytes that tell whether a file is a log."""
+MOST_BYTES = 1 << 32
+"""Of a log."""
 _PIECE = 1 << 21
 """Bytes that are read at once."""
+_PAGE_BYTES = 4096
+"""A log may end within a page of the card that was not filled."""
 _LONGEST = 256
 """More than any message has."""
 
@@ -44,7 +50,7 @@ class Columns(Tables):
         progress: is told how far it is.
 
     Raises:
-        LogError: it cannot be read, or is no DataFlash log.
+        LogError: it cannot be read, is longer than ``MOST_BYTES``, or is no DataFlash log.
     """
 
     def __init__(
@@ -58,26 +64,41 @@ class Columns(Tables):
         """Bytes that are no messages."""
         self.truncated = False
         """Whether the file ends within a message."""
-        log = DataFlash(path)
         wanted = None if names is None else {*names, *_HELP}
         self._fields = {name: set(kept) for name, kept in names.items() if kept} if isinstance(names, Mapping) else {}
         try:
-            self._tables = _of_text(log, wanted) if log.is_text else self._of_binary(wanted, progress)
+            if self._is_text():
+                found = text.read(self.path, wanted)
+                self._tables, self.formats, self.skipped = found.tables, found.formats, found.skipped
+            else:
+                self._tables = self._of_binary(wanted, progress)
         except OSError as error:
             raise LogError(f"log {str(path)!r} cannot be read: {error.strerror or error}") from None
         self._drop_odd_times()
         self._set_units()
+
+    def _is_text(self) -> bool:
+        with self.path.open("rb") as file:
+            size, start = os.fstat(file.fileno()).st_size, file.read(_START)
+        if size > MOST_BYTES:
+            raise LogError(f"log {str(self.path)!r} has {size} bytes; at most {MOST_BYTES} are read")
+        if not is_text(start) and not is_binary(start):
+            raise LogError(f"log {str(self.path)!r} is no DataFlash log: it has no FMT that describes its messages")
+        return is_text(start)
 
     # ------------------------------------------------------------------ binary
 
     def _of_binary(self, wanted: set[str] | None, progress: Progress | None) -> dict[str, Table]:
         formats = _Formats(self._fields)
         parts: dict[int, list[Array]] = {}
+        times: dict[int, list[Array]] = {}
         with self.path.open("rb") as file:
             total = os.fstat(file.fileno()).st_size
             for piece, is_last in _pieces(file, self):
-                for kind, rows in formats.split(piece, is_last, self, wanted):
+                for kind, rows, before in formats.split(piece, is_last, self, wanted):
                     parts.setdefault(kind, []).append(rows)
+                    if before is not None:
+                        times.setdefault(kind, []).append(before)
                 if progress is not None:
                     progress(file.tell(), total)
         tables: dict[str, Table] = {}
@@ -87,7 +108,12 @@ class Columns(Tables):
             if of.name in tables:  # two numbers of one name: the longer table counts
                 if len(tables[of.name]) >= len(raw):
                     continue
-            tables[of.name] = Table(of.name, raw, {name: of.letters[name] for name in raw.dtype.names or ()}, {})
+            letters = {name: of.letters[name] for name in raw.dtype.names or ()}
+            before = None
+            if kind in times and formats.began is not None:
+                before = np.nan_to_num(np.concatenate(times[kind]), nan=formats.began)
+            tables[of.name] = Table(of.name, raw, letters, {}, before)
+        self.formats = {of.name for of in formats.known.values()}
         return tables
 
     def _set_units(self) -> None:
@@ -108,8 +134,9 @@ class _Format:
     def __init__(self, name: str, letters: dict[str, str], fields: Collection[str] = ()) -> None:
         self.name, self.letters = name, letters
         self.dtype = np.dtype([(label, _NUMPY[letter]) for label, letter in letters.items()])
-        self.kept = [label for label in letters if label in fields or label in _TIMES] if fields else None
+        self.kept = [label for label in letters if label in fields or label in CLOCK_FIELDS] if fields else None
         """Fields that are kept, where not all are."""
+        self.clock = clock(letters)
 
 
 class _Formats:
@@ -120,9 +147,16 @@ class _Formats:
         self.known: dict[int, _Format] = {FMT_NUMBER: _Format("FMT", {field.label: field.kind for field in FMT.fields})}
         self._lengths = np.zeros(256, np.int64)
         self._lengths[FMT_NUMBER] = _FMT_LENGTH
+        self.began: float | None = None
+        """Time of the first message that has one [s]."""
+        self._time = np.nan
+        """Of the last one."""
 
-    def split(self, piece: _Piece, is_last: bool, log: Columns, wanted: set[str] | None) -> Iterator[tuple[int, Array]]:
-        """(Number of the message, its rows) for all that are in a piece; sets how much of the piece is used."""
+    def split(
+        self, piece: _Piece, is_last: bool, log: Columns, wanted: set[str] | None
+    ) -> Iterator[tuple[int, Array, Array | None]]:
+        """(Number of the message, its rows, the times before them if they have none) for all that are in a piece; sets
+        how much of the piece is used."""
         data = piece.data
         marks = np.zeros(len(data) + _LONGEST, bool)
         marks[: max(len(data) - 2, 0)] = (data[:-2] == HEAD[0]) & (data[1:-1] == HEAD[1])
@@ -141,18 +175,45 @@ class _Formats:
         heads, kinds, ends = heads[keep], kinds[keep], ends[keep]
         used = int(ends[-1]) if len(ends) else 0
         if is_last:
-            log.truncated = 0 < len(data) - used < _LONGEST and bool(np.any(data[used:]))
+            rest = len(data) - used
+            log.truncated = 0 < rest < _LONGEST and bool(np.any(data[used:]))
+            log.skipped += rest if rest > _PAGE_BYTES else 0
         piece.used = used if is_last or len(data) - used < 4 * _LONGEST else len(data) - 2 * _LONGEST
         log.skipped += max(piece.used - int((ends - heads).sum()), 0)
         order = np.argsort(kinds, kind="stable")
         sorted_kinds = kinds[order]
-        for kind in np.unique(sorted_kinds).tolist():
+        there = np.unique(sorted_kinds).tolist()
+        before = self._times(data, heads, kinds, there)
+        for kind in there:
             of = self.known[kind]
             if wanted is not None and of.name not in wanted and of.name != "FMT":
                 continue
             begin, end = np.searchsorted(sorted_kinds, [kind, kind + 1])
             rows = _gather(data, heads[order[begin:end]] + 3, of.dtype)
-            yield kind, rows if of.kept is None else recfunctions.repack_fields(rows[of.kept])
+            untimed = None if of.clock is not None or kind == FMT_NUMBER or before is None else before[order[begin:end]]
+            yield kind, rows if of.kept is None else recfunctions.repack_fields(rows[of.kept]), untimed
+
+    def _times(self, data: Array, heads: Array, kinds: Array, there: list[int]) -> Array | None:
+        """Of each message, or of the one before; None when each message of a log has its own."""
+        if all(of.clock is not None or kind == FMT_NUMBER for kind, of in self.known.items()):
+            return None
+        found = np.full(len(heads), np.nan)
+        for kind in there:
+            of = self.known[kind]
+            if of.clock is not None:
+                field, scale = of.clock
+                which = np.flatnonzero(kinds == kind)
+                found[which] = _gather(data, heads[which] + 3, of.dtype)[field].astype(np.float64) * scale
+        timed = np.flatnonzero(np.isfinite(found))
+        if not len(timed):
+            found[:] = self._time
+            return found
+        if self.began is None:
+            self.began = float(found[timed[0]])
+        last = np.searchsorted(timed, np.arange(len(found)), "right") - 1
+        times = np.where(last >= 0, found[timed[np.maximum(last, 0)]], self._time)
+        self._time = float(times[-1])
+        return times
 
     def _learn(self, data: Array, heads: Array, marks: Array) -> None:
         heads = heads[heads + _FMT_LENGTH <= len(data)]
@@ -211,44 +272,3 @@ def _pieces(file: BinaryIO, log: Columns) -> Iterator[tuple[_Piece, bool]]:
         if is_last:
             return
         rest = piece.data[piece.used :].tobytes()
-
-
-def _of_text(log: DataFlash, wanted: set[str] | None) -> dict[str, Table]:
-    """A log as text has no types of numbers: all are taken for float64."""
-    rows: dict[str, list[dict[str, Any]]] = {}
-    letters: dict[str, dict[str, str]] = {}
-    for row in log.rows(_Everything() if wanted is None else wanted):
-        rows.setdefault(row.name, []).append(row.fields)
-        letters[row.name] = row.letters
-    tables = {}
-    for name, found in rows.items():
-        kinds = {label: "U64" if letter in "nNZa" else "f8" for label, letter in letters[name].items()}
-        raw = np.zeros(len(found), np.dtype(list(kinds.items())))
-        for label, kind in kinds.items():
-            empty = "" if kind == "U64" else np.nan
-            raw[label] = [_plain(fields.get(label, empty), kind) for fields in found]
-        plain = {label: "Z" if kind == "U64" else "d" for label, kind in kinds.items()}
-        tables[name] = Table(name, raw, plain, {})
-    return tables
-
-
-def _plain(value: Any, kind: str) -> Any:
-    if kind == "U64":
-        return str(value)
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return np.nan
-
-
-class _Everything(Collection[str]):
-    """Every name."""
-
-    def __contains__(self, name: object) -> bool:
-        return True
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(())
-
-    def __len__(self) -> int:
-        return 0

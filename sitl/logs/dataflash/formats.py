@@ -9,7 +9,7 @@ Letters and tables: https://github.com/ArduPilot/ardupilot/blob/master/libraries
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,6 +56,14 @@ MULTIPLIERS = {
 """Letters of FMTU's MultIds: stored number times this is in the unit; MULT has them as rounded to single precision."""
 
 NAME_BYTES, FORMAT_BYTES, LABEL_BYTES = 4, 16, 64
+
+CLOCKS = (("TimeUS", 1e-6), ("TimeMS", 1e-3), ("Time", 1e-3))
+"""Field with a message's time, by the versions of ArduPilot, and what makes seconds of it. Before 3.3 many messages
+have none, and in 3.0 that of GPS, the only one, is the time of the week."""
+_CLOCK_OF_GPS = ("T", 1e-3)
+"""Of a GPS whose TimeMS is the time of the week (ArduPilot 3.1 and 3.2)."""
+CLOCK_FIELDS = (*(name for name, _ in CLOCKS), "T", "Week")
+"""Fields that tell which one is the clock, and the clock."""
 
 Source = str | float | Callable[[Any], Any]
 """Source of a field: the path of a number in the vehicle's record ("autopilot.estimate.vel[0]"), a constant, or a
@@ -144,6 +152,14 @@ def check(message: Message) -> None:
             raise ValueError(f"{message.name}.{f.label}: no such type, unit or multiplier")
 
 
+def clock(fields: Collection[str]) -> tuple[str, float] | None:
+    """The field with the time since boot of a message with these fields, and what makes seconds of it; None: it has
+    none."""
+    if "T" in fields and "Week" in fields:
+        return _CLOCK_OF_GPS
+    return next((found for found in CLOCKS if found[0] in fields), None)
+
+
 # ---------------------------------------------------------------------- the head of the file
 
 FMT_NUMBER, UNIT_NUMBER, MULT_NUMBER, FMTU_NUMBER = 128, 129, 130, 131
@@ -154,6 +170,18 @@ FMT = Message(
     (Field("Type", "B"), Field("Length", "B", "b"), Field("Name", "n"), Field("Format", "N"), Field("Columns", "Z")),
     timed=False,
 )
+
+
+def is_binary(start: bytes) -> bool:
+    """Whether a file that begins so is a binary log."""
+    return HEAD + bytes([FMT_NUMBER]) in start
+
+
+def is_text(start: bytes) -> bool:
+    """Whether a file that begins so is a log as text."""
+    return b"FMT, 128," in start and not start.startswith(HEAD)
+
+
 _DESCRIBED = {
     FMT_NUMBER: FMT,
     UNIT_NUMBER: Message("UNIT", (Field("Id", "b"), Field("Label", "Z"))),

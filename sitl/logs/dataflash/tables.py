@@ -12,14 +12,18 @@ import numpy as np
 
 from .. import firmwares
 from ..tlog import LogError
-from .formats import READ_DIVISORS
-from .reader import FAR_S
+from .formats import READ_DIVISORS, clock
 
 Array = np.ndarray[Any, Any]
 
 _VERSION = re.compile(r"V(\d+)\.(\d+)")
 _HELICOPTERS = (6, 11, 13)
 """FRAME_CLASS: Heli, Heli_Dual, HeliQuad."""
+FAR_S = 600.0
+"""A log that is kept only while armed pauses between flights; times that are farther from all others than this are odd,
+unless many messages have them [s]."""
+_MANY = 10
+"""Messages that are not odd together."""
 _INSTANCES = ("I", "C", "IMU", "Instance", "Id")
 
 
@@ -31,10 +35,19 @@ class Table:
         raw: as they are in the file, a structured array.
         letters: field -> letter of its type.
         units: field -> unit, as far as the log has it.
+        times: of messages without a time of their own: that of the message before each [s].
     """
 
-    def __init__(self, name: str, raw: Array, letters: dict[str, str], units: dict[str, str]) -> None:
+    def __init__(
+        self,
+        name: str,
+        raw: Array,
+        letters: dict[str, str],
+        units: dict[str, str],
+        times: Array | None = None,
+    ) -> None:
         self.name, self.raw, self.letters, self.units = name, raw, letters, units
+        self._times = times
 
     def __len__(self) -> int:
         return len(self.raw)
@@ -61,15 +74,17 @@ class Table:
         if column.dtype.kind == "U":
             return column
         values = column.astype(np.float64)
-        return values / READ_DIVISORS[letter] if letter in READ_DIVISORS else values
+        is_stored = column.dtype.kind in "iu"  # a log as text has what is meant
+        return values / READ_DIVISORS[letter] if is_stored and letter in READ_DIVISORS else values
 
     @property
     def time(self) -> Array:
-        """Since the autopilot's boot [s]; empty when the messages have none."""
-        for name, scale in (("TimeUS", 1e-6), ("TimeMS", 1e-3)):
-            if name in self.letters:
-                return self.raw[name].astype(np.float64) * scale
-        return np.zeros(0)
+        """Since the autopilot's boot [s]: their own, or that of the message before each (ArduPilot 3.2 and before has
+        EV, MODE and others without); empty when that is not known."""
+        if self._times is not None:
+            return self._times
+        found = clock(self.letters)
+        return np.zeros(0) if found is None else self.raw[found[0]].astype(np.float64) * found[1]
 
     def instance(self, number: int = 0) -> Table:
         """The messages of one sensor, filter ...; all of them when they have no number."""
@@ -80,7 +95,8 @@ class Table:
 
     def where(self, which: Array) -> Table:
         """Those messages that a mask, a slice or numbers say."""
-        return Table(self.name, self.raw[which], self.letters, self.units)
+        times = None if self._times is None else self._times[which]
+        return Table(self.name, self.raw[which], self.letters, self.units, times)
 
     @property
     def rate(self) -> float:
@@ -103,6 +119,8 @@ class Tables:
         self.path = Path(path)
         self.left_out = 0
         """Messages whose time cannot be."""
+        self.formats: set[str] = set()
+        """Names of messages that it has a format of."""
         self._tables = {}
 
     def __contains__(self, name: object) -> bool:
@@ -121,6 +139,11 @@ class Tables:
             raise LogError(f"log {str(self.path)!r} has no {name}; it has {', '.join(sorted(self)) or 'nothing'}")
         return self._tables[name]
 
+    @property
+    def began(self) -> float:
+        """Time of the first message [s]; 0 when none has one."""
+        return min((float(table.time[0]) for table in self._tables.values() if len(table.time)), default=0.0)
+
     # ------------------------------------------------------------------ what it is of
 
     @property
@@ -137,7 +160,7 @@ class Tables:
         if "MSG" not in self:
             return []
         table = self["MSG"]
-        times = table.time if len(table.time) else np.zeros(len(table))  # ArduPilot 3.2 has none here
+        times = table.time if len(table.time) else np.zeros(len(table))
         return list(zip(times.tolist(), table["Message"].tolist()))
 
     @property
@@ -171,11 +194,7 @@ class Tables:
         Raises:
             LogError: the log does not say it, or it is one that the simulator does not have.
         """
-        found = [firmwares.of_text(text) for _, text in self.texts]
-        if "VER" in self and "BU" in self["VER"]:
-            found.append(firmwares.of_build(int(self["VER"]["BU"][0])))
-        found += [firmwares.of_parameter(name) for name in self.parameters]
-        kind, other = next((one for one in found if any(one)), ("", ""))
+        kind, other = next((one for one in self._kinds() if any(one)), ("", ""))
         if other:
             raise LogError(f"log {str(self.path)!r} is of {other}; logs of copters and rovers are taken")
         if not kind:
@@ -184,18 +203,27 @@ class Tables:
             )
         return kind
 
+    def _kinds(self) -> Iterator[tuple[str, str]]:
+        """Kind of vehicle, or what it is else, by all that tells it, the surest first."""
+        yield from (firmwares.of_text(text) for _, text in self.texts)
+        if "VER" in self and "BU" in self["VER"]:
+            yield firmwares.of_build(int(self["VER"]["BU"][0]))
+        yield from map(firmwares.of_parameter, self.parameters)
+
     def _drop_odd_times(self) -> None:
-        """Leave out messages whose time cannot be: those far from the times of the most frequent message."""
+        """Leave out messages whose time cannot be: few, and far from the times of all others."""
         timed = [table for table in self._tables.values() if len(table.time)]
         if not timed:
             return
-        times = np.sort(max(timed, key=len).time)
-        middle = len(times) // 2
-        gaps = np.flatnonzero(np.diff(times) > FAR_S) + 1
-        begin = times[max([0, *gaps[gaps <= middle]])] - FAR_S
-        end = times[min([len(times), *gaps[gaps > middle]]) - 1] + FAR_S
+        times = np.sort(np.concatenate([table.time for table in timed]), kind="stable")
+        begins = np.concatenate([[0], np.flatnonzero(np.diff(times) > FAR_S) + 1, [len(times)]])
+        counts = np.diff(begins)
+        good = counts >= min(_MANY, counts.max())
+        if good.all():
+            return
+        starts = times[begins[:-1]]
         for table in timed:
-            odd = (table.time < begin) | (table.time > end)
-            if odd.any():
-                self.left_out += int(odd.sum())
-                self._tables[table.name] = table.where(~odd)
+            fits = good[np.searchsorted(starts, table.time, "right") - 1]
+            if not fits.all():
+                self.left_out += int((~fits).sum())
+                self._tables[table.name] = table.where(fits)

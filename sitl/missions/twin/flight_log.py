@@ -104,12 +104,6 @@ class FlightLog:
         """Of its firmware; (4, 7) when the log does not say it."""
         return self.columns.version or (4, 7)
 
-    @property
-    def began(self) -> float:
-        """Time of the first message [s]."""
-        times = (self.columns[name].time for name in self.columns)
-        return min((float(time[0]) for time in times if len(time)), default=0.0)
-
     def has(self, name: str, *fields: str) -> bool:
         """Whether it has messages of a name with these fields."""
         return name in self.columns and all(field in self.columns[name] for field in fields)
@@ -194,7 +188,7 @@ class FlightLog:
         since: float | None = None
         changes = self._changes()
         if changes and not changes[0][1] and self.columns.parameters.get("LOG_DISARMED", 0.0) == 0.0:
-            since = self.began  # the arming opened the log, which misses it
+            since = self.columns.began  # the arming opened the log, which misses it
         for time, state in changes:
             if state and since is None:
                 since = time

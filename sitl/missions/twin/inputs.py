@@ -169,7 +169,7 @@ def _missions(log: FlightLog) -> list[tuple[float, tuple[MissionItem, ...]]]:
         if len(items) == int(total) and sorted(items) == list(range(int(total))):
             mission = tuple(items[seq] for seq in range(int(total)))
             if not found or found[-1][1] != mission:
-                is_old = not found and (time <= 0.0 or table.time[0] - log.began < _OPENING_S)
+                is_old = not found and (time <= 0.0 or table.time[0] - log.columns.began < _OPENING_S)
                 found.append((min(float(time), 0.0) if is_old else float(time), mission))
     return found
 

@@ -9,6 +9,7 @@ import pytest
 from sitl.logs.dataflash import columns
 from sitl.logs.dataflash.columns import Columns
 from sitl.logs.tlog import LogError
+from tests.logs.log_files import V32, V36, binary, flight, old_flight, text
 
 from .conftest import read_log
 
@@ -107,3 +108,41 @@ def test_what_is_no_log_is_said(tmp_path, content) -> None:
     path.write_bytes(content)
     with pytest.raises(LogError, match=r"odd\.bin' (is no DataFlash log|does not say|has no)"):
         _ = Columns(path).kind
+
+
+@pytest.mark.usefixtures("piece")
+@pytest.mark.parametrize("form", [binary, text])
+def test_messages_without_a_time_have_that_of_the_message_before(tmp_path, form) -> None:
+    """ArduPilot 3.2: EV, MODE and MSG have none, and TimeMS of GPS is the time of the week."""
+    path = tmp_path / "x.log"
+    messages = [*old_flight(), ("EV", 11)]
+    messages.insert(40, ("EV", 15))
+    path.write_bytes(form(messages, V32))
+    log = Columns(path)
+    assert log["GPS"].time == pytest.approx(log["ATT"].time)
+    assert log["MSG"].time.tolist() == [1.0], "before the first message with a time: the log's beginning"
+    assert log["EV"].time.tolist() == pytest.approx([1.0, 1.9, 5.9])
+    assert log["EV"].where(log["EV"]["Id"] == 11).time.tolist() == pytest.approx([5.9])
+    some = Columns(path, {"GPS": ("Lat",), "EV": None})
+    assert some["GPS"].time == pytest.approx(log["GPS"].time)
+    assert some["EV"].time.tolist() == log["EV"].time.tolist(), "whatever messages are asked for"
+    assert log.left_out == 0
+
+
+def test_a_log_as_text_that_has_the_firmware_before_all_else(tmp_path) -> None:
+    """ArduPilot 3.0, as the terminal wrote it: number of the log, firmware, and a format of MSG that is not used."""
+    path = tmp_path / "x.log"
+    path.write_bytes(b"9\n\nArduCopter V3.0.1\nFree RAM: 1696\nAPM 2\n" + text(old_flight()[1:], V32))
+    log = Columns(path)
+    assert (log.firmware, log.kind, log.version) == ("ArduCopter V3.0.1", "copter", (3, 0))
+
+
+def test_a_log_that_pauses_between_flights_keeps_both(tmp_path) -> None:
+    """LOG_DISARMED 0: nothing is written for as long as the vehicle stands between two flights."""
+    later = [(name, t + 1_000_000_000, *rest) for name, t, *rest in flight(count=30)]
+    odd = ("POS", 1 << 50, 0, 0, 0.0, 0.0, 0.0)
+    path = tmp_path / "x.bin"
+    path.write_bytes(binary([*flight(), odd, *later], V36))
+    log = Columns(path)
+    assert (len(log["ATT"]), log.left_out) == (80, 1)
+    assert log["EV"].time.tolist() == [1.0, 1001.0]

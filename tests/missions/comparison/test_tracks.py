@@ -11,11 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sitl.logs import track_observer
-from sitl.logs.dataflash.reader import Row
+from sitl.logs import track_bin, track_observer
+from sitl.logs.dataflash.columns import Columns
 from sitl.logs.tlog import LogError
 from sitl.logs.track import Track
-from sitl.logs.track_bin import _Reader as Reader
 from sitl.logs.track_columns import COLUMNS, QUANTA, TrackError
 from sitl.logs.track_observer import TrackObserver
 from sitl.missions.comparison import alignment
@@ -23,6 +22,7 @@ from sitl.missions.comparison.alignment import AlignmentError, match, pair, part
 from sitl.missions.comparison.flight import measure, read
 from sitl.recording.entries import of_state
 from sitl.simulation import Core, Simulation
+from tests.logs.log_files import binary, written
 from tests.missions.comparison.conftest import straight
 
 
@@ -241,17 +241,14 @@ def test_only_what_was_armed_is_disarmed() -> None:
     assert part(track, "armed").t[-1] == pytest.approx(40.0)
 
 
-def test_a_log_that_arming_has_opened_is_armed_from_its_beginning() -> None:
+def test_a_log_that_arming_has_opened_is_armed_from_its_beginning(tmp_path: Path) -> None:
     """As of the real ArduPilot with LOG_DISARMED 0: its first record of arming is that it is over."""
-    reader = Reader()
-    reader.take(Row("PARM", 43.5, {"Name": "LOG_DISARMED"}, {}))
-    reader.take(Row("ARM", 44.0, {"ArmState": 1}, {}))
-    assert reader.track.armed == [(44.0, True)]
-    reader = Reader()
-    reader.take(Row("PARM", 43.5, {"Name": "LOG_DISARMED"}, {}))
-    reader.take(Row("EV", 90.0, {"Id": 11}, {}))
-    reader.take(Row("ARM", 90.000001, {"ArmState": 0}, {}))
-    assert reader.track.armed == [(43.5, True), (90.0, False)]
+    formats = {"PARM": ("QNf", "TimeUS,Name,Value"), "EV": ("QB", "TimeUS,Id"), "ARM": ("QB", "TimeUS,ArmState")}
+    first = ("PARM", 43_500_000, b"LOG_DISARMED", 0.0)
+    armed = binary([first, ("ARM", 44_000_000, 1)], formats)
+    assert track_bin.armings(Columns(written(tmp_path / "x.bin", armed))) == [(44.0, True)]
+    over = binary([first, ("EV", 90_000_000, 11), ("ARM", 90_000_001, 0)], formats)
+    assert track_bin.armings(Columns(written(tmp_path / "x.bin", over))) == [(43.5, True), (90.0, False)]
 
 
 def test_another_kind_or_nothing_flown_is_said() -> None:
