@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..autopilot.copter.control.frames import FRAMES
+from ..logs.dataflash import motors
 from .figure import NORMAL_95, Figure, Sought
 from .flight import FlightLog
 from .hover import hovers, mean
@@ -37,7 +38,7 @@ def balance(logs: Sequence[FlightLog]) -> list[Figure]:
         return [FORWARD.hidden(reason), RIGHT.hidden(reason)]
     rows, groups = [], []
     for k, (log, part) in enumerate(parts):
-        pair = int(log.parameter("FRAME_CLASS", default=0.0)), int(log.parameter("FRAME_TYPE", default=0.0))
+        pair = motors.frame(log.columns)
         frame = FRAMES.get(pair)
         if frame is None or len(frame) != part.motors.shape[1]:
             reason = f"FRAME_CLASS/FRAME_TYPE {pair[0]}/{pair[1]} with {part.motors.shape[1]} motor outputs is unknown"

@@ -10,9 +10,10 @@ from dataclasses import replace
 from .. import vehicles
 from ..autopilot.copter.parameters import TABLE
 from ..core.constants import GRAVITY
+from ..logs.dataflash import motors
 from ..physics.native.atmosphere import density
 from ..vehicles import CopterAirframe
-from .expected import exponent, slope_of
+from .expected import Conditions, Copter, exponent, slope_of
 from .flight import FlightLog, IdentifyError
 from .model import Model, outflow
 from .shared import Found, battery, kept
@@ -27,6 +28,8 @@ _BASES = {
     (5, 0): "ardupilot_y6",
 }
 """FRAME_CLASS, FRAME_TYPE -> the shipped airframe with these rotors."""
+_SHIPPED = Conditions(math.nan, 1.0, 0.0)
+"""Of a shipped airframe: a full battery at sea level."""
 _KEPT = ("ATC_", "FRAME_", "INS_ACCEL_FILTER", "INS_GYRO_FILTER", "MOT_", "PSC_", "WPNAV_", "WP_", "ANGLE_MAX")
 """Parameters of the log that the airframe takes over, as far as the firmware has them."""
 
@@ -38,7 +41,7 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Mod
         IdentifyError: there is no shipped airframe with such rotors, or the hover output was not found.
     """
     first = logs[0]
-    pair = (int(first.parameter("FRAME_CLASS", default=0)), int(first.parameter("FRAME_TYPE", default=0)))
+    pair = motors.frame(first.columns)
     if pair not in _BASES:
         known = ", ".join(f"{a}/{b}" for a, b in _BASES)
         raise IdentifyError(
@@ -55,7 +58,9 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Mod
     if not 0.0 < command < 1.0:
         raise IdentifyError(f"no airframe with {hover}: outside MOT_SPIN_MIN .. MAX {low} .. {high}")
     mass = mass or float(base.value("mass"))
-    model = Model(_scaled(logs, found, base, mass, command, (low, high)), first.parameters, first.conditions, found)
+    parameters = {**first.parameters, "FRAME_CLASS": float(pair[0]), "FRAME_TYPE": float(pair[1])}
+    scaled = _scaled(logs, found, base, mass, command, (low, high))
+    model = Model(scaled, parameters, first.conditions, found, _authority(base, parameters))
     model.notes["outflow_speed_max"] = f"identified, by {hover}"
     for name, source in (
         ("thrust_expo", "thrust_expo"),
@@ -65,6 +70,20 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Mod
         if found(source).is_observed and float(model.airframe.value(name)) > 0.0:
             model.notes[name] = f"identified, by {found(source)}"
     return model
+
+
+def _authority(base: CopterAirframe, parameters: Mapping[str, float]) -> dict[str, float]:
+    """Effectiveness of roll, pitch and yaw of a vehicle that is tuned as the shipped airframe: times the rate
+    controller's gain it is the same. It stands for what the logs do not tell; a vehicle with much more of it would not
+    fly with these gains."""
+    own = {parameter.name: parameter.default for parameter in TABLE} | dict(base.parameters)
+    figures = Copter(base, {**own, **{k: parameters[k] for k in ("FRAME_CLASS", "FRAME_TYPE")}}, _SHIPPED).figures()
+    found = {}
+    for axis, short in (("roll", "RLL"), ("pitch", "PIT"), ("yaw", "YAW")):
+        gain = f"ATC_RAT_{short}_P"
+        share = own[gain] / parameters[gain] if parameters.get(gain, 0.0) > 0.0 else 1.0
+        found[axis] = figures[f"{axis}_effectiveness"] * share
+    return found
 
 
 def _scaled(

@@ -32,14 +32,15 @@ _DRIVES = 0.1
 _KINDS = ("copter", "rover")
 _NAMES = (
     "ARM", "BARO", "BAT", "CTUN", "ERR", "EV", "GPS", "IMU", "MAG", "MOTB", "PSCE", "PSCN", "RCOU", "VIBE", "XKF1",
-    "XKF4",
+    "XKF4", "NKF1", "NKF4", "CURR",
 )  # fmt: skip
 _FAST = {
-    "ATT": ("DesRoll", "Roll", "DesPitch", "Pitch", "DesYaw", "Yaw"),
+    "ATT": ("DesRoll", "Roll", "DesPitch", "Pitch", "DesYaw", "Yaw", "AEKF"),
     "RATE": ("R", "ROut", "P", "POut", "Y", "YOut", "AOut"),
 }
 """Messages of which there may be hundreds a second, and what of them is used."""
-_OLDEST = (4, 0)
+_OLDEST = {"copter": (3, 4), "rover": (4, 0)}
+"""Version whose messages have the units of today's; rovers before 4 had another speed controller and outputs."""
 _READ = "logs of ArduPilot are read: on-board ones (.bin, .log), and telemetry (.tlog)"
 _NO_PARAMETERS = (
     "has no PARM, which say what its outputs mean: it begins in the middle, or its start is damaged",
@@ -76,11 +77,16 @@ class FlightLog:
                 f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}); copters with rotors of fixed pitch "
                 "are identified"
             )
-        if (self.columns.version or _OLDEST) < _OLDEST:
+        oldest = _OLDEST[self.kind]
+        if (self.columns.version or oldest) < oldest:
             raise IdentifyError(
-                f"log {str(path)!r} is of {self.columns.firmware}; logs of ArduPilot 4 are identified, older ones have "
-                "other messages and units (sitl twin and sitl view take them)"
+                f"log {str(path)!r} is of {self.columns.firmware}; logs of {self.kind}s are identified from ArduPilot "
+                f"{oldest[0]}.{oldest[1]} on, older ones have other messages and units (sitl view takes them, "
+                "sitl twin those with EKF1)"
             )
+        self._estimate = self.columns.estimate
+        self.columns.call("XKF1", self._estimate)
+        self.columns.call_battery()
         if self.is_telemetry and self.kind != "copter":
             raise IdentifyError(
                 f"log {str(path)!r} is telemetry of a {self.kind}, which tells too little of it; "
@@ -124,6 +130,7 @@ class FlightLog:
         elif isinstance(log, Columns):
             found += [f"{log.skipped} bytes are no messages: the log is damaged there"] * (log.skipped > 0)
             found += ["it is cut off within a message"] * log.truncated
+        found += ["NKF1 (EK2) stands for XKF1: the vehicle flew by it"] * (self._estimate == "NKF1")
         found += [f"{log.left_out} messages with times that cannot be are left out"] * (log.left_out > 0)
         if self.armed and self.armed[-1].end >= self._end:
             found.append("it ends while the vehicle is armed: it is read up to there")
@@ -149,11 +156,9 @@ class FlightLog:
         return table if later.all() else table.where(later)
 
     def estimate(self) -> Table:
-        """XKF1 of the lane that was flown by."""
-        lane = 0
-        if self.has("XKF4") and "PI" in self.columns["XKF4"]:
-            lane = int(np.median(self.columns["XKF4"]["PI"]))
-        return self.stream("XKF1", lane)
+        """XKF1, or NKF1, of the lane that was flown by."""
+        table = self.columns.lane(self._estimate)
+        return table.where(increasing(table.time))
 
     # ------------------------------------------------------------------
 

@@ -23,6 +23,9 @@ _SLOW, _LEVEL = 1.0, 0.3
 _LEAST_S = 10.0
 _LEANS = 0.15
 """Relative half of the interval by the mean lean [rad]."""
+_LOADS = 1.4
+"""Thrust by output and voltage that a hover needs at most by what it needs at least, of 80 % of its windows: more is
+another weight. Payloads are dropped and batteries changed while a log goes on."""
 _ACCELEROMETER = 0.1
 """Error of the mean of an accelerometer: bias and scale (assumed) [m/s^2]."""
 
@@ -42,6 +45,8 @@ def hover(logs: Sequence[FlightLog]) -> list[Figure]:
         return [sought.hidden(reason) for sought in (HOVER_OUTPUT, HOVER_VOLTAGE, HOVER_CURRENT)]
     rows = np.vstack(parts)
     groups = np.concatenate([np.full(len(part), k) for k, part in enumerate(parts)])
+    if reason := _weights(rows, logs[0]):
+        return [sought.hidden(reason) for sought in (HOVER_OUTPUT, HOVER_VOLTAGE, HOVER_CURRENT)]
     data = f"{seconds:.0f} s of hover: RCOU, IMU, XKF1"
     output, thrust = rows[:, 0], rows[:, 1]
     # Thrust rises by about 2 g with the output's share of itself, so that small differences of thrust are taken out.
@@ -60,6 +65,26 @@ def hover(logs: Sequence[FlightLog]) -> list[Figure]:
     if current.value[0] <= 0.0:
         return [*result, HOVER_CURRENT.hidden("BAT.Curr is 0: the monitor measures no current")]
     return [*result, HOVER_CURRENT.found(current.value[0], current.error[0], data)]
+
+
+def _weights(rows: Array, log: FlightLog) -> str:
+    """Why it was not one weight that the outputs carried; "": it was one, as far as they tell."""
+    bottom, top = log.parameter("MOT_SPIN_MIN", default=0.15), log.parameter("MOT_SPIN_MAX", default=0.95)
+    command = np.clip((rows[:, 0] - bottom) / (top - bottom), 0.0, None)
+    expo = log.parameter("MOT_THST_EXPO", default=0.65)
+    load = command * (1.0 - expo + expo * command)
+    if np.isfinite(rows[:, 2]).all() and rows[:, 2].min() > 0.0:
+        load = load * (rows[:, 2] / rows[:, 2].mean()) ** 2
+    low, high = np.percentile(load, (10.0, 90.0))
+    if high <= _LOADS * low:
+        return ""
+    light, heavy = (
+        float(np.median(rows[which, 0])) for which in (load <= (low * high) ** 0.5, load > (low * high) ** 0.5)
+    )
+    return (
+        f"the hover needs {high / low:.1f} times the thrust at one time that it needs at another (outputs {light:.2f} "
+        f"and {heavy:.2f}): the weight changed; take logs of one weight"
+    )
 
 
 class Hover(NamedTuple):

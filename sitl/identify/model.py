@@ -23,6 +23,7 @@ class Model:
         parameters: of the log's firmware.
         conditions: of the log.
         found: a figure of the log by its name.
+        authority: effectiveness of roll, pitch, yaw where the logs do not tell it.
     """
 
     def __init__(
@@ -31,11 +32,13 @@ class Model:
         parameters: Mapping[str, float],
         conditions: Conditions,
         found: Callable[[str], Figure],
+        authority: Mapping[str, float],
     ) -> None:
         self.airframe = base
         self.notes: dict[str, str] = {}
         """Figure of the airframe -> what it follows from."""
         self._parameters, self._conditions, self._found = parameters, conditions, found
+        self._authority = authority
         self._drag()
         self._motors()
         self._inertia()
@@ -48,6 +51,10 @@ class Model:
     def _set(self, source: Figure, **values: Any) -> None:
         self.airframe = replace(self.airframe, figures={**self.airframe.figures, **values})
         self.notes |= dict.fromkeys(values, f"identified, by {source}")
+
+    def _assume(self, source: str, **values: Any) -> None:
+        self.airframe = replace(self.airframe, figures={**self.airframe.figures, **values})
+        self.notes |= dict.fromkeys(values, f"assumed, by {source}")
 
     def _value(self, name: str) -> float:
         return float(self.airframe.value(name))
@@ -83,6 +90,12 @@ class Model:
         if factors:
             moments[2] *= sum(factors) / len(factors)
             self._set(self._found("roll_effectiveness"), inertia=tuple(moments))
+        else:
+            shares = [expected[f"{axis}_effectiveness"] / self._authority[axis] for axis in ("roll", "pitch")]
+            self._assume(
+                "ATC_RAT_RLL_P and _PIT_P: effectiveness by gain is the shipped airframe's",
+                inertia=(moments[0] * shares[0], moments[1] * shares[1], moments[2] * sum(shares) / 2.0),
+            )
         left = [
             self._found(f"{axis}_damping").value - self._expected()[f"{axis}_damping"] for axis in ("roll", "pitch")
         ]
@@ -92,6 +105,8 @@ class Model:
 
     def _yaw(self) -> None:
         if not (figure := self._found("yaw_effectiveness")).is_observed:
+            lever = self._value("yaw_lever") * self._authority["yaw"] / self._expected()[figure.name]
+            self._assume("ATC_RAT_YAW_P: effectiveness by gain is the shipped airframe's", yaw_lever=lever)
             return
         lever = self._value("yaw_lever") * figure.value / self._expected()[figure.name]
         self._set(figure, yaw_lever=lever)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..logs.dataflash import motors
 from .flight import FlightLog
 from .signals import Span
 
@@ -16,20 +17,13 @@ _SETTLES_S = 0.3
 """Around an output at its limit."""
 
 
-def motor_channels(log: FlightLog) -> list[int]:
-    """Outputs of the motors, by SERVOn_FUNCTION 33 to 40."""
-    named = [(log.parameter(f"SERVO{k}_FUNCTION", default=0.0), k) for k in range(1, 15)]
-    return [k for function, k in sorted(named) if 33 <= function <= 40]
-
-
 def controls(log: FlightLog) -> tuple[Array, Array]:
     """Times [s], and each motor's output as 0 .. 1 of MOT_PWM_MIN .. MAX (n, motors); empty when the log has none."""
-    low, high = log.parameter("MOT_PWM_MIN", default=1000.0), log.parameter("MOT_PWM_MAX", default=2000.0)
-    motors = motor_channels(log)
-    if not log.has("RCOU") or not motors or high <= low:
+    (low, high), channels = motors.pulses(log.parameters), motors.channels(log.columns)
+    if not log.has("RCOU") or not channels:
         return np.zeros(0), np.zeros((0, 0))
     table = log.stream("RCOU")
-    columns = [(table[f"C{k}"] - low) / (high - low) for k in motors if f"C{k}" in table]
+    columns = [(table[f"C{k}"] - low) / (high - low) for k in channels if f"C{k}" in table]
     return table.time, np.stack(columns, -1)
 
 
@@ -45,6 +39,6 @@ def saturated(log: FlightLog) -> list[Span]:
 
 def resolution(log: FlightLog) -> float:
     """What a microsecond of all motors' pulses is of a unit of roll, pitch or yaw output, about."""
-    span = log.parameter("MOT_PWM_MAX", default=2000.0) - log.parameter("MOT_PWM_MIN", default=1000.0)
+    low, high = motors.pulses(log.parameters)
     used = log.parameter("MOT_SPIN_MAX", default=0.95) - log.parameter("MOT_SPIN_MIN", default=0.15)
-    return 2.0 / max(span * used, 1e-9)
+    return 2.0 / max((high - low) * used, 1e-9)

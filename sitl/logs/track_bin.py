@@ -8,7 +8,6 @@ Messages: https://ardupilot.org/copter/docs/logmessages.html
 from __future__ import annotations
 
 import re
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +23,6 @@ from .track_rows import MOST_DEG, complete, integrated
 
 _PLACES = ("POS", "AHR2", "GPS")
 """Messages with places, the best first: the estimate that is flown by, the backup's, the first receiver's."""
-_FILTERS = {"XKF1": 3, "NKF1": 2, "EKF1": 2}
-"""Messages with velocities -> the filter of ATT.AEKF."""
-_PRIMARY = {"XKF1": "XKF4", "NKF1": "NKF4"}
 _FIELDS = {
     "ATT": ("Roll", "Pitch", "Yaw", "AEKF"), "BAT": ("Inst", "Instance", "Volt", "Curr", "EnrgTot"),
     "CURR": ("Volt", "Curr"), "XKF1": ("C", "VN", "VE", "VD"), "NKF1": ("C", "VN", "VE", "VD"),
@@ -178,21 +174,7 @@ def _energies(log: Columns, track: Track) -> Array:
 
 def _velocities(log: Columns) -> Array:
     """Time [s], north, east, down [m/s] of the filter, and of its lane, that was flown by."""
-    found = {name: _numbers(log, name, "VN", "VE", "VD") for name in _FILTERS}
-    there = [name for name in _FILTERS if len(found[name])]
-    if not there:
+    name = log.estimate
+    if not name or not all(field in log[name] for field in ("VN", "VE", "VD")):
         return np.zeros((0, 4))
-    flown = 0
-    if "ATT" in log and "AEKF" in log["ATT"]:
-        flown, _ = Counter(log["ATT"]["AEKF"].astype(int).tolist()).most_common(1)[0]
-    of_flown = (name for name in there if _FILTERS[name] == flown)
-    name = next(of_flown, max(there, key=lambda name: len(found[name])))
-    table = log[name]
-    if "C" not in table:
-        return found[name]
-    lanes = np.zeros(len(table))
-    primary = _PRIMARY.get(name, "")
-    if primary in log and "PI" in log[primary]:
-        before = np.searchsorted(log[primary].time, table.time, "right") - 1
-        lanes = np.where(before >= 0, log[primary]["PI"][np.maximum(before, 0)], 0.0)
-    return np.asarray(found[name][table["C"] == lanes])
+    return _rows(log.lane(name), "VN", "VE", "VD")

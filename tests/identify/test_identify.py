@@ -4,18 +4,23 @@
 from __future__ import annotations
 
 import math
+import re
 import struct
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from sitl import cli, vehicles
+from sitl.autopilot.copter.parameters import TABLE
 from sitl.core.constants import GRAVITY
-from sitl.identify import IdentifyError, identify
-from sitl.identify.expected import Copter
+from sitl.identify import IdentifyError, hover, identify
+from sitl.identify.expected import Conditions, Copter
 from sitl.logs.tlog import LogError
 from sitl.missions import files
 from tests.logs.log_files import V32, binary, old_flight, without_messages
+
+FULL = Conditions(math.nan, 1.0, 0.0)
 
 
 @pytest.fixture(scope="session")
@@ -95,8 +100,8 @@ def test_logs_of_no_use_are_named(flown, tmp_path) -> None:
         ("sub.bin", data.replace(b"ArduCopter V", b"MMMArduSub V"), "is of a submarine"),
         ("heli.bin", data.replace(b"ArduCopter V", b"MMArduHeli V"), "is of a helicopter"),
         ("heli6.bin", _with_parameter(data, b"FRAME_CLASS", 6.0), r"is of a helicopter \(FRAME_CLASS 6\)"),
-        ("three.bin", data.replace(b"ArduCopter V4.", b"ArduCopter V3."), r"is of ArduCopter V3.* logs of ArduPilot 4"),
-        ("old.bin", binary(old_flight(), V32), r"is of ArduCopter V3.2.1 .* logs of ArduPilot 4"),
+        ("three.bin", _of_version(data, b"3.3"), r"is of ArduCopter V3\.3.*; logs of copters are .* ArduPilot 3\.4 on"),
+        ("old.bin", binary(old_flight(), V32), r"is of ArduCopter V3\.2\.1 .*; logs of copters are identified from"),
         ("text.bin", b"hello there\n", "is no log but a text: it begins with 'hello there'; logs of ArduPilot are"),
         ("empty.bin", b"", "is empty; logs of ArduPilot are read"),
         ("px4.ulg", b"ULog\x01\x12\x35" + bytes(90), r"is a log of PX4 \(.ulg\); logs of ArduPilot are read"),
@@ -112,6 +117,62 @@ def test_logs_of_no_use_are_named(flown, tmp_path) -> None:
         identify([flown, rover])
     with pytest.raises(IdentifyError, match="mass -1"):
         identify(flown, mass=-1.0)
+
+
+def test_a_log_of_arducopter_3_is_identified_by_its_older_names(flown, found, tmp_path) -> None:
+    """EK2 (NKF1), CURR, and motors' pulses by those of the throttle stick."""
+    data = _of_version(flown.read_bytes(), b"3.5").replace(b"AEKF", b"XEKF")
+    for name, older in ((b"XKF1", b"NKF1"), (b"XKF4", b"NKF4"), (b"BAT\0Q", b"CURRQ")):
+        assert name in data
+        data = data.replace(name, older)
+    for name, value in ((b"RC3_MIN", 1000.0), (b"RC3_MAX", 2000.0), (b"MOT_PWM_MIN", 0.0), (b"MOT_PWM_MAX", 0.0)):
+        data = _with_parameter(data, name, value)
+    path = tmp_path / "old.bin"
+    path.write_bytes(data)
+    old = identify(path)
+    for name in ("hover_output", "hover_current", "battery_resistance", "drag_along", "roll_effectiveness"):
+        assert old[name].value == found[name].value, name
+    assert "old.bin: NKF1 (EK2) stands for XKF1: the vehicle flew by it" in old.logs[0].notes
+
+
+def test_effectiveness_that_a_log_does_not_tell_goes_with_the_gains(flown, found, tmp_path, monkeypatch) -> None:
+    """A vehicle with gains of a third turns three times as sharply by its outputs, whatever carries it in the hover."""
+    monkeypatch.setattr("sitl.identify.rates._LEAST_HZ", 60.0)
+    shipped = vehicles.load("ardupilot_x")
+    own = {parameter.name: parameter.default for parameter in TABLE} | dict(shipped.parameters)
+    for share in (1.0, 1.0 / 3.0):
+        path = tmp_path / "gains.bin"
+        data = flown.read_bytes()
+        for axis in (b"RLL", b"PIT", b"YAW"):
+            name = b"ATC_RAT_" + axis + b"_P"
+            data = _with_parameter(data, name, share * own[name.decode()])
+        path.write_bytes(data)
+        made = identify(path)
+        log = made.logs[0]
+        figures = Copter(made.airframe(), log.parameters, log.conditions).figures()
+        known = Copter(shipped, own | {"FRAME_CLASS": 1.0, "FRAME_TYPE": 1.0}, FULL).figures()
+        for axis in ("roll", "pitch", "yaw"):
+            assert not made[f"{axis}_effectiveness"].is_observed
+            name = f"{axis}_effectiveness"
+            assert figures[name] == pytest.approx(known[name] / share, rel=0.01), name
+        assert "assumed, by ATC_RAT_RLL_P and _PIT_P" in made.to_toml()
+
+
+def test_a_weight_that_changes_within_a_log_is_said(found) -> None:
+    log = found.logs[0]
+    rows = np.column_stack([np.full(60, x) for x in (0.4, GRAVITY, 12.0, 10.0, 0.0)])
+    assert not hover._weights(rows, log)
+    rows[40:, 0] = 0.55
+    assert "at another (outputs 0.40 and 0.55): the weight changed; take logs of one weight" in hover._weights(
+        rows, log
+    )
+    rows[:, 0], rows[40:, 2] = 0.4, 12.0 * np.sqrt(0.9)
+    assert not hover._weights(rows, log), "a battery that empties"
+
+
+def _of_version(data: bytes, version: bytes) -> bytes:
+    """A log of another version of ArduCopter."""
+    return re.sub(rb"ArduCopter V\d\.\d", b"ArduCopter V" + version, data)
 
 
 def _with_parameter(data: bytes, name: bytes, value: float) -> bytes:

@@ -3,7 +3,8 @@
 
 No file is converted (a real ArduPilot does not convert ``--defaults`` either): the user is told the name and the value
 that mean the same. Older versions have SYSID_THISMAV and GPS_TYPE; in 4.7 as it was released speeds and lengths are in
-metres, angles in degrees. Source: the parameter lists of 4.6 and 4.7 and their release notes.
+metres, angles in degrees. Source: the parameter lists of 3.4 to 4.7, their release notes and what each version takes
+over from the one before.
 """
 
 from __future__ import annotations
@@ -63,6 +64,26 @@ RENAMED: dict[str, tuple[str, float]] = {
     "RTL_ALT_FINAL_M": ("RTL_ALT_FINAL", _CENTI),
     "RTL_CLIMB_MIN_M": ("RTL_CLIMB_MIN", _CENTI),
     "RTL_SPEED_MS": ("RTL_SPEED", _CENTI),
+    # of 3.4 to 3.6
+    "ACCEL_Z_P": ("PSC_ACCZ_P", 1.0),
+    "ACCEL_Z_I": ("PSC_ACCZ_I", 1.0),
+    "ACCEL_Z_D": ("PSC_ACCZ_D", 1.0),
+    "ACCEL_Z_IMAX": ("PSC_ACCZ_IMAX", 1.0),
+    "ACCEL_Z_FILT": ("PSC_ACCZ_FLTE", 1.0),
+    "PSC_ACCZ_FILT": ("PSC_ACCZ_FLTE", 1.0),
+    "ATC_RAT_RLL_FILT": ("ATC_RAT_RLL_FLTD", 1.0),
+    "ATC_RAT_PIT_FILT": ("ATC_RAT_PIT_FLTD", 1.0),
+    "ATC_RAT_YAW_FILT": ("ATC_RAT_YAW_FLTE", 1.0),
+    "FS_BATT_ENABLE": ("BATT_FS_LOW_ACT", 1.0),
+    "FS_BATT_MAH": ("BATT_LOW_MAH", 1.0),
+    "FS_BATT_VOLTAGE": ("BATT_LOW_VOLT", 1.0),
+    "PILOT_VELZ_MAX": ("PILOT_SPEED_UP", 1.0),
+    "POS_XY_P": ("PSC_POSXY_P", 1.0),
+    "POS_Z_P": ("PSC_POSZ_P", 1.0),
+    "VEL_XY_I": ("PSC_VELXY_I", 1.0),
+    "VEL_XY_P": ("PSC_VELXY_P", 1.0),
+    "VEL_Z_P": ("PSC_VELZ_P", 1.0),
+    "WPNAV_LOIT_SPEED": ("LOIT_SPEED", 1.0),
 }
 """Name elsewhere -> name here, and the factor from the value elsewhere to the one here."""
 

@@ -182,38 +182,41 @@ class _Formats:
         log.skipped += max(piece.used - int((ends - heads).sum()), 0)
         order = np.argsort(kinds, kind="stable")
         sorted_kinds = kinds[order]
-        there = np.unique(sorted_kinds).tolist()
-        before = self._times(data, heads, kinds, there)
-        for kind in there:
-            of = self.known[kind]
-            if wanted is not None and of.name not in wanted and of.name != "FMT":
-                continue
+        there = [
+            (kind, self.known[kind])
+            for kind in np.unique(sorted_kinds).tolist()
+            if wanted is None or kind == FMT_NUMBER or self.known[kind].name in wanted
+        ]
+        times = self._times(data, heads, kinds, any(of.clock is None and of.name != "FMT" for _, of in there))
+        for kind, of in there:
             begin, end = np.searchsorted(sorted_kinds, [kind, kind + 1])
-            rows = _gather(data, heads[order[begin:end]] + 3, of.dtype)
-            untimed = None if of.clock is not None or kind == FMT_NUMBER or before is None else before[order[begin:end]]
-            yield kind, rows if of.kept is None else recfunctions.repack_fields(rows[of.kept]), untimed
+            which = order[begin:end]
+            rows = _gather(data, heads[which] + 3, of.dtype)
+            before = None if times is None or of.clock is not None or kind == FMT_NUMBER else times[which]
+            yield kind, rows if of.kept is None else recfunctions.repack_fields(rows[of.kept]), before
 
-    def _times(self, data: Array, heads: Array, kinds: Array, there: list[int]) -> Array | None:
-        """Of each message, or of the one before; None when each message of a log has its own."""
-        if all(of.clock is not None or kind == FMT_NUMBER for kind, of in self.known.items()):
-            return None
-        found = np.full(len(heads), np.nan)
-        for kind in there:
-            of = self.known[kind]
-            if of.clock is not None:
-                field, scale = of.clock
-                which = np.flatnonzero(kinds == kind)
-                found[which] = _gather(data, heads[which] + 3, of.dtype)[field].astype(np.float64) * scale
-        timed = np.flatnonzero(np.isfinite(found))
+    def _times(self, data: Array, heads: Array, kinds: Array, are_needed: bool) -> Array | None:
+        """Of each message, its own or that of the one before; None where they are not needed."""
+        is_timed = np.array([number in self.known and self.known[number].clock is not None for number in range(256)])
+        timed = np.flatnonzero(is_timed[kinds])
         if not len(timed):
-            found[:] = self._time
-            return found
+            return np.full(len(heads), self._time) if are_needed else None
+        if not are_needed:  # the first and the last one tell what later pieces need
+            timed = timed[[0, -1]]
+        found = np.zeros(len(timed))
+        for kind in np.unique(kinds[timed]).tolist():
+            of = self.known[kind]
+            assert of.clock is not None
+            field, scale = of.clock
+            which = kinds[timed] == kind
+            found[which] = _gather(data, heads[timed[which]] + 3, of.dtype)[field].astype(np.float64) * scale
         if self.began is None:
-            self.began = float(found[timed[0]])
-        last = np.searchsorted(timed, np.arange(len(found)), "right") - 1
-        times = np.where(last >= 0, found[timed[np.maximum(last, 0)]], self._time)
-        self._time = float(times[-1])
-        return times
+            self.began = float(found[0])
+        before, self._time = self._time, float(found[-1])
+        if not are_needed:
+            return None
+        last = np.searchsorted(timed, np.arange(len(heads)), "right") - 1
+        return np.where(last >= 0, found[np.maximum(last, 0)], before)
 
     def _learn(self, data: Array, heads: Array, marks: Array) -> None:
         heads = heads[heads + _FMT_LENGTH <= len(data)]

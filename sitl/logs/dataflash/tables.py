@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,8 @@ Array = np.ndarray[Any, Any]
 _VERSION = re.compile(r"V(\d+)\.(\d+)")
 _HELICOPTERS = (6, 11, 13)
 """FRAME_CLASS: Heli, Heli_Dual, HeliQuad."""
+ESTIMATES = {"XKF1": 3, "NKF1": 2, "EKF1": 2}
+"""Messages with position and velocity -> the filter of AHRS_EKF_TYPE and ATT.AEKF."""
 FAR_S = 600.0
 """A log that is kept only while armed pauses between flights; times that are farther from all others than this are odd,
 unless many messages have them [s]."""
@@ -139,6 +142,16 @@ class Tables:
             raise LogError(f"log {str(self.path)!r} has no {name}; it has {', '.join(sorted(self)) or 'nothing'}")
         return self._tables[name]
 
+    def call(self, name: str, other: str) -> None:
+        """Let messages have a second name, when there are none of that name."""
+        if other in self and name not in self:
+            self._tables[name] = self._tables[other]
+
+    def call_battery(self) -> None:
+        """Let CURR of ArduPilot 3.4 and 3.5 be BAT; before, it is in hundredths."""
+        if "CURR" in self and self["CURR"].letters.get("Volt") == "f":
+            self.call("BAT", "CURR")
+
     @property
     def began(self) -> float:
         """Time of the first message [s]; 0 when none has one."""
@@ -176,6 +189,32 @@ class Tables:
         """Of the firmware: (4, 6); None when the log does not say it."""
         found = _VERSION.search(self.firmware)
         return (int(found[1]), int(found[2])) if found else None
+
+    @property
+    def estimate(self) -> str:
+        """Message with position and velocity of the filter that was flown by ("XKF1", "NKF1"), by ATT.AEKF or
+        AHRS_EKF_TYPE; else the one that it has most of; "": none."""
+        there = [name for name in ESTIMATES if name in self]
+        flown = int(self.parameters.get("AHRS_EKF_TYPE", 0))
+        if "ATT" in self and "AEKF" in self["ATT"]:
+            flown, _ = Counter(self["ATT"]["AEKF"].astype(int).tolist()).most_common(1)[0]
+        most = max(there, key=lambda name: len(self[name]), default="")
+        return next((name for name in there if ESTIMATES[name] == flown), most)
+
+    def lane(self, name: str) -> Table:
+        """The messages of a filter's lane that was flown by at each time; all of them when they have no number.
+
+        Args:
+            name: ``estimate``.
+        """
+        table, primary = self[name], f"{name[:-1]}4"
+        if "C" not in table:
+            return table
+        lanes = np.zeros(len(table))
+        if primary in self and "PI" in self[primary]:
+            before = np.searchsorted(self[primary].time, table.time, "right") - 1
+            lanes = np.where(before >= 0, self[primary]["PI"][np.maximum(before, 0)], 0.0)
+        return table.where(table["C"] == lanes)
 
     @property
     def helicopter(self) -> str:

@@ -13,19 +13,17 @@ from sitl.core import elementary_arrays as arrays
 from sitl.errors import OptionError, SitlError
 from sitl.logs import forms
 from sitl.logs.dataflash.columns import Columns, Table
+from sitl.logs.dataflash.tables import ESTIMATES
 from sitl.scenario import Home
 
 Array = np.ndarray[Any, Any]
 
 _ARMED, _DISARMED = 10, 11
 """EV.Id"""
-_ESTIMATES = ("XKF1", "NKF1", "EKF1", "SIM2")
-"""The last one is in logs of a vehicle that flies by its true state."""
-_PRIMARY = {"XKF1": "XKF4", "NKF1": "NKF4"}
 _NAMES = (
-    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "DSF", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC", "MODE",
-    "MSG", "NKF1", "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2", "STER", "THR",
-    "XKF1", "XKF2", "XKF4",
+    "AHR2", "ARM", "ATT", "BAT", "CMD", "CTUN", "CURR", "DSF", "EKF1", "EV", "GPS", "GUIA", "GUIP", "IMU", "MAVC",
+    "MODE", "MSG", "NKF1", "NKF2", "NKF4", "PARM", "POS", "PSCD", "PSCE", "PSCN", "RATE", "RCIN", "RCOU", "SIM2",
+    "STER", "THR", "XKF1", "XKF2", "XKF4",
 )  # fmt: skip
 """Messages that are read."""
 _LEAST_S = 3.0
@@ -74,6 +72,7 @@ class FlightLog:
                 "vehicle keeps on its card and ground stations download"
             )
         self.columns = Columns(self.path, _NAMES)
+        self.columns.call_battery()
         self.kind = self.columns.kind
         if self.columns.helicopter:
             raise TwinError(f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}), which is not simulated")
@@ -113,10 +112,7 @@ class FlightLog:
         table = self.columns[name]
         if instance is not None:
             table = table.where(table["Inst"] == instance) if "Inst" in table else table.instance(instance)
-        time = table.time
-        later = np.ones(len(time), bool)
-        later[1:] = time[1:] > np.maximum.accumulate(time)[:-1]
-        return table.where(later)
+        return _rising(table)
 
     def every(self, name: str) -> Table | None:
         """All messages of a name, of one time, too; None: it has none."""
@@ -130,16 +126,13 @@ class FlightLog:
         """Position and velocity of the filter's lane that was flown by.
 
         Raises:
-            TwinError: the log has none.
+            TwinError: the log has none; SIM2 is in logs of a vehicle that flies by its true state.
         """
-        for name in _ESTIMATES:
-            if self.has(name, "PN", "PE", "PD", "VN", "VE", "VD"):
-                lane, primary = 0, _PRIMARY.get(name, "")
-                if self.has(primary, "PI"):
-                    lane = int(np.median(self.columns[primary]["PI"]))
-                return self.table(name, lane)
+        name = self.columns.estimate or "SIM2"
+        if self.has(name, "PN", "PE", "PD", "VN", "VE", "VD"):
+            return _rising(self.columns.lane(name))
         raise TwinError(
-            f"log {str(self.path)!r} has none of {', '.join(_ESTIMATES)}: positions and velocities are not known "
+            f"log {str(self.path)!r} has none of {', '.join(ESTIMATES)}, SIM2: positions and velocities are not known "
             "(LOG_BITMASK was without attitude)"
         )
 
@@ -216,3 +209,11 @@ class FlightLog:
                 f"log {str(self.path)!r}: in flight {self.number} of {len(self.flights)} "
                 f"({self.span.length:.0f} s armed) the vehicle never {what}"
             )
+
+
+def _rising(table: Table) -> Table:
+    """Messages in the order of their times."""
+    time = table.time
+    later = np.ones(len(time), bool)
+    later[1:] = time[1:] > np.maximum.accumulate(time)[:-1]
+    return table.where(later)

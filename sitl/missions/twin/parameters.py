@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from sitl.autopilot.params.files import FileValues
 from sitl.autopilot.params.renamed import here
 from sitl.autopilot.params.table import Table
+from sitl.logs.dataflash.motors import pulses
 
 from .flight_log import FlightLog
 
@@ -98,7 +99,19 @@ def taken(log: FlightLog, table: Table) -> Taken:
             found.idle.append(name)
         found.values[name] = float(factor * value)
     found.changes = [change for change in found.changes if change[1] in table]
+    _set_pulses(found.values, first)
+    names = set(rows["Name"].tolist())
+    for axis in ("RLL", "PIT", "YAW"):  # before 4.0 the rates that are asked for were not filtered
+        if f"ATC_RAT_{axis}_FILT" in names:
+            found.values[f"ATC_RAT_{axis}_FLTT"] = 0.0
     return found
+
+
+def _set_pulses(values: FileValues, logged: dict[str, float]) -> None:
+    """Pulses of the motors, where the log's firmware has those of the throttle stick (MOT_PWM_MIN 0, the default before
+    4.1; before 3.4 there is no other way)."""
+    if values.get("MOT_PWM_MAX", 0.0) <= 0.0 and "RCMAP_THROTTLE" in logged:
+        values["MOT_PWM_MIN"], values["MOT_PWM_MAX"] = pulses(logged)
 
 
 def _is_taken(name: str, is_ours: bool) -> bool:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sitl.core import elementary_arrays as arrays
+from sitl.logs.dataflash import motors as dataflash_motors
 
 from .flight_log import FlightLog
 
@@ -99,31 +100,13 @@ def _acceleration(field: str) -> Callable[[FlightLog], Stream | None]:
     return of
 
 
-def motor_numbers(log: FlightLog) -> list[int]:
-    """Channels of RCOU that drive motors, from 1 (SERVOn_FUNCTION 33 to 40); as many as the log has."""
-    parameters = log.columns.parameters
-    found = {}
-    for channel in range(1, 15):
-        function = int(parameters.get(f"SERVO{channel}_FUNCTION", 0))
-        if 33 <= function <= 40:
-            found[function] = channel
-    return [found[function] for function in sorted(found)]
-
-
-def pulse_range(log: FlightLog) -> tuple[float, float]:
-    """Pulses of motors at rest and at full output [us]."""
-    parameters = log.columns.parameters
-    low, high = parameters.get("MOT_PWM_MIN", 1000.0), parameters.get("MOT_PWM_MAX", 2000.0)
-    return (low, high) if high > low else (1000.0, 2000.0)
-
-
 def motors(log: FlightLog) -> Stream | None:
     """Outputs of the motors [%], in the order of their numbers."""
-    channels = motor_numbers(log)
+    channels = dataflash_motors.channels(log.columns)
     if not channels or not log.has("RCOU", *(f"C{channel}" for channel in channels)):
         return None
     table = log.table("RCOU")
-    low, high = pulse_range(log)
+    low, high = dataflash_motors.pulses(log.columns.parameters)
     outputs = [100.0 * np.clip((table[f"C{channel}"] - low) / (high - low), 0.0, 1.0) for channel in channels]
     return Stream(log.since_arming(table), np.stack(outputs, 1))
 

@@ -19,6 +19,7 @@ from sitl.core.algebra import euler_of
 from sitl.core.compile import Progress
 from sitl.core.geodesy import add_offset
 from sitl.errors import OptionError
+from sitl.logs.dataflash.motors import channels as motor_channels
 from sitl.physics.engines import NATIVE
 from sitl.scenario import Home, Scenario
 from sitl.simulation import Core, Simulation
@@ -227,7 +228,7 @@ class _Twins:
             names = sorted({inputs.mode_name(log.kind, mode.number) for mode in missing})
             notes.insert(0, f"modes of the log not in this autopilot: {', '.join(names)} ({len(missing)} changes)")
         if log.kind == "copter":
-            motors, rotors = len(streams.motor_numbers(log)), len(self.airframe.rotors)  # type: ignore[attr-defined]
+            motors, rotors = len(motor_channels(log.columns)), len(self.airframe.rotors)  # type: ignore[attr-defined]
             if motors and motors != rotors:
                 notes.insert(
                     0, f"the log is of a vehicle with {motors} motors, frame {self.airframe.name} has {rotors}"

@@ -145,3 +145,19 @@ def test_set_points_of_guided_keep_their_place_beside_where_it_was_armed(written
     assert (second["vx"], second["vy"], second["vz"]) == pytest.approx((1.0, -0.5, -0.2))
     assert (third["coordinate_frame"], third["alt"]) == (6, 9.0)
     assert "1 set-points of GUIDED over terrain are left out" in found.notes
+
+
+def test_pulses_of_motors_are_those_of_the_throttle_stick_in_old_logs(written: Log) -> None:
+    """MOT_PWM_MIN 0 was the default before 4.1; the filters of rates were those of errors before 4.0."""
+    stick = (("RC3_MIN", 1094.0), ("RC3_MAX", 1934.0), ("RCMAP_THROTTLE", 3.0), ("ATC_RAT_RLL_FILT", 10.0))
+
+    def values(low: float, high: float) -> dict[str, float]:
+        rows = (*stick, ("MOT_PWM_MIN", low), ("MOT_PWM_MAX", high))
+        path = written(*(("PARM", 1_000_000, name.encode(), value, value) for name, value in rows))
+        return parameters.taken(FlightLog(path), FIRMWARE.table).values
+
+    old = values(0.0, 0.0)
+    assert (old["MOT_PWM_MIN"], old["MOT_PWM_MAX"]) == (1094.0, 1934.0)
+    assert (old["ATC_RAT_RLL_FLTD"], old["ATC_RAT_RLL_FLTT"]) == (10.0, 0.0)
+    today = values(1010.0, 1990.0)
+    assert (today["MOT_PWM_MIN"], today["MOT_PWM_MAX"]) == (1010.0, 1990.0)
