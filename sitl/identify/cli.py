@@ -21,6 +21,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the airframe that --frame takes")
     parser.add_argument("--mass", type=float, metavar="KG", help="mass of the vehicle: logs alone tell ratios")
     parser.add_argument(
+        "--above",
+        type=float,
+        metavar="M",
+        help="height over the ground from which on a copter's flight counts (2); less for a small one that flew low",
+    )
+    parser.add_argument(
         "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the figures observable"
     )
     parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
@@ -48,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
         print(advice(options.vehicle, speed))
         print(f"mission: {options.plan}")
     if options.logs:
-        _identify(options.logs, options.mass, options.out)
+        _identify(options.logs, options.mass, options.out, options.above)
     return 0
 
 
@@ -71,8 +77,9 @@ def _home(text: str | None) -> tuple[float, float]:
     return latitude, longitude
 
 
-def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> None:
+def _identify(logs: Sequence[Path], mass: float | None, out: Path | None, above: float | None) -> None:
     try:
+        from .flight import ABOVE_M
         from .identification import identify
         from .telemetry import HOW
     except ModuleNotFoundError as error:
@@ -91,7 +98,7 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None) -> Non
             bar.bar_format = "{desc} ({elapsed})"
             bar.set_description_str(f"figures: {what}")
 
-        found = identify(logs, mass, progress, begins)
+        found = identify(logs, mass, progress, begins, ABOVE_M if above is None else above)
     print(found.table())
     for note in (note for log in found.logs for note in log.notes):
         print(f"note: {note}")

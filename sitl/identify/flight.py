@@ -25,7 +25,7 @@ _FAILSAFES = {5: "radio", 6: "battery", 8: "GCS", 12: "crash", 16: "EKF", 17: "E
 """ERR.Subsys whose errors end what counts as a usual flight, until their ECode is 0."""
 _SETTLES_S = 3.0
 """After take-off and before landing [s]."""
-_LOW_M = 2.0
+ABOVE_M = 2.0
 """Nearer to the ground than this the rotors' air comes back [m]."""
 _DRIVES = 0.1
 """A rover that never drove faster stood [m/s]."""
@@ -60,14 +60,15 @@ class FlightLog:
     Args:
         path: of a .bin, a .log as text, or a .tlog.
         progress: is told how far it is read.
+        above: height over the ground from which on a copter's flight counts [m].
 
     Raises:
         sitl.logs.tlog.LogError: it cannot be read, or is of a vehicle that the simulator does not have.
         IdentifyError: it has no parameters, or the vehicle never moved.
     """
 
-    def __init__(self, path: str | Path, progress: Progress | None = None) -> None:
-        self.path = Path(path)
+    def __init__(self, path: str | Path, progress: Progress | None = None, above: float = ABOVE_M) -> None:
+        self.path, self._above = Path(path), above
         self.columns = self._read(progress)
         self.kind = self.columns.kind
         if self.kind not in _KINDS:
@@ -100,7 +101,7 @@ class FlightLog:
         """When it moved by itself, without failsafe."""
         if not self.spans:
             where = (
-                f"in the air, {_LOW_M:g} m over the ground"
+                f"in the air, {above:g} m over the ground"
                 if self.kind == "copter"
                 else f"armed and driving (XKF1 over {_DRIVES:g} m/s)"
             )
@@ -230,7 +231,7 @@ class FlightLog:
         for flight in flights:
             k = int(np.clip(np.searchsorted(time, flight.begin), 0, len(time) - 1))
             inside = (time >= flight.begin) & (time <= flight.end)
-            near = inside & (height < height[k] + _LOW_M)
+            near = inside & (height < height[k] + self._above)
             low += _spans_of(time, near)
         return low
 

@@ -18,7 +18,7 @@ from ..vehicles import Airframe
 from .copter import figures
 from .copter_airframe import model_of
 from .figure import Begins, Figure, silent
-from .flight import FlightLog, IdentifyError
+from .flight import ABOVE_M, FlightLog, IdentifyError
 from .model import Model
 from .rover.airframe import RoverModel
 from .rover.airframe import model_of as rover_model_of
@@ -30,6 +30,9 @@ _LEAST_EFFICIENCY = 0.1
 """Of motors with gears: with less a mass is a slip of the pen."""
 _CELLS = ("hover_voltage", "battery_voltage")
 """Figures of which the number of cells follows, at whose ends there may be one more."""
+
+_ASSUMED = 2.0
+"""By this an assumed figure may be off, either way."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +99,8 @@ class Identification:
         for name, (below, above) in squares.items():
             middle = np.asarray(airframe.value(name), float)
             ends = np.clip((middle - np.sqrt(below), middle + np.sqrt(above)), *limits[name])
+            if model.notes.get(name, "").startswith("assumed"):
+                ends = np.clip((middle / _ASSUMED, middle * _ASSUMED), *limits[name])
             intervals[name] = tuple(tuple(end.tolist()) if end.ndim else float(end) for end in ends)
         return replace(airframe, intervals=intervals)
 
@@ -150,6 +155,7 @@ def identify(
     mass: float | None = None,
     progress: Progress | None = None,
     begins: Begins = silent,
+    above: float = ABOVE_M,
 ) -> Identification:
     """The figures of the copter or rover that these logs are of.
 
@@ -158,6 +164,7 @@ def identify(
         mass: of the vehicle [kg].
         progress: is told how far each log is read.
         begins: is told which figures are worked on.
+        above: height over the ground from which on a copter's flight counts [m].
 
     Raises:
         sitl.logs.tlog.LogError, IdentifyError: a log that cannot be used, named with the reason.
@@ -167,7 +174,9 @@ def identify(
         raise IdentifyError("no logs are given; at least one .bin is needed")
     if mass is not None and not (math.isfinite(mass) and 0.001 <= mass <= 1e4):
         raise IdentifyError(f"mass {mass} kg is outside 0.001 .. 10000")
-    found = [FlightLog(path, progress) for path in paths]
+    if not (math.isfinite(above) and 0.0 <= above <= 100.0):
+        raise IdentifyError(f"height {above} m over the ground is outside 0 .. 100")
+    found = [FlightLog(path, progress, above) for path in paths]
     kinds = {log.kind for log in found}
     if len(kinds) > 1:
         raise IdentifyError(

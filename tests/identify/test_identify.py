@@ -156,6 +156,17 @@ def test_effectiveness_that_a_log_does_not_tell_goes_with_the_gains(flown, found
             name = f"{axis}_effectiveness"
             assert figures[name] == pytest.approx(known[name] / share, rel=0.01), name
         assert "assumed, by ATC_RAT_RLL_P and _PIT_P" in made.to_toml()
+        low, high = made.airframe().intervals["inertia"]
+        assert high == pytest.approx([4.0 * x for x in low]), "half to twice of what is assumed"
+
+
+def test_how_high_a_flight_counts_may_be_said(flown, capsys) -> None:
+    with pytest.raises(IdentifyError, match="never in the air, 90 m over the ground for 12 s"):
+        identify(flown, above=90.0)
+    with pytest.raises(IdentifyError, match=r"height -1\.0 m over the ground is outside 0 \.\. 100"):
+        identify(flown, above=-1.0)
+    assert cli.main(["identify", str(flown), "--above", "90"]) == 2
+    assert "90 m over the ground" in capsys.readouterr().err
 
 
 def test_a_weight_that_changes_within_a_log_is_said(found) -> None:
@@ -168,6 +179,14 @@ def test_a_weight_that_changes_within_a_log_is_said(found) -> None:
     )
     rows[:, 0], rows[40:, 2] = 0.4, 12.0 * np.sqrt(0.9)
     assert not hover._weights(rows, log), "a battery that empties"
+
+
+def test_where_the_current_hardly_changes_the_resistance_is_the_firmwares(found, flown, monkeypatch) -> None:
+    monkeypatch.setattr("sitl.identify.board._MOST_RELATIVE", 0.0)
+    figure = identify(flown)["battery_resistance"]
+    truth = float(vehicles.load("erle_copter").value("battery_resistance"))
+    assert figure.low < truth < figure.high and figure.data == "BAT.Res, the firmware's estimate"
+    assert figure.value == pytest.approx(found["battery_resistance"].value, rel=0.1)
 
 
 def _of_version(data: bytes, version: bytes) -> bytes:

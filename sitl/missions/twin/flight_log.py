@@ -56,6 +56,7 @@ class FlightLog:
     Args:
         path: of a .bin, or a .log as text.
         number: of the flight, from 1; None: the one that was armed longest.
+        must_move: whether a vehicle that did not leave the ground, or did not drive, is refused.
 
     Raises:
         sitl.logs.tlog.LogError: it cannot be read, or is of a vehicle that the simulator does not have.
@@ -63,7 +64,7 @@ class FlightLog:
         OptionError: it has no flight of this number.
     """
 
-    def __init__(self, path: str | Path, number: int | None = None) -> None:
+    def __init__(self, path: str | Path, number: int | None = None, must_move: bool = True) -> None:
         self.path = Path(path)
         form = forms.of(self.path)
         if form != forms.DATAFLASH:
@@ -91,7 +92,10 @@ class FlightLog:
             raise OptionError(f"flight {number}: log {str(path)!r} has flights 1 to {len(self.flights)}")
         self.number = number or 1 + max(range(len(self.flights)), key=lambda k: self.flights[k].length)
         self.span = self.flights[self.number - 1]
-        self._check_moves()
+        self.stands = self._standing()
+        """Why this is no flight: the vehicle did not move; "": it did."""
+        if self.stands and must_move:
+            raise TwinError(self.stands)
 
     @property
     def name(self) -> str:
@@ -192,7 +196,7 @@ class FlightLog:
             spans.append(Span(since, end, False))
         return [span for span in spans if span.length >= _LEAST_S]
 
-    def _check_moves(self) -> None:
+    def _standing(self) -> str:
         table = self.estimate()
         time = self.since_arming(table)
         inside = (time >= 0.0) & (time <= self.span.length)
@@ -204,11 +208,12 @@ class FlightLog:
         else:
             north, east = table["PN"][inside], table["PE"][inside]
             way, what = float(arrays.hypot(north - north[0], east - east[0]).max()), "drove"
-        if way < _LEAST_WAY_M:
-            raise TwinError(
-                f"log {str(self.path)!r}: in flight {self.number} of {len(self.flights)} "
-                f"({self.span.length:.0f} s armed) the vehicle never {what}"
-            )
+        if way >= _LEAST_WAY_M:
+            return ""
+        return (
+            f"log {str(self.path)!r}: in flight {self.number} of {len(self.flights)} "
+            f"({self.span.length:.0f} s armed) the vehicle never {what}"
+        )
 
 
 def _rising(table: Table) -> Table:

@@ -13,7 +13,7 @@ _GOOD = 80.0
 _LIFT = 0.05
 """Share by which the mean motor outputs may differ."""
 _PUSH = 0.3
-"""Vertical acceleration by which the model may differ at the log's motor outputs [m/s^2]."""
+"""Acceleration by thrust by which the model may differ at the log's motor outputs [m/s^2]."""
 _VOLTS = 0.02
 """Share by which voltages may differ."""
 _AXES = ("roll_rate", "pitch_rate", "yaw_rate")
@@ -57,7 +57,7 @@ def findings(
                 f"model: mean throttle output of the log is {logged:.1f} %, of the twin {flown:.1f} %: the thrust "
                 f"over weight of the airframe is {'less' if flown > logged else 'more'} than the vehicle's"
             )
-    push = of_model.get("acceleration")
+    push = of_model.get("thrust") or of_model.get("acceleration")  # who leans more falls
     if push is not None and abs(push.bias) > _PUSH:
         found.append(
             f"model: at the log's motor outputs the model accelerates {abs(push.bias):.2f} m/s^2 more "

@@ -12,6 +12,7 @@ from sitl.core.algebra import quat_from_euler
 from sitl.core.vectors import Euler, Vec2, Vec3
 from sitl.physics.native.copter.state import ALL_DRIVEN
 from sitl.physics.native.copter.trim import speed_at_full
+from sitl.physics.native.records import GROUND_AIRBORNE
 from sitl.simulation import Simulation
 
 from . import streams
@@ -109,6 +110,7 @@ class LoggedState:
         v: Any = simulation.v
         if driven:
             v.physics.rotors.stuck = ALL_DRIVEN
+        v.physics.ground.state = GROUND_AIRBORNE  # where it stands, or has landed in a segment, it would stand on
         body, control = v.physics.body, v.autopilot.control
         motion = np.array(self.motion.at(time))
         origin = np.array(place)

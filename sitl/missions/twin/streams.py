@@ -90,12 +90,23 @@ def _speed(log: FlightLog) -> Stream | None:
     return Stream(log.since_arming(table), arrays.hypot(table["VN"], table["VE"])[:, None])
 
 
+_BY_STICK = (0, 1)
+"""Modes whose throttle is the stick's: STABILIZE, ACRO."""
+
+
 def _acceleration(field: str) -> Callable[[FlightLog], Stream | None]:
-    """Upward; ArduPilot writes m/s^2 since 4.7, cm/s^2 before, and this simulator as its units say."""
+    """Upward; ArduPilot writes m/s^2 since 4.7, cm/s^2 before, and this simulator as its units say. None is asked for
+    (ADes) where the stick is the throttle: the log repeats what was asked for last."""
 
     def of(log: FlightLog) -> Stream | None:
         in_metres = log.version >= (4, 7) and "gym-sitl" not in log.columns.firmware
-        return _fields("RATE", field, scale=1.0 if in_metres else 0.01)(log)
+        found = _fields("RATE", field, scale=1.0 if in_metres else 0.01)(log)
+        mode = log.every("MODE")
+        if found is None or field != "ADes" or mode is None or "ModeNum" not in mode:
+            return found
+        before = np.searchsorted(log.since_arming(mode), found.time, "right") - 1
+        by_stick = np.isin(mode["ModeNum"][np.maximum(before, 0)], _BY_STICK)
+        return Stream(found.time[~by_stick], found.values[~by_stick])
 
     return of
 
@@ -144,6 +155,9 @@ COPTER = (
     Quantity("motors", "motor outputs", "%", 1.0, motors),
     *_BATTERY,
 )  # fmt: skip
+
+THRUST = Quantity("thrust", "thrust over mass", "m/s^2", 0.3, _fields("IMU", "AccZ", scale=-1.0, instance=0))
+"""Of the model alone: unlike the upward acceleration it does not fall when the model leans by the log's outputs."""
 
 ROVER = (
     _PLACE,

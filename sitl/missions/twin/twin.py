@@ -83,6 +83,8 @@ class Twin:
     @property
     def findings(self) -> list[str]:
         """Where model or autopilot differ, in words."""
+        if self.flown.stands:
+            return [_STANDS, *findings((), self.segments, self.model)]
         return findings(self.whole, self.segments, self.model, self.legs)
 
     @property
@@ -205,7 +207,7 @@ class _Twins:
         found.went += legs.late(legs.steps(self.log, flown)) + half_turns.words(turns)
         if changed is not None:
             found.difference = _compared(quantities, flown, changed, all_of_it)
-        if segments and not (self.log.kind == "copter" and self.physics == NATIVE):
+        if segments and not self._has_segments:
             found.notes.append("open segments are flown by copters on native physics only")
         elif segments:
             found.segments, opened, turns = self._segments("segments", SEGMENT_S, False, then)
@@ -220,6 +222,10 @@ class _Twins:
                     "tell of the model's thrust, not of its torques"
                 )
         return found
+
+    @property
+    def _has_segments(self) -> bool:
+        return self.log.kind == "copter" and self.physics == NATIVE
 
     def _notes(self) -> list[str]:
         log, notes = self.log, self.taken.notes()
@@ -272,7 +278,8 @@ class _Twins:
         finally:
             simulation.close()
         try:
-            return FlightLog(path), flight
+            flown = FlightLog(path, must_move=not self._has_segments)
+            return flown, flight
         except TwinError as error:
             why = "; ".join(flight.notes) or "it says no reason"
             raise TwinError(f"the twin of log {self.log.name!r} does not fly its flight: {error}: {why}") from None
@@ -318,7 +325,8 @@ class _Twins:
         opened = flight.opened
         judged = opened if driven else [one._replace(begin=one.begin + SETTLES_S) for one in opened]
         turns = [] if driven else half_turns.other_way(heading(self.log), heading(flown), judged)
-        found = _compared(streams.QUANTITIES[self.log.kind], self.log, flown, judged, turns, each=True)
+        quantities = (*streams.QUANTITIES[self.log.kind], *([streams.THRUST] if driven else []))
+        found = _compared(quantities, self.log, flown, judged, turns, each=True)
         return found, opened, turns
 
     @property
@@ -351,7 +359,11 @@ class _Twins:
         return tuple(found)
 
 
-_BY_THRUST = ("height", "climb", "acceleration", "voltage", "current")
+_STANDS = (
+    "the twin never left the ground by what was done in the log's flight: its lift, or what it waits for, differs; "
+    "open segments alone tell of it"
+)
+_BY_THRUST = ("height", "climb", "acceleration", "thrust", "voltage", "current")
 """Quantities that follow from the motors' outputs together."""
 _BY_TORQUE = ("position", "speed", "roll", "pitch", "yaw", "roll_rate", "pitch_rate", "yaw_rate")
 """Those that follow from their differences."""

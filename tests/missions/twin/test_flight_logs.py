@@ -12,10 +12,10 @@ import pytest
 from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.errors import OptionError
 from sitl.logs.tlog import LogError
-from sitl.missions.twin import inputs, parameters, twin
+from sitl.missions.twin import inputs, parameters, streams, twin
 from sitl.missions.twin.flight_log import FlightLog, TwinError
 from tests.logs.log_files import V32, binary, old_flight, telemetry, without_messages
-from tests.missions.twin.conftest import Log, cut
+from tests.missions.twin.conftest import FORMATS, Log, cut
 
 
 def test_a_flight_is_from_arming_to_disarming_and_begins_where_the_vehicle_stood(written: Log) -> None:
@@ -161,3 +161,17 @@ def test_pulses_of_motors_are_those_of_the_throttle_stick_in_old_logs(written: L
     assert (old["ATC_RAT_RLL_FLTD"], old["ATC_RAT_RLL_FLTT"]) == (10.0, 0.0)
     today = values(1010.0, 1990.0)
     assert (today["MOT_PWM_MIN"], today["MOT_PWM_MAX"]) == (1010.0, 1990.0)
+
+
+def test_no_acceleration_is_asked_for_where_the_stick_is_the_throttle(written: Log, monkeypatch) -> None:
+    """ArduCopter logs what it asked for last, in STABILIZE, too."""
+    monkeypatch.setitem(FORMATS, "RATE", ("Qff", "TimeUS,A,ADes"))
+    rows = [("RATE", 20_500_000 + 500_000 * k, 1.0 * k, 100.0 * k) for k in range(18)]
+    log = FlightLog(written(*rows, ("MODE", 24_900_000, 2, 2, 1)))
+    asked, flown = (
+        next(one for one in streams.COPTER if one.name == name).of(log)
+        for name in ("asked_acceleration", "acceleration")
+    )
+    assert asked is not None and flown is not None
+    assert len(flown.time) == 18 and asked.time.tolist() == pytest.approx([5.0 + 0.5 * k for k in range(9)])
+    assert asked.values[0, 0] == pytest.approx(9.0)

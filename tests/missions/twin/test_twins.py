@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sitl import vehicles
 from sitl.cli import main
 from sitl.errors import OptionError
 from sitl.missions.testing import assert_twin
@@ -35,7 +36,8 @@ def test_open_segments_begin_in_the_logged_state(own_twin: Twin) -> None:
     for name in ("height", "position", "roll", "pitch", "yaw"):
         assert figures[f"segments.{name}.vaf"] > 95.0, name
     assert figures["segments.yaw_rate.vaf"] > 90.0 and figures["segments.height.rms"] < 0.05
-    assert abs(figures["model.acceleration.bias"]) < 0.05  # the log's motor outputs hold the same vehicle
+    for name in ("acceleration", "thrust"):
+        assert abs(figures[f"model.{name}.bias"]) < 0.05  # the log's motor outputs hold the same vehicle
 
 
 def test_a_segment_begins_in_the_logged_state_wherever_the_twin_is(own_log: Path, core: Core, tmp_path: Path) -> None:
@@ -54,6 +56,14 @@ def test_a_segment_begins_in_the_logged_state_wherever_the_twin_is(own_log: Path
 def test_another_seed_errs_as_receivers_do(own_log: Path, core: Core) -> None:
     figures = twin.fly(own_log, FRAME, seed=SEED + 1, segments=False, core=core).figures()
     assert figures["height.rms"] < 0.5 and 0.01 < figures["position.rms"] < 1.0 and figures["pitch.vaf"] > 90.0
+
+
+def test_a_twin_that_does_not_leave_the_ground_has_open_segments(own_log: Path, core: Core) -> None:
+    heavy = twin.with_mass(vehicles.load(FRAME), "12")
+    found = twin.fly(own_log, heavy, core=core)
+    assert found.findings[0].startswith("the twin never left the ground")
+    assert any("more down than the vehicle did" in text for text in found.findings)
+    assert found.figures()["model.thrust.bias"] < -5.0 and not any("throttle" in text for text in found.findings)
 
 
 def test_another_airframe_is_a_misfit(own_log: Path, core: Core) -> None:
