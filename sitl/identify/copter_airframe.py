@@ -135,4 +135,6 @@ def _scaled(
 
 
 def _own(parameters: Mapping[str, float]) -> dict[str, float]:
-    return {name: value for name, value in parameters.items() if name.startswith(_KEPT)}
+    """Those that are the log's; pulses are not: figures count outputs from MOT_PWM_MIN to _MAX."""
+    kept_ones = {name: value for name, value in parameters.items() if name.startswith(_KEPT)}
+    return {name: value for name, value in kept_ones.items() if not name.startswith("MOT_PWM_M")}

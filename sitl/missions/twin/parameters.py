@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from sitl.autopilot.params.files import FileValues
 from sitl.autopilot.params.renamed import here
 from sitl.autopilot.params.table import Table
-from sitl.logs.dataflash.motors import pulses
 
 from .flight_log import FlightLog
 
@@ -18,7 +17,7 @@ _OWN = re.compile(
     r"AHRS_(TRIM|ORIENT|EKF|GPS_USE)|ARMING_|ARSPD|BARO|BATT\d?_(MONITOR|VOLT_|CURR_|AMP_|I2C|SERIAL|OPTIONS|ESC|SHUNT)"
     r"|BCN_|BRD_|CAN_|CAM|COMPASS_|DEV_|EAHRS_|EK[23]_(ENABLE|SRC|IMU|PRIMARY|GPS|MAG|AFFINITY|DRAG)|ESC_|FFT_"
     r"|FLOW|FORMAT_|FRAME_|FS_GCS_ENABL|GPS|INITIAL_MODE|INS_(ACC\d?_|ACC\d?OFFS|ACC\d?SCAL|ACC_?\d?_?ID|ACCOFFS|ACCSCAL"
-    r"|GYR|USE|ENABLE|POS|TCAL|FAST|RAW|LOG|TRIM|STILL|BODYFIX)|LOG_|MAV\d*_|MIS_TOTAL|MNT|NET_|NTF_|OSD|PLND_|PRX|RNGFND|RPM"
+    r"|GYR|USE|ENABLE|POS|TCAL|FAST|RAW|LOG|TRIM|STILL|BODYFIX)|LOG_|MOT_PWM_M|MAV\d*_|MIS_TOTAL|MNT|NET_|NTF_|OSD|PLND_|PRX|RNGFND|RPM"
     r"|SCHED_|SCR_|SERIAL|SERVO|SIM_|SR\d_|STAT_|SYSID_|TEMP|VISO|VTX|WENC"
 )
 """Beginnings of names that tell of the vehicle's hardware, calibration, ports and logs,
@@ -99,19 +98,11 @@ def taken(log: FlightLog, table: Table) -> Taken:
             found.idle.append(name)
         found.values[name] = float(factor * value)
     found.changes = [change for change in found.changes if change[1] in table]
-    _set_pulses(found.values, first)
     names = set(rows["Name"].tolist())
     for axis in ("RLL", "PIT", "YAW"):  # before 4.0 the rates that are asked for were not filtered
         if f"ATC_RAT_{axis}_FILT" in names:
             found.values[f"ATC_RAT_{axis}_FLTT"] = 0.0
     return found
-
-
-def _set_pulses(values: FileValues, logged: dict[str, float]) -> None:
-    """Pulses of the motors, where the log's firmware has those of the throttle stick (MOT_PWM_MIN 0, the default before
-    4.1; before 3.4 there is no other way)."""
-    if values.get("MOT_PWM_MAX", 0.0) <= 0.0 and "RCMAP_THROTTLE" in logged:
-        values["MOT_PWM_MIN"], values["MOT_PWM_MAX"] = pulses(logged)
 
 
 def _is_taken(name: str, is_ours: bool) -> bool:

@@ -147,20 +147,13 @@ def test_set_points_of_guided_keep_their_place_beside_where_it_was_armed(written
     assert "1 set-points of GUIDED over terrain are left out" in found.notes
 
 
-def test_pulses_of_motors_are_those_of_the_throttle_stick_in_old_logs(written: Log) -> None:
-    """MOT_PWM_MIN 0 was the default before 4.1; the filters of rates were those of errors before 4.0."""
-    stick = (("RC3_MIN", 1094.0), ("RC3_MAX", 1934.0), ("RCMAP_THROTTLE", 3.0), ("ATC_RAT_RLL_FILT", 10.0))
-
-    def values(low: float, high: float) -> dict[str, float]:
-        rows = (*stick, ("MOT_PWM_MIN", low), ("MOT_PWM_MAX", high))
-        path = written(*(("PARM", 1_000_000, name.encode(), value, value) for name, value in rows))
-        return parameters.taken(FlightLog(path), FIRMWARE.table).values
-
-    old = values(0.0, 0.0)
-    assert (old["MOT_PWM_MIN"], old["MOT_PWM_MAX"]) == (1094.0, 1934.0)
-    assert (old["ATC_RAT_RLL_FLTD"], old["ATC_RAT_RLL_FLTT"]) == (10.0, 0.0)
-    today = values(1010.0, 1990.0)
-    assert (today["MOT_PWM_MIN"], today["MOT_PWM_MAX"]) == (1010.0, 1990.0)
+def test_parameters_of_arducopter_3_are_taken_under_their_names_of_today(written: Log) -> None:
+    """The rates that are asked for were not filtered then; pulses of motors are the airframe's."""
+    rows = (("MOT_PWM_MIN", 0.0), ("MOT_PWM_MAX", 0.0), ("ATC_RAT_RLL_FILT", 10.0), ("POS_Z_P", 1.5))
+    path = written(*(("PARM", 1_000_000, name.encode(), value, value) for name, value in rows))
+    values = parameters.taken(FlightLog(path), FIRMWARE.table).values
+    assert not {"MOT_PWM_MIN", "MOT_PWM_MAX"} & set(values)
+    assert (values["ATC_RAT_RLL_FLTD"], values["ATC_RAT_RLL_FLTT"], values["PSC_POSZ_P"]) == (10.0, 0.0, 1.5)
 
 
 def test_no_acceleration_is_asked_for_where_the_stick_is_the_throttle(written: Log, monkeypatch) -> None:
