@@ -268,7 +268,6 @@ class FleetVehicles(InProcessVehicles):
             link = InProcess(Simulation(scenario, core=self._core), self.setup.inbox())
             self._aside = self.fleet, world, link
         link.endpoint.link.receive()
-        link.endpoint.sequence = 0  # the vehicle counts gaps: the same each time
         return link
 
     # ------------------------------------------------------------------ steps
