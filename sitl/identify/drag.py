@@ -49,7 +49,7 @@ SYSTEMATIC = 0.04
 
 
 _WIND = 0.3
-"""Half of the interval [m/s] for what the accelerometer and the estimator's velocity leave."""
+"""Half of the interval [m/s] for what gusts leave on the mean, and the estimator's velocity."""
 
 
 class _Rows:
@@ -111,7 +111,25 @@ def drag(logs: Sequence[FlightLog]) -> list[Figure]:
 
 
 def _fit(rows: _Rows) -> Fit:
-    """Parameters: two of the rotors' and the body's drag along, one across, two biases, two of the wind of each log."""
+    """Parameters: two of the rotors' and the body's drag along, one across, two biases, two of the wind of each log.
+
+    As far as the biases are by assumption and not by the data, their error is not in the residuals: what another
+    bias, and one that drifts by as much from the middle of each log to its ends, would have made of all parameters is
+    added to the covariance.
+    """
+    none = np.zeros(2)
+    found = _fitted(rows, none, none)
+    others = [_fitted(rows, *pair) for bias in _BIAS * np.eye(2) for pair in ((bias, none), (none, bias))]
+    shifts = [other.value - found.value for other in others]
+    return found._replace(covariance=found.covariance + sum(np.outer(shift, shift) for shift in shifts))
+
+
+def _fitted(rows: _Rows, bias: Array, drift: Array) -> Fit:
+    """With biases that are assumed to be these in the middle of each log, and to be so much more at its end."""
+    force = rows.force.copy()
+    for k in np.unique(rows.log):
+        which = rows.log == k
+        force[which, :2] -= np.linspace(-1.0, 1.0, which.sum())[:, None] * drift
     names, place = np.unique(rows.log, return_inverse=True)
     root = np.sqrt(np.clip(-rows.force[:, 2] / GRAVITY, 0.3, 3.0))
 
@@ -119,9 +137,9 @@ def _fit(rows: _Rows) -> Fit:
         wind = np.zeros((len(place), 3))
         wind[:, :2] = p[5:].reshape(len(names), 2)[place]
         u, v, _ = rows.motion.along_body(rows.motion.velocity - wind).T
-        along = rows.force[:, 0] - p[3] + p[0] * root * u + p[1] * u * abs(u)
-        across = rows.force[:, 1] - p[4] + p[0] * root * v + p[2] * v * abs(v)
-        return np.concatenate([along, across, _BIAS_ROOT * p[3:5] / _BIAS])
+        along = force[:, 0] - p[3] + p[0] * root * u + p[1] * u * abs(u)
+        across = force[:, 1] - p[4] + p[0] * root * v + p[2] * v * abs(v)
+        return np.concatenate([along, across, _BIAS_ROOT * (p[3:5] - bias) / _BIAS])
 
     start = np.concatenate([[0.2, 0.005, 0.005, 0.0, 0.0], np.zeros(2 * len(names))])
     after = int(rows.groups.max()) + 1

@@ -27,7 +27,8 @@ _LOADS = 1.4
 """Thrust by output and voltage that a hover needs at most by what it needs at least, of 80 % of its windows: more is
 another weight. Payloads are dropped and batteries changed while a log goes on."""
 _ACCELEROMETER = 0.1
-"""Error of the mean of an accelerometer: bias and scale (assumed) [m/s^2]."""
+"""Error of the thrust that is left when the accelerometer's bias is taken off: its scale, the curve of thrust by
+output, pulses in whole microseconds (assumed) [m/s^2]."""
 
 HOVER_OUTPUT = Sought("hover_output", "", "motor output (0 .. 1 of MOT_PWM_MIN .. MAX, mean) that carries the weight")
 HOVER_VOLTAGE = Sought("hover_voltage", "V", "battery voltage at which hover_output was found")
@@ -36,7 +37,8 @@ HOVER_CURRENT = Sought("hover_current", "A", "battery current in the hover")
 
 def hover(logs: Sequence[FlightLog]) -> list[Figure]:
     """Output, voltage and current that carry the weight."""
-    parts = [part.rows for log in logs for part in hovers(log)]
+    found_in = [_without_bias(hovers(log)) for log in logs]
+    parts = [part.rows for found in found_in for part in found]
     seconds = _WINDOW_S * sum(map(len, parts))
     if seconds < _LEAST_S:
         reason = (
@@ -87,6 +89,16 @@ def _weights(rows: Array, log: FlightLog) -> str:
     )
 
 
+def _without_bias(parts: list[Hover]) -> list[Hover]:
+    """The thrust of a log's windows without the accelerometer's bias: on the mean it carries the weight, and what the
+    estimated velocity gained."""
+    if not parts:
+        return parts
+    rows, climb = np.vstack([part.rows for part in parts]), np.concatenate([part.climb for part in parts])
+    bias = float((rows[:, 1] - (GRAVITY + climb) / np.cos(rows[:, 4])).mean())
+    return [part._replace(rows=part.rows - bias * np.array([0.0, 1.0, 0.0, 0.0, 0.0])) for part in parts]
+
+
 class Hover(NamedTuple):
     """Windows of a span in which it hovered."""
 
@@ -94,6 +106,8 @@ class Hover(NamedTuple):
     """Mean output, specific thrust, voltage, current, lean [rad]."""
     motors: Array
     """Each motor's output."""
+    climb: Array
+    """What the estimated velocity gained upward [m/s^2]."""
 
     @property
     def output(self) -> Array:
@@ -125,10 +139,13 @@ def hovers(log: FlightLog) -> list[Hover]:
         power = np.full((len(thrust), 2), np.nan)
         if battery is not None and len(battery) > 2:
             power = means(battery.time, np.stack([battery["Volt"], battery["Curr"]], -1), edges)
+        climb = -np.diff(np.interp(edges, estimate.time, estimate["VD"])) / _WINDOW_S
         still = (np.hypot(speed[:, 0], speed[:, 1]) < _SLOW) & (np.abs(speed[:, 2]) < _LEVEL)
         still &= (output.max(1) < top - 0.01) & (np.abs(thrust - GRAVITY) < 1.0)
         if still.any():
-            found.append(Hover(np.column_stack([output.mean(1), thrust, power, lean])[still], output[still]))
+            found.append(
+                Hover(np.column_stack([output.mean(1), thrust, power, lean])[still], output[still], climb[still])
+            )
     return found
 
 
