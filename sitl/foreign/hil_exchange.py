@@ -15,7 +15,7 @@ from ..bridge.hil.protocol import BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDAT
 from ..bridge.hil.sensor import DITHER_BARO, DITHER_MAG, pressure_altitude
 from ..bridge.telemetry.units import uint16
 from ..bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
-from ..bridge.wire.message import Message
+from ..bridge.wire.message import Message, consecutive
 from ..bridge.wire.port import PAYLOAD_BYTES
 from ..bridge.wire.tables import PAYLOAD_MAX
 from ..core.array_kernels import Kernel
@@ -25,6 +25,7 @@ from ..core.mavlink import MavModeFlag
 from ..core.memory import bytes_at, call_unit, ints_at, record_at
 from ..core.records import Floats, Ints, Record, array
 from ..core.system_call import call_system
+from ..core.vectors import Vec3
 from ..physics.carried import carried
 from ..physics.native.records import Body, Obstacles, Place
 
@@ -52,15 +53,9 @@ class HilControls(Message, name="HIL_ACTUATOR_CONTROLS"):
 
 class HilSensor(Message, name="HIL_SENSOR"):
     time_usec: int
-    xacc: float
-    yacc: float
-    zacc: float
-    xgyro: float
-    ygyro: float
-    zgyro: float
-    xmag: float
-    ymag: float
-    zmag: float
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
+    mag: Vec3 = consecutive("xmag", "ymag", "zmag")
     abs_pressure: float
     pressure_alt: float
     temperature: float
@@ -70,20 +65,14 @@ class HilSensor(Message, name="HIL_SENSOR"):
 class HilState(Message, name="HIL_STATE_QUATERNION"):
     time_usec: int
     attitude_quaternion: Floats
-    rollspeed: float
-    pitchspeed: float
-    yawspeed: float
+    rates: Vec3 = consecutive("rollspeed", "pitchspeed", "yawspeed")
     lat: int
     lon: int
     alt: int
-    vx: int
-    vy: int
-    vz: int
+    vel: Vec3 = consecutive("vx", "vy", "vz")
     ind_airspeed: int
     true_airspeed: int
-    xacc: int
-    yacc: int
-    zacc: int
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
 
 
 HIL_SENSOR, HIL_STATE_QUATERNION, ANSWER = HilSensor.kind.id, HilState.kind.id, HilControls.kind.id
@@ -168,11 +157,10 @@ def write_sensor(x: HilExchange, at: int, time_us: int) -> int:
     for k in range(PAYLOAD_MAX):
         payload[k] = 0
     m, s = record_at(HilSensor, at + HEADER), record_at(Sensors, x.sensors)
-    acc, gyro, mag = s.acc, s.gyro, s.mag
+    mag = s.mag
     m.time_usec = time_us
-    m.xacc, m.yacc, m.zacc = acc.x, acc.y, acc.z
-    m.xgyro, m.ygyro, m.zgyro = gyro.x, gyro.y, gyro.z
-    m.xmag, m.ymag, m.zmag = float(mag.x) + DITHER_MAG * (s.mag_count & 1), mag.y, mag.z
+    m.acc, m.gyro = s.acc, s.gyro
+    m.mag = Vec3(float(mag.x) + DITHER_MAG * (s.mag_count & 1), mag.y, mag.z)
     pressure = float(s.abs_pressure) + DITHER_BARO * (s.baro_count & 1)
     updated = IMU_UPDATED
     if s.mag_count != x.mag:
@@ -201,11 +189,11 @@ def write_truth(x: HilExchange, at: int, time_us: int) -> int:
     m.time_usec = time_us
     for k in range(4):
         m.attitude_quaternion[k] = truth.attitude[k]
-    m.rollspeed, m.pitchspeed, m.yawspeed = truth.rates
+    m.rates = Vec3(truth.rates[0], truth.rates[1], truth.rates[2])
     m.lat, m.lon, m.alt = truth.lat, truth.lon, truth.alt
-    m.vx, m.vy, m.vz = truth.velocity
+    m.vel = Vec3(north, east, down)
     m.ind_airspeed = m.true_airspeed = speed
-    m.xacc, m.yacc, m.zacc = truth.acceleration
+    m.acc = Vec3(truth.acceleration[0], truth.acceleration[1], truth.acceleration[2])
     x.sequence = (x.sequence + 1) & 0xFF
     sender = Sender(x.sequence, x.system, x.component)
     return seal(bytes_at(at, FRAME_MAX), 2, HIL_STATE_QUATERNION, sender)

@@ -145,7 +145,7 @@ def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
         return
     mask, use_attitude = m.type_mask, (m.type_mask & ATTITUDE_IGNORED) == 0
     ignored, given = mask & RATES_IGNORED, rotation(m.q)
-    rates = Vec3(m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate) if ignored == 0 else ZERO
+    rates = m.rates if ignored == 0 else ZERO
     if (
         (mask & THRUST_IGNORED) != 0
         or (ignored != 0 and ignored != RATES_IGNORED)

@@ -57,7 +57,7 @@ def position_target_local(m: SetPositionTargetLocalNed, v: Rover, sender: int) -
     """Drive to a place or with a velocity in a local frame."""
     estimate = v.autopilot.estimate
     if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in LOCAL_FRAMES:
-        follow(v, local_target(m, estimate), m.vx < 0.0, LOCAL_NUMBER)
+        follow(v, local_target(m, estimate), m.vel.x < 0.0, LOCAL_NUMBER)
 
 
 @law
@@ -67,7 +67,7 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Rover, sender: int)
         return
     place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, MavFrame.GLOBAL)
     if place.is_known or (m.type_mask & POSITION_IGNORED) != 0:
-        follow(v, global_target(m, place.pos), m.vx < 0.0, GLOBAL_NUMBER)
+        follow(v, global_target(m, place.pos), m.vel.x < 0.0, GLOBAL_NUMBER)
 
 
 @law
@@ -134,8 +134,8 @@ def attitude_target(m: SetAttitudeTarget, v: Rover, sender: int) -> None:
         return
     speed = constrain(m.thrust, -1.0, 1.0) * full_speed(v)
     if (m.type_mask & BODY_YAW_RATE_IGNORED) == 0:
-        if finite(m.body_yaw_rate):
-            set_turn_rate_and_speed(modes, v.time_us, m.body_yaw_rate, speed)
+        if finite(m.rates.z):
+            set_turn_rate_and_speed(modes, v.time_us, m.rates.z, speed)
         return
     given = rotation(m.q)
     if given.is_given:
