@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ..bridge.hil.controls import OUTPUTS
 from ..bridge.hil.protocol import BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDATED
 from ..bridge.hil.sensor import DITHER_BARO, DITHER_MAG, pressure_altitude
+from ..bridge.telemetry.sensors import HighresImu
 from ..bridge.telemetry.units import uint16
 from ..bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
 from ..bridge.wire.message import Message, consecutive
@@ -51,15 +52,8 @@ class HilControls(Message, name="HIL_ACTUATOR_CONTROLS"):
     mode: int
 
 
-class HilSensor(Message, name="HIL_SENSOR"):
-    time_usec: int
-    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
-    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
-    mag: Vec3 = consecutive("xmag", "ymag", "zmag")
-    abs_pressure: float
-    pressure_alt: float
-    temperature: float
-    fields_updated: int
+class HilSensor(HighresImu, name="HIL_SENSOR"):
+    pass
 
 
 class HilState(Message, name="HIL_STATE_QUATERNION"):
