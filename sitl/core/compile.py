@@ -122,8 +122,11 @@ def is_shipped(unit: Unit, path: str) -> bool:
 
 
 def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
-    """Units of the core of ``entry`` that have no machine code for their present source."""
-    return [u for u in reached(entry) if not is_shipped(u, path) and not is_built(unit_folder(u, path))]
+    """Units of the core of ``entry`` that have no machine code for their present source, in this process or kept."""
+    return [
+        u for u in reached(entry)
+        if (u.name, path) not in _loaded and not is_shipped(u, path) and not is_built(unit_folder(u, path))
+    ]  # fmt: skip
 
 
 def make_jitable(inline: bool = False) -> None:

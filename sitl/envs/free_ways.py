@@ -14,7 +14,7 @@ from sitl.core.elementary import sincos
 from sitl.core.kernels import law
 from sitl.worlds import World
 
-from .marching import march
+from .marching import LISTS, march
 from .robots.robot import Floats, Robot, world_of
 from .starts import ReachableCells
 from .worlds import PerWorld
@@ -147,7 +147,29 @@ def spread(down: IntTable, right: IntTable, squares: IntTable) -> None:
                 changed = True
 
 
+@law
+def write_lengths(
+    field: Line, nearest: IntTable, beside: Table, more: float, cell: float, out: NarrowTable, k: int
+) -> None:
+    """Write the lengths of ways to the goal of robot ``k``.
+
+    Args:
+        field: costs of ways, in cells, as ``march`` writes them.
+        nearest: number of the nearest free cell of each cell in ``field``, shape (rows, columns).
+        beside: how far it is [cells].
+        more: how far the goal is from its nearest free cell [cells].
+        cell: side of a cell [m].
+        out: [m], shape (count, rows * columns or more).
+        k: the robot.
+    """
+    rows, columns = nearest.shape[0], nearest.shape[1]
+    for i in range(rows):
+        for j in range(columns):
+            out[k, i * columns + j] = cell * (field[nearest[i, j]] + beside[i, j] + more)
+
+
 _march = Kernel(march)
+_write = Kernel(write_lengths)
 _spread = Kernel(spread)
 _read = Kernel(read_ways)
 _follow = Kernel(follow_ways)
@@ -157,11 +179,11 @@ class Ground(NamedTuple):
     """A world's grid, seen from above."""
 
     free: Floats
-    """1 where a way can lead, shape (rows, columns)."""
+    """1 where a way can lead, row after row, with an edge of zeros; shape ((rows + 2) * (columns + 2),)."""
     costs: Floats
-    """Of a cell of a route, which keeps away from solids where there is room; 0: no way leads there."""
-    nearest: npt.NDArray[np.int32]
-    """Number of the nearest free cell of each cell."""
+    """The same of the cost of a cell of a route, which keeps away from solids where there is room."""
+    nearest: npt.NDArray[np.int64]
+    """Number among these of the nearest free cell of each cell, shape (rows, columns)."""
     beside: Floats
     """How far it is [cells]."""
     low: Floats
@@ -184,12 +206,12 @@ class FreeWays:
     def __init__(self, robot: Robot, crash_range: float = 0.0) -> None:
         self._robot, self._crash_range = robot, crash_range
         self._in = PerWorld(self._ground)
-        size = self._in(robot.world).free.size
+        size = self._in(robot.world).nearest.size
         self._grids = np.zeros((robot.count, 5))
         self._grids[:, :2], self._grids[:, 4] = 2.0, 1.0
         self._fields = np.zeros((robot.count, size), np.float32)
         self._out = np.zeros(robot.count)
-        self._keys, self._items = np.empty(0), np.empty(0, np.int64)  # room for the heap
+        self._firsts, self._links = np.empty(LISTS, np.int64), np.empty((0, 3), np.int64)  # cells that wait
         self._routes: npt.NDArray[np.float32] | None = None
         """Costs of routes, as ``_fields`` has lengths; None: nothing asks for them."""
 
@@ -200,7 +222,11 @@ class FreeWays:
         room = np.minimum(found.cell * _nearest(~free)[1] / CLEARANCE, 1.0) if not free.all() else np.ones(free.shape)
         lack = 1.0 - room
         costs = np.where(free, 1.0 + BESIDE * lack * lack, 0.0)
-        return Ground(free.astype(np.float64), costs, *_nearest(free), found.low + 0.5 * found.cell, found.cell)
+        nearest, beside = _nearest(free)
+        i, j = np.divmod(nearest, free.shape[1])
+        nearest = np.where(nearest < 0, 0, (i + 1) * (free.shape[1] + 2) + j + 1)  # 0: at the edge
+        low = found.low + 0.5 * found.cell
+        return Ground(_edged(free.astype(np.float64)), _edged(costs), nearest, beside, low, found.cell)
 
     def plan_routes(self) -> None:
         """``follow`` is going to be called; before the first goal."""
@@ -210,12 +236,12 @@ class FreeWays:
     def aim(self, index: int, x: float, y: float) -> None:
         """Give a robot its goal, x, y in the frame of its world [m]."""
         ground = self._in(world_of(self._robot, index))
-        rows, columns = ground.free.shape
+        rows, columns = ground.nearest.shape
         row, column = (np.array([x, y]) - ground.low) / ground.cell
         i, j = (int(np.clip(np.rint(at), 0, last - 1)) for at, last in ((row, rows), (column, columns)))
         beside = float(ground.beside[i, j])
         if beside > 0.0:
-            row, column = divmod(int(ground.nearest[i, j]), columns)
+            row, column = (at - 1 for at in divmod(int(ground.nearest[i, j]), columns + 2))
         self._fields = self._marched(self._fields, index, ground, ground.free, float(row), float(column), beside)
         if self._routes is not None:
             self._routes = self._marched(self._routes, index, ground, ground.costs, float(row), float(column), beside)
@@ -226,16 +252,15 @@ class FreeWays:
         beside: float,
     ) -> npt.NDArray[np.float32]:  # fmt: skip
         """``fields`` with the one of a robot's new goal, or a larger array with these."""
-        size = ground.free.size
-        if len(self._keys) < 4 * size + 9:
-            self._keys, self._items = np.empty(4 * size + 9), np.empty(4 * size + 9, np.int64)
-        field = np.empty(ground.free.shape)
-        _march(costs, row, column, self._keys, self._items, field)
-        lengths = field.ravel()[ground.nearest] + ground.beside + beside
+        size, edged = ground.nearest.size, len(costs)
+        if edged > len(self._links):
+            self._links = np.empty((edged, 3), np.int64)
         if size > fields.shape[1]:
             more = np.zeros((len(fields), size - fields.shape[1]), np.float32)
             fields = np.concatenate((fields, more), axis=1)
-        fields[index, :size] = (ground.cell * lengths).ravel()
+        field, columns = np.empty(edged), ground.nearest.shape[1] + 2
+        _march.unchecked()(costs, columns, row + 1.0, column + 1.0, self._firsts, self._links, field)
+        _write.unchecked()(field, ground.nearest, ground.beside, beside, ground.cell, fields, index)
         return fields
 
     def lengths(self, pose: Floats) -> Floats:
@@ -249,7 +274,12 @@ class FreeWays:
         _follow.unchecked()(self._routes, self._fields, self._grids, np.ascontiguousarray(pose), ahead, out, first)
 
 
-def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats]:
+def _edged(cells: Floats) -> Floats:
+    """With an edge of zeros, row after row."""
+    return np.pad(cells, 1).ravel()
+
+
+def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int64], Floats]:
     """Number of the nearest free cell of each cell, and how far it is [cells]."""
     down, right = np.zeros((2, *free.shape), np.int64)
     squares = np.where(free, 0, UNKNOWN)
@@ -257,4 +287,4 @@ def _nearest(free: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.int32], Floats
     i, j = np.ogrid[: free.shape[0], : free.shape[1]]
     known = squares != UNKNOWN
     nearest = np.where(known, (i - down) * free.shape[1] + j - right, -1)
-    return nearest.astype(np.int32), np.sqrt(np.where(known, squares, math.inf))
+    return nearest, np.sqrt(np.where(known, squares, math.inf))

@@ -5,36 +5,14 @@ from __future__ import annotations
 
 import math
 
-from sitl.core.array_kernels import IntLine, Line, Table
+from sitl.core.array_kernels import IntLine, IntTable, Line
 from sitl.core.kernels import law
 
-
-@law
-def push(keys: Line, items: IntLine, count: int, key: float, item: int) -> int:
-    """Put an item into a heap of ``count`` items, the least key first; returns how many there are then."""
-    at = count
-    while at > 0 and keys[(at - 1) // 2] > key:
-        keys[at], items[at] = keys[(at - 1) // 2], items[(at - 1) // 2]
-        at = (at - 1) // 2
-    keys[at], items[at] = key, item
-    return count + 1
-
-
-@law
-def pop(keys: Line, items: IntLine, count: int) -> int:
-    """Take the first item out of a heap of ``count`` items, at least one; returns how many are left."""
-    last = count - 1
-    key, item = keys[last], items[last]
-    at, child = 0, 1
-    while child < last:
-        if child + 1 < last and keys[child + 1] < keys[child]:
-            child += 1
-        if keys[child] >= key:
-            break
-        keys[at], items[at] = keys[child], items[child]
-        at, child = child, 2 * child + 1
-    keys[at], items[at] = key, item
-    return last
+LISTS = 64
+"""Number of lists in which cells wait, by the cost of their way in whole numbers; a power of two."""
+COST_MOST = 30.0
+"""Of a cell: what it adds to a way must not reach round all lists."""
+NOBODY = -1
 
 
 @law
@@ -48,40 +26,81 @@ def reach(a: float, b: float, cost: float) -> float:
 
 
 @law
-def march(costs: Table, row: float, column: float, keys: Line, items: IntLine, out: Table) -> None:
+def leave(firsts: IntLine, links: IntTable, cell: int) -> None:
+    """Take a cell out of the list in which it waits."""
+    before, after = links[cell, 0], links[cell, 1]
+    if before == NOBODY:
+        firsts[links[cell, 2] & (LISTS - 1)] = after
+    else:
+        links[before, 1] = after
+    if after != NOBODY:
+        links[after, 0] = before
+    links[cell, 2] = NOBODY
+
+
+@law
+def wait(firsts: IntLine, links: IntTable, cell: int, length: float) -> int:
+    """Let a cell wait in the list for its way's cost; returns how many more cells wait now."""
+    number, waits = int(length), links[cell, 2]
+    if waits == number:
+        return 0
+    if waits != NOBODY:
+        leave(firsts, links, cell)
+    at = number & (LISTS - 1)
+    after = firsts[at]
+    links[cell, 0], links[cell, 1], links[cell, 2], firsts[at] = NOBODY, after, number, cell
+    if after != NOBODY:
+        links[after, 0] = cell
+    return 1 if waits == NOBODY else 0
+
+
+@law
+def march(costs: Line, columns: int, row: float, column: float, firsts: IntLine, links: IntTable, out: Line) -> None:
     """Write what the way of least cost over free cells costs from each cell to a place: its length where each costs 1.
 
-    Source: Sethian, "A fast marching level set method for monotonically advancing fronts", PNAS 93, 1996.
+    Cells wait in lists, by the cost of their way, not in a heap. One that has passed on its way, and then gets a
+    cheaper one from a cell of the same list, waits again. So the numbers are those of a heap, in half the time.
+
+    Sources: Sethian, "A fast marching level set method for monotonically advancing fronts", PNAS 93, 1996; Yatziv,
+    Bartesaghi and Sapiro, "O(N) implementation of the fast marching algorithm", J. Comput. Phys. 212, 2006 (lists).
 
     Args:
-        costs: of a cell's side of way in each cell; 0: no way leads there; shape (rows, columns).
+        costs: of a cell's side of way in each cell, row after row, up to ``COST_MOST``; 0: no way leads there, as at
+            the whole edge; shape (rows * columns,).
+        columns: of the grid.
         row, column: the place; the middle of the first cell is 0, 0.
-        keys, items: room for the heap, shape (4 * rows * columns + 9,).
-        out: cost of the way, in cells where each costs 1, shape (rows, columns); inf where no way leads.
+        firsts: room for the lists, shape (LISTS,).
+        links: room for who waits where, shape (rows * columns or more, 3): the cells before and after in a list, and
+            the whole number that the list is for.
+        out: cost of the way, in cells where each costs 1, shape (rows * columns,); inf where no way leads.
     """
-    rows, columns, count = costs.shape[0], costs.shape[1], 0
-    for i in range(rows):
-        for j in range(columns):
-            out[i, j] = math.inf
+    rows, waiting, number = costs.shape[0] // columns, 0, 0
+    for cell in range(costs.shape[0]):
+        out[cell] = math.inf
+        links[cell, 2] = NOBODY
+    for at in range(LISTS):
+        firsts[at] = NOBODY
     first, second = int(row + 0.5), int(column + 0.5)
     for i in range(max(first - 1, 0), min(first + 2, rows)):
         for j in range(max(second - 1, 0), min(second + 2, columns)):
-            if costs[i, j] > 0.0:
-                out[i, j] = costs[i, j] * math.sqrt((i - row) * (i - row) + (j - column) * (j - column))
-                count = push(keys, items, count, out[i, j], i * columns + j)
-    while count > 0:
-        key, row_now, column_now = keys[0], items[0] // columns, items[0] % columns
-        count = pop(keys, items, count)
-        if key > out[row_now, column_now]:
+            cell = i * columns + j
+            if costs[cell] > 0.0:
+                out[cell] = costs[cell] * math.sqrt((i - row) * (i - row) + (j - column) * (j - column))
+                waiting += wait(firsts, links, cell, out[cell])
+    while waiting > 0:
+        cell = firsts[number & (LISTS - 1)]
+        if cell == NOBODY:
+            number += 1
             continue
+        leave(firsts, links, cell)
+        waiting -= 1
+        key = out[cell]
         for side in range(4):
-            i = row_now + (1 if side == 0 else -1 if side == 1 else 0)
-            j = column_now + (1 if side == 2 else -1 if side == 3 else 0)
-            if i < 0 or j < 0 or i >= rows or j >= columns or costs[i, j] == 0.0 or out[i, j] <= key:
+            there = cell + (1 if side == 0 else -1 if side == 1 else columns if side == 2 else -columns)
+            cost, before = costs[there], out[there]
+            if cost == 0.0 or before <= key:
                 continue  # no way there, or as short as one over this cell can be
-            a = min(out[i - 1, j] if i > 0 else math.inf, out[i + 1, j] if i + 1 < rows else math.inf)
-            b = min(out[i, j - 1] if j > 0 else math.inf, out[i, j + 1] if j + 1 < columns else math.inf)
-            there = reach(a, b, costs[i, j])
-            if there < out[i, j]:
-                out[i, j] = there
-                count = push(keys, items, count, there, i * columns + j)
+            length = reach(min(out[there - columns], out[there + columns]), min(out[there - 1], out[there + 1]), cost)
+            if length < before:
+                out[there] = length
+                waiting += wait(firsts, links, there, length)

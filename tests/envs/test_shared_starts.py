@@ -47,6 +47,22 @@ def test_a_second_environment_boots_nothing_and_sees_the_same(kept, monkeypatch,
     assert len(kept) == count > 1
 
 
+def test_what_is_made_ready_for_set_points_does_not_depend_on_what_was_before(kept):
+    def ready():
+        return {key[-1]: start.ready for key, start in kept._kept.items() if start.ready}
+
+    episodes(gym.make(HOVER), range(4))
+    together = ready()
+    assert len(together) > 2
+    for seed in range(4):
+        kept.clear()
+        episodes(gym.make(HOVER), (seed,))
+        ((boot, alone),) = ready().items()
+        for used, snapshot in alone.items():
+            assert bytes(snapshot.record) == bytes(together[boot][used].record)
+            assert snapshot.bridge == together[boot][used].bridge
+
+
 def test_what_does_not_change_a_boot_shares_it(kept):
     episodes(gym.make(HOVER))
     count = len(kept)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from ...core.border import RC_INPUTS
 from ...core.record_reader import locate
@@ -74,11 +74,20 @@ class Parameters(ParameterGroup):
     STAT: Statistics
     VISO: VisualOdometry
 
+    places: ClassVar[dict[str, int]]
+    """Name -> place among ``numbers``."""
+
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        for row in rows(cls):
-            if row.name not in cls.fields:
-                setattr(cls, row.name, _by_full_name(locate(cls.dtype, row.path)[0] // _BYTES))
+        cls.places = {row.name: locate(cls.dtype, row.path)[0] // _BYTES for row in rows(cls)}
+        for name, k in cls.places.items():
+            if name not in cls.fields:
+                setattr(cls, name, _by_full_name(k))
+
+    @property
+    def numbers(self) -> Any:
+        """All values, float64."""
+        return self._f8
 
 
 def _by_full_name(k: int) -> property:

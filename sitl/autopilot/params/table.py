@@ -77,8 +77,13 @@ class Table:
 
     def set_defaults(self, params: Parameters) -> None:
         """Set every field of a params record to its default."""
-        for p in self.with_effect:
-            params[p.name] = stored(p, p.default)
+        for name, value in self._defaults:
+            params[name] = value
+
+    @cached_property
+    def _defaults(self) -> list[tuple[str, float]]:
+        """Of those with an effect, as the firmware keeps them."""
+        return [(p.name, stored(p, p.default)) for p in self.with_effect]
 
     @cached_property
     def fixed(self) -> dict[str, float]:
@@ -117,8 +122,9 @@ class Values:
         record: holds those with an effect.
     """
 
-    def __init__(self, table: Table, record: Any) -> None:
+    def __init__(self, table: Table, record: Parameters) -> None:
         self.table, self._record = table, record
+        self._numbers, self._places = record.numbers, record.places
         self._listed: tuple[Any, tuple[Parameter, ...]] | None = None
         """The values, and what is listed with them."""
         self.kept: dict[str, float] = {}
@@ -131,7 +137,7 @@ class Values:
         value = self.kept.get(name)
         if value is None:
             value = self.table.fixed.get(name)
-        return float(self._record[self.table[name].name]) if value is None else value
+        return self._numbers[self._places[name]] if value is None else value
 
     def __setitem__(self, name: str, value: float) -> None:
         """Set one, as the firmware keeps it."""

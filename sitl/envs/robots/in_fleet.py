@@ -104,6 +104,8 @@ class FleetVehicles(InProcessVehicles):
         """By the number of the boot."""
         self._failing: dict[int, list[Failure]] = {}
         """What is ordered to fail from the next step on."""
+        self._aside: tuple[Fleet | None, World | None, InProcess | None] = None, None, None
+        """A vehicle that is made ready for set-points, of which fleet and in which world it is."""
         self._used = "", 0
         """Kind of set-point and interval that a vehicle was last made ready for."""
         lat, lon = setup.options.home[:2]
@@ -244,19 +246,29 @@ class FleetVehicles(InProcessVehicles):
     def _ready(
         self, index: int, start: Snapshot, setpoint: str, interval_us: int, now: EpisodeState = NOT_STARTED
     ) -> Snapshot:
-        scenario, world = self.fleet.scenario, self.worlds[index]
-        if start.world == world.name != self.setup.world.name:
-            scenario = replace(scenario, world=world, start=None)
-        simulation = Simulation(scenario, core=self._core)
-        link = InProcess(simulation, self.setup.inbox())
-        simulation.restore(start)
+        world = self.worlds[index]
+        link = self._aside_in(world if start.world == world.name != self.setup.world.name else None)
+        link.simulation.restore(start)
         if now.interval_us != interval_us:
             set_intervals(link, interval_us)
         if now.setpoint != setpoint:
             if setpoint in self.setup.kind.parameters:
                 set_bit(link, *self.setup.kind.parameters[setpoint], may_change=True)
             set_mode(link, self.setup.kind.modes[setpoint])
-        return simulation.snapshot()
+        return link.simulation.snapshot()
+
+    def _aside_in(self, world: World | None) -> InProcess:
+        """A vehicle beside the fleet, in a world (None: the fleet's), to be restored; the last one if it is there: to
+        make one takes as long as thousands of ticks."""
+        fleet, entered, link = self._aside
+        if link is None or fleet is not self.fleet or entered is not world:
+            scenario = self.fleet.scenario
+            if world is not None:
+                scenario = replace(scenario, world=world, start=None)
+            link = InProcess(Simulation(scenario, core=self._core), self.setup.inbox())
+            self._aside = self.fleet, world, link
+        link.endpoint.link.receive()
+        return link
 
     # ------------------------------------------------------------------ steps
 

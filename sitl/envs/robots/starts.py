@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Vehicles after boot and take-off, kept for all environments of this process.
 
-To boot and take off takes 50 to 100 ms of processor time, a usual environment has 64 boots, and a program makes several
+To boot and take off takes 40 to 100 ms of processor time, a usual environment has 64 boots, and a program makes several
 environments alike: to train in, to evaluate in, one for each condition of a table, one for each robot of a vector.
 """
 
