@@ -30,7 +30,7 @@ from ..core.vectors import Vec3
 from ..physics.carried import carried
 from ..physics.native.records import Body, Obstacles, Place
 
-ROOM = 2048
+INBOX_BYTES = 2048
 """Bytes that are read at once."""
 MARKS = 16
 """As many fields of a record may say that there is something else to tell."""
@@ -99,7 +99,7 @@ class HilExchange(Record):
     receive: int  # addresses of recv, send
     send: int
     socket: int
-    inbox: int  # ROOM bytes
+    inbox: int  # INBOX_BYTES
     received: int  # of them
     given: int  # address of an answer's payload
     outbox: int  # of two frames
@@ -212,7 +212,7 @@ def tell(x: HilExchange) -> int:
 @law
 def judge(x: HilExchange) -> bool:
     """Whether what was received is the answer to the present tick and nothing else; it is in the record then."""
-    data = bytes_at(x.inbox, ROOM)
+    data = bytes_at(x.inbox, INBOX_BYTES)
     frame = find(data, 0, x.received)
     if frame.end != x.received or frame.start != 0 or frame.number != ANSWER:
         return False
@@ -238,7 +238,7 @@ def converse(exchange: int) -> int:
     clock, obstacles = ints_at(x.clock, 1), record_at(Obstacles, x.obstacles)
     x.taken = 0
     while x.answers > 0 and clock[0] < x.until_us:
-        x.received = max(call_system(x.receive, x.socket, x.inbox, ROOM, 0, 0), 0)
+        x.received = max(call_system(x.receive, x.socket, x.inbox, INBOX_BYTES, 0, 0), 0)
         if x.received == 0:
             return IS_SILENT
         if not judge(x):

@@ -29,7 +29,7 @@ from ..dialect import MessageType, message
 
 _NUMPY = {"b": "i1", "B": "u1", "h": "i2", "H": "u2", "i": "i4", "I": "u4", "q": "i8", "Q": "u8", "f": "f4", "d": "f8"}
 """Code of ``struct`` -> NumPy's."""
-_SORTS = {(False, False): int, (True, False): float, (False, True): Ints, (True, True): Floats}
+_FIELD_TYPES = {(False, False): int, (True, False): float, (False, True): Ints, (True, True): Floats}
 """(Not whole numbers, an array) -> what a class says of the field."""
 
 
@@ -103,7 +103,7 @@ def _field(cls: type[Message], name: str, hint: Any) -> Field:
         length = len(parts)
         if isinstance(hint, type) and issubclass(hint, Value) and len(hint.NAMES) == length:
             return Field(name, kind.offset_of(parts[0]), number, (length,), hint)
-    expected = _SORTS[number[0] == "f", length > 0]
+    expected = _FIELD_TYPES[number[0] == "f", length > 0]
     if hint is not expected:
         raise TypeError(f"{cls.__name__}.{name}: {kind.name} has {expected.__name__} there, not {hint}")
     return Field(name, kind.offset_of(parts[0]), number, (length,) if length else (), None if length else expected)

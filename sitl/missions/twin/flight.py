@@ -17,7 +17,7 @@ from sitl.autopilot.modes import shown
 from sitl.autopilot.params.files import ParameterError
 from sitl.core.constants import TICK_US
 from sitl.core.vectors import Vec3
-from sitl.drop_in.sticks import FOR_EVER_US
+from sitl.drop_in.stick_port import FOR_EVER_US
 from sitl.logs.dataflash import bits, copter, rover
 from sitl.logs.kind import mode_name
 from sitl.physics.native.battery import OPEN_CIRCUIT
