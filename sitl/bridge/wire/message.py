@@ -50,6 +50,8 @@ class Message(Record):
     """
 
     kind: ClassVar[MessageType]
+    parts: ClassVar[tuple[str, ...]] = ()
+    """The dialect's fields that it has, those of vectors and arrays one by one."""
     _vectors: ClassVar[dict[str, tuple[str, ...]]] = {}
     """Name -> the dialect's fields that it consists of."""
 
@@ -73,6 +75,7 @@ class Message(Record):
         hints = get_type_hints(cls)
         own = [n for n, hint in hints.items() if not n.startswith("_") and get_origin(hint) is not ClassVar]
         fields = [_field(cls, field, hints[field]) for field in own]
+        cls.parts = tuple(part for name in own for part in cls._vectors.get(name, (name,)))
         cls.fields = {f.name: f for f in sorted(fields, key=lambda f: f.offset)}
         cls.dtype = np.dtype(
             {

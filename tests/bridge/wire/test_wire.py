@@ -132,6 +132,7 @@ def test_fields_in_a_row_are_a_vector_or_an_array() -> None:
     imu.acc = Vec3(1.0, -2.9, 3.9)
     pulses.last[1] = 1500
     assert imu.acc == Vec3(1.0, -2.0, 3.0), "cut off, as in the core"
+    assert Imu.parts == ("xacc", "yacc", "zacc"), "as clients know them"
     assert bytes(imu._bytes) == message("SCALED_IMU2").payload(xacc=1, yacc=-2, zacc=3)
     assert bytes(pulses._bytes) == message("SERVO_OUTPUT_RAW").payload(servo8_raw=1500)
 
