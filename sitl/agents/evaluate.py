@@ -19,9 +19,9 @@ from sitl.errors import SitlError
 from . import algorithms, environments
 from .algorithms import Policy
 from .errors import AgentError
+from .runs.evaluation_plan import EPISODES, EvaluationPlan
 from .runs.folder import RunFolder
 from .runs.local import SendProgress, Stopped
-from .runs.plan import EPISODES, EvaluationPlan
 
 CENTRES = {"circuit": (2.0, -1.9), "circuit2": (-1.7, -3.5), "circuit2c": (-1.7, -3.5), "round": (0.8, -2.25)}
 """World -> x, y of a position inside the central solids [m]."""

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from .evaluate import Evaluation, Interrupted, evaluate, stage, until_stopped
 from .runs.backends import Workers
+from .runs.evaluation_plan import EvaluationPlan
 from .runs.folder import RunFolder
 from .runs.local import SendProgress, Stopped
-from .runs.plan import EvaluationPlan
 
 
 @dataclass(frozen=True)

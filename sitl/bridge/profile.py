@@ -17,6 +17,22 @@ from .mavlink_firmware import MavlinkFirmware
 from .services.command import Entry
 from .services.setpoints import SetpointService
 
+GROUPS: Mapping[int, tuple[str, tuple[str, ...]]] = {
+    1: ("RAW_SENS", ("RAW_IMU", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE", "SCALED_PRESSURE2")),
+    2: (
+        "EXT_STAT",
+        ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "GPS2_RAW",
+         "NAV_CONTROLLER_OUTPUT", "FENCE_STATUS", "POSITION_TARGET_GLOBAL_INT"),
+    ),
+    3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+    4: ("RAW_CTRL", ()),
+    6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
+    10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2", "PID_TUNING")),
+    11: ("EXTRA2", ("VFR_HUD",)),
+    12: ("EXTRA3", ()),
+}  # fmt: skip
+"""Stream groups as both firmwares have them; each says what it sends besides (``MavlinkFirmware.groups``)."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Profile(MavlinkFirmware):

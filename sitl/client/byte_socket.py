@@ -10,6 +10,7 @@ import time
 from typing import Protocol
 
 from ..errors import LinkLostError, OptionError
+from .outbox import Outbox
 from .serial_port import FORM, SerialPort
 
 FORMS = (
@@ -50,7 +51,7 @@ def open_stream(text: str) -> ByteStream:
     return SerialPort(text) if text.startswith("serial:") else ByteSocket(text)
 
 
-class ByteSocket:
+class ByteSocket(Outbox):
     """A socket as ``Endpoint`` wants it; nothing blocks but ``wait``.
 
     Args:
@@ -62,6 +63,7 @@ class ByteSocket:
     """
 
     def __init__(self, text: str) -> None:
+        super().__init__()
         kind, _, rest = text.partition(":")
         host, colon, port = rest.rpartition(":")
         if kind in KINDS and port and not colon:
@@ -78,7 +80,6 @@ class ByteSocket:
         self._is_settled = False
         self._address, self._kind = (host, int(port)), kind
         self._open()
-        self._unsent: list[bytes] = []
 
     def _open(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM if self._stream else socket.SOCK_DGRAM)
@@ -119,17 +120,6 @@ class ByteSocket:
                 time.sleep(_AGAIN_S)
             else:
                 return True
-
-    def send(self, data: bytes) -> None:
-        """Keep a frame for ``flush``."""
-        self._unsent.append(data)
-
-    def flush(self) -> bytes:
-        """Send what was kept, in one piece; returns it."""
-        data = b"".join(self._unsent)
-        self._unsent.clear()
-        self.write(data)
-        return data
 
     def write(self, data: bytes) -> None:
         """Send bytes now; a datagram without a vehicle yet is lost.

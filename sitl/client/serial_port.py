@@ -7,12 +7,13 @@ import select
 from typing import Any
 
 from ..errors import LinkLostError, MissingExtra, OptionError
+from .outbox import Outbox
 
 FORM = '"serial:DEVICE:BAUD" (as serial:/dev/ttyACM0:57600)'
 BAUD = range(1200, 4_000_001)
 
 
-class SerialPort:
+class SerialPort(Outbox):
     """A serial line as ``Endpoint`` wants it; nothing blocks but ``wait`` and a full line.
 
     Args:
@@ -25,6 +26,7 @@ class SerialPort:
     """
 
     def __init__(self, text: str) -> None:
+        super().__init__()
         _, _, rest = text.partition(":")
         device, _, baud = rest.rpartition(":")
         if not device or not baud.isdigit() or int(baud) not in BAUD:
@@ -39,18 +41,6 @@ class SerialPort:
             self._port = serial.Serial(device, int(baud), timeout=0, exclusive=True)
         except (*self._lost, ValueError) as error:
             raise LinkLostError(f"connection {text}: {getattr(error, 'strerror', None) or error}") from None
-        self._unsent: list[bytes] = []
-
-    def send(self, data: bytes) -> None:
-        """Keep a frame for ``flush``."""
-        self._unsent.append(data)
-
-    def flush(self) -> bytes:
-        """Send what was kept, in one piece; returns it."""
-        data = b"".join(self._unsent)
-        self._unsent.clear()
-        self.write(data)
-        return data
 
     def write(self, data: bytes) -> None:
         """Send bytes now.

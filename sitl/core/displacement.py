@@ -59,12 +59,6 @@ def turned_ne(d: Displacement, v: Vec2) -> Vec2:
 
 
 @law
-def turned_back(d: Displacement, v: Vec3) -> Vec3:
-    """The direction, NED, that ``turned`` makes into ``v``."""
-    return Vec3(d.cosine * v.x + d.sine * v.y, d.cosine * v.y - d.sine * v.x, v.z)
-
-
-@law
 def turned_attitude(d: Displacement, q: Quat) -> Quat:
     """An attitude, body to NED."""
     return multiply(d.turn, q)

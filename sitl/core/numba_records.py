@@ -179,7 +179,7 @@ def _read(context: Any, builder: Any, kind: RecordType, memory: Any, name: str) 
         return context.cast(builder, builder.load(place, align=_alignment(kind)), number, value)
     if value is types.boolean:
         return builder.icmp_signed("!=", builder.load(place), context.get_constant(types.int64, 0))
-    numbers = [builder.load(cgutils.gep_inbounds(builder, place, k)) for k in range(count)]
+    numbers = [builder.load(cgutils.gep_inbounds(builder, place, k), align=_alignment(kind)) for k in range(count)]
     return make_value(context, builder, value, [context.cast(builder, n, number, types.float64) for n in numbers])
 
 
@@ -194,7 +194,8 @@ def _write(context: Any, builder: Any, sig: Any, args: Any, name: str) -> None:
     place, number, _ = _place(builder, context, kind, memory, name)
     if value in TYPES.values():
         for k, part in enumerate(components(builder, value, what)):
-            builder.store(context.cast(builder, part, types.float64, number), cgutils.gep_inbounds(builder, place, k))
+            narrow = context.cast(builder, part, types.float64, number)
+            builder.store(narrow, cgutils.gep_inbounds(builder, place, k), align=_alignment(kind))
         return
     if value is types.boolean:
         what, given = context.cast(builder, what, given, types.boolean), types.boolean

@@ -30,7 +30,7 @@ from ..vehicle.kinds import KINDS
 from . import serial_ports
 from .command_line import HELP, SERIAL_PORTS, CommandLine, parse
 from .statistics import Statistics
-from .sticks import AT_REST, LEAST_THROTTLE, StickPort
+from .stick_port import AT_REST, LEAST_THROTTLE, StickPort
 from .storage import Storage
 
 PROGRAMS = {"arducopter": "copter", "ardurover": "rover"}

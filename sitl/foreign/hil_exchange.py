@@ -13,9 +13,10 @@ from typing import NamedTuple
 from ..bridge.hil.controls import OUTPUTS
 from ..bridge.hil.protocol import BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDATED
 from ..bridge.hil.sensor import DITHER_BARO, DITHER_MAG, pressure_altitude
+from ..bridge.telemetry.sensors import HighresImu
 from ..bridge.telemetry.units import uint16
 from ..bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
-from ..bridge.wire.message import Message
+from ..bridge.wire.message import Message, consecutive
 from ..bridge.wire.port import PAYLOAD_BYTES
 from ..bridge.wire.tables import PAYLOAD_MAX
 from ..core.array_kernels import Kernel
@@ -25,10 +26,11 @@ from ..core.mavlink import MavModeFlag
 from ..core.memory import bytes_at, call_unit, ints_at, record_at
 from ..core.records import Floats, Ints, Record, array
 from ..core.system_call import call_system
+from ..core.vectors import Vec3
 from ..physics.carried import carried
 from ..physics.native.records import Body, Obstacles, Place
 
-ROOM = 2048
+INBOX_BYTES = 2048
 """Bytes that are read at once."""
 MARKS = 16
 """As many fields of a record may say that there is something else to tell."""
@@ -50,40 +52,21 @@ class HilControls(Message, name="HIL_ACTUATOR_CONTROLS"):
     mode: int
 
 
-class HilSensor(Message, name="HIL_SENSOR"):
-    time_usec: int
-    xacc: float
-    yacc: float
-    zacc: float
-    xgyro: float
-    ygyro: float
-    zgyro: float
-    xmag: float
-    ymag: float
-    zmag: float
-    abs_pressure: float
-    pressure_alt: float
-    temperature: float
-    fields_updated: int
+class HilSensor(HighresImu, name="HIL_SENSOR"):
+    pass
 
 
 class HilState(Message, name="HIL_STATE_QUATERNION"):
     time_usec: int
     attitude_quaternion: Floats
-    rollspeed: float
-    pitchspeed: float
-    yawspeed: float
+    rates: Vec3 = consecutive("rollspeed", "pitchspeed", "yawspeed")
     lat: int
     lon: int
     alt: int
-    vx: int
-    vy: int
-    vz: int
+    vel: Vec3 = consecutive("vx", "vy", "vz")
     ind_airspeed: int
     true_airspeed: int
-    xacc: int
-    yacc: int
-    zacc: int
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
 
 
 HIL_SENSOR, HIL_STATE_QUATERNION, ANSWER = HilSensor.kind.id, HilState.kind.id, HilControls.kind.id
@@ -116,7 +99,7 @@ class HilExchange(Record):
     receive: int  # addresses of recv, send
     send: int
     socket: int
-    inbox: int  # ROOM bytes
+    inbox: int  # INBOX_BYTES
     received: int  # of them
     given: int  # address of an answer's payload
     outbox: int  # of two frames
@@ -168,11 +151,10 @@ def write_sensor(x: HilExchange, at: int, time_us: int) -> int:
     for k in range(PAYLOAD_MAX):
         payload[k] = 0
     m, s = record_at(HilSensor, at + HEADER), record_at(Sensors, x.sensors)
-    acc, gyro, mag = s.acc, s.gyro, s.mag
+    mag = s.mag
     m.time_usec = time_us
-    m.xacc, m.yacc, m.zacc = acc.x, acc.y, acc.z
-    m.xgyro, m.ygyro, m.zgyro = gyro.x, gyro.y, gyro.z
-    m.xmag, m.ymag, m.zmag = float(mag.x) + DITHER_MAG * (s.mag_count & 1), mag.y, mag.z
+    m.acc, m.gyro = s.acc, s.gyro
+    m.mag = Vec3(float(mag.x) + DITHER_MAG * (s.mag_count & 1), mag.y, mag.z)
     pressure = float(s.abs_pressure) + DITHER_BARO * (s.baro_count & 1)
     updated = IMU_UPDATED
     if s.mag_count != x.mag:
@@ -201,11 +183,11 @@ def write_truth(x: HilExchange, at: int, time_us: int) -> int:
     m.time_usec = time_us
     for k in range(4):
         m.attitude_quaternion[k] = truth.attitude[k]
-    m.rollspeed, m.pitchspeed, m.yawspeed = truth.rates
+    m.rates = Vec3(truth.rates[0], truth.rates[1], truth.rates[2])
     m.lat, m.lon, m.alt = truth.lat, truth.lon, truth.alt
-    m.vx, m.vy, m.vz = truth.velocity
+    m.vel = Vec3(north, east, down)
     m.ind_airspeed = m.true_airspeed = speed
-    m.xacc, m.yacc, m.zacc = truth.acceleration
+    m.acc = Vec3(truth.acceleration[0], truth.acceleration[1], truth.acceleration[2])
     x.sequence = (x.sequence + 1) & 0xFF
     sender = Sender(x.sequence, x.system, x.component)
     return seal(bytes_at(at, FRAME_MAX), 2, HIL_STATE_QUATERNION, sender)
@@ -230,7 +212,7 @@ def tell(x: HilExchange) -> int:
 @law
 def judge(x: HilExchange) -> bool:
     """Whether what was received is the answer to the present tick and nothing else; it is in the record then."""
-    data = bytes_at(x.inbox, ROOM)
+    data = bytes_at(x.inbox, INBOX_BYTES)
     frame = find(data, 0, x.received)
     if frame.end != x.received or frame.start != 0 or frame.number != ANSWER:
         return False
@@ -256,7 +238,7 @@ def converse(exchange: int) -> int:
     clock, obstacles = ints_at(x.clock, 1), record_at(Obstacles, x.obstacles)
     x.taken = 0
     while x.answers > 0 and clock[0] < x.until_us:
-        x.received = max(call_system(x.receive, x.socket, x.inbox, ROOM, 0, 0), 0)
+        x.received = max(call_system(x.receive, x.socket, x.inbox, INBOX_BYTES, 0, 0), 0)
         if x.received == 0:
             return IS_SILENT
         if not judge(x):

@@ -20,7 +20,7 @@ from ..core.system_call import function_address
 from ..physics.native.ranging import list_near
 from ..plants.local import LocalPlant
 from ..vehicle.core_entry import unit_address
-from .hil_exchange import IS_NEWS, IS_ODD, MARKS, ROOM, HilExchange, conversed
+from .hil_exchange import INBOX_BYTES, IS_NEWS, IS_ODD, MARKS, HilExchange, conversed
 
 _RECEIVE, _SEND = (
     (function_address("recv"), function_address("send"))
@@ -63,7 +63,7 @@ class HilTicks:
         x.marks = len(marks)
         for n, (offset, code, _) in enumerate(marks):
             x.mark_at[n], x.mark_size[n] = at + offset, _SIZES[code]
-        boxes = [np.zeros(size, "u1") for size in (8 * MARKS, ROOM, PAYLOAD_BYTES, 2 * FRAME_MAX)]
+        boxes = [np.zeros(size, "u1") for size in (8 * MARKS, INBOX_BYTES, PAYLOAD_BYTES, 2 * FRAME_MAX)]
         self._kept: list[np.ndarray[Any, Any]] = boxes
         x.seen, x.inbox, x.given, x.outbox = (box.ctypes.data for box in boxes)
         x.measure_us = NEVER

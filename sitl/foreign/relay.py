@@ -14,7 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from ..bridge.links.link import Link, Peer
+from ..bridge.links.link import Link, Peer, heard
 from ..bridge.links.tcp import refuse_echo
 from ..bridge.links.udp import DATAGRAM_BYTES
 from .process import HOST, Cutter
@@ -75,15 +75,8 @@ class Relay:
         """Relay pending frames; waits up to ``seconds`` [s] wall time for one."""
         if self._autopilot is None:
             self._connect()
-        for key, _ in self._selector.select(seconds):
-            key.data()
-        for link in self._links:
-            link.refusals.clear()
-        self._peers[:] = [peer for peer in self._peers if not peer.closed]
-        for peer in self._peers:
-            data = peer.take()
-            if data:
-                self._to_autopilot(data)
+        for _, data in heard(self._selector, self._links, self._peers, seconds):
+            self._to_autopilot(data)
         self._push()
 
     def _connect(self) -> None:

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import tempfile
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +76,8 @@ class Replay:
         for entry in recording.entries:
             if entry.kind is EntryKind.NOT_REPLAYABLE:
                 raise RecordingError(f"{self._at_entry(entry)} {_text(entry)}: it cannot be flown")
-        self.simulation = _build(recording, frame, world, physics, core, progress)
+        with _understood(recording):
+            self.simulation = _simulation(recording, frame, world, physics, core, progress)
         try:
             now = identity.describe(self.simulation)
             self.differences = identity.differences(recording.header, now)
@@ -277,17 +279,11 @@ def _title(recording: Recording) -> str:
     return f"recording {str(recording.path)!r}"
 
 
-def _build(
-    recording: Recording,
-    frame: str | Airframe | None,
-    world: str | Path | World | None,
-    physics: str | None,
-    core: Core | None,
-    progress: Progress | None,
-) -> Simulation:
-    """The simulation of a recording, at power-on."""
+@contextlib.contextmanager
+def _understood(recording: Recording) -> Iterator[None]:
+    """What goes wrong in making the simulation of a recording, at power-on, is the recording's."""
     try:
-        return _simulation(recording, frame, world, physics, core, progress)
+        yield
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         if isinstance(error, SitlError):
             raise

@@ -62,10 +62,7 @@ AIRFRAME = CopterAirframe(
         "rangefinder_max": 50.0,  # [m] [model]
         "rangefinder_rate": 10.0,  # [Hz] [model]
         "rangefinder_at": (0.12, 0.0, 0.0),  # [m] [model]
-        **sensor_sets.ADIS16448,
-        **sensor_sets.UBLOX_M8,
-        **sensor_sets.MS5611,
-        **sensor_sets.HMC5883,
+        **sensor_sets.ERLE_BRAIN,
     },
     parameters={
         "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start

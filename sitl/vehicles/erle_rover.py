@@ -64,10 +64,7 @@ AIRFRAME = RoverAirframe(
         "lidar_max": 20.0,  # [m] [model]
         "lidar_rate": 10.0,  # [Hz] [model]
         "lidar_at": (0.5 - CENTRE, 0.0, -0.8),  # [m] [model]
-        **sensor_sets.ADIS16448,
-        **sensor_sets.UBLOX_M8,
-        **sensor_sets.MS5611,
-        **sensor_sets.HMC5883,
+        **sensor_sets.ERLE_BRAIN,
     },
     parameters={
         "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start

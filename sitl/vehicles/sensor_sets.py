@@ -97,3 +97,6 @@ SITL_MAG: dict[str, float | tuple[float, float, float]] = {
     "mag_noise": 0.0,  # [gauss] SIM_MAG_RND 0
     "mag_offset": (0.0, 0.0, 0.0),  # [gauss] SIM_MAG1_OFS is what the recording's COMPASS_OFS takes off
 }
+
+ERLE_BRAIN: dict[str, float | tuple[float, float, float]] = {**ADIS16448, **UBLOX_M8, **MS5611, **HMC5883}
+"""IMU, receiver, barometer and compass of the airframes around an Erle-Brain."""

@@ -40,10 +40,7 @@ AIRFRAME = RoverAirframe(
         "contact_along": (0.04, -0.04, 0.0),  # [m]
         "contact_radius": 0.22,  # [m]
         "contact_top": 0.25,  # [m]
-        **sensor_sets.ADIS16448,
-        **sensor_sets.UBLOX_M8,
-        **sensor_sets.MS5611,
-        **sensor_sets.HMC5883,
+        **sensor_sets.ERLE_BRAIN,
     },
     parameters={
         "EK3_MAG_CAL": 4,  # its compass is good: the filter learns what is left of its bias from the start

@@ -46,7 +46,7 @@ class Signals:
         self._known = frozenset(self.names)
 
     def _telemetry_names(self) -> list[str]:
-        return [f"{name}.{field}" for name, builder in self._builders.items() for field in message_of(builder).fields]
+        return [f"{name}.{field}" for name, builder in self._builders.items() for field in message_of(builder).parts]
 
     def check(self, name: str) -> None:
         """SignalError when there is no such signal."""

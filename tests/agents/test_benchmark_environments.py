@@ -19,7 +19,7 @@ from sitl.agents.evaluate import Evaluation, Played
 from sitl.agents.recipes.recipe import Recipe, check_all, runs_of
 from sitl.agents.report.driven import Driven, Trails, Whereabouts, facts, place_of, whereabouts
 from sitl.agents.report.environments import drive_one, with_range
-from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
 from sitl.errors import MissingExtra
 from sitl.worlds import load

@@ -15,8 +15,8 @@ from sitl.agents.deep.checks import BEST, JITTER, SEED, Checks
 from sitl.agents.deep.settings import settings_of
 from sitl.agents.errors import AgentError, ResumeError
 from sitl.agents.evaluate import evaluate, evaluate_run, moved_starts
+from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from sitl.agents.runs.folder import RunFolder
-from sitl.agents.runs.plan import EvaluationPlan
 from sitl.agents.runs.training import is_done
 from tests.agents.deep_runs import CIRCUIT2, NAVIGATE, new, train, weights
 

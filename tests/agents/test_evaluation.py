@@ -18,7 +18,7 @@ from sitl.agents.evaluate import CENTRES, LapCounter, evaluate, evaluate_run, mo
 from sitl.agents.evaluations import Part, evaluate_groups, evaluate_runs, play_part
 from sitl.agents.runs import local
 from sitl.agents.runs.backends import Workers
-from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
 from sitl.agents.runs.watch import Watch
 from sitl.agents.tabular import training

@@ -17,8 +17,8 @@ from sitl.agents.deep.features import Features, goals_of
 from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import evaluate_run
 from sitl.agents.runs.config import RunConfig
+from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from sitl.agents.runs.folder import RunFolder
-from sitl.agents.runs.plan import EvaluationPlan
 from tests.agents.deep_runs import train, weights
 
 REACH = "sitl/RoverReachGoal"

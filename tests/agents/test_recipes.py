@@ -17,7 +17,7 @@ from sitl.agents.errors import AgentError
 from sitl.agents.recipes.recipe import KEYS
 from sitl.agents.runs import folder as folders
 from sitl.agents.runs.config import RunConfig
-from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from tests.agents.small_runs import CIRCUIT2
 
 SMALL = f"""

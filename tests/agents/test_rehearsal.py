@@ -21,7 +21,7 @@ from sitl.agents.rehearsal.transfer_ratio import advantage, transfer_ratio
 from sitl.agents.rehearsal.trial import Trial, attempt, is_false_alarm, lidar_distance
 from sitl.agents.report.group import Group
 from sitl.agents.runs import folder as folders
-from sitl.agents.runs.plan import EvaluationPlan
+from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
 from sitl.envs.robots import boots as boots_of_vehicles
 from sitl.envs.robots import in_fleet

@@ -78,11 +78,8 @@ M = TypeVar("M", bound=Message)
 
 
 def filled(cls: type[M], **fields: Any) -> M:
-    """A message with these fields; the others are zero."""
-    message = cls()
-    for name, value in fields.items():
-        setattr(message, name, value)
-    return message
+    """A message as it comes from the wire with these fields of the dialect; the others are zero."""
+    return cls.of_payload(cls.kind.payload(**fields))
 
 
 class FakeAutopilot:

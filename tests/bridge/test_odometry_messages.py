@@ -10,20 +10,10 @@ import pytest
 
 from sitl.bridge.services import odometry as o
 from sitl.bridge.telemetry.flow import OpticalFlow, take_flow
-from tests.bridge.fakes import Bench
+from sitl.core.vectors import Vec3
+from tests.bridge.fakes import Bench, filled
 
 SENDER = 42
-
-
-def told(kind: type, **fields: Any) -> Any:
-    """A message with these fields."""
-    m = kind()
-    for name, value in fields.items():
-        if isinstance(value, list):
-            getattr(m, name)[:] = value
-        else:
-            setattr(m, name, value)
-    return m
 
 
 @pytest.mark.parametrize(
@@ -38,7 +28,7 @@ def told(kind: type, **fields: Any) -> Any:
 def test_a_place_and_heading(bench: Bench, law: Any, kind: type, more: dict[str, Any]) -> None:
     v = bench.vehicle.v
     seen: Any = v.autopilot.odometry
-    m = told(kind, x=1.0, y=2.0, z=-3.0, **more)
+    m = filled(kind, x=1.0, y=2.0, z=-3.0, **more)
     law(m, v, SENDER)
     assert seen.pose.count == 0, "VISO_TYPE 0"
     seen.kind = 1
@@ -46,7 +36,8 @@ def test_a_place_and_heading(bench: Bench, law: Any, kind: type, more: dict[str,
     law(m, v, SENDER)
     assert seen.pose.count == 1 and tuple(seen.pose.pos) == (2.0, 4.0, -6.0)
     assert seen.pose.q.z == pytest.approx(math.sin(0.25), abs=1e-6) and seen.pose.sigma == pytest.approx(0.2)
-    for m.x in (math.nan, math.inf, 1e30, -60_000.0):
+    for north in (math.nan, math.inf, 1e30, -60_000.0):
+        m.pos = Vec3(north, 2.0, -3.0)
         law(m, v, SENDER)
         assert seen.pose.count == 1, "no number, or further off than 100 km"
 
@@ -55,7 +46,7 @@ def test_variances_and_resets(bench: Bench) -> None:
     v = bench.vehicle.v
     seen: Any = v.autopilot.odometry
     seen.kind = 1
-    m = told(o.VisionPosition, x=1.0)
+    m = filled(o.VisionPosition, x=1.0)
     m.covariance[0], m.covariance[6], m.covariance[11] = 1.0, 2.0, 6.0
     o.vision_position(m, v, SENDER)
     assert seen.pose.sigma == pytest.approx(3.0)
@@ -68,11 +59,11 @@ def test_velocities(bench: Bench) -> None:
     v = bench.vehicle.v
     seen: Any = v.autopilot.odometry
     seen.kind = 1
-    o.vision_speed(told(o.VisionSpeed, x=1.0, y=2.0, z=-3.0), v, SENDER)
+    o.vision_speed(filled(o.VisionSpeed, x=1.0, y=2.0, z=-3.0), v, SENDER)
     assert tuple(seen.velocity.vel) == (1.0, 2.0, -3.0) and not seen.velocity.on_body
-    o.vision_speed(told(o.VisionSpeed, x=1e5), v, SENDER)
+    o.vision_speed(filled(o.VisionSpeed, x=1e5), v, SENDER)
     assert seen.velocity.count == 1
-    m = told(o.VisionDelta, time_delta_usec=500_000, position_delta=[0.5, 0.0, -1.0], confidence=90.0)
+    m = filled(o.VisionDelta, time_delta_usec=500_000, position_delta=[0.5, 0.0, -1.0], confidence=90.0)
     o.vision_delta(m, v, SENDER)
     assert tuple(seen.velocity.vel) == (1.0, 0.0, -2.0) and seen.velocity.on_body and seen.quality == 90
     m.time_delta_usec = 0
@@ -89,7 +80,7 @@ def test_odometry(bench: Bench, frame: int, child: int, quality: int, taken: boo
     seen: Any = v.autopilot.odometry
     seen.kind = 1
     v.autopilot.params.VISO.QUAL_MIN = 50
-    m = told(o.Odometry, frame_id=frame, child_frame_id=child, x=1.0, vx=2.0, q=[1.0, 0.0, 0.0, 0.0], quality=quality)
+    m = filled(o.Odometry, frame_id=frame, child_frame_id=child, x=1.0, vx=2.0, q=[1.0, 0.0, 0.0, 0.0], quality=quality)
     o.odometry(m, v, SENDER)
     assert (seen.pose.count, seen.velocity.count) == ((1, 1) if taken else (0, 0))
 
@@ -97,7 +88,7 @@ def test_odometry(bench: Bench, frame: int, child: int, quality: int, taken: boo
 def test_flow_is_heard_from_a_companion_only(bench: Bench) -> None:
     v = bench.vehicle.v
     flow: Any = v.autopilot.flow
-    m = told(OpticalFlow, flow_rate_x=0.1, flow_rate_y=-0.2, quality=200)
+    m = filled(OpticalFlow, flow_rate_x=0.1, flow_rate_y=-0.2, quality=200)
     for kind, count in ((0, 0), (10, 0), (5, 1)):
         flow.kind = kind
         take_flow(m, v, SENDER)

@@ -22,7 +22,7 @@ from sitl.drop_in import server
 from sitl.drop_in.command_line import parse
 from sitl.drop_in.server import Session
 from sitl.drop_in.statistics import SINCE_S, Statistics
-from sitl.drop_in.sticks import StickPort
+from sitl.drop_in.stick_port import StickPort
 from sitl.drop_in.storage import Storage, StorageError
 from sitl.errors import OptionError
 from sitl.foreign.choice import choose

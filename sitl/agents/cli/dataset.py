@@ -11,7 +11,7 @@ from tqdm import tqdm
 from .. import datasets
 from ..experts import AUTOPILOTS
 from ..named_policies import RANDOM
-from .options import assignments, env_option, positive, whole
+from .options import add_option, assignments, positive, whole
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -37,13 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--max-steps", type=positive, metavar="N", help="time limit of an episode in steps (default: that of the id)"
     )
     record.add_argument("--name", metavar="DATASET", help="id of the dataset (default: sitl/ENV/EXPERT-vN of ENV-vN)")
-    record.add_argument(
-        "--option",
-        type=env_option,
-        action="append",
-        metavar="NAME=VALUE",
-        help="option of the environment, such as world=circuit",
-    )
+    add_option(record)
     record.set_defaults(function=run)
 
 

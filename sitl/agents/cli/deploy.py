@@ -12,7 +12,7 @@ from sitl.foreign.choice import ARDUPILOT, PX4
 from .. import baselines, learnt
 from ..deploy import REPLACED, Deployed, deploy, options_of
 from ..errors import check_names
-from .options import assignment, assignments, env_option, positive
+from .options import add_option, assignment, assignments, positive
 
 RESETS = ("none", "return", "reboot", "force")
 
@@ -59,13 +59,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--guard", type=assignment, action="append", metavar="NAME=VALUE",
         help=f"limit of the guard: {', '.join(field.name for field in fields(Guard))}",
     )  # fmt: skip
-    parser.add_argument(
-        "--option",
-        type=env_option,
-        action="append",
-        metavar="NAME=VALUE",
-        help="option of the environment, such as world=circuit",
-    )
+    add_option(parser)
     parser.set_defaults(function=run)
 
 

@@ -11,7 +11,7 @@ from sitl.cli.output import add_json_option, print_json
 
 from ..evaluations import evaluate_runs
 from ..runs import folder as folders
-from .options import add_jobs, assignments, env_option, positive, whole, workers
+from .options import add_jobs, add_option, assignments, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -30,13 +30,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--jitter", type=float, metavar="X", help="move start poses by up to X m and X rad (default: of the run, 0)"
     )
-    parser.add_argument(
-        "--option",
-        type=env_option,
-        action="append",
-        metavar="NAME=VALUE",
-        help="option of the environment, such as world=circuit",
-    )
+    add_option(parser)
     add_jobs(parser)
     add_json_option(parser, "a list of runs, with each episode")
     parser.set_defaults(function=evaluate)

@@ -57,6 +57,14 @@ def env_option(text: str) -> tuple[str, Any]:
     return name, value
 
 
+def add_option(parser: argparse.ArgumentParser, world: str = "circuit") -> None:
+    """--option of the environment; ``world``: of the example in the help."""
+    parser.add_argument(
+        "--option", type=env_option, action="append", metavar="NAME=VALUE",
+        help=f"option of the environment, such as world={world}",
+    )  # fmt: skip
+
+
 def add_said_again(parser: argparse.ArgumentParser) -> None:
     """--option, of a command that changes no option: what a run's folder may say of its environment, too."""
     parser.add_argument(

@@ -27,8 +27,8 @@ from ..rehearsal.trial import check_kind, robot_name
 from ..report.group import Group, unique_names
 from ..runs.backends import Workers
 from ..runs.config import RunConfig
+from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.files import make_folder
-from ..runs.plan import EvaluationPlan
 from .options import add_jobs, add_said_again, check_report_libraries, positive, whole, workers
 
 

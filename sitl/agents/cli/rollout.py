@@ -20,7 +20,7 @@ from ..evaluate import Played
 from ..named_policies import RANDOM, Named
 from ..rollout import ROBOTS, rollout
 from ..runs.files import make_folder
-from .options import add_jobs, assignments, env_option, positive, whole, workers
+from .options import add_jobs, add_option, assignments, positive, whole, workers
 
 RESULTS = "episodes.csv"
 
@@ -54,13 +54,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="N",
         help=f"parallel environments of a worker (default {ROBOTS})",
     )
-    parser.add_argument(
-        "--option",
-        type=env_option,
-        action="append",
-        metavar="NAME=VALUE",
-        help="option of the environment, such as world=circuit",
-    )
+    add_option(parser)
     parser.add_argument("--out", type=Path, metavar="FOLDER", help=f"write {RESULTS} there, a row for each episode")
     parser.add_argument(
         "--trajectories", action="store_true", help="with --out: write observations, actions and rewards, too"

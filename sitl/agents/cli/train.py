@@ -25,7 +25,7 @@ from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
 from ..runs.sweep import OPTION, Sweep, is_sweep
 from ..runs.training import is_done, train_all
-from .options import add_jobs, assignment, assignments, env_option, positive, workers
+from .options import add_jobs, add_option, assignment, assignments, positive, workers
 from .showing_training import shown_training
 
 
@@ -170,13 +170,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="NAME=VALUE",
         help="hyperparameter, such as alpha=0.1 (sitl help learning)",
     )
-    parser.add_argument(
-        "--option",
-        type=env_option,
-        action="append",
-        metavar="NAME=VALUE",
-        help="option of the environment, such as world=maze",
-    )
+    add_option(parser, "maze")
     add_sweep(parser)
     add_view_options(parser)
     parser.add_argument("--out", type=Path, metavar="RUN", help="folder (default: runs/ENV-ALGO, runs/RECIPE)")

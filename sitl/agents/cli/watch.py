@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import showing
 from ..errors import AgentError
 from ..runs import folder as folders
-from .options import assignments, env_option, positive, whole
+from .options import add_option, assignments, positive, whole
 
 SPEED = 5.0
 
@@ -34,13 +34,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--speed", type=_factor, default=SPEED, metavar="X", help=f"speed, times real time (default {SPEED:g})"
     )
-    parser.add_argument(
-        "--option",
-        type=env_option,
-        action="append",
-        metavar="NAME=VALUE",
-        help="option of the environment, such as world=circuit",
-    )
+    add_option(parser)
     parser.set_defaults(function=watch)
 
 

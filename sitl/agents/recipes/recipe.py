@@ -18,8 +18,8 @@ from ..errors import AgentError
 from ..runs import folder as folders
 from ..runs.config import MAX_STEPS, RunConfig, code_of, versions
 from ..runs.curriculum import Stage, stages_of
+from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.folder import RunFolder
-from ..runs.plan import EvaluationPlan
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from typing import Any
 from ..errors import AgentError
 from ..evaluate import Evaluation
 from ..runs.backends import Workers
+from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.files import make_folder
-from ..runs.plan import EvaluationPlan
 from .document import Document
 from .group import Group
 from .sections import (

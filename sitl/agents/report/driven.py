@@ -18,8 +18,8 @@ from sitl.worlds.shapes import from_ned
 
 from .. import environments
 from ..evaluate import Evaluation, Played, evaluate, stage
+from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.folder import RunFolder
-from ..runs.plan import EvaluationPlan
 
 Floats = npt.NDArray[np.float64]
 DRAWN = 20

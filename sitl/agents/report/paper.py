@@ -12,8 +12,8 @@ from .. import algorithms
 from ..runs import folder as folders
 from ..runs.backends import Workers
 from ..runs.config import RunConfig
+from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.folder import RunFolder
-from ..runs.plan import EvaluationPlan
 from .document import BLOCK, Document
 from .group import Group
 from .paper_reasons import reasons

@@ -16,8 +16,8 @@ import numpy as np
 from ..evaluate import Evaluation
 from ..evaluations import evaluate_groups
 from ..runs.backends import Workers
+from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.files import write_bytes
-from ..runs.plan import EvaluationPlan
 from . import curves
 from .curves import draw_means, draw_raw
 from .document import BLOCK, Document, block_names

@@ -18,8 +18,8 @@ from sitl.version import __version__
 
 from ..errors import AgentError
 from .curriculum import Stage, stages_of
+from .evaluation_plan import EvaluationPlan
 from .files import write_json
-from .plan import EvaluationPlan
 
 EPISODES = 3000
 MAX_STEPS = 1500

@@ -20,20 +20,12 @@ from .velocity import Braking
 
 FENCES, OBSTACLES = 1, 2
 """AVOID_ENABLE"""
-RECENT_US = 500_000
-"""A limit that long ago still counts."""
 
 
 @law
 def is_active(avoid: Avoidance) -> bool:
     """Whether there is anything to avoid."""
     return avoid.obstacles or avoid.fences != 0
-
-
-@law
-def limits_now(avoid: Avoidance, time_us: int) -> bool:
-    """Whether velocities are being limited."""
-    return avoid.limited_us > 0 and time_us - avoid.limited_us <= RECENT_US
 
 
 @law

@@ -8,42 +8,8 @@ import math
 from ...core.elementary import cos
 from ...core.kernels import law
 from ...core.vectors import Vec3
+from .. import arming_checks as checks
 from .. import radio, radio_checks
-from ..arming_checks import (
-    BAROMETER,
-    CHECK_BARO,
-    CHECK_GPS,
-    CHECK_INS,
-    CHECK_PARAMETERS,
-    CHECK_RC,
-    EMERGENCY_STOP,
-    FENCE_POSITION,
-    FENCE_SHIFT,
-    FRAME,
-    GCS_FAILSAFE,
-    GPS_FIX,
-    INTERLOCK,
-    LEANING,
-    MODE,
-    NEED_ALTITUDE,
-    NEED_POSITION,
-    NO_MISSION,
-    PARACHUTE_RELEASED,
-    RADIO_FAILSAFE,
-    RUDDER_DISABLED,
-    THROTTLE_HIGH,
-    WAITING_FOR_HOME,
-    ArmingMethod,
-    battery_checks,
-    calibration_checks,
-    obstacle_check,
-    parameter_checks,
-    proximity_checks,
-    receiver_checks,
-    sensor_checks,
-    switch_checks,
-    wants,
-)
 from ..barometers import are_healthy
 from ..estimation.status import GPS_GLITCHING
 from ..fence import arming as fence_arming
@@ -66,7 +32,7 @@ TEXTS = {
     TERRAIN_WAITS: "waiting for terrain data",
     RTL_TERRAIN_OFF: "RTL_ALT_TYPE is above-terrain but no terrain data",
 }
-MANDATORY = NEED_POSITION | NEED_ALTITUDE | DOUBTFUL
+MANDATORY = checks.NEED_POSITION | checks.NEED_ALTITUDE | DOUBTFUL
 """What forcing does not skip."""
 _ROLL_OFF, _PITCH_OFF = radio_checks.OFF_CENTRE[ROLL], radio_checks.OFF_CENTRE[PITCH]
 _THROTTLE_OFF, _YAW_OFF = radio_checks.OFF_CENTRE[THROTTLE], radio_checks.OFF_CENTRE[YAW]
@@ -75,7 +41,7 @@ _THROTTLE_OFF, _YAW_OFF = radio_checks.OFF_CENTRE[THROTTLE], radio_checks.OFF_CE
 @law
 def lean_check(cos_lean: float, lean_max: float) -> int:
     """A vehicle must stand upright: lean at most ``lean_max`` [rad]."""
-    return 0 if cos_lean >= cos(lean_max) else LEANING
+    return 0 if cos_lean >= cos(lean_max) else checks.LEANING
 
 
 @law
@@ -84,17 +50,17 @@ def estimate_checks(mode: int, estimate: Estimate, home_set: bool, needs_fix: bo
 
     ``needs_fix``: there is a GPS receiver without a fix.
     """
-    gps = wants(p, CHECK_GPS)
+    gps = checks.wants(p, checks.CHECK_GPS)
     failed = 0
     if requires_position(mode):
         if not home_set and gps and not (needs_fix and estimate.position_ok):
-            failed |= WAITING_FOR_HOME
+            failed |= checks.WAITING_FOR_HOME
         elif needs_fix and gps:
-            failed |= GPS_FIX
+            failed |= checks.GPS_FIX
         if not estimate.position_ok:
-            failed |= NEED_POSITION
+            failed |= checks.NEED_POSITION
     if not has_manual_throttle(mode) and not estimate.attitude_ok:
-        failed |= NEED_ALTITUDE
+        failed |= checks.NEED_ALTITUDE
     return failed
 
 
@@ -121,8 +87,8 @@ def doubt_text(estimate: Estimate, limit: float) -> str:
 @law
 def failsafe_checks(modes: Modes, p: Parameters) -> int:
     """Failsafes that are on."""
-    failed = RADIO_FAILSAFE if modes.failsafe.radio and wants(p.ARMING, CHECK_RC) else 0
-    return failed | (GCS_FAILSAFE if modes.failsafe.gcs and p.ARMING.CHECK != 0.0 else 0)
+    failed = checks.RADIO_FAILSAFE if modes.failsafe.radio and checks.wants(p.ARMING, checks.CHECK_RC) else 0
+    return failed | (checks.GCS_FAILSAFE if modes.failsafe.gcs and p.ARMING.CHECK != 0.0 else 0)
 
 
 @law
@@ -137,8 +103,8 @@ def location_checks(v: Vehicle) -> int:
     if ap.estimate.position_ok:
         return doubt(ap.estimate, ap.params.FS.EKF_THRESH)
     if wanted:
-        return NEED_POSITION
-    return 0 if by_mode else FENCE_POSITION  # of modes: ``estimate_checks``
+        return checks.NEED_POSITION
+    return 0 if by_mode else checks.FENCE_POSITION  # of modes: ``estimate_checks``
 
 
 @law
@@ -146,36 +112,36 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     p = ap.params
-    failed = sensor_checks(v)
-    failed |= calibration_checks(ap.calibrated.state, p.ARMING) | parameter_checks(ap.calibrated.state)
+    failed = checks.sensor_checks(v)
+    failed |= checks.calibration_checks(ap.calibrated.state, p.ARMING) | checks.parameter_checks(ap.calibrated.state)
     failed |= failsafe_checks(ap.modes, p) | location_checks(v)
     needs_fix = p.GPS1_TYPE != 0 and v.sensors.gps_fix < 3
     failed |= estimate_checks(ap.modes.number, ap.estimate, ap.home.is_set, needs_fix, p.ARMING)
-    if requires_position(ap.modes.number) and wants(p.ARMING, CHECK_GPS):
-        failed |= receiver_checks(v.sensors, p)
-    if wants(p.ARMING, CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
-        failed |= BAROMETER
-    failed |= battery_checks(ap.battery, ap.modes.failsafe.battery, p)
-    failed |= proximity_checks(ap.proximity, v.time_us)
-    if ap.avoid.obstacles and wants(p.ARMING, CHECK_PARAMETERS):
-        failed |= obstacle_check(ap.proximity, v.time_us)
+    if requires_position(ap.modes.number) and checks.wants(p.ARMING, checks.CHECK_GPS):
+        failed |= checks.receiver_checks(v.sensors, p)
+    if checks.wants(p.ARMING, checks.CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
+        failed |= checks.BAROMETER
+    failed |= checks.battery_checks(ap.battery, ap.modes.failsafe.battery, p)
+    failed |= checks.proximity_checks(ap.proximity, v.time_us)
+    if ap.avoid.obstacles and checks.wants(p.ARMING, checks.CHECK_PARAMETERS):
+        failed |= checks.obstacle_check(ap.proximity, v.time_us)
     if ap.modes.number == AUTO and ap.modes.mission_count < 2:
-        failed |= NO_MISSION
-    if wants(p.ARMING, CHECK_RC):
+        failed |= checks.NO_MISSION
+    if checks.wants(p.ARMING, checks.CHECK_RC):
         if p.FS.THR_ENABLE > 0.0:
             failed |= radio_checks.receiver(ap.rc, p.RCMAP, p.FS.THR_VALUE)
     if ap.arming.interlock_used and ap.arming.interlock_on:
-        failed |= INTERLOCK
+        failed |= checks.INTERLOCK
     if ap.arming.emergency_stop:
-        failed |= EMERGENCY_STOP
+        failed |= checks.EMERGENCY_STOP
     if ap.arming.parachute_released:
-        failed |= PARACHUTE_RELEASED
+        failed |= checks.PARACHUTE_RELEASED
     if ap.modes.mission_over_ground or p.RTL.ALT_TYPE > 0.0:
         failed |= terrain_check(v)
     fence = p.FENCE
     limits = Vec3(fence.ALT_MAX, fence.ALT_MIN, fence.AUTOENABLE)
-    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, fence, limits) << FENCE_SHIFT
-    return failed if ap.control.motors.count > 0 else failed | FRAME
+    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, fence, limits) << checks.FENCE_SHIFT
+    return failed if ap.control.motors.count > 0 else failed | checks.FRAME
 
 
 @law
@@ -192,18 +158,18 @@ def terrain_check(v: Vehicle) -> int:
 def arm_checks(modes: Modes, rc: Radio, p: Parameters, method: int, cos_lean: float) -> int:
     """Failed checks that count only at the moment of arming by ``method``; ``cos_lean``: cosine of the lean."""
     failed, mode = 0, modes.number
-    if wants(p.ARMING, CHECK_INS):
+    if checks.wants(p.ARMING, checks.CHECK_INS):
         failed |= lean_check(cos_lean, math.radians(p.ANGLE_MAX * 0.01))
     if not may_arm(mode, p, method):
-        failed |= MODE
-    if method == ArmingMethod.RUDDER and p.ARMING.RUDDER < 1.0:
-        failed |= RUDDER_DISABLED
-    if method != ArmingMethod.MAVLINK or not arms_at_any_throttle(mode):
+        failed |= checks.MODE
+    if method == checks.ArmingMethod.RUDDER and p.ARMING.RUDDER < 1.0:
+        failed |= checks.RUDDER_DISABLED
+    if method != checks.ArmingMethod.MAVLINK or not arms_at_any_throttle(mode):
         if has_manual_throttle(mode):
             if modes.pilot.throttle > 0.0:
-                failed |= THROTTLE_HIGH
+                failed |= checks.THROTTLE_HIGH
         elif pilot.climb_rate(modes, rc, p) > 0.0:
-            failed |= THROTTLE_HIGH
+            failed |= checks.THROTTLE_HIGH
     return failed
 
 
@@ -213,11 +179,11 @@ def stick_checks(rc: Radio, p: Parameters, method: int, state: int) -> int:
 
     ``state``: of switches on other channels (``Calibrated.state``).
     """
-    if not rc.receiver_ok or not wants(p.ARMING, CHECK_RC):
+    if not rc.receiver_ok or not checks.wants(p.ARMING, checks.CHECK_RC):
         return 0
     failed = radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF) | radio_checks.off_centre(rc, p, PITCH, _PITCH_OFF)
-    if method != ArmingMethod.RUDDER:
+    if method != checks.ArmingMethod.RUDDER:
         failed |= radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
     channel = radio.stick_channel(p.RCMAP, THROTTLE)
-    failed |= switch_checks(state, rc.receiver_ok)
+    failed |= checks.switch_checks(state, rc.receiver_ok)
     return failed | (_THROTTLE_OFF if radio.ranged(rc.channels[channel], p.RC[channel]) > 0.0 else 0)

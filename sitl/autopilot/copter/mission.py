@@ -67,28 +67,7 @@ FLOWN_AS: dict[int, str] = {
     MavCmd.NAV_ATTITUDE_TIME: "a delay",
 }
 """What is flown of commands that are carried out in part."""
-OTHERS = (
-    MavCmd.CONDITION_DELAY,
-    MavCmd.CONDITION_DISTANCE,
-    MavCmd.CONDITION_YAW,
-    MavCmd.DO_JUMP,
-    MavCmd.DO_CHANGE_SPEED,
-    MavCmd.DO_FENCE_ENABLE,
-    MavCmd.DO_SET_HOME,
-    MavCmd.DO_SET_ROI_LOCATION,
-    MavCmd.DO_SET_ROI_NONE,
-    MavCmd.DO_SET_ROI,
-    MavCmd.DO_JUMP_TAG,
-    MavCmd.DO_GUIDED_LIMITS,
-    MavCmd.DO_SET_RESUME_REPEAT_DIST,
-    MavCmd.DO_PARACHUTE,
-    *commands.MARKS,
-    *commands.CAMERA_COMMANDS,
-    *commands.VIDEO_COMMANDS,
-    *commands.OUTPUT_COMMANDS,
-    *commands.MOUNT_COMMANDS,
-    *commands.PAYLOAD_COMMANDS,
-)
+OTHERS = (*commands.COMMON, MavCmd.CONDITION_YAW, MavCmd.DO_PARACHUTE)
 LEGS = (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME)
 SAYS_REACHED = (
     MavCmd.NAV_WAYPOINT,

@@ -61,12 +61,6 @@ def distance(ekf: Ekf) -> float:
 
 
 @law
-def speed_limit(ekf: Ekf, params: Ekf3) -> float:
-    """Speed at this height that leaves 1 rad/s of EK3_MAX_FLOW for rotation [m/s]."""
-    return (params.MAX_FLOW - 1.0) * max(ekf.terrain_d - ekf.pos.z, LEAST_DISTANCE)
-
-
-@law
 def begin(ekf: Ekf, estimate: Estimate, log: Events, shown: Vec2) -> None:
     """From holding the position to flow ``shown`` [rad/s]: velocity from it, position from where it is."""
     away = distance(ekf)
@@ -90,7 +84,7 @@ def innovate_flow(ekf: Ekf, vel: Vec3, axis: Vec3, sign: float, residual: float,
 
 
 @law
-def fuse_rates(ekf: Ekf, estimate: Estimate, shown: Vec2, when_us: int, params: Ekf3) -> bool:
+def fuse_rates(ekf: Ekf, shown: Vec2, when_us: int, params: Ekf3) -> bool:
     """Fuse rates of the ground without those of the body [rad/s], taken at ``when_us``; whether they pass the gate."""
     vel = past_at(ekf, when_us).vel
     forward, right = rotate(ekf.q, Vec3(1.0, 0.0, 0.0)), rotate(ekf.q, Vec3(0.0, 1.0, 0.0))
@@ -123,7 +117,7 @@ def fuse(ekf: Ekf, estimate: Estimate, log: Events, flow: OpticalFlow, params: E
     if not (ekf.relative or ekf.absolute):
         begin(ekf, estimate, log, shown)
         return False
-    return fuse_rates(ekf, estimate, shown, flow.time_us - int(1000.0 * params.FLOW_DELAY), params)
+    return fuse_rates(ekf, shown, flow.time_us - int(1000.0 * params.FLOW_DELAY), params)
 
 
 @law

@@ -150,6 +150,12 @@ UNREPORTED = frozenset(
 """Of which nothing is told when they are done: no MISSION_ITEM_REACHED, and no word where they are not carried out."""
 MARKS = (MavCmd.JUMP_TAG, MavCmd.DO_LAND_START, MavCmd.DO_RETURN_PATH_START)
 """Mark a place in the mission: nothing is done there."""
+COMMON = (
+    MavCmd.CONDITION_DELAY, MavCmd.CONDITION_DISTANCE, MavCmd.DO_JUMP, MavCmd.DO_JUMP_TAG, MavCmd.DO_CHANGE_SPEED,
+    MavCmd.DO_FENCE_ENABLE, MavCmd.DO_SET_HOME, MavCmd.DO_GUIDED_LIMITS, MavCmd.DO_SET_RESUME_REPEAT_DIST,
+    *MARKS, *CAMERA_COMMANDS, *VIDEO_COMMANDS, *OUTPUT_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS,
+)  # fmt: skip
+"""Carried out in missions of all firmwares, besides those that move the vehicle."""
 
 RELATIVE_FRAMES = (MavFrame.GLOBAL_RELATIVE_ALT, MavFrame.GLOBAL_RELATIVE_ALT_INT)
 TERRAIN_FRAMES = (MavFrame.GLOBAL_TERRAIN_ALT, MavFrame.GLOBAL_TERRAIN_ALT_INT)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from ...core.mavlink import MavCmd, MavMissionResult
 from ...errors import SitlError
-from .item import STORED, MissionItem, home_item
+from .item import STORED, MissionItem
 from .validate import check_all
 
 RESULT_NAMES = {
@@ -75,9 +75,3 @@ class Mission:
         """Number of the first JUMP_TAG item with this tag, 0 when there is none."""
         marks = (k for k, item in enumerate(self.items) if item.command == MavCmd.JUMP_TAG and int(item.p1) == tag)
         return next(marks, 0)
-
-    def with_home(self, lat: int, lon: int, alt: float) -> Mission:
-        """The same with item 0 saying home [degE7, m above mean sea level]; an empty mission stays empty."""
-        if not self.items:
-            return self
-        return Mission((home_item(lat, lon, alt), *self.items[1:]))

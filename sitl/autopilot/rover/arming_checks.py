@@ -4,34 +4,8 @@
 from __future__ import annotations
 
 from ...core.kernels import law
-from .. import arming_checks, radio_checks
-from ..arming_checks import (
-    AHRS_TYPE,
-    BAROMETER,
-    CHECK_BARO,
-    CHECK_GPS,
-    CHECK_PARAMETERS,
-    CHECK_RC,
-    EKF_FAILSAFE,
-    EMERGENCY_STOP,
-    FENCE_SHIFT,
-    GPS_FIX,
-    MODE,
-    MODE_BY_RUDDER,
-    NO_MISSION,
-    NO_OUTPUTS,
-    NOT_INITIALISED,
-    RADIO_FAILSAFE,
-    RUDDER_DISABLED,
-    ArmingMethod,
-    battery_checks,
-    calibration_checks,
-    proximity_checks,
-    receiver_checks,
-    sensor_checks,
-    switch_checks,
-    wants,
-)
+from .. import arming_checks as checks
+from .. import radio_checks
 from ..barometers import are_healthy
 from ..fence import arming as fence_arming
 from ..radio import ROLL, THROTTLE, YAW
@@ -60,11 +34,11 @@ def estimate_checks(modes: Modes, estimate: Estimate, gps_fix: int, params: Para
     wanted = state & NEEDS_LOCATION != 0 or requires_position(modes.number)
     if not wanted and not requires_velocity(modes.number, is_skid(params)):
         return 0
-    if gps_fix < 3 and wants(params.ARMING, CHECK_GPS):
-        return GPS_FIX
+    if gps_fix < 3 and checks.wants(params.ARMING, checks.CHECK_GPS):
+        return checks.GPS_FIX
     if not estimate.position_ok:
-        return AHRS_TYPE
-    return EKF_FAILSAFE if modes.failsafe.ekf != 0 else 0
+        return checks.AHRS_TYPE
+    return checks.EKF_FAILSAFE if modes.failsafe.ekf != 0 else 0
 
 
 @law
@@ -72,8 +46,8 @@ def parameter_checks(p: Parameters) -> int:
     """Failed checks of outputs and parameters."""
     failed = 0
     if not (servos.is_assigned(p, servos.STEERING) or servos.is_assigned(p, servos.THROTTLE) or is_skid(p)):
-        failed |= NO_OUTPUTS
-    if p.WP.SPEED <= 0.0 and wants(p.ARMING, CHECK_PARAMETERS):
+        failed |= checks.NO_OUTPUTS
+    if p.WP.SPEED <= 0.0 and checks.wants(p.ARMING, checks.CHECK_PARAMETERS):
         failed |= WAYPOINT_SPEED
     return failed
 
@@ -83,35 +57,35 @@ def check(v: Vehicle) -> int:
     """Failed checks before arming, 0 when the vehicle is ready (in its present mode)."""
     ap = v.autopilot
     modes, p = ap.modes, ap.params
-    sensors = sensor_checks(v)
-    sensors |= calibration_checks(ap.calibrated.state, p.ARMING) | arming_checks.parameter_checks(ap.calibrated.state)
+    sensors = checks.sensor_checks(v)
+    sensors |= checks.calibration_checks(ap.calibrated.state, p.ARMING) | checks.parameter_checks(ap.calibrated.state)
     if p.ARMING.CHECK == 0.0:
-        return sensors & NOT_INITIALISED
+        return sensors & checks.NOT_INITIALISED
     estimate = estimate_checks(modes, ap.estimate, v.sensors.gps_fix, p, ap.calibrated.state)
-    if wants(p.ARMING, CHECK_GPS):
-        sensors |= receiver_checks(v.sensors, p)
-    if wants(p.ARMING, CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
-        sensors |= BAROMETER
-    sensors |= proximity_checks(ap.proximity, v.time_us)
-    failed = sensors | estimate | battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
+    if checks.wants(p.ARMING, checks.CHECK_GPS):
+        sensors |= checks.receiver_checks(v.sensors, p)
+    if checks.wants(p.ARMING, checks.CHECK_BARO) and not are_healthy(ap.baros, v.sensors, v.time_us):
+        sensors |= checks.BAROMETER
+    sensors |= checks.proximity_checks(ap.proximity, v.time_us)
+    failed = sensors | estimate | checks.battery_checks(ap.battery, modes.failsafe.battery, p) | parameter_checks(p)
     if modes.number == AUTO and modes.mission_count < 2:
-        failed |= NO_MISSION
+        failed |= checks.NO_MISSION
     if ap.arming.emergency_stop:
-        failed |= EMERGENCY_STOP
-    if wants(p.ARMING, CHECK_RC):
+        failed |= checks.EMERGENCY_STOP
+    if checks.wants(p.ARMING, checks.CHECK_RC):
         if modes.links.bad & BIT_RADIO != 0:
-            failed |= RADIO_FAILSAFE
+            failed |= checks.RADIO_FAILSAFE
         elif p.FS.THR_ENABLE > 0.0 and not ap.rc.receiver_ok:
             failed |= RC_MISSING
-    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, p.FENCE, HEIGHTS) << FENCE_SHIFT
-    return failed if allows_arming(modes.number) else failed | MODE
+    failed |= fence_arming.refusal(ap.fence, ap.estimate, ap.home, p.FENCE, HEIGHTS) << checks.FENCE_SHIFT
+    return failed if allows_arming(modes.number) else failed | checks.MODE
 
 
 @law
 def stick_checks(rc: Radio, p: Parameters, method: int) -> int:
     """Sticks that are not at rest; by stick the steering cannot be."""
     failed = radio_checks.off_centre(rc, p, THROTTLE, _THROTTLE_OFF) | radio_checks.off_centre(rc, p, YAW, _YAW_OFF)
-    return failed if method == ArmingMethod.RUDDER else failed | radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF)
+    return failed if method == checks.ArmingMethod.RUDDER else failed | radio_checks.off_centre(rc, p, ROLL, _ROLL_OFF)
 
 
 @law
@@ -121,11 +95,11 @@ def method_checks(modes: Modes, rc: Radio, method: int, p: Parameters, state: in
     ``state``: of switches on channels (``Calibrated.state``).
     """
     failed = 0
-    if rc.receiver_ok and wants(p.ARMING, CHECK_RC):
-        failed |= stick_checks(rc, p, method) | switch_checks(state, rc.receiver_ok)
-    if method == ArmingMethod.RUDDER:
+    if rc.receiver_ok and checks.wants(p.ARMING, checks.CHECK_RC):
+        failed |= stick_checks(rc, p, method) | checks.switch_checks(state, rc.receiver_ok)
+    if method == checks.ArmingMethod.RUDDER:
         if p.ARMING.RUDDER < 1.0:
-            failed |= RUDDER_DISABLED
+            failed |= checks.RUDDER_DISABLED
         if not allows_arming_by_stick(modes.number):
-            failed |= MODE_BY_RUDDER
+            failed |= checks.MODE_BY_RUDDER
     return failed

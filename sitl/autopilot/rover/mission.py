@@ -35,27 +35,7 @@ KINDS: dict[int, int] = {
     MavCmd.NAV_GUIDED_ENABLE: kinds.GUIDED,
     MavCmd.NAV_SET_YAW_SPEED: kinds.YAW_SPEED,
 }
-OTHERS = (
-    MavCmd.CONDITION_DELAY,
-    MavCmd.CONDITION_DISTANCE,
-    MavCmd.DO_JUMP,
-    MavCmd.DO_CHANGE_SPEED,
-    MavCmd.DO_FENCE_ENABLE,
-    MavCmd.DO_SET_HOME,
-    MavCmd.DO_SET_REVERSE,
-    MavCmd.DO_SET_ROI_LOCATION,  # for the gimbal
-    MavCmd.DO_SET_ROI_NONE,
-    MavCmd.DO_SET_ROI,
-    MavCmd.DO_GUIDED_LIMITS,
-    MavCmd.DO_SET_RESUME_REPEAT_DIST,
-    MavCmd.DO_JUMP_TAG,
-    *commands.MARKS,
-    *commands.CAMERA_COMMANDS,
-    *commands.VIDEO_COMMANDS,
-    *commands.OUTPUT_COMMANDS,
-    *commands.MOUNT_COMMANDS,
-    *commands.PAYLOAD_COMMANDS,
-)
+OTHERS = (*commands.COMMON, MavCmd.DO_SET_REVERSE)
 
 
 class RoverCommands(Commands[Vehicle]):

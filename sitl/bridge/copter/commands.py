@@ -17,7 +17,7 @@ from ..channel import Channel
 from ..host import Host
 from ..places import GLOBAL_FRAMES
 from ..services import command_table
-from ..services.command import Command, Entry, is_on_earth
+from ..services.command import Command, Entry, answered, is_on_earth, result
 from ..services.command_table import set_mode
 from ..services.motor_test import MotorTestService
 from ..services.mount import MountService
@@ -47,7 +47,7 @@ def takeoff(bridge: Host, channel: Channel, command: Command) -> int:
     """22, 84: p7 height above home [m]. Armed in GUIDED, LOITER, ALT_HOLD, POSHOLD, landed or climbing; else FAILED."""
     if command.frame != MavFrame.GLOBAL_RELATIVE_ALT:
         return MavResult.DENIED
-    return MavResult.ACCEPTED if _copter(bridge).takeoff(command.z) else MavResult.FAILED
+    return result(_copter(bridge).takeoff(command.z))
 
 
 ROUNDING = 1e-4
@@ -77,7 +77,7 @@ def change_speed(bridge: Host, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 horizontal, 2 climb, 3 descent; p2 speed [m/s]."""
     if command.p2 <= 0.0 or int(command.p1) == KINDS_OF_SPEED:
         return MavResult.DENIED
-    return MavResult.ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else MavResult.FAILED
+    return result(bridge.autopilot.change_speed(int(command.p1), command.p2))
 
 
 def condition_yaw(bridge: Host, channel: Channel, command: Command) -> int:
@@ -86,20 +86,14 @@ def condition_yaw(bridge: Host, channel: Channel, command: Command) -> int:
         return MavResult.FAILED
     direction = (command.p3 > 0.0) - (command.p3 < 0.0)
     angle, rate = math.radians(command.p1), math.radians(max(command.p2, 0.0))
-    return (
-        MavResult.ACCEPTED
-        if _copter(bridge).condition_yaw(angle, rate, direction, command.p4 == 1.0)
-        else MavResult.FAILED
-    )
+    return result(_copter(bridge).condition_yaw(angle, rate, direction, command.p4 == 1.0))
 
 
 def pause_continue(bridge: Host, channel: Channel, command: Command) -> int:
     """193: p1 0 pause, 1 continue, in GUIDED and AUTO; FAILED, with a text, in other modes and where AUTO has none."""
     if int(command.p1) not in (0, 1):
         return MavResult.DENIED
-    ok = _copter(bridge).pause(int(command.p1) == 0)
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, _copter(bridge).pause(int(command.p1) == 0))
 
 
 def set_roi(bridge: Host, channel: Channel, command: Command) -> int:
@@ -159,9 +153,7 @@ def landing_sequence(bridge: Host, channel: Channel, command: Command) -> int:
 
 
 def _go_back(bridge: Host, way: int) -> int:
-    ok = _copter(bridge).go_back(way)
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, _copter(bridge).go_back(way))
 
 
 COMMANDS: dict[int, Entry] = {

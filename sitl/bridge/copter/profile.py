@@ -14,7 +14,7 @@ from ...autopilot.copter.modes.rtl import RTL
 from ...autopilot.copter.modes.table import MODES
 from ...core.mavlink import MavType
 from ..mavlink_firmware import Targets
-from ..profile import Profile
+from ..profile import GROUPS, Profile
 from ..services.setpoints import SetpointService
 from ..telemetry.motion import global_position
 from ..telemetry.shell import CAPABILITIES, TERMINATION, TERRAIN
@@ -47,17 +47,7 @@ PROFILE = Profile(
     guided=GUIDED,
     rtl=RTL,
     groups={
-        1: ("RAW_SENS", ("RAW_IMU", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE", "SCALED_PRESSURE2")),
-        2: (
-            "EXT_STAT",
-            ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "GPS2_RAW",
-             "NAV_CONTROLLER_OUTPUT", "FENCE_STATUS", "POSITION_TARGET_GLOBAL_INT"),
-        ),
-        3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
-        4: ("RAW_CTRL", ()),
-        6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
-        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2", "PID_TUNING")),
-        11: ("EXTRA2", ("VFR_HUD",)),
+        **GROUPS,
         12: (
             "EXTRA3",
             ("AHRS", "WIND", "DISTANCE_SENSOR", "RANGEFINDER", "OPTICAL_FLOW", "SYSTEM_TIME", "BATTERY_STATUS",

@@ -27,52 +27,36 @@ from ...core.scalars import finite
 from ...core.vectors import Quat, Vec3
 from ...vehicle.copter import Copter
 from ..places import FRAMES_TERRAIN, GLOBAL_FRAMES, LocalPlace, local_place
+from ..services import setpoints
 from ..services.follow import take_position
-from ..services.setpoints import (
-    ATTITUDE_IGNORED,
-    BODY_YAW_RATE_IGNORED,
-    FORCE,
-    LOCAL_FRAMES,
-    PITCH_RATE_IGNORED,
-    POSITION_IGNORED,
-    ROLL_RATE_IGNORED,
-    THRUST_IGNORED,
-    SetAttitudeTarget,
-    SetPositionTargetGlobalInt,
-    SetPositionTargetLocalNed,
-    Target,
-    global_target,
-    local_target,
-    rotation,
-)
 from ..telemetry.motion import GlobalPositionInt
 
 OVER_HOME = 1
 """FOLL_ALT_TYPE"""
 FASTEST = 1000.0
 """[m/s], of any component."""
-RATES_IGNORED = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | BODY_YAW_RATE_IGNORED
+RATES_IGNORED = setpoints.ROLL_RATE_IGNORED | setpoints.PITCH_RATE_IGNORED | setpoints.BODY_YAW_RATE_IGNORED
 UNIT = 1e-3
 """The square of a quaternion's length is within this of 1."""
 
 
 @law
-def position_target_local(m: SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
+def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
     """Fly to a place, with a velocity or an acceleration, in a local frame."""
     if not is_guided(v.autopilot.modes):
         return
-    if m.coordinate_frame not in LOCAL_FRAMES:
+    if m.coordinate_frame not in setpoints.LOCAL_FRAMES:
         stop(v)
         return
-    follow(v, local_target(m, v.autopilot.estimate), (m.type_mask & FORCE) != 0)
+    follow(v, setpoints.local_target(m, v.autopilot.estimate), (m.type_mask & setpoints.FORCE) != 0)
 
 
 @law
-def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
+def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
     """The same with a place on the globe; before there is an origin it is ignored."""
     if not is_guided(v.autopilot.modes):
         return
-    frame, use_pos = m.coordinate_frame, (m.type_mask & POSITION_IGNORED) == 0
+    frame, use_pos = m.coordinate_frame, (m.type_mask & setpoints.POSITION_IGNORED) == 0
     if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt) and is_place(m.lat_int, m.lon_int)):
         stop(v)
         return
@@ -80,13 +64,13 @@ def position_target_global(m: SetPositionTargetGlobalInt, v: Copter, sender: int
     if use_pos and frame in FRAMES_TERRAIN and not is_flat(v):
         follow_over_ground(v, m, place)
     elif place.is_known or not use_pos:
-        follow(v, global_target(m, place.pos), (m.type_mask & FORCE) != 0)
+        follow(v, setpoints.global_target(m, place.pos), (m.type_mask & setpoints.FORCE) != 0)
 
 
 @law
-def follow_over_ground(v: Copter, m: SetPositionTargetGlobalInt, place: LocalPlace) -> None:
+def follow_over_ground(v: Copter, m: setpoints.SetPositionTargetGlobalInt, place: LocalPlace) -> None:
     """Fly to a place at a height above the ground; with a velocity that is nothing that can be flown."""
-    target = global_target(m, Vec3(place.pos.x, place.pos.y, -m.alt))
+    target = setpoints.global_target(m, Vec3(place.pos.x, place.pos.y, -m.alt))
     if target.use_vel or target.use_acc or not is_finite(target):
         stop(v)
     elif place.is_known:
@@ -94,7 +78,7 @@ def follow_over_ground(v: Copter, m: SetPositionTargetGlobalInt, place: LocalPla
 
 
 @law
-def yaw_of(target: Target) -> YawSetpoint:
+def yaw_of(target: setpoints.Target) -> YawSetpoint:
     """The heading that a target asks for."""
     if target.use_yaw or target.use_yaw_rate:
         return YawSetpoint(target.use_yaw, target.yaw, target.use_yaw_rate, target.yaw_rate, target.relative_yaw)
@@ -102,7 +86,7 @@ def yaw_of(target: Target) -> YawSetpoint:
 
 
 @law
-def follow(v: Copter, target: Target, is_force: bool) -> None:
+def follow(v: Copter, target: setpoints.Target, is_force: bool) -> None:
     """Fly what a target asks for; ``is_force``: its acceleration is a force, which cannot be flown."""
     yaw = yaw_of(target)
     if not is_finite(target) or (is_force and target.use_acc) or is_absurd(target.vel):
@@ -120,7 +104,7 @@ def follow(v: Copter, target: Target, is_force: bool) -> None:
 
 
 @law
-def is_finite(target: Target) -> bool:
+def is_finite(target: setpoints.Target) -> bool:
     """Whether all numbers that are asked for are."""
     numbers = target.pos + target.vel + target.acc
     return finite(numbers.x + numbers.y + numbers.z + target.yaw + target.yaw_rate)
@@ -139,15 +123,15 @@ def is_place(lat: int, lon: int) -> bool:
 
 
 @law
-def attitude_target(m: SetAttitudeTarget, v: Copter, sender: int) -> None:
+def attitude_target(m: setpoints.SetAttitudeTarget, v: Copter, sender: int) -> None:
     """Fly an attitude, which turns on with the body rates, or body rates alone. Rates are all given or all ignored."""
     if not takes_attitudes(v.autopilot.modes):
         return
-    mask, use_attitude = m.type_mask, (m.type_mask & ATTITUDE_IGNORED) == 0
-    ignored, given = mask & RATES_IGNORED, rotation(m.q)
-    rates = Vec3(m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate) if ignored == 0 else ZERO
+    mask, use_attitude = m.type_mask, (m.type_mask & setpoints.ATTITUDE_IGNORED) == 0
+    ignored, given = mask & RATES_IGNORED, setpoints.rotation(m.q)
+    rates = m.rates if ignored == 0 else ZERO
     if (
-        (mask & THRUST_IGNORED) != 0
+        (mask & setpoints.THRUST_IGNORED) != 0
         or (ignored != 0 and ignored != RATES_IGNORED)
         or (use_attitude and not is_unit(m.q))
         or not finite(rates.x + rates.y + rates.z + m.thrust)

@@ -22,7 +22,7 @@ from ...vehicle.copter import Copter
 from ..services.setpoints import ACCELERATION_IGNORED, POSITION_IGNORED, VELOCITY_IGNORED, YAWS_IGNORED
 from ..telemetry.own import NavControllerOutput, PositionTargetGlobalInt
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
-from ..wire.message import Message
+from ..wire.message import Message, consecutive
 
 _FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
 _FOLLOW_A_TRACK = (*_FLY_TO_A_PLACE, LOITER, ZIGZAG)
@@ -77,15 +77,9 @@ LAST_BITS = 0xF000
 
 class PositionTargetLocalNed(Message, name="POSITION_TARGET_LOCAL_NED"):
     time_boot_ms: int
-    x: float
-    y: float
-    z: float
-    vx: float
-    vy: float
-    vz: float
-    afx: float
-    afy: float
-    afz: float
+    pos: Vec3 = consecutive("x", "y", "z")
+    vel: Vec3 = consecutive("vx", "vy", "vz")
+    acc: Vec3 = consecutive("afx", "afy", "afz")
     type_mask: int
     coordinate_frame: int
 
@@ -96,17 +90,8 @@ def position_target_local(m: PositionTargetLocalNed, v: Copter) -> bool:
     guided = v.autopilot.modes.guided
     if not is_guided(v.autopilot.modes) or not 0 <= guided.submode < len(TARGET_MASKS):
         return False
-    pos, vel, acc = guided.pos, guided.vel, guided.acc
     m.time_boot_ms = boot_ms(v.time_us)
-    m.x = pos.x
-    m.y = pos.y
-    m.z = pos.z
-    m.vx = vel.x
-    m.vy = vel.y
-    m.vz = vel.z
-    m.afx = acc.x
-    m.afy = acc.y
-    m.afz = acc.z
+    m.pos, m.vel, m.acc = guided.pos, guided.vel, guided.acc
     m.type_mask = TARGET_MASKS[guided.submode]
     m.coordinate_frame = MavFrame.LOCAL_NED
     return True
@@ -131,9 +116,7 @@ def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
 class AttitudeTarget(Message, name="ATTITUDE_TARGET"):
     time_boot_ms: int
     q: Floats
-    body_roll_rate: float
-    body_pitch_rate: float
-    body_yaw_rate: float
+    rates: Vec3 = consecutive("body_roll_rate", "body_pitch_rate", "body_yaw_rate")
     thrust: float
 
 
@@ -141,15 +124,13 @@ class AttitudeTarget(Message, name="ATTITUDE_TARGET"):
 def attitude_target(m: AttitudeTarget, v: Copter) -> bool:
     """ATTITUDE_TARGET: quaternion, body rates [rad/s], throttle 0..1 that the controllers follow."""
     control = v.autopilot.control
-    q, rates = control.attitude.target_q, control.attitude.rate_target
+    q = control.attitude.target_q
     m.time_boot_ms = boot_ms(v.time_us)
     m.q[0] = q.w
     m.q[1] = q.x
     m.q[2] = q.y
     m.q[3] = q.z
-    m.body_roll_rate = rates.x
-    m.body_pitch_rate = rates.y
-    m.body_yaw_rate = rates.z
+    m.rates = control.attitude.rate_target
     m.thrust = control.motors.throttle_in
     return True
 

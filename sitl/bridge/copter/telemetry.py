@@ -148,12 +148,7 @@ class EscTelemetry1To4(Message, name="ESC_TELEMETRY_1_TO_4"):
 
 
 class EscTelemetry5To8(EscTelemetry1To4, name="ESC_TELEMETRY_5_TO_8"):
-    temperature: Ints
-    voltage: Ints
-    current: Ints
-    totalcurrent: Ints
-    rpm: Ints
-    count: Ints
+    pass
 
 
 @law

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import selectors
-from collections.abc import Callable, Mapping
+import socket
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from ...errors import SitlError
@@ -147,3 +148,54 @@ class Link:
         for peer in self.peers:
             peer.closed = True
         self.peers.clear()
+
+
+class DatagramLink(Link):
+    """A link with one UDP socket, which ``_readable`` reads.
+
+    Raises:
+        OSError: the address cannot be bound.
+    """
+
+    def __init__(self, name: str, bind: tuple[str, int]) -> None:
+        super().__init__(name)
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        self._selector: Selector | None = None
+        try:
+            self._socket.bind(bind)
+        except OSError:
+            self._socket.close()
+            raise
+
+    def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
+        self._selector = selector
+        selector.register(self._socket, selectors.EVENT_READ, self._readable)
+        super().attach(selector, on_peer)
+
+    def _readable(self) -> None:
+        """Read what has come."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        if self._selector is not None:
+            self._selector.unregister(self._socket)
+            self._selector = None
+        self._socket.close()
+        super().close()
+
+
+def heard(selector: Selector, links: Iterable[Link], peers: list[Peer], seconds: float) -> Iterator[tuple[Peer, bytes]]:
+    """What each peer has sent, for who serves links by itself; waits up to ``seconds`` [s] wall time for something.
+
+    Peers that are closed leave ``peers``.
+    """
+    for key, _ in selector.select(seconds):
+        key.data()
+    for link in links:
+        link.refusals.clear()
+    peers[:] = [peer for peer in peers if not peer.closed]
+    for peer in peers:
+        data = peer.take()
+        if data:
+            yield peer, data

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import contextlib
-import selectors
 import socket
-from collections.abc import Callable
 
-from .link import Link, Peer, Selector
+from .link import DatagramLink, Peer
 
 Address = tuple[str, int]
 DATAGRAM_BYTES = 1400
@@ -41,29 +39,16 @@ class _UdpPeer(Peer):
             self._socket.sendto(datagram, self.address)
 
 
-class _UdpLink(Link):
+class _UdpLink(DatagramLink):
     def __init__(self, name: str, bind: Address) -> None:
-        super().__init__(name)
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.setblocking(False)
-        try:
-            self._socket.bind(bind)
-        except OSError:
-            self._socket.close()
-            raise
+        super().__init__(name, bind)
         self._by_address: dict[Address, _UdpPeer] = {}
-        self._selector: Selector | None = None
 
     @property
     def local_address(self) -> Address:
         """(host, port) that the socket is bound to."""
         host, port = self._socket.getsockname()[:2]
         return host, port
-
-    def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
-        self._selector = selector
-        selector.register(self._socket, selectors.EVENT_READ, self._readable)
-        super().attach(selector, on_peer)
 
     def _peer(self, address: Address) -> _UdpPeer:
         peer = self._by_address.get(address)
@@ -87,13 +72,6 @@ class _UdpLink(Link):
             except OSError:
                 continue  # an earlier datagram was refused (ICMP); the socket is still good
             self.deliver(self._peer(address), data)
-
-    def close(self) -> None:
-        if self._selector is not None:
-            self._selector.unregister(self._socket)
-            self._selector = None
-        self._socket.close()
-        super().close()
 
 
 class UdpOutLink(_UdpLink):

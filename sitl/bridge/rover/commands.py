@@ -13,7 +13,7 @@ from ...core.mavlink import MavResult, MavSeverity, MotorTestThrottleType
 from ..channel import Channel
 from ..host import Host
 from ..services import command_table
-from ..services.command import Command, Entry
+from ..services.command import Command, Entry, answered, result
 from ..services.statustext import StatusTextService
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def change_speed(bridge: Host, channel: Channel, command: Command) -> int:
     """178: p1 0 or 1 (DENIED: climb, descent), p2 speed [m/s]; FAILED in a mode without a speed target."""
     if int(command.p1) in UP_AND_DOWN:
         return MavResult.DENIED
-    return MavResult.ACCEPTED if bridge.autopilot.change_speed(int(command.p1), command.p2) else MavResult.FAILED
+    return result(bridge.autopilot.change_speed(int(command.p1), command.p2))
 
 
 def set_reverse(bridge: Host, channel: Channel, command: Command) -> int:
@@ -62,9 +62,7 @@ def motor_test(bridge: Host, channel: Channel, command: Command) -> int:
         throttle = max(command.p3 * 0.01, -1.0)
     else:
         pulse = int(command.p3)
-    ok = rover.test_motor(motor, throttle, pulse, command.p4)
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, rover.test_motor(motor, throttle, pulse, command.p4))
 
 
 def _why_no_test(motor: int, kind: int, how_much: float) -> str:

@@ -11,7 +11,7 @@ from ...autopilot.rover.modes.rtl import RTL
 from ...autopilot.rover.modes.table import MODES, is_autonomous
 from ...core.mavlink import MavType
 from ..mavlink_firmware import Targets
-from ..profile import Profile
+from ..profile import GROUPS, Profile
 from ..telemetry.shell import CAPABILITIES
 from .autopilot import RoverAutopilot
 from .commands import COMMANDS
@@ -34,17 +34,8 @@ PROFILE = Profile(
     guided=GUIDED,
     rtl=RTL,
     groups={
-        1: ("RAW_SENS", ("RAW_IMU", "SCALED_IMU2", "SCALED_IMU3", "SCALED_PRESSURE", "SCALED_PRESSURE2")),
-        2: (
-            "EXT_STAT",
-            ("SYS_STATUS", "POWER_STATUS", "MEMINFO", "MISSION_CURRENT", "GPS_RAW_INT", "GPS2_RAW",
-             "NAV_CONTROLLER_OUTPUT", "FENCE_STATUS", "POSITION_TARGET_GLOBAL_INT"),
-        ),
-        3: ("RC_CHAN", ("SERVO_OUTPUT_RAW", "RC_CHANNELS")),
+        **GROUPS,
         4: ("RAW_CTRL", ("RC_CHANNELS_SCALED",)),
-        6: ("POSITION", ("GLOBAL_POSITION_INT", "LOCAL_POSITION_NED")),
-        10: ("EXTRA1", ("ATTITUDE", "SIMSTATE", "AHRS2", "PID_TUNING")),
-        11: ("EXTRA2", ("VFR_HUD",)),
         12: (
             "EXTRA3",
             ("AHRS", "DISTANCE_SENSOR", "RANGEFINDER", "OPTICAL_FLOW", "SYSTEM_TIME", "BATTERY_STATUS",

@@ -29,45 +29,32 @@ from ...core.scalars import constrain, finite
 from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
 from ..places import GLOBAL_FRAMES, local_place
+from ..services import setpoints
 from ..services.follow import take_position
-from ..services.setpoints import (
-    BODY_YAW_RATE_IGNORED,
-    LOCAL_FRAMES,
-    POSITION_IGNORED,
-    THRUST_IGNORED,
-    SetAttitudeTarget,
-    SetpointService,
-    SetPositionTargetGlobalInt,
-    SetPositionTargetLocalNed,
-    Target,
-    global_target,
-    local_target,
-    rotation,
-)
 from ..telemetry.motion import GlobalPositionInt
 
 if TYPE_CHECKING:
     from .autopilot import RoverAutopilot
 
-LOCAL_NUMBER, GLOBAL_NUMBER = SetPositionTargetLocalNed.kind.id, SetPositionTargetGlobalInt.kind.id
+LOCAL_NUMBER, GLOBAL_NUMBER = setpoints.SetPositionTargetLocalNed.kind.id, setpoints.SetPositionTargetGlobalInt.kind.id
 
 
 @law
-def position_target_local(m: SetPositionTargetLocalNed, v: Rover, sender: int) -> None:
+def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Rover, sender: int) -> None:
     """Drive to a place or with a velocity in a local frame."""
     estimate = v.autopilot.estimate
-    if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in LOCAL_FRAMES:
-        follow(v, local_target(m, estimate), m.vx < 0.0, LOCAL_NUMBER)
+    if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in setpoints.LOCAL_FRAMES:
+        follow(v, setpoints.local_target(m, estimate), m.vel.x < 0.0, LOCAL_NUMBER)
 
 
 @law
-def position_target_global(m: SetPositionTargetGlobalInt, v: Rover, sender: int) -> None:
+def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Rover, sender: int) -> None:
     """The same with a place on the globe, whose height means nothing."""
     if m.coordinate_frame not in GLOBAL_FRAMES or not is_open(v.autopilot.modes):
         return
     place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, MavFrame.GLOBAL)
-    if place.is_known or (m.type_mask & POSITION_IGNORED) != 0:
-        follow(v, global_target(m, place.pos), m.vx < 0.0, GLOBAL_NUMBER)
+    if place.is_known or (m.type_mask & setpoints.POSITION_IGNORED) != 0:
+        follow(v, setpoints.global_target(m, place.pos), m.vel.x < 0.0, GLOBAL_NUMBER)
 
 
 @law
@@ -77,7 +64,7 @@ def other_position(m: GlobalPositionInt, v: Rover, sender: int) -> None:
 
 
 @law
-def follow(v: Rover, target: Target, backward: bool, message: int) -> None:
+def follow(v: Rover, target: setpoints.Target, backward: bool, message: int) -> None:
     """Drive what a target asks for.
 
     Args:
@@ -106,7 +93,7 @@ def follow(v: Rover, target: Target, backward: bool, message: int) -> None:
 
 
 @law
-def is_finite(target: Target) -> bool:
+def is_finite(target: setpoints.Target) -> bool:
     """Whether all numbers that are asked for are; down does not count."""
     numbers = target.pos + target.vel
     return finite(target.yaw + target.yaw_rate + numbers.x + numbers.y)
@@ -127,22 +114,22 @@ def full_speed(v: Rover) -> float:
 
 
 @law
-def attitude_target(m: SetAttitudeTarget, v: Rover, sender: int) -> None:
+def attitude_target(m: setpoints.SetAttitudeTarget, v: Rover, sender: int) -> None:
     """Thrust -1 .. 1 is a share of WP_SPEED; the heading is that of the quaternion, or turns with body_yaw_rate."""
     modes = v.autopilot.modes
-    if not is_open(modes) or (m.type_mask & THRUST_IGNORED) != 0 or not finite(m.thrust):
+    if not is_open(modes) or (m.type_mask & setpoints.THRUST_IGNORED) != 0 or not finite(m.thrust):
         return
     speed = constrain(m.thrust, -1.0, 1.0) * full_speed(v)
-    if (m.type_mask & BODY_YAW_RATE_IGNORED) == 0:
-        if finite(m.body_yaw_rate):
-            set_turn_rate_and_speed(modes, v.time_us, m.body_yaw_rate, speed)
+    if (m.type_mask & setpoints.BODY_YAW_RATE_IGNORED) == 0:
+        if finite(m.rates.z):
+            set_turn_rate_and_speed(modes, v.time_us, m.rates.z, speed)
         return
-    given = rotation(m.q)
+    given = setpoints.rotation(m.q)
     if given.is_given:
         set_heading_and_speed(modes, v.time_us, euler_of(given.q).yaw, speed)
 
 
-class RoverSetpoints(SetpointService):
+class RoverSetpoints(setpoints.SetpointService):
     """Mission items with ``current`` 2; in missions that allow set-points, too."""
 
     def _listens(self) -> bool:

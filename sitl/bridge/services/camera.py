@@ -22,7 +22,7 @@ from ..host import Host
 from ..listener import Sender
 from ..telemetry.motion import global_position
 from .liveness import HeartbeatService
-from .service import Handler, Service
+from .service import Handler, StatefulService
 
 FEEDBACK, COMMAND_LONG = message("CAMERA_FEEDBACK"), message("COMMAND_LONG")
 EVERY_US = 20_000
@@ -53,7 +53,7 @@ class State(NamedTuple):
     """One was asked for too soon after another (CAM1_INTRVAL_MIN)."""
 
 
-class CameraService(Service):
+class CameraService(StatefulService):
     """The camera."""
 
     def __init__(self, bridge: Host) -> None:
@@ -64,13 +64,6 @@ class CameraService(Service):
             self.kind = camera.NO_CAMERA
         self._state = State(FEEDBACK.payload())
         self.due_us = NEVER if self.kind == camera.NO_CAMERA else 0
-
-    def snapshot(self) -> Any:
-        return (tuple(self._state), self.due_us)
-
-    def restore(self, state: Any) -> None:
-        found, self.due_us = state
-        self._state = State(*found)
 
     def handlers(self) -> dict[str, Handler]:
         return {"DIGICAM_CONTROL": self._digicam_control, "DIGICAM_CONFIGURE": self._digicam_configure}

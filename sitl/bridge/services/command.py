@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from ...core.mavlink import MavFrame
+from ...core.mavlink import MavFrame, MavResult
 from ..channel import Channel
 from ..host import Host
 
@@ -56,21 +56,23 @@ class Entry(NamedTuple):
     """``run`` answers a place that is not on Earth, too; else that is DENIED."""
 
 
+def result(ok: bool) -> int:
+    """The MAV_RESULT of what was done, or could not be."""
+    return MavResult.ACCEPTED if ok else MavResult.FAILED
+
+
+def answered(bridge: Host, ok: bool) -> int:
+    """The same after the autopilot's texts on it have been sent."""
+    bridge.say_pending()
+    return result(ok)
+
+
 def from_long(fields: Any, entry: Entry) -> Command | None:
     """Command of a COMMAND_LONG, or None when a parameter is infinite, a required one NaN.
 
     Or the place not on Earth, or too high.
     """
-    values = (
-        fields.param1,
-        fields.param2,
-        fields.param3,
-        fields.param4,
-        fields.param5,
-        fields.param6,
-        fields.param7,
-    )
-    clean = _clean(values, entry)
+    clean = _clean(tuple(getattr(fields, f"param{n}") for n in range(1, 8)), entry)
     if clean is None:
         return None
     p1, p2, p3, p4, p5, p6, p7 = clean

@@ -21,7 +21,7 @@ from ..telemetry.shell import banner
 from . import calibration
 from .calibration import CalibrationService
 from .camera import CameraService
-from .command import Command, Entry, is_on_earth
+from .command import Command, Entry, answered, is_on_earth, result
 from .compass_calibration import CompassCalibrationService
 from .faults import FaultService
 from .gripper import GripperService
@@ -108,10 +108,10 @@ def calibrate(bridge: Host, channel: Channel, command: Command) -> int:
         return MavResult.FAILED
     if command.p1 == 1.0 or command.p5 in (LEVEL_TRIM, SIMPLE_ACCELEROMETER):
         tasks = {LEVEL_TRIM: calibration.LEVEL, SIMPLE_ACCELEROMETER: calibration.SIMPLE}
-        result = service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5])
-        if result == MavResult.ACCEPTED:
+        answer = service.start(calibration.GYROS if command.p1 == 1.0 else tasks[command.p5])
+        if answer == MavResult.ACCEPTED:
             say(MavSeverity.INFO, "Initialising ArduPilot")
-        return result
+        return answer
     if command.p3 == 1.0:
         say(MavSeverity.INFO, "Updating barometer calibration")
         say(MavSeverity.INFO, "Barometer calibration complete")
@@ -168,9 +168,7 @@ def reset_battery(bridge: Host, channel: Channel, command: Command) -> int:
     """
     if int(command.p1) & 1 == 0:
         return MavResult.ACCEPTED
-    return (
-        MavResult.ACCEPTED if bridge.autopilot.set_battery_left(constrain(command.p2, 0.0, 100.0)) else MavResult.FAILED
-    )
+    return result(bridge.autopilot.set_battery_left(constrain(command.p2, 0.0, 100.0)))
 
 
 def inject_failure(bridge: Host, channel: Channel, command: Command) -> int:
@@ -191,15 +189,12 @@ def arm_disarm(bridge: Host, channel: Channel, command: Command) -> int:
         ok = not bridge.autopilot.armed() or bridge.autopilot.disarm(command.p2 == ARM_FORCED)
     else:
         return MavResult.UNSUPPORTED
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, ok)
 
 
 def set_mode(bridge: Host, number: int) -> int:
     """Change to a mode by ArduPilot's number and say why not."""
-    ok = bridge.autopilot.set_mode(number)
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, bridge.autopilot.set_mode(number))
 
 
 def do_set_mode(bridge: Host, channel: Channel, command: Command) -> int:
@@ -215,9 +210,7 @@ def aux_function(bridge: Host, channel: Channel, command: Command) -> int:
     """218: p1 function of a switch, p2 0 low, 1 middle, 2 high."""
     if command.p2 not in (0.0, 1.0, 2.0) or command.p1 != int(command.p1):
         return MavResult.DENIED
-    ok = bridge.autopilot.run_aux_function(int(command.p1), LOW + int(command.p2))
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, bridge.autopilot.run_aux_function(int(command.p1), LOW + int(command.p2)))
 
 
 def return_to_launch(bridge: Host, channel: Channel, command: Command) -> int:
@@ -229,11 +222,7 @@ def set_servo(bridge: Host, channel: Channel, command: Command) -> int:
     """183: p1 output (those of motors are refused), p2 pulse, 0 .. 3000 us, else DENIED."""
     if not 0.0 <= command.p2 <= LONGEST_US:
         return MavResult.DENIED
-    return (
-        MavResult.ACCEPTED
-        if bridge.get(OutputService).set_servo(int(command.p1), int(command.p2))
-        else MavResult.FAILED
-    )
+    return result(bridge.get(OutputService).set_servo(int(command.p1), int(command.p2)))
 
 
 def repeat_servo(bridge: Host, channel: Channel, command: Command) -> int:
@@ -241,16 +230,12 @@ def repeat_servo(bridge: Host, channel: Channel, command: Command) -> int:
     if not 0.0 <= command.p2 <= LONGEST_US or not abs(command.p3) <= MANY:
         return MavResult.DENIED
     outputs, number = bridge.get(OutputService), int(command.p1)
-    return (
-        MavResult.ACCEPTED
-        if outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4)
-        else MavResult.FAILED
-    )
+    return result(outputs.repeat_servo(number, int(command.p2), int(command.p3), command.p4))
 
 
 def set_relay(bridge: Host, channel: Channel, command: Command) -> int:
     """181: p1 relay, from 0, p2 0 off, 1 on, others the other way; FAILED without RELAYn_FUNCTION 1."""
-    return MavResult.ACCEPTED if bridge.get(OutputService).set_relay(int(command.p1), command.p2) else MavResult.FAILED
+    return result(bridge.get(OutputService).set_relay(int(command.p1), command.p2))
 
 
 def repeat_relay(bridge: Host, channel: Channel, command: Command) -> int:
@@ -258,7 +243,7 @@ def repeat_relay(bridge: Host, channel: Channel, command: Command) -> int:
     if not abs(command.p2) <= MANY:
         return MavResult.DENIED
     done = bridge.get(OutputService).repeat_relay(int(command.p1), int(command.p2), command.p3)
-    return MavResult.ACCEPTED if done else MavResult.FAILED
+    return result(done)
 
 
 MANY = 32767.0
@@ -376,7 +361,7 @@ def reposition(bridge: Host, channel: Channel, command: Command) -> int:
         return MavResult.FAILED
     if command.p1 > 0.0 and not bridge.autopilot.change_reposition_speed(command.p1):
         return MavResult.FAILED
-    return MavResult.ACCEPTED if bridge.autopilot.guided_position(place) else MavResult.FAILED
+    return result(bridge.autopilot.guided_position(place))
 
 
 def set_home(bridge: Host, channel: Channel, command: Command) -> int:
@@ -408,7 +393,7 @@ def _home_result(bridge: Host, ok: bool) -> int:
     bridge.say_pending()
     if ok:
         bridge.get(HomeService).report_changes()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return result(ok)
 
 
 def enable_fence(bridge: Host, channel: Channel, command: Command) -> int:
@@ -428,9 +413,7 @@ def mission_start(bridge: Host, channel: Channel, command: Command) -> int:
     """300: AUTO from the beginning; p1, p2 (first and last item) must be zero."""
     if command.p1 != 0.0 or command.p2 != 0.0:
         return MavResult.DENIED
-    ok = bridge.autopilot.start_mission()
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, bridge.autopilot.start_mission())
 
 
 def set_mission_current(bridge: Host, channel: Channel, command: Command) -> int:
@@ -439,18 +422,14 @@ def set_mission_current(bridge: Host, channel: Channel, command: Command) -> int
     seq, count = int(command.p1), len(bridge.autopilot.mission_items())
     if not 0 <= seq < max(count, 1):
         return MavResult.DENIED
-    ok = bridge.autopilot.set_current_item(seq, command.p2 == 1.0)
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, bridge.autopilot.set_current_item(seq, command.p2 == 1.0))
 
 
 def jump_to_tag(bridge: Host, channel: Channel, command: Command) -> int:
     """601: p1 the tag of a JUMP_TAG of the mission, which goes on there; FAILED without it."""
     if not 0.0 <= command.p1 <= 65535.0:
         return MavResult.DENIED
-    ok = bridge.autopilot.jump_to_tag(int(command.p1))
-    bridge.say_pending()
-    return MavResult.ACCEPTED if ok else MavResult.FAILED
+    return answered(bridge, bridge.autopilot.jump_to_tag(int(command.p1)))
 
 
 def choose_sources(bridge: Host, channel: Channel, command: Command) -> int:

@@ -6,15 +6,17 @@ from __future__ import annotations
 from ...core.constants import NEVER
 from ...core.mavlink import MavSeverity
 from ..host import Host
-from .service import Service
+from .service import StatefulService
 from .statustext import StatusTextService
 
 EVERY_US = 5_000_000
 TEXTS = ("Config Error: Baro: unable to initialise driver", "Config Error: fix problem then reboot")
 
 
-class ConfigErrorService(Service):
+class ConfigErrorService(StatefulService):
     """No barometer was found at power-on (SIM_BARO_COUNT): the estimator does not start, and nothing can be armed."""
+
+    kept = ("due_us",)
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
@@ -24,9 +26,3 @@ class ConfigErrorService(Service):
         self.due_us = now_us + EVERY_US
         for text in TEXTS:
             self.bridge.get(StatusTextService).say(MavSeverity.CRITICAL, text)
-
-    def snapshot(self) -> int:
-        return self.due_us
-
-    def restore(self, state: int) -> None:
-        self.due_us = state

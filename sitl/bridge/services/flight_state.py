@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from ...core.algebra import rotate
 from ...core.mavlink import MavLandedState
@@ -12,24 +11,20 @@ from ..dialect import message
 from ..host import Host
 from ..telemetry.plain import built
 from ..telemetry.units import boot_ms
-from .service import Service
+from .service import StatefulService
 
 NONE_REACHED = 0xFFFF
 
 
-class FlightStateService(Service):
+class FlightStateService(StatefulService):
     """When it was armed and took off, which item of the mission it reached last, and what a gimbal needs."""
+
+    kept = ("_took_off_us", "_reached")
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._took_off_us = 0
         self._reached = NONE_REACHED
-
-    def snapshot(self) -> Any:
-        return self._took_off_us, self._reached
-
-    def restore(self, state: Any) -> None:
-        self._took_off_us, self._reached = state
 
     def messages(self) -> dict[str, Callable[[], bytes]]:
         return {

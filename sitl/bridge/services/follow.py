@@ -50,7 +50,7 @@ def take_position(m: GlobalPositionInt, v: Vehicle, sender: int, over_home: bool
     alt, frame = (m.relative_alt, MavFrame.GLOBAL_RELATIVE_ALT) if over_home else (m.alt, MavFrame.GLOBAL)
     place = local_place(ap, m.lat, m.lon, alt * 1e-3, frame)
     if place.is_known:
-        vel = Vec3(m.vx * 0.01, m.vy * 0.01, m.vz * 0.01)
+        vel = m.vel * 0.01
         take(
             lead, p, sender, Report(place.pos, vel, ZERO, m.hdg <= HEADINGS, math.radians(m.hdg * 0.01), 0.0), v.time_us
         )

@@ -4,7 +4,7 @@ meanwhile. Nothing is carried: it is told, not felt."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ...autopilot import payload
 from ...autopilot.mission.item import MissionItem
@@ -48,13 +48,6 @@ class GripperService(PayloadService):
         if self._there:
             self._send(payload.GRIPPER, self._values["GRIP_NEUTRAL"])
             self._report()
-
-    def snapshot(self) -> Any:
-        return (tuple(self._state), self.due_us)
-
-    def restore(self, state: Any) -> None:
-        found, self.due_us = state
-        self._state = State(*found)
 
     @property
     def is_there(self) -> bool:

@@ -13,7 +13,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from .service import Handler, Service
+from .service import Handler, StatefulService
 from .terrain import TerrainService
 
 HOME, ORIGIN = message("HOME_POSITION").id, message("GPS_GLOBAL_ORIGIN").id
@@ -22,8 +22,10 @@ LOOK_US = 50_000
 H, E = "autopilot.home.", "autopilot.estimate.origin_"
 
 
-class HomeService(Service):
+class HomeService(StatefulService):
     """Home, and the estimator's origin as long as it has none."""
+
+    kept = ("_sent_home", "_sent_origin", "due_us")
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
@@ -32,12 +34,6 @@ class HomeService(Service):
         self._sent_home = self._home()
         self._sent_origin = self._origin()
         self.due_us = NEVER
-
-    def snapshot(self) -> Any:
-        return (self._sent_home, self._sent_origin, self.due_us)
-
-    def restore(self, state: Any) -> None:
-        self._sent_home, self._sent_origin, self.due_us = state
 
     def handlers(self) -> dict[str, Handler]:
         return {"SET_GPS_GLOBAL_ORIGIN": self._set_origin, "SET_HOME_POSITION": self._set_home}

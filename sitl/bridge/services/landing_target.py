@@ -13,7 +13,7 @@ from ...core.scalars import PI, finite
 from ...core.vectors import Vec3
 from ...vehicle.landing_beacon import BY_MESSAGE
 from ...vehicle.record import Vehicle
-from ..wire.message import Message
+from ..wire.message import Message, consecutive
 
 _SIDEWAYS = 0.5 * PI
 """The angle of what is not before the sensor [rad]."""
@@ -26,9 +26,7 @@ class LandingTargetMessage(Message, name="LANDING_TARGET"):
     angle_x: float
     angle_y: float
     distance: float
-    x: float
-    y: float
-    z: float
+    pos: Vec3 = consecutive("x", "y", "z")
     position_valid: int
 
 
@@ -44,7 +42,7 @@ def landing_target(m: LandingTargetMessage, v: Vehicle, sender: int) -> None:
             emit(ap.events, v.time_us, LANDING_TARGET_DID, float(SAID_NO_FRAME), 0.0)
         t.reported |= REPORTED_FRAME
         return
-    line = Vec3(m.x, m.y, m.z)
+    line = m.pos
     if m.position_valid == 0:
         if not (abs(m.angle_x) < _SIDEWAYS and abs(m.angle_y) < _SIDEWAYS):
             return

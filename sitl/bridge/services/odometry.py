@@ -14,55 +14,36 @@ from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Euler, Vec3
 from ...vehicle.record import Vehicle
-from ..wire.message import Message
+from ..wire.message import Message, consecutive
 from .follow import vector
 from .setpoints import rotation
 
 
 class VisionPosition(Message, name="VISION_POSITION_ESTIMATE"):
-    x: float
-    y: float
-    z: float
-    roll: float
-    pitch: float
-    yaw: float
+    pos: Vec3 = consecutive("x", "y", "z")
+    euler: Euler = consecutive("roll", "pitch", "yaw")
     covariance: Floats
     reset_counter: int
 
 
-class GlobalVisionPosition(Message, name="GLOBAL_VISION_POSITION_ESTIMATE"):
-    x: float
-    y: float
-    z: float
-    roll: float
-    pitch: float
-    yaw: float
-    covariance: Floats
-    reset_counter: int
+class GlobalVisionPosition(VisionPosition, name="GLOBAL_VISION_POSITION_ESTIMATE"):
+    pass
 
 
 class ViconPosition(Message, name="VICON_POSITION_ESTIMATE"):
-    x: float
-    y: float
-    z: float
-    roll: float
-    pitch: float
-    yaw: float
+    pos: Vec3 = consecutive("x", "y", "z")
+    euler: Euler = consecutive("roll", "pitch", "yaw")
     covariance: Floats
 
 
 class MotionCapture(Message, name="ATT_POS_MOCAP"):
     q: Floats
-    x: float
-    y: float
-    z: float
+    pos: Vec3 = consecutive("x", "y", "z")
     covariance: Floats
 
 
 class VisionSpeed(Message, name="VISION_SPEED_ESTIMATE"):
-    x: float
-    y: float
-    z: float
+    vel: Vec3 = consecutive("x", "y", "z")
     covariance: Floats
 
 
@@ -75,13 +56,9 @@ class VisionDelta(Message, name="VISION_POSITION_DELTA"):
 class Odometry(Message, name="ODOMETRY"):
     frame_id: int
     child_frame_id: int
-    x: float
-    y: float
-    z: float
+    pos: Vec3 = consecutive("x", "y", "z")
     q: Floats
-    vx: float
-    vy: float
-    vz: float
+    vel: Vec3 = consecutive("vx", "vy", "vz")
     pose_covariance: Floats
     velocity_covariance: Floats
     reset_counter: int
@@ -106,21 +83,19 @@ def pose(v: Vehicle, pos: Vec3, euler: Euler, variance: float, resets: int) -> N
 @law
 def vision_position(m: VisionPosition, v: Vehicle, sender: int) -> None:
     """VISION_POSITION_ESTIMATE"""
-    euler = Euler(m.roll, m.pitch, m.yaw)
-    pose(v, Vec3(m.x, m.y, m.z), euler, variance_of(m.covariance), m.reset_counter)
+    pose(v, m.pos, m.euler, variance_of(m.covariance), m.reset_counter)
 
 
 @law
 def global_vision_position(m: GlobalVisionPosition, v: Vehicle, sender: int) -> None:
     """GLOBAL_VISION_POSITION_ESTIMATE"""
-    euler = Euler(m.roll, m.pitch, m.yaw)
-    pose(v, Vec3(m.x, m.y, m.z), euler, variance_of(m.covariance), m.reset_counter)
+    pose(v, m.pos, m.euler, variance_of(m.covariance), m.reset_counter)
 
 
 @law
 def vicon_position(m: ViconPosition, v: Vehicle, sender: int) -> None:
     """VICON_POSITION_ESTIMATE"""
-    pose(v, Vec3(m.x, m.y, m.z), Euler(m.roll, m.pitch, m.yaw), variance_of(m.covariance), 0)
+    pose(v, m.pos, m.euler, variance_of(m.covariance), 0)
 
 
 @law
@@ -128,7 +103,7 @@ def motion_capture(m: MotionCapture, v: Vehicle, sender: int) -> None:
     """ATT_POS_MOCAP"""
     seen, p, attitude = v.autopilot.odometry, v.autopilot.params.VISO, rotation(m.q)
     if attitude.is_given and takes(seen, UNKNOWN_QUALITY, p):
-        take_pose(seen, Vec3(m.x, m.y, m.z), attitude.q, variance_of(m.covariance), v.time_us, p)
+        take_pose(seen, m.pos, attitude.q, variance_of(m.covariance), v.time_us, p)
 
 
 @law
@@ -137,7 +112,7 @@ def vision_speed(m: VisionSpeed, v: Vehicle, sender: int) -> None:
     seen, p = v.autopilot.odometry, v.autopilot.params.VISO
     if takes(seen, UNKNOWN_QUALITY, p):
         variance = float(m.covariance[0]) + float(m.covariance[4]) + float(m.covariance[8])
-        take_velocity(seen, Vec3(m.x, m.y, m.z), False, variance, v.time_us, p)
+        take_velocity(seen, m.vel, False, variance, v.time_us, p)
 
 
 @law
@@ -156,8 +131,8 @@ def odometry(m: Odometry, v: Vehicle, sender: int) -> None:
         return
     if attitude.is_given and takes(seen, m.quality, p):
         seen.resets = m.reset_counter
-        take_pose(seen, Vec3(m.x, m.y, m.z), attitude.q, variance_of(m.pose_covariance), v.time_us, p)
-        take_velocity(seen, Vec3(m.vx, m.vy, m.vz), True, variance_of(m.velocity_covariance), v.time_us, p)
+        take_pose(seen, m.pos, attitude.q, variance_of(m.pose_covariance), v.time_us, p)
+        take_velocity(seen, m.vel, True, variance_of(m.velocity_covariance), v.time_us, p)
 
 
 TAKERS = (

@@ -17,7 +17,7 @@ from ..host import Host
 from ..listener import Sender
 from .mission import MissionService
 from .place_lists import counted
-from .service import Handler, Service
+from .service import Handler, StatefulService
 from .statustext import StatusTextService
 
 FENCE, RALLY = message("FENCE_POINT"), message("RALLY_POINT")
@@ -27,8 +27,10 @@ Place = tuple[int, int]
 NOWHERE: Place = (0, 0)
 
 
-class OldPointService(Service):
+class OldPointService(StatefulService):
     """FENCE_POINT, FENCE_FETCH_POINT, RALLY_POINT, RALLY_FETCH_POINT."""
+
+    kept = ("_warned",)
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
@@ -41,12 +43,6 @@ class OldPointService(Service):
             "RALLY_POINT": self._set_rally_point,
             "RALLY_FETCH_POINT": self._fetch_rally_point,
         }
-
-    def snapshot(self) -> tuple[str, ...]:
-        return self._warned
-
-    def restore(self, state: tuple[str, ...]) -> None:
-        self._warned = state
 
     def _warn(self, text: str) -> None:
         self.bridge.get(StatusTextService).say(MavSeverity.WARNING, text)

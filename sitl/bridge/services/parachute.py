@@ -9,7 +9,7 @@ Out of control it falls; as with ArduPilot that counts when it begins above CHUT
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, Protocol, cast
+from typing import NamedTuple, Protocol, cast
 
 from ...autopilot import payload, relays
 from ...autopilot.aux_switch import HIGH, LOW
@@ -75,13 +75,6 @@ class ParachuteService(PayloadService):
     @property
     def _pilot(self) -> Falling:
         return cast(Falling, self.bridge.autopilot)
-
-    def snapshot(self) -> Any:
-        return (tuple(self._state), self.due_us)
-
-    def restore(self, state: Any) -> None:
-        found, self.due_us = state
-        self._state = State(*found)
 
     def carry_out(self, item: MissionItem) -> None:
         """A mission's DO_PARACHUTE."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from ...autopilot.payload import OUTPUTS
 from ..host import Host
-from .service import Service
+from .service import StatefulService
 
 SHORTEST, MIDDLE, LONGEST = 1100.0, 1500.0, 1900.0
 """Pulses [us] of outputs that say nothing else."""
 
 
-class PayloadService(Service):
+class PayloadService(StatefulService):
     """Something that hangs on servo outputs. What it is, parameters say at boot."""
 
     def __init__(self, bridge: Host) -> None:

@@ -26,9 +26,10 @@ from ...core.elementary import atan2, hypot, tan
 from ...core.kernels import law
 from ...core.mavlink import MavFrame
 from ...core.scalars import finite
+from ...core.vectors import Vec3
 from ...vehicle.record import Vehicle
 from ..telemetry.ranging import DistanceSensor, ObstacleDistance
-from ..wire.message import Message
+from ..wire.message import Message, consecutive
 
 LEVEL = tan(math.radians(15.0))
 """Sectors reach so far up and down."""
@@ -38,9 +39,7 @@ class ObstacleDistance3d(Message, name="OBSTACLE_DISTANCE_3D"):
     """A place on the body, forward, right, down, and the sensor's range, all [m]."""
 
     frame: int
-    x: float
-    y: float
-    z: float
+    pos: Vec3 = consecutive("x", "y", "z")
     min_distance: float
     max_distance: float
 
@@ -87,8 +86,8 @@ def distance(m: DistanceSensor, v: Vehicle, sender: int) -> None:
 def obstacle_3d(m: ObstacleDistance3d, v: Vehicle, sender: int) -> None:
     """OBSTACLE_DISTANCE_3D: an obstacle's place on the body; what is far above or below is left out."""
     seen = v.autopilot.proximity
-    away = hypot(m.x, m.y)
+    away = hypot(m.pos.x, m.pos.y)
     is_known = finite(away) and finite(m.min_distance) and finite(m.max_distance)
-    if is_known and seen.kind == MAVLINK and m.frame == MavFrame.BODY_FRD and abs(m.z) < away * LEVEL:
+    if is_known and seen.kind == MAVLINK and m.frame == MavFrame.BODY_FRD and abs(m.pos.z) < away * LEVEL:
         begin_scan(seen, m.min_distance, m.max_distance, v.autopilot.params.PRX1)
-        note_one(v, seen, atan2(m.y, m.x), away)
+        note_one(v, seen, atan2(m.pos.y, m.pos.x), away)

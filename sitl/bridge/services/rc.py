@@ -8,8 +8,9 @@ RC_OVERRIDE_TIME.
 from __future__ import annotations
 
 from ...core.kernels import law
+from ...core.records import Ints
 from ...vehicle.record import Vehicle
-from ..wire.message import Message
+from ..wire.message import Message, consecutive
 
 RELEASE_EXTENDED = 65534
 """Channels 1..8: 0 gives the channel back; channels 9..18: 65534 does, and 0 means nothing. 65535 leaves a channel."""
@@ -26,24 +27,8 @@ LOWEST, HIGHEST = 800, 2200
 class RcChannelsOverride(Message, name="RC_CHANNELS_OVERRIDE"):
     """Pulses [us]."""
 
-    chan1_raw: int
-    chan2_raw: int
-    chan3_raw: int
-    chan4_raw: int
-    chan5_raw: int
-    chan6_raw: int
-    chan7_raw: int
-    chan8_raw: int
-    chan9_raw: int
-    chan10_raw: int
-    chan11_raw: int
-    chan12_raw: int
-    chan13_raw: int
-    chan14_raw: int
-    chan15_raw: int
-    chan16_raw: int
-    chan17_raw: int
-    chan18_raw: int
+    pulses: Ints = consecutive(*(f"chan{k}_raw" for k in range(1, 9)))
+    more_pulses: Ints = consecutive(*(f"chan{k}_raw" for k in range(9, 19)))
     target_system: int
     target_component: int
 
@@ -63,19 +48,12 @@ def rc_channels_override(m: RcChannelsOverride, v: Vehicle, sender: int) -> None
     """Override channels of the radio."""
     if not is_ground_station(v, sender):
         return
-    first = (
-        m.chan1_raw, m.chan2_raw, m.chan3_raw, m.chan4_raw, m.chan5_raw, m.chan6_raw, m.chan7_raw, m.chan8_raw,
-    )  # fmt: skip
     for k in range(FIRST_CHANNELS):
-        pulse = first[k]
+        pulse = m.pulses[k]
         if pulse == 0 or LOWEST <= pulse <= HIGHEST:
             override(v, k, pulse)
-    extended = (
-        m.chan9_raw, m.chan10_raw, m.chan11_raw, m.chan12_raw, m.chan13_raw,
-        m.chan14_raw, m.chan15_raw, m.chan16_raw, m.chan17_raw, m.chan18_raw,
-    )  # fmt: skip
     for k in range(CHANNELS - FIRST_CHANNELS):
-        pulse = extended[k]
+        pulse = m.more_pulses[k]
         if pulse == RELEASE_EXTENDED:
             override(v, FIRST_CHANNELS + k, 0)
         elif LOWEST <= pulse <= HIGHEST:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from ...core.constants import NEVER
 from ..channel import Channel
@@ -53,3 +53,19 @@ class Service:
 
     def restore(self, state: Any) -> None:
         """Go on from a snapshot. The record has been put back already."""
+
+
+class StatefulService(Service):
+    """A service whose snapshot is some of its attributes: plain values, or tuples with or without names."""
+
+    kept: ClassVar[tuple[str, ...]] = ("_state", "due_us")
+    """Their names."""
+
+    def snapshot(self) -> Any:
+        held = [getattr(self, name) for name in self.kept]
+        return tuple(tuple(value) if isinstance(value, tuple) else value for value in held)
+
+    def restore(self, state: Any) -> None:
+        for name, value in zip(self.kept, state, strict=True):
+            make = getattr(getattr(self, name), "_make", None)
+            setattr(self, name, value if make is None else make(value))

@@ -22,7 +22,7 @@ from ...core.records import Floats
 from ...core.vectors import Quat, Vec3
 from ..host import Host
 from ..places import GLOBAL_FRAMES
-from ..wire.message import Message
+from ..wire.message import Message, consecutive
 from .service import Service
 
 POSITION_IGNORED, VELOCITY_IGNORED, ACCELERATION_IGNORED = 0x007, 0x038, 0x1C0
@@ -46,15 +46,9 @@ class SetPositionTargetLocalNed(Message, name="SET_POSITION_TARGET_LOCAL_NED"):
     target_system: int
     coordinate_frame: int
     type_mask: int
-    x: float
-    y: float
-    z: float
-    vx: float
-    vy: float
-    vz: float
-    afx: float
-    afy: float
-    afz: float
+    pos: Vec3 = consecutive("x", "y", "z")
+    vel: Vec3 = consecutive("vx", "vy", "vz")
+    acc: Vec3 = consecutive("afx", "afy", "afz")
     yaw: float
     yaw_rate: float
 
@@ -67,12 +61,8 @@ class SetPositionTargetGlobalInt(Message, name="SET_POSITION_TARGET_GLOBAL_INT")
     lat_int: int
     lon_int: int
     alt: float
-    vx: float
-    vy: float
-    vz: float
-    afx: float
-    afy: float
-    afz: float
+    vel: Vec3 = consecutive("vx", "vy", "vz")
+    acc: Vec3 = consecutive("afx", "afy", "afz")
     yaw: float
     yaw_rate: float
 
@@ -83,9 +73,7 @@ class SetAttitudeTarget(Message, name="SET_ATTITUDE_TARGET"):
     target_system: int
     type_mask: int
     q: Floats
-    body_roll_rate: float
-    body_pitch_rate: float
-    body_yaw_rate: float
+    rates: Vec3 = consecutive("body_roll_rate", "body_pitch_rate", "body_yaw_rate")
     thrust: float
 
 
@@ -124,19 +112,18 @@ def to_ned(vector: Vec3, frame: int, yaw: float) -> Vec3:
 def local_target(m: SetPositionTargetLocalNed, estimate: Estimate) -> Target:
     """The target of a message whose frame is one of ``LOCAL_FRAMES``."""
     frame, yaw = m.coordinate_frame, estimate.yaw
-    pos = to_ned(Vec3(m.x, m.y, m.z), frame, yaw)
+    pos = to_ned(m.pos, frame, yaw)
     if frame != MavFrame.LOCAL_NED:
         pos = pos + estimate.pos
-    vel = to_ned(Vec3(m.vx, m.vy, m.vz), frame, yaw)
-    acc = to_ned(Vec3(m.afx, m.afy, m.afz), frame, yaw)
+    vel = to_ned(m.vel, frame, yaw)
+    acc = to_ned(m.acc, frame, yaw)
     return masked(m.type_mask, pos, vel, acc, m.yaw, m.yaw_rate, frame in BODY_FRAMES)
 
 
 @law
 def global_target(m: SetPositionTargetGlobalInt, pos: Vec3) -> Target:
     """The target of a message whose place on the globe is ``pos`` (NED from the origin [m])."""
-    vel, acc = Vec3(m.vx, m.vy, m.vz), Vec3(m.afx, m.afy, m.afz)
-    return masked(m.type_mask, pos, vel, acc, m.yaw, m.yaw_rate, False)
+    return masked(m.type_mask, pos, m.vel, m.acc, m.yaw, m.yaw_rate, False)
 
 
 @law

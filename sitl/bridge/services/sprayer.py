@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sitl.core.elementary import hypot
 
@@ -37,13 +37,6 @@ class SprayerService(PayloadService):
         super().__init__(bridge)
         self._there = self._value("SPRAY_ENABLE") != 0.0
         self._state = State()
-
-    def snapshot(self) -> Any:
-        return (tuple(self._state), self.due_us)
-
-    def restore(self, state: Any) -> None:
-        found, self.due_us = state
-        self._state = State(*found)
 
     def carry_out(self, item: MissionItem) -> None:
         """A mission's DO_SPRAYER."""

@@ -20,14 +20,14 @@ from ..dialect import message
 from ..host import Host
 from .flight_state import FlightStateService
 from .home import HomeService
-from .service import Service
+from .service import Service, StatefulService
 from .terrain import TerrainService
 
 TEXT_BYTES = 50
 KIND = message("STATUSTEXT")
 
 
-class StatusTextService(Service):
+class StatusTextService(StatefulService):
     """Texts longer than 50 bytes go out in numbered pieces.
 
     The last of which ends with a NUL (MAVLink 2 only).
@@ -35,13 +35,9 @@ class StatusTextService(Service):
     A MAVLink 1 client gets the first 50 bytes.
     """
 
+    kept = ("_id",)
+
     _id = 0
-
-    def snapshot(self) -> int:
-        return self._id
-
-    def restore(self, state: int) -> None:
-        self._id = state
 
     def say(self, severity: int, text: str) -> None:
         """Send ``text`` with a MAV_SEVERITY to every channel."""
@@ -162,9 +158,10 @@ EVERY_US = 30_000_000
 """ArduPilot's period; on whole multiples of it since boot."""
 
 
-class PreArmService(Service):
+class PreArmService(StatefulService):
     """https://ardupilot.org/copter/docs/common-prearm-safety-checks.html"""
 
+    kept = ("due_us",)
     due_us = EVERY_US
 
     def service(self, now_us: int) -> None:
@@ -180,9 +177,3 @@ class PreArmService(Service):
         """It was armed, disarmed or checked: an armed vehicle is checked no more."""
         armed = self.bridge.autopilot.armed()
         self.due_us = NEVER if armed else (self.bridge.now_us // EVERY_US + 1) * EVERY_US
-
-    def snapshot(self) -> int:
-        return self.due_us
-
-    def restore(self, state: Any) -> None:
-        self.due_us = state

@@ -6,12 +6,10 @@ https://ardupilot.org/copter/docs/common-transmitter-tuning.html
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...core.border import RC_INPUTS
 from ...core.constants import NEVER
 from ..host import Host
-from .service import Service
+from .service import StatefulService
 
 EVERY_US = 300_000
 KNOBS = {219: "TUNE", 220: "TUNE2"}
@@ -32,8 +30,10 @@ TUNED: dict[int, tuple[str, ...]] = {
 """TUNE -> the parameters that the knob sets."""
 
 
-class TuningService(Service):
+class TuningService(StatefulService):
     """The knobs."""
+
+    kept = ("_speed", "due_us")
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
@@ -41,12 +41,6 @@ class TuningService(Service):
         self._speed: float | None = None
         """Of legs [m/s], as last set."""
         self._find_due()
-
-    def snapshot(self) -> Any:
-        return (self._speed, self.due_us)
-
-    def restore(self, state: Any) -> None:
-        self._speed, self.due_us = state
 
     def parameter_changed(self, name: str) -> None:
         if name in KNOBS.values() or name.endswith("_OPTION"):

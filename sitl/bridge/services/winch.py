@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ...autopilot import payload
 from ...autopilot.aux_switch import HIGH
@@ -35,7 +35,6 @@ class State(NamedTuple):
     length: float = 0.0
     """Line that is out [m]."""
     rate: float = 0.0
-    was_used: bool = False
 
 
 class WinchService(PayloadService):
@@ -45,13 +44,6 @@ class WinchService(PayloadService):
         super().__init__(bridge)
         self._there = self._value("WINCH_TYPE") == payload.BY_SERVO
         self._state = State()
-
-    def snapshot(self) -> Any:
-        return (tuple(self._state), self.due_us)
-
-    def restore(self, state: Any) -> None:
-        found, self.due_us = state
-        self._state = State(*found)
 
     def messages(self) -> dict[str, Callable[[], bytes]]:
         return {STATUS.name: self.status} if self._there else {}
@@ -113,7 +105,7 @@ class WinchService(PayloadService):
         return max(self._values["WINCH_RATE_MAX"], 0.0)
 
     def _start(self, action: int, wanted: float) -> None:
-        self._state = self._state._replace(action=action, wanted=wanted, was_used=True)
+        self._state = self._state._replace(action=action, wanted=wanted)
         self.due_us = min(self.due_us, self.bridge.now_us + EVERY_US)
 
     def service(self, now_us: int) -> None:

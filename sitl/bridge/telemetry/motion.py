@@ -13,9 +13,10 @@ from ...core.elementary import atan2, hypot
 from ...core.geodesy import METRES_PER_DEGE7, longitude_scale, wrap_longitude
 from ...core.kernels import law
 from ...core.records import Floats
+from ...core.vectors import Euler, Quat, Vec3
 from ...vehicle.record import Vehicle
-from ..wire.message import Message
-from .units import DEG, boot_ms, heading_cdeg, int16, int32, uint16
+from ..wire.message import Message, consecutive
+from .units import DEG, boot_ms, heading_cdeg, int16s, int32, uint16
 
 UNKNOWN = 65535
 USUAL_HDOP, USUAL_VDOP = 121, 200
@@ -60,9 +61,7 @@ class GlobalPositionInt(Message, name="GLOBAL_POSITION_INT"):
     lon: int
     alt: int
     relative_alt: int
-    vx: int
-    vy: int
-    vz: int
+    vel: Vec3 = consecutive("vx", "vy", "vz")
     hdg: int
 
 
@@ -81,35 +80,24 @@ def global_position_int(m: GlobalPositionInt, v: Vehicle) -> bool:
         m.relative_alt = int32((here.alt - home.alt) * 1e3)
     elif is_relative(estimate):
         m.relative_alt = int32(-estimate.pos.z * 1e3)
-    m.vx = int16(estimate.vel.x * 100.0)
-    m.vy = int16(estimate.vel.y * 100.0)
-    m.vz = int16(estimate.vel.z * 100.0)
+    m.vel = int16s(estimate.vel * 100.0)
     m.hdg = heading_cdeg(estimate.yaw)
     return True
 
 
 class LocalPositionNed(Message, name="LOCAL_POSITION_NED"):
     time_boot_ms: int
-    x: float
-    y: float
-    z: float
-    vx: float
-    vy: float
-    vz: float
+    pos: Vec3 = consecutive("x", "y", "z")
+    vel: Vec3 = consecutive("vx", "vy", "vz")
 
 
 @law
 def local_position_ned(m: LocalPositionNed, v: Vehicle) -> bool:
     """LOCAL_POSITION_NED: metres from the EKF origin, m/s; nothing until that is set, or positions are relative."""
     estimate = v.autopilot.estimate
-    pos, vel = estimate.pos, estimate.vel
     m.time_boot_ms = boot_ms(v.time_us)
-    m.x = pos.x
-    m.y = pos.y
-    m.z = pos.z
-    m.vx = vel.x
-    m.vy = vel.y
-    m.vz = vel.z
+    m.pos = estimate.pos
+    m.vel = estimate.vel
     return estimate.origin_set or is_relative(estimate)
 
 
@@ -138,9 +126,7 @@ class HomePosition(Message, name="HOME_POSITION"):
     latitude: int
     longitude: int
     altitude: int
-    x: float
-    y: float
-    z: float
+    pos: Vec3 = consecutive("x", "y", "z")
     q: Floats
     time_usec: int
 
@@ -152,9 +138,7 @@ def home_position(m: HomePosition, v: Vehicle) -> bool:
     m.latitude = int32(home.lat)
     m.longitude = int32(home.lon)
     m.altitude = int32(home.alt * 1e3)
-    m.x = home.pos.x
-    m.y = home.pos.y
-    m.z = home.pos.z
+    m.pos = home.pos
     for k in range(len(m.q)):
         m.q[k] = math.nan
     m.time_usec = v.time_us
@@ -196,21 +180,8 @@ class GpsRawInt(Message, name="GPS_RAW_INT"):
     vel_acc: int
 
 
-class Gps2Raw(Message, name="GPS2_RAW"):
-    time_usec: int
-    lat: int
-    lon: int
-    alt: int
-    eph: int
-    epv: int
-    vel: int
-    cog: int
-    fix_type: int
-    satellites_visible: int
-    alt_ellipsoid: int
-    h_acc: int
-    v_acc: int
-    vel_acc: int
+class Gps2Raw(GpsRawInt, name="GPS2_RAW"):
+    pass
 
 
 @law
@@ -253,74 +224,47 @@ def gps2_raw(m: Gps2Raw, v: Vehicle) -> bool:
 
 class Attitude(Message, name="ATTITUDE"):
     time_boot_ms: int
-    roll: float
-    pitch: float
-    yaw: float
-    rollspeed: float
-    pitchspeed: float
-    yawspeed: float
+    euler: Euler = consecutive("roll", "pitch", "yaw")
+    rates: Vec3 = consecutive("rollspeed", "pitchspeed", "yawspeed")
 
 
 @law
 def attitude(m: Attitude, v: Vehicle) -> bool:
     """ATTITUDE: Euler angles [rad], body rates [rad/s]."""
-    euler, rates = v.autopilot.estimate.euler, v.autopilot.estimate.rates
     m.time_boot_ms = boot_ms(v.time_us)
-    m.roll = euler.roll
-    m.pitch = euler.pitch
-    m.yaw = euler.yaw
-    m.rollspeed = rates.x
-    m.pitchspeed = rates.y
-    m.yawspeed = rates.z
+    m.euler = v.autopilot.estimate.euler
+    m.rates = v.autopilot.estimate.rates
     return True
 
 
 class AttitudeQuaternion(Message, name="ATTITUDE_QUATERNION"):
     time_boot_ms: int
-    q1: float
-    q2: float
-    q3: float
-    q4: float
-    rollspeed: float
-    pitchspeed: float
-    yawspeed: float
+    q: Quat = consecutive("q1", "q2", "q3", "q4")
+    rates: Vec3 = consecutive("rollspeed", "pitchspeed", "yawspeed")
 
 
 @law
 def attitude_quaternion(m: AttitudeQuaternion, v: Vehicle) -> bool:
     """ATTITUDE_QUATERNION: body to NED as (w, x, y, z)."""
-    q, rates = v.autopilot.estimate.q, v.autopilot.estimate.rates
     m.time_boot_ms = boot_ms(v.time_us)
-    m.q1 = q.w
-    m.q2 = q.x
-    m.q3 = q.y
-    m.q4 = q.z
-    m.rollspeed = rates.x
-    m.pitchspeed = rates.y
-    m.yawspeed = rates.z
+    m.q = v.autopilot.estimate.q
+    m.rates = v.autopilot.estimate.rates
     return True
 
 
 class Ahrs(Message, name="AHRS"):
-    omegaIx: float
-    omegaIy: float
-    omegaIz: float
+    drift: Vec3 = consecutive("omegaIx", "omegaIy", "omegaIz")
 
 
 @law
 def ahrs(m: Ahrs, v: Vehicle) -> bool:
     """AHRS: gyro drift [rad/s]; the DCM figures of the message have no counterpart here and are zero."""
-    bias = v.autopilot.estimate.gyro_bias
-    m.omegaIx = -bias.x
-    m.omegaIy = -bias.y
-    m.omegaIz = -bias.z
+    m.drift = -v.autopilot.estimate.gyro_bias
     return True
 
 
 class Ahrs2(Message, name="AHRS2"):
-    roll: float
-    pitch: float
-    yaw: float
+    euler: Euler = consecutive("roll", "pitch", "yaw")
     altitude: float
     lat: int
     lng: int
@@ -329,10 +273,8 @@ class Ahrs2(Message, name="AHRS2"):
 @law
 def ahrs2(m: Ahrs2, v: Vehicle) -> bool:
     """AHRS2: the second attitude source; this firmware has one estimator and reports it again."""
-    euler, here = v.autopilot.estimate.euler, global_position(v)
-    m.roll = euler.roll
-    m.pitch = euler.pitch
-    m.yaw = euler.yaw
+    here = global_position(v)
+    m.euler = v.autopilot.estimate.euler
     m.altitude = here.alt
     m.lat = here.lat
     m.lng = here.lon

@@ -10,11 +10,11 @@ from ...core.border import BAROS_DIFFER, IMUS_DIFFER, ONE_BARO
 from ...core.constants import GRAVITY
 from ...core.elementary import pow
 from ...core.kernels import law
-from ...core.vectors import Quat, Vec3
+from ...core.vectors import Euler, Quat, Vec3
 from ...physics.carried import MILLIG, Carried, carried
 from ...vehicle.record import Vehicle
-from ..wire.message import Message
-from .units import boot_ms, int16
+from ..wire.message import Message, consecutive
+from .units import boot_ms, int16, int16s
 
 MILLIG_PER_ACC = 1000.0 / GRAVITY
 ALL_BUT_DIFFERENTIAL_PRESSURE = 0x1BFF
@@ -23,15 +23,9 @@ ALL_BUT_DIFFERENTIAL_PRESSURE = 0x1BFF
 
 class RawImu(Message, name="RAW_IMU"):
     time_usec: int
-    xacc: int
-    yacc: int
-    zacc: int
-    xgyro: int
-    ygyro: int
-    zgyro: int
-    xmag: int
-    ymag: int
-    zmag: int
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
+    mag: Vec3 = consecutive("xmag", "ymag", "zmag")
     temperature: int
 
 
@@ -41,73 +35,43 @@ def raw_imu(m: RawImu, v: Vehicle) -> bool:
     s, c = v.sensors, v.autopilot.calibrated
     acc, gyro, mag = c.acc, c.gyro, c.mag
     m.time_usec = v.time_us
-    m.xacc = int16(acc.x * MILLIG_PER_ACC)
-    m.yacc = int16(acc.y * MILLIG_PER_ACC)
-    m.zacc = int16(acc.z * MILLIG_PER_ACC)
-    m.xgyro = int16(gyro.x * 1000.0)
-    m.ygyro = int16(gyro.y * 1000.0)
-    m.zgyro = int16(gyro.z * 1000.0)
-    m.xmag = int16(mag.x * 1000.0)
-    m.ymag = int16(mag.y * 1000.0)
-    m.zmag = int16(mag.z * 1000.0)
+    m.acc = int16s(acc * MILLIG_PER_ACC)
+    m.gyro = int16s(gyro * 1000.0)
+    m.mag = int16s(mag * 1000.0)
     m.temperature = int16(s.temperature * 100.0)
     return True
 
 
 class ScaledImu(Message, name="SCALED_IMU"):
     time_boot_ms: int
-    xacc: int
-    yacc: int
-    zacc: int
-    xgyro: int
-    ygyro: int
-    zgyro: int
-    xmag: int
-    ymag: int
-    zmag: int
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
+    mag: Vec3 = consecutive("xmag", "ymag", "zmag")
     temperature: int
 
 
-class ScaledImu2(Message, name="SCALED_IMU2"):
-    time_boot_ms: int
-    xacc: int
-    yacc: int
-    zacc: int
-    xgyro: int
-    ygyro: int
-    zgyro: int
-    xmag: int
-    ymag: int
-    zmag: int
-    temperature: int
+class ScaledImu2(ScaledImu, name="SCALED_IMU2"):
+    pass
 
 
 class ScaledImu3(Message, name="SCALED_IMU3"):
     time_boot_ms: int
-    xmag: int
-    ymag: int
-    zmag: int
+    mag: Vec3 = consecutive("xmag", "ymag", "zmag")
 
 
 @law
 def fill_imu(m: ScaledImu | ScaledImu2, v: Vehicle, acc: Vec3, gyro: Vec3) -> None:
     """What an IMU shows: mG, mrad/s, centidegrees Celsius."""
     m.time_boot_ms = boot_ms(v.time_us)
-    m.xacc = int16(acc.x * MILLIG_PER_ACC)
-    m.yacc = int16(acc.y * MILLIG_PER_ACC)
-    m.zacc = int16(acc.z * MILLIG_PER_ACC)
-    m.xgyro = int16(gyro.x * 1000.0)
-    m.ygyro = int16(gyro.y * 1000.0)
-    m.zgyro = int16(gyro.z * 1000.0)
+    m.acc = int16s(acc * MILLIG_PER_ACC)
+    m.gyro = int16s(gyro * 1000.0)
     m.temperature = int16(v.sensors.temperature * 100.0)
 
 
 @law
 def fill_field(m: ScaledImu | ScaledImu2 | ScaledImu3, field: Vec3) -> None:
     """What a compass shows [mgauss]."""
-    m.xmag = int16(field.x * 1000.0)
-    m.ymag = int16(field.y * 1000.0)
-    m.zmag = int16(field.z * 1000.0)
+    m.mag = int16s(field * 1000.0)
 
 
 @law
@@ -139,15 +103,9 @@ def scaled_imu3(m: ScaledImu3, v: Vehicle) -> bool:
 
 class HighresImu(Message, name="HIGHRES_IMU"):
     time_usec: int
-    xacc: float
-    yacc: float
-    zacc: float
-    xgyro: float
-    ygyro: float
-    zgyro: float
-    xmag: float
-    ymag: float
-    zmag: float
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
+    mag: Vec3 = consecutive("xmag", "ymag", "zmag")
     abs_pressure: float
     pressure_alt: float
     temperature: float
@@ -160,15 +118,9 @@ def highres_imu(m: HighresImu, v: Vehicle) -> bool:
     s, c = v.sensors, v.autopilot.calibrated
     acc, gyro, mag, pressure = c.acc, c.gyro, c.mag, s.abs_pressure
     m.time_usec = v.time_us
-    m.xacc = acc.x
-    m.yacc = acc.y
-    m.zacc = acc.z
-    m.xgyro = gyro.x
-    m.ygyro = gyro.y
-    m.zgyro = gyro.z
-    m.xmag = mag.x
-    m.ymag = mag.y
-    m.zmag = mag.z
+    m.acc = acc
+    m.gyro = gyro
+    m.mag = mag
     m.abs_pressure = pressure
     m.pressure_alt = 44330.77 * (1.0 - pow(pressure / 1013.25, 0.1902632)) if pressure >= 0.0 else 0.0
     m.temperature = s.temperature
@@ -191,10 +143,8 @@ def scaled_pressure(m: ScaledPressure, v: Vehicle) -> bool:
     return True
 
 
-class ScaledPressure2(Message, name="SCALED_PRESSURE2"):
-    time_boot_ms: int
-    press_abs: float
-    temperature: int
+class ScaledPressure2(ScaledPressure, name="SCALED_PRESSURE2"):
+    pass
 
 
 @law
@@ -208,15 +158,9 @@ def scaled_pressure2(m: ScaledPressure2, v: Vehicle) -> bool:
 
 
 class SimState(Message, name="SIMSTATE"):
-    roll: float
-    pitch: float
-    yaw: float
-    xacc: float
-    yacc: float
-    zacc: float
-    xgyro: float
-    ygyro: float
-    zgyro: float
+    euler: Euler = consecutive("roll", "pitch", "yaw")
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
     lat: int
     lng: int
 
@@ -225,16 +169,9 @@ class SimState(Message, name="SIMSTATE"):
 def fill_simstate(m: SimState, truth: Carried) -> None:
     """SIMSTATE of a truth, from wherever it comes."""
     q, rates, force = truth.attitude, truth.rates, truth.acceleration
-    euler = euler_of(Quat(q[0], q[1], q[2], q[3]))
-    m.roll = euler.roll
-    m.pitch = euler.pitch
-    m.yaw = euler.yaw
-    m.xacc = MILLIG * force[0]
-    m.yacc = MILLIG * force[1]
-    m.zacc = MILLIG * force[2]
-    m.xgyro = rates[0]
-    m.ygyro = rates[1]
-    m.zgyro = rates[2]
+    m.euler = euler_of(Quat(q[0], q[1], q[2], q[3]))
+    m.acc = MILLIG * Vec3(force[0], force[1], force[2])
+    m.gyro = Vec3(rates[0], rates[1], rates[2])
     m.lat = truth.lat
     m.lng = truth.lon
 
@@ -247,25 +184,14 @@ def simstate(m: SimState, v: Vehicle) -> bool:
 
 
 class SimStateWithSpeed(Message, name="SIM_STATE"):
-    q1: float
-    q2: float
-    q3: float
-    q4: float
-    roll: float
-    pitch: float
-    yaw: float
-    xacc: float
-    yacc: float
-    zacc: float
-    xgyro: float
-    ygyro: float
-    zgyro: float
+    q: Quat = consecutive("q1", "q2", "q3", "q4")
+    euler: Euler = consecutive("roll", "pitch", "yaw")
+    acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+    gyro: Vec3 = consecutive("xgyro", "ygyro", "zgyro")
     lat: float
     lon: float
     alt: float
-    vn: float
-    ve: float
-    vd: float
+    velocity: Vec3 = consecutive("vn", "ve", "vd")
     lat_int: int
     lon_int: int
 
@@ -274,26 +200,14 @@ class SimStateWithSpeed(Message, name="SIM_STATE"):
 def fill_sim_state(m: SimStateWithSpeed, truth: Carried) -> None:
     """SIM_STATE of a truth, from wherever it comes; ``lat`` and ``lon`` are degE7, too, as ArduPilot has them."""
     q, rates, force, velocity = truth.attitude, truth.rates, truth.acceleration, truth.velocity
-    euler = euler_of(Quat(q[0], q[1], q[2], q[3]))
-    m.q1 = q[0]
-    m.q2 = q[1]
-    m.q3 = q[2]
-    m.q4 = q[3]
-    m.roll = euler.roll
-    m.pitch = euler.pitch
-    m.yaw = euler.yaw
-    m.xacc = MILLIG * force[0]
-    m.yacc = MILLIG * force[1]
-    m.zacc = MILLIG * force[2]
-    m.xgyro = rates[0]
-    m.ygyro = rates[1]
-    m.zgyro = rates[2]
+    m.q = Quat(q[0], q[1], q[2], q[3])
+    m.euler = euler_of(Quat(q[0], q[1], q[2], q[3]))
+    m.acc = MILLIG * Vec3(force[0], force[1], force[2])
+    m.gyro = Vec3(rates[0], rates[1], rates[2])
     m.lat = m.lat_int = truth.lat
     m.lon = m.lon_int = truth.lon
     m.alt = truth.alt * 1e-3
-    m.vn = velocity[0] * 1e-2
-    m.ve = velocity[1] * 1e-2
-    m.vd = velocity[2] * 1e-2
+    m.velocity = 1e-2 * Vec3(velocity[0], velocity[1], velocity[2])
 
 
 @law
@@ -306,9 +220,7 @@ def sim_state(m: SimStateWithSpeed, v: Vehicle) -> bool:
 
 class VibrationMessage(Message, name="VIBRATION"):
     time_usec: int
-    vibration_x: float
-    vibration_y: float
-    vibration_z: float
+    vibration: Vec3 = consecutive("vibration_x", "vibration_y", "vibration_z")
     clipping_0: int
     clipping_1: int
 
@@ -317,11 +229,8 @@ class VibrationMessage(Message, name="VIBRATION"):
 def vibration(m: VibrationMessage, v: Vehicle) -> bool:
     """VIBRATION: level on each axis [m/s^2], filtered at 5 and 2 Hz as ArduPilot's; samples beyond 15.5 g, by IMU."""
     shakes = v.autopilot.vibration
-    levels = vibration_levels(shakes)
     m.time_usec = v.time_us
-    m.vibration_x = levels.x
-    m.vibration_y = levels.y
-    m.vibration_z = levels.z
+    m.vibration = vibration_levels(shakes)
     m.clipping_0 = shakes.clips
     m.clipping_1 = shakes.clips + shakes.more_clips
     return True

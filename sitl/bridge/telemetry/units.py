@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ...core.kernels import law
+from ...core.vectors import Vec3
 
 DEG = 180.0 / math.pi
 CDEG = 18000.0 / math.pi
@@ -18,6 +19,12 @@ def int16(x: float) -> int:
     if -32768.0 < x < 32767.0:
         return int(x)
     return 32767 if x >= 32767.0 else -32768
+
+
+@law
+def int16s(v: Vec3) -> Vec3:
+    """Each component as ``int16`` has it."""
+    return Vec3(int16(v.x), int16(v.y), int16(v.z))
 
 
 @law

@@ -114,14 +114,8 @@ def robot_arrays(count: int, readings: int) -> RobotArrays:
 @law
 def override(m: RcChannelsOverride, commands: Table, i: int, system: int) -> None:
     """Eight pulses [us]; 0 releases a channel."""
-    m.chan1_raw = round(commands[i, 0])
-    m.chan2_raw = round(commands[i, 1])
-    m.chan3_raw = round(commands[i, 2])
-    m.chan4_raw = round(commands[i, 3])
-    m.chan5_raw = round(commands[i, 4])
-    m.chan6_raw = round(commands[i, 5])
-    m.chan7_raw = round(commands[i, 6])
-    m.chan8_raw = round(commands[i, 7])
+    for k in range(8):
+        m.pulses[k] = round(commands[i, k])
     m.target_system = system
     m.target_component = 1
 
@@ -132,9 +126,7 @@ def velocity(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int)
     m.target_system = system
     m.coordinate_frame = MavFrame.BODY_OFFSET_NED
     m.type_mask = VELOCITY_ONLY
-    m.vx = commands[i, 0]
-    m.vy = -commands[i, 1]
-    m.vz = -commands[i, 2]
+    m.vel = Vec3(commands[i, 0], -commands[i, 1], -commands[i, 2])
     m.yaw_rate = -commands[i, 3]
 
 
@@ -145,9 +137,7 @@ def position(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int,
     m.target_system = system
     m.coordinate_frame = MavFrame.LOCAL_NED
     m.type_mask = mask
-    m.x = north - origin.x
-    m.y = east - origin.y
-    m.z = down - origin.z
+    m.pos = Vec3(north, east, down) - origin
     m.yaw = to_heading(commands[i, 3])
 
 
@@ -157,9 +147,7 @@ def acceleration(m: SetPositionTargetLocalNed, commands: Table, i: int, system: 
     m.target_system = system
     m.coordinate_frame = MavFrame.BODY_OFFSET_NED
     m.type_mask = ACCELERATION_ONLY
-    m.afx = commands[i, 0]
-    m.afy = -commands[i, 1]
-    m.afz = -commands[i, 2]
+    m.acc = Vec3(commands[i, 0], -commands[i, 1], -commands[i, 2])
     m.yaw_rate = -commands[i, 3]
 
 
@@ -169,9 +157,7 @@ def rates(m: SetAttitudeTarget, commands: Table, i: int, system: int) -> None:
     m.target_system = system
     m.type_mask = RATES_ONLY
     m.q[0] = 1.0
-    m.body_roll_rate = commands[i, 0]
-    m.body_pitch_rate = commands[i, 1]
-    m.body_yaw_rate = -commands[i, 2]
+    m.rates = Vec3(commands[i, 0], commands[i, 1], -commands[i, 2])
     m.thrust = commands[i, 3]
 
 
@@ -185,7 +171,7 @@ def attitude(m: SetAttitudeTarget, commands: Table, i: int, system: int, heading
     m.q[1] = q.x
     m.q[2] = q.y
     m.q[3] = q.z
-    m.body_yaw_rate = -commands[i, 2]
+    m.rates = Vec3(0.0, 0.0, -commands[i, 2])
     m.thrust = 0.5 + 0.5 * commands[i, 3]
 
 
@@ -194,7 +180,7 @@ def rover_attitude(m: SetAttitudeTarget, commands: Table, i: int, system: int) -
     """Turn rate [rad/s], throttle -1 .. 1."""
     m.target_system = system
     m.type_mask = TURN_AND_SPEED
-    m.body_yaw_rate = -commands[i, 2]
+    m.rates = Vec3(0.0, 0.0, -commands[i, 2])
     m.thrust = commands[i, 3]
 
 
@@ -261,16 +247,16 @@ def send_setpoints(
 def read_position(end: ClientEnd, m: LocalPositionNed) -> None:
     """Note position [m] and velocity [m/s], NED."""
     end.position_ms = m.time_boot_ms
-    end.position = Vec3(m.x, m.y, m.z)
-    end.velocity = Vec3(m.vx, m.vy, m.vz)
+    end.position = m.pos
+    end.velocity = m.vel
 
 
 @law
 def read_attitude(end: ClientEnd, m: Attitude) -> None:
     """Note Euler angles [rad] and body rates [rad/s]."""
     end.attitude_ms = m.time_boot_ms
-    end.euler = Euler(m.roll, m.pitch, m.yaw)
-    end.rates = Vec3(m.rollspeed, m.pitchspeed, m.yawspeed)
+    end.euler = m.euler
+    end.rates = m.rates
 
 
 @law

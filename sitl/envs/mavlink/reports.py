@@ -15,6 +15,7 @@ from sitl.bridge.telemetry.own import ExtendedSysState, Wind
 from sitl.bridge.telemetry.ranging import RangeFinder
 from sitl.bridge.telemetry.sensors import MILLIG_PER_ACC, ScaledImu
 from sitl.bridge.telemetry.status import SysStatus
+from sitl.bridge.wire.message import Message
 from sitl.core.array_kernels import Line, Table
 from sitl.core.elementary import sincos
 from sitl.core.kernels import law
@@ -37,9 +38,9 @@ _UNKNOWN = 65535
 @law
 def read_imu(told: Line, m: ScaledImu) -> None:
     """SCALED_IMU: mG along the body's axes (forward, right, down), at rest (0, 0, -1000)."""
-    told[ACCELERATION] = m.xacc / MILLIG_PER_ACC
-    told[ACCELERATION + 1] = -m.yacc / MILLIG_PER_ACC
-    told[ACCELERATION + 2] = -m.zacc / MILLIG_PER_ACC
+    told[ACCELERATION] = m.acc.x / MILLIG_PER_ACC
+    told[ACCELERATION + 1] = -m.acc.y / MILLIG_PER_ACC
+    told[ACCELERATION + 2] = -m.acc.z / MILLIG_PER_ACC
 
 
 @law
@@ -96,11 +97,13 @@ def show_report(told: Line, heading: float, reports: Table, i: int) -> None:
     reports[i, WIND + 1] = told[WIND] * s - told[WIND + 1] * c
 
 
-_READERS: dict[int, Any] = {
-    IMU_: read_imu, STATUS_: read_battery, WIND_: read_wind, RANGE_: read_range, LANDED_: read_landed
+_READERS: dict[int, tuple[type[Message], Any]] = {
+    IMU_: (ScaledImu, read_imu), STATUS_: (SysStatus, read_battery), WIND_: (Wind, read_wind),
+    RANGE_: (RangeFinder, read_range), LANDED_: (ExtendedSysState, read_landed),
 }  # fmt: skip
 
 
 def note_report(told: Any, kind: MessageType, payload: bytes) -> None:
     """Read a message of one of these kinds into ``told``, ``REPORTED`` floats."""
-    _READERS[kind.id](told, kind.decode(payload))
+    record, read = _READERS[kind.id]
+    read(told, record.of_payload(payload))

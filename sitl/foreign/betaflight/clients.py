@@ -6,7 +6,8 @@ from __future__ import annotations
 import selectors
 from collections.abc import Callable, Sequence
 
-from ...bridge.links.link import Link, Peer
+from ...bridge.links.link import Link, Peer, heard
+from ...client.outbox import Outbox
 from ..process import Cutter
 from .face import Face
 
@@ -39,17 +40,10 @@ class Clients:
         for peer in self._peers:
             if not peer.closed:
                 peer.flush()
-        for key, _ in self._selector.select(seconds) if self._selector.get_map() else ():
-            key.data()
-        for link in self._links:
-            link.refusals.clear()
-        self._peers[:] = [peer for peer in self._peers if not peer.closed]
-        for peer in self._peers:
-            data = peer.take()
-            if data:
-                for frame in Cutter().feed(data):
-                    self._tap(frame)
-                self._face.feed(data)
+        for _, data in heard(self._selector, self._links, self._peers, seconds):
+            for frame in Cutter().feed(data):
+                self._tap(frame)
+            self._face.feed(data)
 
     def close(self) -> None:
         """Close all links."""
@@ -58,7 +52,7 @@ class Clients:
         self._selector.close()
 
 
-class InProcess:
+class InProcess(Outbox):
     """A client in this process, as ``sitl.client.byte_socket.ByteStream`` has it: it is heard at once.
 
     Args:
@@ -68,21 +62,10 @@ class InProcess:
     name = "betaflight"
 
     def __init__(self, face: Face) -> None:
+        super().__init__()
         self._face = face
-        self._unsent: list[bytes] = []
         self._received: list[bytes] = []
         face.send = self._received.append
-
-    def send(self, data: bytes) -> None:
-        """Keep a frame for ``flush``."""
-        self._unsent.append(data)
-
-    def flush(self) -> bytes:
-        """Send what was kept; returns it."""
-        data = b"".join(self._unsent)
-        self._unsent.clear()
-        self.write(data)
-        return data
 
     def write(self, data: bytes) -> None:
         """Send bytes now."""

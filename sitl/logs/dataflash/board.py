@@ -16,18 +16,15 @@ _LOST = 2.0**31 - 1.0
 MEMORY = 524288
 """Free memory that ArduPilot's simulator tells [bytes]."""
 
-COMMANDS = Message(
-    "MAVC",
-    (
-        *(Field(label, "B") for label in ("TS", "TC", "SS", "SC", "Fr")),
-        Field("Cmd", "H"),
-        *(Field(f"P{k}", "f") for k in range(1, 5)),
-        Field("X", "i"),
-        Field("Y", "i"),
-        Field("Z", "f"),
-        Field("Res", "B"),
-        Field("WL", "B"),
-    ),
+COMMANDS = Message("MAVC").of(
+    *(Field(label, "B") for label in ("TS", "TC", "SS", "SC", "Fr")),
+    Field("Cmd", "H"),
+    *(Field(f"P{k}", "f") for k in range(1, 5)),
+    Field("X", "i"),
+    Field("Y", "i"),
+    Field("Z", "f"),
+    Field("Res", "B"),
+    Field("WL", "B"),
 )
 """MAVC: a COMMAND_INT or COMMAND_LONG (WL) from SS, SC to TS, TC, and its MAV_RESULT."""
 
@@ -57,32 +54,27 @@ def _whole(x: float) -> int:
 
 def loop(loop_rate_hz: int, boot_unix_us: int) -> Message:
     """PM: each ten seconds, the loops of the firmware: none is late, none waits for another program."""
-    return Message(
-        "PM",
-        (
-            Field("LR", "H", "z", "-", loop_rate_hz),
-            Field("NLon", "H"),
-            Field("NL", "H", source=loop_rate_hz / PM_RATE),
-            Field("MaxT", "I", source=1e6 / loop_rate_hz),
-            Field("Mem", "I", "b", "0", MEMORY),
-            Field("Load", "H", "%", "A"),
-            *(Field(label, "H" if label == "ErrL" else "I") for label in ("ErrL", "InE", "ErC", "SPIC", "I2CC")),
-            Field("I2CI", "I"),
-            Field("Ex", "I", "s", "F"),
-            Field("R", "Q", "s", "F", lambda s: s.raw("time_us") + boot_unix_us),
-        ),
-        PM_RATE,
-        bits.PERFORMANCE,
+    return Message("PM", PM_RATE, bits.PERFORMANCE).of(
+        Field("LR", "H", "z", "-", loop_rate_hz),
+        Field("NLon", "H"),
+        Field("NL", "H", source=loop_rate_hz / PM_RATE),
+        Field("MaxT", "I", source=1e6 / loop_rate_hz),
+        Field("Mem", "I", "b", "0", MEMORY),
+        Field("Load", "H", "%", "A"),
+        *(Field(label, "H" if label == "ErrL" else "I") for label in ("ErrL", "InE", "ErC", "SPIC", "I2CC")),
+        Field("I2CI", "I"),
+        Field("Ex", "I", "s", "F"),
+        Field("R", "Q", "s", "F", lambda s: s.raw("time_us") + boot_unix_us),
     )
 
 
 def more_pulses_in(bit: int) -> Message:
     """RCI2: channels 15 and 16 [us]."""
     channels = (Field(f"C{k + 1}", "H", "Y", "-", f"autopilot.rc.channels[{k}]") for k in (14, 15))
-    return Message("RCI2", (*channels, Field("OMask", "H"), Field("Flags", "B", source=1)), bits.MEDIUM, bit)
+    return Message("RCI2", bits.MEDIUM, bit).of(*channels, Field("OMask", "H"), Field("Flags", "B", source=1))
 
 
 def more_pulses_out(bit: int) -> Message:
     """RCO2: outputs 15 and 16 [us]; there are no more."""
     pulses = (Field(f"C{k + 1}", "H", "Y", "-", f"actuators.pwm[{k}]" if k < 16 else 0) for k in range(14, 18))
-    return Message("RCO2", tuple(pulses), bits.MEDIUM, bit)
+    return Message("RCO2", bits.MEDIUM, bit).of(*pulses)

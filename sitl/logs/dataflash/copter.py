@@ -16,6 +16,8 @@ from .derived import DEG
 from .formats import Field, Message
 from .samples import Array
 
+RC_IN, RC_OUT, PID, COMPASS = 1 << 6, 1 << 10, 1 << 12, 1 << 13
+"""LOG_BITMASK"""
 A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C = "autopilot.control."
 _MOTORS, _ATTITUDE, _NE, _D = C + "motors.", C + "attitude.", C + "pos_ne.", C + "pos_d."
@@ -38,43 +40,28 @@ _ANGLES = (
 
 def _attitude(rate: float, bit: int) -> tuple[Message, ...]:
     return (
-        Message(
-            "ATT",
-            (
-                *_ANGLES,
-                Field("AEKF", "B", source=3),
-            ),
-            rate,
-            bit,
+        Message("ATT", rate, bit).of(
+            *_ANGLES,
+            Field("AEKF", "B", source=3),
         ),
-        Message(
-            "ANG",
-            (
-                *_ANGLES,
-                Field("Dt", "f", "s", "0", 1.0 / _LOOP_HZ),
-            ),
-            rate,
-            bit,
+        Message("ANG", rate, bit).of(
+            *_ANGLES,
+            Field("Dt", "f", "s", "0", 1.0 / _LOOP_HZ),
         ),
-        Message(
-            "RATE",
-            (
-                *(
-                    field
-                    for k, (letter, axis) in enumerate((("R", "roll"), ("P", "pitch"), ("Y", "yaw")))
-                    for field in (
-                        Field(letter + "Des", "f", "k", "?", f"{_ATTITUDE}rate_target[{k}]", DEG),
-                        Field(letter, "f", "k", "?", f"{E}rates[{k}]", DEG),
-                        Field(letter + "Out", "f", "-", "?", _MOTORS + axis),
-                    )
-                ),
-                Field("ADes", "f", "o", "B", _D + "accel_target", -100.0),
-                Field("A", "f", "o", "B", E + "acc_ned[2]", -100.0),
-                Field("AOut", "f", source=_MOTORS + "throttle"),
-                Field("AOutSlew", "f"),
+        Message("RATE", rate, bit).of(
+            *(
+                field
+                for k, (letter, axis) in enumerate((("R", "roll"), ("P", "pitch"), ("Y", "yaw")))
+                for field in (
+                    Field(letter + "Des", "f", "k", "?", f"{_ATTITUDE}rate_target[{k}]", DEG),
+                    Field(letter, "f", "k", "?", f"{E}rates[{k}]", DEG),
+                    Field(letter + "Out", "f", "-", "?", _MOTORS + axis),
+                )
             ),
-            rate,
-            bit,
+            Field("ADes", "f", "o", "B", _D + "accel_target", -100.0),
+            Field("A", "f", "o", "B", E + "acc_ned[2]", -100.0),
+            Field("AOut", "f", source=_MOTORS + "throttle"),
+            Field("AOutSlew", "f"),
         ),
     )
 
@@ -98,24 +85,19 @@ def _over_terrain(s: Any) -> Array:
     return np.where(is_known, _over_ground(s), s(E + "origin_alt") - s(E + "pos[2]"))
 
 
-CONTROL = Message(
-    "CTUN",
-    (
-        Field("ThI", "f", source=_ATTITUDE + "throttle_in"),
-        Field("ABst", "f", source=_boost),
-        Field("ThO", "f", source=_MOTORS + "throttle_out"),
-        Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
-        Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
-        Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
-        Field("BAlt", "f", "m", "0", derived.baro_altitude("sensors.abs_pressure")),
-        Field("DSAlt", "f", "m", "0", math.nan),
-        Field("SAlt", "f", "m", "0"),
-        Field("TAlt", "f", "m", "0", _over_terrain),
-        Field("DCRt", "h", "n", "B", _D + "vel_target", -100.0),
-        Field("CRt", "h", "n", "B", E + "vel[2]", -100.0),
-    ),
-    bits.MEDIUM,
-    bits.CONTROL,
+CONTROL = Message("CTUN", bits.MEDIUM, bits.CONTROL).of(
+    Field("ThI", "f", source=_ATTITUDE + "throttle_in"),
+    Field("ABst", "f", source=_boost),
+    Field("ThO", "f", source=_MOTORS + "throttle_out"),
+    Field("ThH", "f", source=A + "params.MOT.THST_HOVER"),
+    Field("DAlt", "f", "m", "0", _D + "pos_desired", -1.0),
+    Field("Alt", "f", "m", "0", E + "pos[2]", -1.0),
+    Field("BAlt", "f", "m", "0", derived.baro_altitude("sensors.abs_pressure")),
+    Field("DSAlt", "f", "m", "0", math.nan),
+    Field("SAlt", "f", "m", "0"),
+    Field("TAlt", "f", "m", "0", _over_terrain),
+    Field("DCRt", "h", "n", "B", _D + "vel_target", -100.0),
+    Field("CRt", "h", "n", "B", E + "vel[2]", -100.0),
 )
 
 
@@ -124,22 +106,16 @@ def _ground(s: Any) -> Array:
     return s(T + "home") + s(T + "difference") + s(T + "offset")
 
 
-TERRAIN = Message(
-    "TERR",
-    (
-        Field("Status", "B", source=2),
-        Field("Lat", "L", "D", "G", derived.latitude(E + "origin_", E + "pos")),
-        Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
-        Field("Spacing", "H", source=T + "spacing"),
-        Field("TerrH", "f", "m", "0", _ground),
-        Field("CHeight", "f", "m", "0", _over_ground),
-        Field("Pending", "H", source=T + "pending"),
-        Field("Loaded", "H", source=T + "loaded"),
-        Field("ROfs", "f", "m", "0", T + "offset"),
-    ),
-    1.0,
-    bits.GPS,
-    when=T + "was_known",
+TERRAIN = Message("TERR", 1.0, bits.GPS, when=T + "was_known").of(
+    Field("Status", "B", source=2),
+    Field("Lat", "L", "D", "G", derived.latitude(E + "origin_", E + "pos")),
+    Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
+    Field("Spacing", "H", source=T + "spacing"),
+    Field("TerrH", "f", "m", "0", _ground),
+    Field("CHeight", "f", "m", "0", _over_ground),
+    Field("Pending", "H", source=T + "pending"),
+    Field("Loaded", "H", source=T + "loaded"),
+    Field("ROfs", "f", "m", "0", T + "offset"),
 )
 
 
@@ -174,14 +150,14 @@ def _twitched(s: Any) -> Array:
 def twitch(rate: float) -> Message:
     """ATDE: angle and rate of a twitch, as AUTOTUNE judges them."""
     fields = (Field("Angle", "f", "d", "0", _twitched), Field("Rate", "f", "k", "0", _TWITCH + "rate", DEG))
-    return Message("ATDE", fields, rate, bits.IMU | bits.ATTITUDE_FAST, when=_is_twitching)
+    return Message("ATDE", rate, bits.IMU | bits.ATTITUDE_FAST, when=_is_twitching).of(*fields)
 
 
 def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[Message, ...]:
     """Messages that LOG_BITMASK enables; ``simulated``: the record holds the true state."""
     fast = bool(bitmask & bits.ATTITUDE_FAST)
     pids = tuple(
-        common.pid(name, f"{C}rate.{axis}", f"ATC.RAT_{short}.", f"{E}rates[{k}]", bits.COPTER_PID)
+        common.pid(name, f"{C}rate.{axis}", f"ATC.RAT_{short}.", f"{E}rates[{k}]", PID)
         for k, (name, axis, short) in enumerate(
             (("PIDR", "roll", "RLL"), ("PIDP", "pitch", "PIT"), ("PIDY", "yaw", "YAW"))
         )
@@ -195,21 +171,16 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *(_position(axis, k) for k, axis in enumerate("NED")),
         common.POSITION,
         *common.gps(boot_unix_us),
-        common.magnetometer(bits.COPTER_COMPASS),
-        common.pulses_in(bits.COPTER_RC_IN),
-        common.pulses_out(bits.COPTER_RC_OUT),
-        Message(
-            "MOTB",
-            (
-                Field("LiftMax", "f", source=_MOTORS + "lift_max"),
-                Field("BatVolt", "f", source=_MOTORS + "voltage_ratio"),
-                Field("ThLimit", "f", source=1.0),
-                Field("ThrAvMx", "f", source=_MOTORS + "throttle_avg_max"),
-                Field("ThrOut", "f", source=_MOTORS + "throttle_out"),
-                Field("FailFlags", "B", source=2),
-            ),
-            bits.MEDIUM,
-            bits.COPTER_MOTORS,
+        common.magnetometer(COMPASS),
+        common.pulses_in(RC_IN),
+        common.pulses_out(RC_OUT),
+        Message("MOTB", bits.MEDIUM, escs.MOTORS).of(
+            Field("LiftMax", "f", source=_MOTORS + "lift_max"),
+            Field("BatVolt", "f", source=_MOTORS + "voltage_ratio"),
+            Field("ThLimit", "f", source=1.0),
+            Field("ThrAvMx", "f", source=_MOTORS + "throttle_avg_max"),
+            Field("ThrOut", "f", source=_MOTORS + "throttle_out"),
+            Field("FailFlags", "B", source=2),
         ),
         *pids,
         twitch(bits.FAST if fast else bits.IMU_RATE),
@@ -218,8 +189,8 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *common.FILTER,
         common.AHR2,
         board.loop(_LOOP_HZ, boot_unix_us),
-        board.more_pulses_in(bits.COPTER_RC_IN),
-        board.more_pulses_out(bits.COPTER_RC_OUT),
+        board.more_pulses_in(RC_IN),
+        board.more_pulses_out(RC_OUT),
         *escs.MESSAGES,
         surface.MESSAGE,
         *((common.TRUTH, common.TRUE_MOTION) if simulated else ()),

@@ -22,8 +22,8 @@ from ..kind import logs_of
 from . import bits, board, formats
 from .common import EVENT_MESSAGES
 from .events import EDGES, HEALTH, HOME, ORIGIN, RESOLVED, SILENCE_US, UNHEALTHY, EventEncoder
-from .plan import Plan
 from .samples import Samples
+from .schedule import Plan
 
 ROWS = 1024
 """Number of samples that are collected before they are encoded."""

@@ -11,6 +11,8 @@ from . import bits
 from .formats import Field, Message
 from .samples import Array
 
+MOTORS = 1 << 17
+"""LOG_BITMASK"""
 _S, _MOTORS = "sensors.", "sensors.esc_motors"
 
 
@@ -24,22 +26,16 @@ def _is_there(k: int) -> Callable[[Any], Array]:
 
 
 MESSAGES = tuple(
-    Message(
-        "ESC",
-        (
-            Field("Instance", "B", "#", "-", k),
-            Field("RPM", "f", "q", "0", f"{_S}esc_rpm[{k}]"),
-            Field("RawRPM", "f", "q", "0", f"{_S}esc_rpm[{k}]"),
-            Field("Volt", "f", "v", "-", _S + "battery_voltage"),
-            Field("Curr", "f", "A", "-", _part(_S + "battery_current")),
-            Field("Temp", "c", "O", "B", _S + "temperature"),
-            Field("CTot", "f", "a", "C", _part("autopilot.battery.consumed_mah")),
-            Field("MotTemp", "c", "O", "B", _S + "temperature"),
-            Field("Err", "f", "%", "-"),
-        ),
-        bits.MEDIUM,
-        bits.COPTER_MOTORS,
-        when=_is_there(k),
+    Message("ESC", bits.MEDIUM, MOTORS, when=_is_there(k)).of(
+        Field("Instance", "B", "#", "-", k),
+        Field("RPM", "f", "q", "0", f"{_S}esc_rpm[{k}]"),
+        Field("RawRPM", "f", "q", "0", f"{_S}esc_rpm[{k}]"),
+        Field("Volt", "f", "v", "-", _S + "battery_voltage"),
+        Field("Curr", "f", "A", "-", _part(_S + "battery_current")),
+        Field("Temp", "c", "O", "B", _S + "temperature"),
+        Field("CTot", "f", "a", "C", _part("autopilot.battery.consumed_mah")),
+        Field("MotTemp", "c", "O", "B", _S + "temperature"),
+        Field("Err", "f", "%", "-"),
     )
     for k in range(MOTORS_MAX)
 )

@@ -89,8 +89,6 @@ class Message(NamedTuple):
     """One kind of message."""
 
     name: str
-    fields: tuple[Field, ...]
-    """Without TimeUS, which every message but FMT (``timed``) has first."""
     rate: float = 0.0
     """Rate [Hz]; 0: written on events."""
     bits: int = 0
@@ -105,6 +103,12 @@ class Message(NamedTuple):
     """Whether it holds the samples of ``autopilot.inertial_ring``, at their rate; ``@acc[0]`` is a path there."""
     timed: bool = True
     """Whether TimeUS comes before its fields."""
+    fields: tuple[Field, ...] = ()
+    """Without TimeUS, which every message but FMT (``timed``) has first."""
+
+    def of(self, *fields: Field) -> Message:
+        """The message with these fields: ``Message("SURF", rate, bits).of(Field(...), ...)``."""
+        return self._replace(fields=fields)
 
     @property
     def all_fields(self) -> tuple[Field, ...]:
@@ -165,10 +169,8 @@ def clock(fields: Collection[str]) -> tuple[str, float] | None:
 FMT_NUMBER, UNIT_NUMBER, MULT_NUMBER, FMTU_NUMBER = 128, 129, 130, 131
 FIRST_NUMBER = 32
 """Number of the first other message; FMT is 128 in every log, so that readers can start."""
-FMT = Message(
-    "FMT",
-    (Field("Type", "B"), Field("Length", "B", "b"), Field("Name", "n"), Field("Format", "N"), Field("Columns", "Z")),
-    timed=False,
+FMT = Message("FMT", timed=False).of(
+    Field("Type", "B"), Field("Length", "B", "b"), Field("Name", "n"), Field("Format", "N"), Field("Columns", "Z")
 )
 
 
@@ -184,9 +186,9 @@ def is_text(start: bytes) -> bool:
 
 _DESCRIBED = {
     FMT_NUMBER: FMT,
-    UNIT_NUMBER: Message("UNIT", (Field("Id", "b"), Field("Label", "Z"))),
-    MULT_NUMBER: Message("MULT", (Field("Id", "b"), Field("Mult", "d"))),
-    FMTU_NUMBER: Message("FMTU", (Field("FmtType", "B"), Field("UnitIds", "N"), Field("MultIds", "N"))),
+    UNIT_NUMBER: Message("UNIT").of(Field("Id", "b"), Field("Label", "Z")),
+    MULT_NUMBER: Message("MULT").of(Field("Id", "b"), Field("Mult", "d")),
+    FMTU_NUMBER: Message("FMTU").of(Field("FmtType", "B"), Field("UnitIds", "N"), Field("MultIds", "N")),
 }
 """What describes the other messages."""
 

@@ -23,6 +23,8 @@ from .derived import DEG
 from .formats import Field, Message
 from .samples import Array
 
+COMPASS, STEERING, RC = 1 << 11, 1 << 13, 1 << 14
+"""LOG_BITMASK"""
 A, E, S = "autopilot.", "autopilot.estimate.", "sensors."
 C, M = "autopilot.control.", "autopilot.modes."
 _STEERING, _SPEED, _POSITION, _MOTORS = C + "steering.", C + "speed.", C + "position.", C + "motors."
@@ -35,20 +37,14 @@ _RECENT = 25
 
 def _attitude(fast: bool) -> Message:
     roll, pitch, yaw = (f"@euler[{k}]" if fast else derived.euler(E + "q", k) for k in range(3))
-    return Message(
-        "ATT",
-        (
-            Field("DesRoll", "f", "d", "0"),
-            Field("Roll", "f", "d", "0", roll, DEG),
-            Field("DesPitch", "f", "d", "0"),
-            Field("Pitch", "f", "d", "0", pitch, DEG),
-            Field("DesYaw", "f", "h", "0"),
-            Field("Yaw", "f", "h", "0", derived.wrapped(yaw)),
-            Field("AEKF", "B", source=3),
-        ),
-        bits.IMU_RATE if fast else bits.MEDIUM,
-        bits.ATTITUDE | bits.ATTITUDE_FAST,
-        ring=fast,
+    return Message("ATT", bits.IMU_RATE if fast else bits.MEDIUM, bits.ATTITUDE | bits.ATTITUDE_FAST, ring=fast).of(
+        Field("DesRoll", "f", "d", "0"),
+        Field("Roll", "f", "d", "0", roll, DEG),
+        Field("DesPitch", "f", "d", "0"),
+        Field("Pitch", "f", "d", "0", pitch, DEG),
+        Field("DesYaw", "f", "h", "0"),
+        Field("Yaw", "f", "h", "0", derived.wrapped(yaw)),
+        Field("AEKF", "B", source=3),
     )
 
 
@@ -117,43 +113,27 @@ def _lateral(s: Any) -> Array:
     return s(_SPEED + "forward") * s(E + "rates[2]")
 
 
-THROTTLE = Message(
-    "THR",
-    (
-        Field("ThrIn", "h", source=M + "pilot.throttle", scale=100.0),
-        Field("ThrOut", "f", source=_MOTORS + "throttle", scale=100.0),
-        Field("DesSpeed", "f", "n", "0", _SPEED + "desired"),
-        Field("Speed", "f", "n", "0", _SPEED + "forward"),
-        Field("AccX", "f", "o", "0", S + "acc[0]"),
-    ),
-    bits.MEDIUM,
-    bits.CONTROL,
+THROTTLE = Message("THR", bits.MEDIUM, bits.CONTROL).of(
+    Field("ThrIn", "h", source=M + "pilot.throttle", scale=100.0),
+    Field("ThrOut", "f", source=_MOTORS + "throttle", scale=100.0),
+    Field("DesSpeed", "f", "n", "0", _SPEED + "desired"),
+    Field("Speed", "f", "n", "0", _SPEED + "forward"),
+    Field("AccX", "f", "o", "0", S + "acc[0]"),
 )
-STEERING = Message(
-    "STER",
-    (
-        Field("SteerIn", "h", source=M + "pilot.steering", scale=4500.0),
-        Field("SteerOut", "f", source=_MOTORS + "steering", scale=4500.0),
-        Field("DesLatAcc", "f", "o", "0", _STEERING + "lat_accel"),
-        Field("LatAcc", "f", "o", "0", _lateral),
-        Field("DesTurnRate", "f", "k", "0", _STEERING + "turn_rate", DEG),
-        Field("TurnRate", "f", "k", "0", E + "rates[2]", DEG),
-    ),
-    bits.MEDIUM,
-    bits.ROVER_STEERING,
+STER = Message("STER", bits.MEDIUM, STEERING).of(
+    Field("SteerIn", "h", source=M + "pilot.steering", scale=4500.0),
+    Field("SteerOut", "f", source=_MOTORS + "steering", scale=4500.0),
+    Field("DesLatAcc", "f", "o", "0", _STEERING + "lat_accel"),
+    Field("LatAcc", "f", "o", "0", _lateral),
+    Field("DesTurnRate", "f", "k", "0", _STEERING + "turn_rate", DEG),
+    Field("TurnRate", "f", "k", "0", E + "rates[2]", DEG),
 )
-NAVIGATION = Message(
-    "NTUN",
-    (
-        Field("WpDist", "f", "m", "0", _distance),
-        Field("WpBrg", "f", "h", "0", _bearing),
-        Field("DesYaw", "f", "h", "0", _heading),
-        Field("Yaw", "H", "h", "B", lambda s: np.mod(_YAW(s) * DEG * 100.0, 36000.0)),
-        Field("XTrack", "f", "m", "0", _beside),
-    ),
-    bits.MEDIUM,
-    bits.NAVIGATION,
-    when=_drives_itself,
+NAVIGATION = Message("NTUN", bits.MEDIUM, bits.NAVIGATION, when=_drives_itself).of(
+    Field("WpDist", "f", "m", "0", _distance),
+    Field("WpBrg", "f", "h", "0", _bearing),
+    Field("DesYaw", "f", "h", "0", _heading),
+    Field("Yaw", "H", "h", "B", lambda s: np.mod(_YAW(s) * DEG * 100.0, 36000.0)),
+    Field("XTrack", "f", "m", "0", _beside),
 )
 """NTUN: where it goes by itself; not in the pilot's modes."""
 
@@ -175,25 +155,19 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         common.FLOW,
         common.battery(A + "battery.voltage"),
         THROTTLE,
-        STEERING,
+        STER,
         NAVIGATION,
         *(_position(axis, k) for k, axis in enumerate("NE")),
         common.POSITION,
         *common.gps(boot_unix_us),
-        common.magnetometer(bits.ROVER_COMPASS),
-        common.pulses_in(bits.ROVER_RC),
-        common.pulses_out(bits.ROVER_RC),
-        Message(
-            "WENC",
-            (
-                Field("Dist0", "f", "m", "0", S + "wheel_distance[0]"),
-                Field("Qual0", "b", "-", "-", 100),
-                Field("Dist1", "f", "m", "0", S + "wheel_distance[1]"),
-                Field("Qual1", "b", "-", "-", 100),
-            ),
-            bits.MEDIUM,
-            bits.CONTROL,
-            when=S + "wheel_count",
+        common.magnetometer(COMPASS),
+        common.pulses_in(RC),
+        common.pulses_out(RC),
+        Message("WENC", bits.MEDIUM, bits.CONTROL, when=S + "wheel_count").of(
+            Field("Dist0", "f", "m", "0", S + "wheel_distance[0]"),
+            Field("Qual0", "b", "-", "-", 100),
+            Field("Dist1", "f", "m", "0", S + "wheel_distance[1]"),
+            Field("Qual1", "b", "-", "-", 100),
         ),
         common.pid("PIDS", _STEERING + "rate", "ATC.STR_RAT.", E + "rates[2]", bits.ATTITUDE | bits.ATTITUDE_FAST),
         common.pid("PIDA", _SPEED + "loop", "ATC.SPEED.", _SPEED + "forward", bits.ATTITUDE | bits.ATTITUDE_FAST),
@@ -201,8 +175,8 @@ def messages(bitmask: int, boot_unix_us: int, simulated: bool = True) -> tuple[M
         *common.FILTER,
         common.AHR2,
         board.loop(50, boot_unix_us),
-        board.more_pulses_in(bits.ROVER_RC),
-        board.more_pulses_out(bits.ROVER_RC),
+        board.more_pulses_in(RC),
+        board.more_pulses_out(RC),
         *((common.TRUTH, common.TRUE_MOTION) if simulated else ()),
     )
     return tuple(m for m in every if m.bits & bitmask)

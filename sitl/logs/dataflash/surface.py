@@ -35,16 +35,11 @@ def _offset(s: Any) -> Array:
     return np.asarray(-s(_HEIGHT) - _distance(s))
 
 
-MESSAGE = Message(
-    "SURF",
-    (
-        Field("I", "B", "#"),
-        Field("St", "B", source=_status),
-        Field("D", "f", "m", "0", _distance),
-        Field("FD", "f", "m", "0", _distance),
-        Field("TO", "f", "m", "0", _offset),
-    ),
-    bits.MEDIUM,
-    bits.CONTROL,
+MESSAGE = Message("SURF", bits.MEDIUM, bits.CONTROL).of(
+    Field("I", "B", "#"),
+    Field("St", "B", source=_status),
+    Field("D", "f", "m", "0", _distance),
+    Field("FD", "f", "m", "0", _distance),
+    Field("TO", "f", "m", "0", _offset),
 )
 """One down; a second one, upwards, is of no vehicle here."""

@@ -17,8 +17,8 @@ from sitl.autopilot.modes import shown
 from sitl.autopilot.params.files import ParameterError
 from sitl.core.constants import TICK_US
 from sitl.core.vectors import Vec3
-from sitl.drop_in.sticks import FOR_EVER_US
-from sitl.logs.dataflash import bits
+from sitl.drop_in.stick_port import FOR_EVER_US
+from sitl.logs.dataflash import bits, copter, rover
 from sitl.logs.kind import mode_name
 from sitl.physics.native.battery import OPEN_CIRCUIT
 from sitl.run.runner import open_dataflash
@@ -447,6 +447,6 @@ class TwinFlight:
 
 LOG_BITMASK = float(
     bits.ATTITUDE_FAST | bits.ATTITUDE | bits.GPS | bits.CONTROL | bits.NAVIGATION | bits.IMU | bits.BATTERY
-    | bits.COMMANDS | bits.COPTER_RC_OUT | bits.COPTER_RC_IN | bits.ROVER_RC | bits.ROVER_STEERING
+    | bits.COMMANDS | copter.RC_OUT | copter.RC_IN | rover.RC | rover.STEERING
 )  # fmt: skip
 """Of a twin: all that is compared, at the highest rate."""

@@ -121,14 +121,8 @@ def test_mission_names_what_it_refuses() -> None:
     assert (caught.value.result, caught.value.seq) == (3, 1)
 
 
-def test_mission_does_not_change() -> None:
-    """Home is written into a copy."""
+def test_item_0_is_home_and_is_not_flown() -> None:
     mission = Mission.of([WP, WP])
-    other = mission.with_home(1, 2, 3.0)
-    assert mission.items[0] == WP
-    assert other.items[0].x == 1
-    assert other.items[1] == WP
-    assert Mission().with_home(1, 2, 3.0) == Mission()
     assert mission.get(0) is None
     assert mission.get(2) is None
     assert mission.get(1) == WP

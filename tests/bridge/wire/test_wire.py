@@ -17,11 +17,12 @@ from sitl.bridge.links.inprocess import InProcessLink
 from sitl.bridge.wire import frames, streams
 from sitl.bridge.wire.choose import choose_builder, choose_taker, choose_targets, message_of
 from sitl.bridge.wire.link import keep_rest, receive_port
-from sitl.bridge.wire.message import Message
+from sitl.bridge.wire.message import Message, consecutive
 from sitl.bridge.wire.port import OUT, Port
 from sitl.core.constants import NEVER
 from sitl.core.memory import bytes_at, record_at
 from sitl.core.records import Floats, Ints
+from sitl.core.vectors import Vec3
 from sitl.vehicle.copter import Copter
 from sitl.vehicle.record import Vehicle
 
@@ -118,6 +119,32 @@ def test_a_field_of_another_sort_is_an_error() -> None:
 
         class Narrow(Message, name="ATTITUDE"):
             roll: int
+
+
+def test_fields_in_a_row_are_a_vector_or_an_array() -> None:
+    class Imu(Message, name="SCALED_IMU2"):
+        acc: Vec3 = consecutive("xacc", "yacc", "zacc")
+
+    class Pulses(Message, name="SERVO_OUTPUT_RAW"):
+        last: Ints = consecutive("servo7_raw", "servo8_raw")
+
+    imu, pulses = Imu(), Pulses()
+    imu.acc = Vec3(1.0, -2.9, 3.9)
+    pulses.last[1] = 1500
+    assert imu.acc == Vec3(1.0, -2.0, 3.0), "cut off, as in the core"
+    assert Imu.parts == ("xacc", "yacc", "zacc"), "as clients know them"
+    assert bytes(imu._bytes) == message("SCALED_IMU2").payload(xacc=1, yacc=-2, zacc=3)
+    assert bytes(pulses._bytes) == message("SERVO_OUTPUT_RAW").payload(servo8_raw=1500)
+
+
+@pytest.mark.parametrize(
+    "names", [("xacc", "zacc", "yacc"), ("xacc", "yacc", "xgyro"), ("time_boot_ms", "xacc", "yacc")]
+)
+def test_other_fields_are_no_vector(names: tuple[str, ...]) -> None:
+    with pytest.raises(TypeError, match=r"Wrong\.acc: .* are not fields of one type in a row"):
+
+        class Wrong(Message, name="SCALED_IMU2"):
+            acc: Vec3 = consecutive(*names)
 
 
 def test_single_precision_that_cannot_hold_a_number_is_infinite() -> None:

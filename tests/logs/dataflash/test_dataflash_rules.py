@@ -234,11 +234,11 @@ def test_every_message_fits_what_fmt_can_say(kind: str) -> None:
 @pytest.mark.parametrize(
     "message",
     [
-        Message("TOOLONG", ()),
-        Message("MANY", tuple(Field(f"F{k}", "B") for k in range(16))),
-        Message("LAB", tuple(Field(f"AVeryLongLabel{k}", "B") for k in range(5))),
-        Message("UNIT", (Field("A", "f", "!"),)),
-        Message("TYPE", (Field("A", "x"),)),
+        Message("TOOLONG").of(),
+        Message("MANY").of(*(Field(f"F{k}", "B") for k in range(16))),
+        Message("LAB").of(*(Field(f"AVeryLongLabel{k}", "B") for k in range(5))),
+        Message("UNIT").of(Field("A", "f", "!")),
+        Message("TYPE").of(Field("A", "x")),
     ],
 )
 def test_check_refuses_what_does_not_fit(message: Message) -> None:
@@ -247,7 +247,7 @@ def test_check_refuses_what_does_not_fit(message: Message) -> None:
 
 
 def test_head_describes_types_units_and_multipliers(tmp_path: Path) -> None:
-    message = Message("ABC", (Field("I", "B", "#"), Field("Ang", "c", "d", "B"), Field("Txt", "N")))
+    message = Message("ABC").of(Field("I", "B", "#"), Field("Ang", "c", "d", "B"), Field("Txt", "N"))
     numbers = formats.number_all([message])
     body = message.packer.pack(*formats.HEAD, numbers["ABC"], 5_000_000, 2, -1234, b"words")
     path = tmp_path / "one.bin"

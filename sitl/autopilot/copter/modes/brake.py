@@ -6,8 +6,7 @@ from __future__ import annotations
 from ....core.elementary import hypot
 from ....core.kernels import law
 from ...modes import ModeResult
-from ..control import altitude, altitude_start, attitude, position, position_start
-from ..control.spool import DesiredSpoolState
+from ..control import altitude_start, position_start
 from ..state import Vehicle
 from . import ground
 from .mode import CopterMode, never_arms
@@ -38,15 +37,7 @@ def start(v: Vehicle) -> int:
 def run(v: Vehicle) -> None:
     """One tick."""
     ap = v.autopilot
-    control, est, p = ap.control, ap.estimate, ap.params
-    if ground.is_grounded(ap.arming):
-        ground.rest(ap.arming.armed, control, est, p)
-        return
-    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
-    ground.brake(control)
-    position.update_ne(control, est, p)
-    altitude.update_d(control, est, p)
-    attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), 0.0)
+    ground.stop_and_hold(ap.arming, ap.control, ap.estimate, ap.params)
 
 
 MODE = CopterMode(

@@ -129,3 +129,16 @@ def continue_position_control(control: Control, est: Estimate, p: Parameters) ->
         position_start.init_ne(control, est, p)
     if not altitude_start.is_active_d(control):
         altitude_start.init_d(control, est, p)
+
+
+@law
+def stop_and_hold(arming: Arming, control: Control, est: Estimate, p: Parameters) -> None:
+    """One tick: come to a stop and hold, the heading, too."""
+    if is_grounded(arming):
+        rest(arming.armed, control, est, p)
+        return
+    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
+    brake(control)
+    position.update_ne(control, est, p)
+    altitude.update_d(control, est, p)
+    attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), 0.0)

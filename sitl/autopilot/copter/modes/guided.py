@@ -108,7 +108,7 @@ def run(v: Vehicle) -> None:
         auto_yaw.follow_pilot(modes, control.attitude, est)
     stale = is_stale(guided, v.time_us, p.GUID.TIMEOUT)
     if guided.paused:
-        run_paused(ap.arming, control, est, p)
+        ground.stop_and_hold(ap.arming, control, est, p)
     elif guided.submode == TAKEOFF:
         takeoff.run(v)
     elif guided.submode == ANGLE:
@@ -124,19 +124,6 @@ def run(v: Vehicle) -> None:
             auto_yaw.stop_turning(modes.auto_yaw, control.attitude, est)
         follow_setpoint(v, guided, stale, control)
         ground.fly(modes.auto_yaw, control, est, p)
-
-
-@law
-def run_paused(arming: Arming, control: Control, est: Estimate, p: Parameters) -> None:
-    """One tick of a pause: come to a stop and hold, the heading, too."""
-    if ground.is_grounded(arming):
-        ground.rest(arming.armed, control, est, p)
-        return
-    control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
-    ground.brake(control)
-    position.update_ne(control, est, p)
-    altitude.update_d(control, est, p)
-    attitude.input_thrust_vector_heading_rate(control, est, p, position.thrust_vector(control.pos_ne), 0.0)
 
 
 @law

@@ -89,7 +89,6 @@ MODE = CopterMode(
     start=start,
     run=run,
     standard_mode=7,
-    uses_position=True,
     autonomous=True,
     may_arm=never_arms,
     is_landing=yes,

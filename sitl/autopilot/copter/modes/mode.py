@@ -45,8 +45,6 @@ class CopterMode(Mode[Vehicle]):
     """The throttle stick drives the motors directly; every other mode needs a height."""
     climb_stick: bool = False
     """The throttle stick is a climb rate: it takes off, and lands when it is closed."""
-    uses_position: bool = False
-    """Controls the position when there is one, but does without."""
     arms_at_any_throttle: bool = False
     """A ground station may arm it whatever the throttle stick says."""
     idles_armed: bool = False

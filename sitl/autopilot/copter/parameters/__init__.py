@@ -19,29 +19,9 @@ from ...params.registered import with_registered
 from ...params.system import Ahrs, Arming, Compass, Inertial, Log, Mavlink, Mission, Statistics, StreamRates
 from ...params.table import Table
 from ...terrain.grid import MEANINGS
+from . import flight
 from .avoidance import Avoid, Proximity
 from .control import Attitude, Motors, Position
-from .flight import (
-    Acro,
-    Autotune,
-    Circle,
-    FlowHold,
-    Follow,
-    Guided,
-    Land,
-    Legs,
-    Loiter,
-    PayloadPlace,
-    Pilot,
-    PosHold,
-    Rtl,
-    SmartRtl,
-    SystemId,
-    TakeOff,
-    Throw,
-    Waypoints,
-    ZigZag,
-)
 from .safety import Battery, Failsafes, Fence, Simulated
 from .terrain import TerrainData
 
@@ -64,7 +44,7 @@ class Output(ParameterGroup):
 class Parameters(shared.Parameters):
     """The copter's parameters, in the order of the wire."""
 
-    ACRO: Acro
+    ACRO: flight.Acro
     ANGLE_MAX: float = param(3000, 500, 8000, "cdeg", "Greatest lean in all modes", INT16)
     AHRS: Ahrs
     ARMING: Arming
@@ -76,18 +56,18 @@ class Parameters(shared.Parameters):
         "Bits: 1 may be armed in AUTO, 2 takes off without a raised throttle, 128 pilot may not yaw",
         INT32,
     )
-    AUTOTUNE: Autotune
+    AUTOTUNE: flight.Autotune
     AVOID: Avoid
     BARO_PRIMARY: float
     BATT: Battery
-    CIRCLE: Circle
+    CIRCLE: flight.Circle
     COMPASS: Compass
     DISARM_DELAY: float = param(
         10, 0, 127, "s", "Armed on the ground with the throttle low for so long: disarms; 0 never", INT8
     )
     EK3: Ekf3
     FENCE: Fence
-    FHLD: FlowHold
+    FHLD: flight.FlowHold
     FLIGHT_OPTIONS: float = param(
         0,
         *BITS32,
@@ -97,7 +77,7 @@ class Parameters(shared.Parameters):
     )
     FLTMODE: Floats = param(0, 0, 127, "", "Mode at position {n} of the mode channel", INT8, count=6)
     FLTMODE_CH: float = param(5, 0, 16, "", "Channel that selects the mode; 0 none", INT8)
-    FOLL: Follow
+    FOLL: flight.Follow
     FRAME: Frame
     FS: Failsafes
     GCS_PID_MASK: float = param(0, 0, 511, "", "Loops told by PID_TUNING: 1 roll, 2 pitch, 4 yaw, 8 vertical", INT16)
@@ -106,20 +86,20 @@ class Parameters(shared.Parameters):
     GPS2_DELAY_MS: float
     GPS_AUTO_SWITCH: float
     GPS_PRIMARY: float
-    GUID: Guided
+    GUID: flight.Guided
     INITIAL_MODE: float
     INS: Inertial
-    LAND: Land
+    LAND: flight.Land
     LOG: Log
-    LOIT: Loiter
+    LOIT: flight.Loiter
     MAV: Mavlink
     MAV1: StreamRates
     MIS: Mission
     MOT: Motors
     OA: CopterPathPlanning
-    PHLD: PosHold
-    PILOT: Pilot
-    PLDP: PayloadPlace
+    PHLD: flight.PosHold
+    PILOT: flight.Pilot
+    PLDP: flight.PayloadPlace
     PLND: PrecisionLanding
     PRX: Proximity
     PRX1: ProximitySensor
@@ -132,15 +112,15 @@ class Parameters(shared.Parameters):
     RPM1_TYPE: float = param(
         0, 0, 5, "", "RPM message: 0 none, 5 mean speed of the motors as told by their controllers", INT8
     )
-    RTL: Rtl
+    RTL: flight.Rtl
     SCHED_LOOP_RATE: float = param(
         400.0, 400.0, 400.0, "Hz", "Rate of the main loop; this firmware runs at 400 Hz only", INT16
     )
     SERVO: Records[Output] = numbered(Output, 16)
-    SID: SystemId
+    SID: flight.SystemId
     SIM: Simulated
     SIMPLE: float = param(0, 0, 63, "", "Bit n: SIMPLE at position n + 1 of the mode channel", INT8)
-    SRTL: SmartRtl
+    SRTL: flight.SmartRtl
     STAT: Statistics
     SUPER_SIMPLE: float = param(0, 0, 63, "", "Bit n: SUPER_SIMPLE at position n + 1 of the mode channel", INT8)
     TERRAIN: TerrainData
@@ -152,11 +132,11 @@ class Parameters(shared.Parameters):
         "Half of the dead zone around the middle, in thousandths of the stick, in modes that hold height",
         INT16,
     )
-    THROW: Throw
-    TKOFF: TakeOff
-    WP: Waypoints
-    WPNAV: Legs
-    ZIGZ: ZigZag
+    THROW: flight.Throw
+    TKOFF: flight.TakeOff
+    WP: flight.Waypoints
+    WPNAV: flight.Legs
+    ZIGZ: flight.ZigZag
 
 
 if not TYPE_CHECKING:

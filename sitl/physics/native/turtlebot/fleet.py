@@ -68,7 +68,6 @@ def look(v: Turtlebot, solids: Solids, beams: Beams, readings: NarrowLine) -> No
 
 SOLIDS, SOLID_COUNT, GRID, CELLS, CELL_COUNT = 0, 1, 2, 3, 4
 """Columns of ``worlds``: addresses and lengths of the arrays of a ``Geometry``."""
-WORLD_FIGURES = 5
 
 
 @law

@@ -6,13 +6,10 @@ The receiver repeats the last frame until the next one: tools send when a stick 
 
 from __future__ import annotations
 
-import selectors
-import socket
 import struct
-from collections.abc import Callable
 from typing import Any
 
-from ..bridge.links.link import Link, LinkAddressError, Peer, Selector
+from ..bridge.links.link import DatagramLink, LinkAddressError
 from ..core.border import RC_INPUTS
 
 FEWEST = 8
@@ -23,7 +20,7 @@ LEAST_THROTTLE = 1000
 FOR_EVER_US = 1 << 62
 
 
-class StickPort(Link):
+class StickPort(DatagramLink):
     """Writes what it hears into the vehicle's receiver; no MAVLink client ever appears on it.
 
     Args:
@@ -36,22 +33,13 @@ class StickPort(Link):
     """
 
     def __init__(self, v: Any, host: str, port: int, throttle: int = AT_REST[2]) -> None:
-        super().__init__(f"udpin:{host}:{port}")
+        name = f"udpin:{host}:{port}"
+        try:
+            super().__init__(name, (host, port))
+        except OSError as error:
+            raise LinkAddressError(f"sticks on {name} cannot be heard: {error.strerror or error}") from None
         self._v = v
         self._at_rest = (*AT_REST[:2], throttle, *AT_REST[3:])
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.setblocking(False)
-        self._selector: Selector | None = None
-        try:
-            self._socket.bind((host, port))
-        except OSError as error:
-            self._socket.close()
-            raise LinkAddressError(f"sticks on {self.name} cannot be heard: {error.strerror or error}") from None
-
-    def attach(self, selector: Selector, on_peer: Callable[[Peer], None]) -> None:
-        self._selector = selector
-        selector.register(self._socket, selectors.EVENT_READ, self._readable)
-        super().attach(selector, on_peer)
 
     def _readable(self) -> None:
         frame = b""
@@ -75,10 +63,3 @@ class StickPort(Link):
                 sensors.rc_channels[k] = self._at_rest[k]
         sensors.rc_count += 1
         sensors.rc_time_us = FOR_EVER_US
-
-    def close(self) -> None:
-        if self._selector is not None:
-            self._selector.unregister(self._socket)
-            self._selector = None
-        self._socket.close()
-        super().close()
