@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 
 from sitl import envs
+from sitl.agents import recipes
 from sitl.agents.rehearsal import plan as plans
 from sitl.agents.rehearsal.change import GROUPS, Change
 from sitl.agents.runs.training import train_one
@@ -150,6 +151,15 @@ def test_the_commands_of_the_readme_are_understood() -> None:
     for line in lines:
         words = line.split("#")[0].split()[1:]
         parser().parse_args(words)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_recipes_are_trained_in_their_environments(page: Path) -> None:
+    for command in re.findall(r"^(?:\$ )?sitl (train .*--recipe .*)$", page.read_text(), re.MULTILINE):
+        told = parser().parse_args(shlex.split(command, comments=True))
+        if not told.recipe.endswith(".toml"):
+            recipe = recipes.load(told.recipe)
+            assert told.env in (None, recipe.env, *recipe.also), command
 
 
 def test_every_command_is_on_the_page_of_the_command_line() -> None:
