@@ -4,6 +4,7 @@
     python -m benchmarks.identification                          # 5 seeds of each airframe: 3 minutes
     python -m benchmarks.identification --seeds 101..125 --airframes erle_copter
     python -m benchmarks.identification --keep logs --details    # the logs stay; a line for each figure of each log
+    python -m benchmarks.identification --physics pybullet       # of vehicles on another engine
 
 Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts;
 of a rover, a drive of its mission and by the sticks as ``--plan`` says.
@@ -36,6 +37,7 @@ from sitl.identify.shared import NOISES
 from sitl.logs.dataflash.log import attach
 from sitl.logs.tlog import TlogWriter
 from sitl.missions import files
+from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.vehicles import Airframe, CopterAirframe, RoverAirframe
 
 COPTERS = ("ardupilot_quad", "ardupilot_hexa_x", "erle_copter", "erle_copter, 10 mm tail-heavy")
@@ -59,10 +61,10 @@ def airframe_of(name: str) -> Airframe:
     return found
 
 
-def drive(name: str, seed: int, path: Path) -> dict[str, float]:
+def drive(name: str, seed: int, path: Path, physics: str) -> dict[str, float]:
     """Drive the plan, and by the sticks as its advice says."""
     path.unlink(missing_ok=True)
-    simulation = Simulation(airframe_of(name), seed=seed, params={"LOG_DISARMED": 1})
+    simulation = Simulation(airframe_of(name), seed=seed, params={"LOG_DISARMED": 1}, physics=physics)
     try:
         attach(simulation, path)
         vehicle = Client(simulation)
@@ -112,7 +114,7 @@ def drill(vehicle: Client) -> None:
     sticks(0.0, 0.0, 6.0)
 
 
-def fly(name: str, seed: int, path: Path, telemetry_hz: int = 0) -> dict[str, float]:
+def fly(name: str, seed: int, path: Path, physics: str, telemetry_hz: int = 0) -> dict[str, float]:
     """Fly the plan; the wind that blew. With a rate its telemetry (.tlog) is kept, too, each message so often."""
     path.unlink(missing_ok=True)
     draw = random.Random(seed)
@@ -127,7 +129,7 @@ def fly(name: str, seed: int, path: Path, telemetry_hz: int = 0) -> dict[str, fl
         "WPNAV_ACCEL": 400,
         "WPNAV_JERK": 10,
     }
-    simulation = Simulation(airframe_of(name), seed=seed, params=settings)
+    simulation = Simulation(airframe_of(name), seed=seed, params=settings, physics=physics)
     try:
         attach(simulation, path)
         if telemetry_hz:
@@ -192,10 +194,10 @@ Result = tuple[float, float, float, float]
 """Truth, estimate, ends of the interval; not a number where it was not observed."""
 
 
-def judge(name: str, seed: int, folder: Path, telemetry_hz: int = 0) -> dict[str, Result]:
+def judge(name: str, seed: int, folder: Path, physics: str, telemetry_hz: int = 0) -> dict[str, Result]:
     """Fly and identify one log; with a rate its telemetry."""
     path = folder / f"{name.replace(', ', '-').replace(' ', '-')}-{seed}.bin"
-    winds = drive(name, seed, path) if name in ROVERS else fly(name, seed, path, telemetry_hz)
+    winds = drive(name, seed, path, physics) if name in ROVERS else fly(name, seed, path, physics, telemetry_hz)
     found = identify(path.with_suffix(".tlog") if telemetry_hz else path)
     known = truth(name, found, winds)
     return {
@@ -243,6 +245,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--seeds", type=seeds, default=seeds("101..105"), metavar="A..B", help="or 3,7")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the logs there")
     parser.add_argument("--telemetry", type=int, default=0, metavar="HZ", help="judge telemetry of this rate instead")
+    parser.add_argument("--physics", choices=BACKENDS, default=NATIVE, help="what the vehicles move on")
     parser.add_argument("--details", action="store_true", help="a line for each figure of each log")
     options = parser.parse_args(argv)
     if options.telemetry and not {*ROVERS}.isdisjoint(options.airframes):
@@ -255,7 +258,7 @@ def main(argv: list[str] | None = None) -> int:
             results = []
             for seed in tqdm(options.seeds, name, leave=False, disable=None):
                 try:
-                    results.append(judge(name, seed, folder, options.telemetry))
+                    results.append(judge(name, seed, folder, options.physics, options.telemetry))
                 except SitlError as error:
                     print(f"{name}, seed {seed}: {error}")
                     continue
