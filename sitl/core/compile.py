@@ -122,11 +122,8 @@ def is_shipped(unit: Unit, path: str) -> bool:
 
 
 def missing(entry: Callable[..., Any], path: str) -> list[Unit]:
-    """Units of the core of ``entry`` that have no machine code for their present source, in this process or kept."""
-    return [
-        u for u in reached(entry)
-        if (u.name, path) not in _loaded and not is_shipped(u, path) and not is_built(unit_folder(u, path))
-    ]  # fmt: skip
+    """Units of the core of ``entry`` that have no machine code for their present source."""
+    return [u for u in reached(entry) if not is_shipped(u, path) and not is_built(unit_folder(u, path))]
 
 
 def make_jitable(inline: bool = False) -> None:
@@ -349,9 +346,14 @@ def _workers(order: Order, jobs: int, tasks: Sequence[str]) -> Iterator[subproce
         process.wait()
 
 
+def _is_loaded(entry: Callable[..., Any], path: str) -> bool:
+    """Whether this process has all units of the core of ``entry``: nothing is looked for on disk then."""
+    return all((unit.name, path) in _loaded for unit in reached(entry))
+
+
 def build_missing(entries: Sequence[Callable[..., Any]], path: str, progress: Progress | None = None) -> None:
-    """The same, if anything is missing; nothing with Numba's JIT disabled."""
-    if not jit_disabled() and any(missing(entry, path) for entry in entries):
+    """The same, if anything is missing that this process has not loaded; nothing with Numba's JIT disabled."""
+    if not jit_disabled() and any(missing(entry, path) for entry in entries if not _is_loaded(entry, path)):
         build(entries, path, progress)
 
 
