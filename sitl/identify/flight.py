@@ -86,8 +86,8 @@ class FlightLog:
                 "sitl twin those with EKF1)"
             )
         self._estimate = self.columns.estimate
-        self.columns.call("XKF1", self._estimate)
-        self.columns.call_battery()
+        self.columns.alias("XKF1", self._estimate)
+        self.columns.alias_battery()
         if self.is_telemetry and self.kind != "copter":
             raise IdentifyError(
                 f"log {str(path)!r} is telemetry of a {self.kind}, which tells too little of it; "

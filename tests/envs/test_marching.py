@@ -9,7 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from sitl.envs.marching import LISTS, march, reach
+from sitl.envs.free_ways import BESIDE
+from sitl.envs.marching import COST_MOST, LISTS, march, reach
 
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 
@@ -58,6 +59,11 @@ def test_the_numbers_are_those_of_a_heap(seed):
     row, column = rng.random(2) * (shape[0] - 1, shape[1] - 1)
     found, wanted = marched(costs, row, column), by_a_heap(costs, row, column)
     assert np.array_equal(found.astype(np.float32), wanted.astype(np.float32))
+
+
+def test_what_a_cell_of_a_route_costs_does_not_reach_round_all_lists():
+    diagonal = 1.5 * math.sqrt(2.0)  # of a place to a cell that begins with it
+    assert 1.0 + BESIDE <= COST_MOST and COST_MOST * diagonal < LISTS
 
 
 def test_no_way_leads_to_a_cell_that_is_shut_in_nor_from_a_place_that_is():

@@ -142,15 +142,15 @@ class Tables:
             raise LogError(f"log {str(self.path)!r} has no {name}; it has {', '.join(sorted(self)) or 'nothing'}")
         return self._tables[name]
 
-    def call(self, name: str, other: str) -> None:
-        """Let messages have a second name, when there are none of that name."""
+    def alias(self, name: str, other: str) -> None:
+        """Give messages ``other`` the name ``name`` as well, when the log has none of that name."""
         if other in self and name not in self:
             self._tables[name] = self._tables[other]
 
-    def call_battery(self) -> None:
-        """Let CURR of ArduPilot 3.4 and 3.5 be BAT; before, it is in hundredths."""
+    def alias_battery(self) -> None:
+        """CURR of ArduPilot 3.4 and 3.5 is BAT as well; before, it is in hundredths of volts and amperes."""
         if "CURR" in self and self["CURR"].letters.get("Volt") == "f":
-            self.call("BAT", "CURR")
+            self.alias("BAT", "CURR")
 
     @property
     def began(self) -> float:

@@ -73,7 +73,7 @@ class FlightLog:
                 "vehicle keeps on its card and ground stations download"
             )
         self.columns = Columns(self.path, _NAMES)
-        self.columns.call_battery()
+        self.columns.alias_battery()
         self.kind = self.columns.kind
         if self.columns.helicopter:
             raise TwinError(f"log {str(path)!r} is of a helicopter ({self.columns.helicopter}), which is not simulated")

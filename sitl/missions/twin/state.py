@@ -110,7 +110,7 @@ class LoggedState:
         v: Any = simulation.v
         if driven:
             v.physics.rotors.stuck = ALL_DRIVEN
-        v.physics.ground.state = GROUND_AIRBORNE  # where it stands, or has landed in a segment, it would stand on
+        v.physics.ground.state = GROUND_AIRBORNE  # else a simulation that stands stays on its ground
         body, control = v.physics.body, v.autopilot.control
         motion = np.array(self.motion.at(time))
         origin = np.array(place)
