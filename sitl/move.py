@@ -36,7 +36,7 @@ _known: dict[type[Airframe], dict[str, Figure]] = {}
 class Move:
     """Where a vehicle is put, and how it is then; None: as it is.
 
-    Everything that the vehicle knows of places moves along: home, origin, targets.
+    Everything that the vehicle knows of positions moves along: home, origin, targets.
 
     Args:
         north, east: of the body's origin, from the world's origin, without a world from where the vehicles were
@@ -67,9 +67,9 @@ class Move:
         Raises:
             OptionError: one that cannot be taken, named, with what is allowed.
         """
-        place = -_FARTHEST, _FARTHEST
-        _number("north", self.north, *place, "m")
-        _number("east", self.east, *place, "m")
+        limits = -_FARTHEST, _FARTHEST
+        _number("north", self.north, *limits, "m")
+        _number("east", self.east, *limits, "m")
         if self.height is not None:
             _number("height", self.height, 1e-3, _HIGHEST, "m")
         _number("heading", self.heading, -1e6, 1e6, "rad")
@@ -109,9 +109,11 @@ class Move:
         body = v.physics.body
         here = body.pos
         order.vehicle = vehicle
-        order.says_place = self.north is not None or self.east is not None or self.walks is not None
-        if order.says_place:
-            order.place = Vec2(here.x if self.north is None else self.north, here.y if self.east is None else self.east)
+        order.says_position = self.north is not None or self.east is not None or self.walks is not None
+        if order.says_position:
+            order.position = Vec2(
+                here.x if self.north is None else self.north, here.y if self.east is None else self.east
+            )
         order.says_height = self.height is not None
         order.height = self.height or 0.0
         if self.walks is not None:

@@ -90,7 +90,7 @@ class Randomisation:
             raise EnvOptionError(f"randomise: {name} = {values!r}; it must be low <= high within {limits}")
         if name in ("range_max", "lidar_max"):
             robot.range_max = max(robot.range_max, high)
-        if name == "radius":  # random places have room for the greatest
+        if name == "radius":  # random positions have clearance for the greatest
             robot.volume = replace(robot.volume, radius=max(robot.volume.radius, high))
 
     def _drawn(self, rng: np.random.Generator) -> dict[str, Any]:

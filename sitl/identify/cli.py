@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl identify``: an airframe's file from the logs of a vehicle; ``--plan``: what to fly so that logs tell more."""
+"""``sitl identify``: an airframe's file from the logs of a vehicle; ``--plan``: what to fly so that logs show more."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what the logs tell; write the airframe or the plan."""
+    """Print what the logs show; write the airframe or the plan."""
     if options.plan is None and not options.logs:
         raise OptionError("LOG is missing: a .bin or .tlog log, or --plan FILE for what to fly")
     if options.out is not None and options.out.suffix != ".toml":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a copter from its logs. Each is a function of the logs; what a log cannot tell is said with the reason."""
+"""Figures of a copter from its logs. Each is a function of the logs; what a log cannot show is said with the reason."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from .thrust import thrust_expo
 
 
 def figures(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
-    """All figures of a copter that these logs tell, and the others with the reason.
+    """All figures of a copter that these logs show, and the others with the reason.
 
     Args:
         logs: of one vehicle.
-        begins: is told what is worked on, which takes longest where rates are fast and flights long.
+        begins: called with what is worked on, which takes longest where rates are fast and flights long.
     """
     begins("hover")
     hovering = hover(logs)

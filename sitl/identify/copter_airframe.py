@@ -74,7 +74,7 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Mod
 
 def _authority(base: CopterAirframe, parameters: Mapping[str, float]) -> dict[str, float]:
     """Effectiveness of roll, pitch and yaw of a vehicle that is tuned as the shipped airframe: times the rate
-    controller's gain it is the same. It stands for what the logs do not tell; a vehicle with much more of it would not
+    controller's gain it is the same. It stands for what the logs do not show; a vehicle with much more of it would not
     fly with these gains."""
     own = {parameter.name: parameter.default for parameter in TABLE} | dict(base.parameters)
     figures = Copter(base, {**own, **{k: parameters[k] for k in ("FRAME_CLASS", "FRAME_TYPE")}}, _SHIPPED).figures()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One figure that was looked for in logs: its value with an interval, or why the logs do not tell it."""
+"""One figure that was looked for in logs: its value with an interval, or why the logs do not show it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Figure:
 
     @property
     def is_observed(self) -> bool:
-        """Whether the logs tell it."""
+        """Whether the logs show it."""
         return math.isfinite(self.value)
 
     @property

@@ -37,7 +37,7 @@ _ASSUMED = 2.0
 
 @dataclass(frozen=True)
 class Identification:
-    """What logs tell.
+    """What logs show.
 
     Args:
         logs: the logs.
@@ -162,8 +162,8 @@ def identify(
     Args:
         logs: .bin or .tlog files of flights of one vehicle.
         mass: of the vehicle [kg].
-        progress: is told how far each log is read.
-        begins: is told which figures are worked on.
+        progress: called with how far each log is read.
+        begins: called with which figures are worked on.
         above: height over the ground from which on a copter's flight counts [m].
 
     Raises:

@@ -23,7 +23,7 @@ class Model:
         parameters: of the log's firmware.
         conditions: of the log.
         found: a figure of the log by its name.
-        authority: effectiveness of roll, pitch, yaw where the logs do not tell it.
+        authority: effectiveness of roll, pitch, yaw where the logs do not show it.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class Model:
             self._set(lag, time_constant_up=lag.value, time_constant_down=lag.value)
 
     def _inertia(self) -> None:
-        """Angular acceleration by output: inertia, since places and thrust of the motors are given."""
+        """Angular acceleration by output: inertia, since positions and thrust of the motors are given."""
         moments, expected = list(self.airframe.value("inertia")), self._expected()
         factors = []
         for k, axis in enumerate(("roll", "pitch")):

@@ -55,7 +55,7 @@ DAMPING, DAMPING_SHARE = 0.15, 0.1
 _MOST_DAMPING = 1.0
 SPIN_UP_SHARE = 0.08
 TIMING_S = 0.004
-"""Lag and dead time are told apart no better."""
+"""Lag and dead time are distinguished no better."""
 
 AXES = (("roll", "R", "Roll"), ("pitch", "P", "Pitch"), ("yaw", "Y", "Yaw"))
 LAG = Sought("motor_lag", "s", "time constant of motors and their controllers")
@@ -138,7 +138,7 @@ def _filters(count: int, rate: float, cutoff: float) -> _Filters:
 
 
 def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
-    """All that RATE tells."""
+    """All that RATE reports."""
     usable = [log for log in logs if log.has("RATE", "ATT", "IMU", "XKF1") and log.stream("RATE").rate >= _LEAST_HZ]
     if not usable:
         had = [log.stream("RATE").rate for log in logs if log.has("RATE")]

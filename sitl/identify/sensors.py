@@ -26,7 +26,7 @@ BIAS = Sought("gyro_bias", "rad/s", "what the gyro shows at rest, the greatest a
 BARO = Sought("baro_noise", "Pa", "noise of a sample of the barometer")
 MAG = Sought("mag_noise", "gauss", "noise of a sample of the compass, each axis")
 SPEED = Sought("gps_velocity_noise_vertical", "m/s", "noise of the receiver's vertical velocity")
-PLACE = Sought("gps_noise_horizontal", "m", "noise of a fix, without what drifts, each axis")
+POSITION = Sought("gps_noise_horizontal", "m", "noise of a fix, without what drifts, each axis")
 HEIGHT = Sought("gps_noise_vertical", "m", "the same, vertical")
 
 _LEAST = 60
@@ -49,7 +49,7 @@ def sensors(logs: Sequence[FlightLog]) -> list[Figure]:
         _bias(logs),
         _noise(logs, BARO, "BARO", lambda t: t["Press"][:, None], 1.0),
         _noise(logs, MAG, "MAG", lambda t: 1e-3 * _axes(t, "Mag"), 1.0, 1e-3),
-        _noise(logs, PLACE, "GPS", _places, 1.0, 0.011),
+        _noise(logs, POSITION, "GPS", _positions, 1.0, 0.011),
         _noise(logs, HEIGHT, "GPS", lambda t: t["Alt"][:, None], 1.0, 0.01),
         _noise(logs, SPEED, "GPS", lambda t: t["VZ"][:, None], 1.0),
     ]
@@ -59,7 +59,7 @@ def _axes(table: Any, name: str) -> Array:
     return np.stack([table[f"{name}{axis}"] for axis in "XYZ"], -1)
 
 
-def _places(table: Any) -> Array:
+def _positions(table: Any) -> Array:
     north, east = table["Lat"], table["Lng"]
     return _M * np.stack([north, east * np.cos(np.radians(north.mean()))], -1)
 

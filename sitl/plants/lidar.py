@@ -50,7 +50,7 @@ class Company(NamedTuple):
 
 
 class Rays(NamedTuple):
-    """A sensor's rays, and room to work in: the arrays of a ``Beams``."""
+    """A sensor's rays, and memory to work in: the arrays of a ``Beams``."""
 
     rays: Array
     directions: Array
@@ -107,19 +107,19 @@ class Rangers:
         self.find_due()
 
     def with_own_workspace(self) -> tuple[int, Any]:
-        """(Address of a ``Ranging`` of the same world and sensors with other room to work in, what keeps it alive): for
-        vehicles that another thread advances."""
+        """(Address of a ``Ranging`` of the same world and sensors with other memory to work in, what keeps it alive):
+        for vehicles that another thread advances."""
         memory = self._memory.copy()
-        copy, room = Ranging.of(memory, 0), []
+        copy, buffers = Ranging.of(memory, 0), []
         for number, arrays in enumerate(self._rays):
             if arrays is not None:
                 own = Rays(arrays.rays, np.empty_like(arrays.directions), np.empty_like(arrays.ranges))
-                room.append(own)
+                buffers.append(own)
                 copy.beams[number].directions, copy.beams[number].ranges = (
                     own.directions.ctypes.data,
                     own.ranges.ctypes.data,
                 )
-        return memory.ctypes.data, (self, memory, room)
+        return memory.ctypes.data, (self, memory, buffers)
 
     def enter(self, geometry: Geometry, floor: float) -> None:
         """Measure in another world from now on; ``floor``: height of its floor in its frame [m]."""

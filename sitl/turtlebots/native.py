@@ -83,23 +83,23 @@ class Turtlebots:
         beams = Beams(rays, np.empty_like(rays), np.empty(self.lidar.rays))
         self._arguments = fleet, Orders(self.commands, self.ticks), g.arrays, beams, self.scan
         self._advance = advance.bind(*self._arguments)
-        self._places: npt.NDArray[np.int64] | None = None
+        self._world_addresses: npt.NDArray[np.int64] | None = None
         """See ``advance_in_worlds``; None: all are in the world that they begin in."""
         if any(world is not self.world for world in self.worlds):
-            self._part_ways()
+            self._separate()
 
-    def _part_ways(self) -> None:
-        self._places = np.array([_addresses(world) for world in self.worlds])
+    def _separate(self) -> None:
+        self._world_addresses = np.array([_addresses(world) for world in self.worlds])
         fleet, orders, _, beams, scan = self._arguments
-        self._advance = advance_apart.bind(fleet, orders, self._places, beams, scan)
+        self._advance = advance_apart.bind(fleet, orders, self._world_addresses, beams, scan)
 
     def enter(self, index: int, world: World) -> None:
         """Let one robot be in another world from now on; ``reset`` puts it somewhere there."""
         self.worlds[index] = world
-        if self._places is None:
-            self._part_ways()
+        if self._world_addresses is None:
+            self._separate()
         else:
-            self._places[index] = _addresses(world)
+            self._world_addresses[index] = _addresses(world)
 
     def reset(self, index: int = 0, pose: Pose | None = None, seed: int = 0) -> None:
         """Put one robot at a pose, at rest; its scan is that of the next ``advance`` or ``look``.

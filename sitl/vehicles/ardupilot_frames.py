@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ArduPilot's other SITL multicopters (``ardupilot_quad`` tells of their model), and vehicles on a bench."""
+"""ArduPilot's other SITL multicopters (``ardupilot_quad`` describes their model), and vehicles on a bench."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ UWB: dict[str, float] = {
     "gps_rate": 10.0,  # [Hz]
     "gps_delay": 0.1,  # [s] ranging and solution (estimate)
     "gps_noise_horizontal": 0.05,  # [m] with the next: 0.10 m in the plane
-    "gps_drift_horizontal": 0.05,  # [m] bias of ranges by place (estimate)
+    "gps_drift_horizontal": 0.05,  # [m] bias of ranges by position (estimate)
     "gps_drift_time": 30.0,  # [s] (estimate)
     "gps_velocity_noise_horizontal": 0.1,  # [m/s] of differences (estimate)
     "gps_velocity_noise_vertical": 0.1,  # [m/s] (estimate)

@@ -35,7 +35,7 @@ class KindView:
     motion: Callable[[Any], Motion]
     """What moves on a vehicle ``v``."""
     set_point: Callable[[Any], Vec3 | None]
-    """Place that the controllers of ``v`` follow, NED from the estimator's origin [m]; None: none at present."""
+    """Position that the controllers of ``v`` follow, NED from the estimator's origin [m]; None: none at present."""
 
 
 def _outline(figures: Any) -> Shape:

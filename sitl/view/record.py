@@ -22,7 +22,7 @@ class RecordSource:
     Args:
         kind: of vehicle.
         fleet: the array with its record; the copy is of this memory.
-        index: its place there.
+        index: of it there.
         title: name of the airframe.
         world: solids around it; None: a plain.
         modes: names of all modes that can be asked for.

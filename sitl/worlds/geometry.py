@@ -77,7 +77,7 @@ class Geometry:
     grid: Floats
     """Shape (GRID_FIGURES,)."""
     cells: Integers
-    """ROWS * COLUMNS + 1 places in this array, where each cell's list begins; then the lists: numbers of solids."""
+    """ROWS * COLUMNS + 1 offsets in this array, where each cell's list begins; then the lists: numbers of solids."""
 
     def __len__(self) -> int:
         return len(self.solids)

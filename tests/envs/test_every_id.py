@@ -19,7 +19,7 @@ from sitl.envs import ids
 NAVIGATE = "sitl/Navigate-v0"
 IDS = [*ids.PAPER, *ids.FIRST, *ids.NEW, NAVIGATE, "sitl/Navigate-v1"]
 OTHERS = [name for name in IDS if name not in ids.NEW]
-"""``test_places_tasks.py`` plays those of ``NEW`` again, alone and in vectors, for longer."""
+"""``test_target_tasks.py`` plays those of ``NEW`` again, alone and in vectors, for longer."""
 STEPS = 4
 pytestmark = pytest.mark.filterwarnings("ignore:.*Box.*(infinity|bound|symmetric|normalized)", "ignore:.*render")
 

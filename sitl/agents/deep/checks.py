@@ -33,7 +33,7 @@ class Checks:
 
     Args:
         config: configuration of the run. Episodes are played as those of its evaluation, which may have other starts
-            and be longer than those that are learnt from; where they all start at one place, starts are moved by up
+            and be longer than those that are learnt from; where they all start at one position, starts are moved by up
             to 0.1 m and 0.1 rad.
         figures: its settings; they say how often.
         path: path of the best model; what another run left there is removed.

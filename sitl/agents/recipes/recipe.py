@@ -233,5 +233,5 @@ def runs_of(out: Path, recipe: Recipe, seeds: int) -> list[RunFolder]:
     Raises:
         AgentError: there are other runs in their place.
     """
-    place = out / "runs" / recipe.name
-    return [RunFolder.ensure(folders.seed_folder(place, seed), recipe.config(seed)) for seed in range(seeds)]
+    root = out / "runs" / recipe.name
+    return [RunFolder.ensure(folders.seed_folder(root, seed), recipe.config(seed)) for seed in range(seeds)]

@@ -33,21 +33,21 @@ def altered(world: str | Path | World, mirror: bool = False, stretch: float = 1.
     found = worlds.load(world)
     side = -1.0 if mirror else 1.0
 
-    def place(position: tuple[float, float, float]) -> tuple[float, float, float]:
+    def moved(position: tuple[float, float, float]) -> tuple[float, float, float]:
         x, y, z = position
         return stretch * x, side * stretch * y, z
 
     def solid(one: Solid) -> Solid:
         if isinstance(one, Box):
             x, y, z = one.size
-            return replace(one, centre=place(one.centre), size=(stretch * x, stretch * y, z), yaw=side * one.yaw)
-        return replace(one, centre=place(one.centre), radius=stretch * one.radius)
+            return replace(one, centre=moved(one.centre), size=(stretch * x, stretch * y, z), yaw=side * one.yaw)
+        return replace(one, centre=moved(one.centre), radius=stretch * one.radius)
 
     what = [*(["mirrored"] if mirror else []), *([f"x {stretch:g}"] if stretch != 1.0 else [])]
     return World(
         name=" ".join([found.name, *what]),
         solids=tuple(solid(one) for one in found.solids),
-        starts=tuple(replace(s, position=place(s.position), yaw=side * s.yaw) for s in found.starts),
+        starts=tuple(replace(s, position=moved(s.position), yaw=side * s.yaw) for s in found.starts),
         description=found.description,
         source=found.source,
         floor_z=found.floor_z,

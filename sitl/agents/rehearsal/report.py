@@ -255,7 +255,7 @@ def draw(path: Path, rehearsed: Sequence[Rehearsed]) -> Path:
     """Transfer ratios as dots with their intervals, a line a change, a colour a run."""
     changes = rehearsed[0].changes
     made, axes = curves.figure(9.0, 1.2 + _LINE * len(changes) * (1.0 + 0.25 * (len(rehearsed) - 1)))
-    place = axes[0, 0]
+    ax = axes[0, 0]
     lines = np.arange(len(changes), dtype=float)
     for number, (colour, one) in enumerate(zip(curves.COLOURS * 9, rehearsed)):
         offset = 0.6 * ((number + 0.5) / len(rehearsed) - 0.5)
@@ -263,14 +263,14 @@ def draw(path: Path, rehearsed: Sequence[Rehearsed]) -> Path:
         found = [(line, ratio) for line, ratio in ratios if ratio and not math.isnan(ratio.value)]
         values = np.array([ratio for _, ratio in found], float).reshape(-1, 3) * 100.0
         spread = np.abs(values[:, 1:] - values[:, :1]).T
-        place.errorbar(
+        ax.errorbar(
             values[:, 0], [line + offset for line, _ in found], xerr=spread, fmt="o", color=colour, label=one.name,
             capsize=2.0, markersize=4.5, linewidth=1.2,
         )  # fmt: skip
-    place.axvline(100.0, color="black", linewidth=0.8)
-    place.axvline(0.0, color="grey", linewidth=0.5)
-    place.set_yticks(lines, [change.name for change in changes])
-    place.set(xlabel="share of the reward at home [%]", ylim=(len(changes) - 0.4, -0.6))
-    place.grid(axis="x", alpha=0.3)
+    ax.axvline(100.0, color="black", linewidth=0.8)
+    ax.axvline(0.0, color="grey", linewidth=0.5)
+    ax.set_yticks(lines, [change.name for change in changes])
+    ax.set(xlabel="share of the reward at home [%]", ylim=(len(changes) - 0.4, -0.6))
+    ax.grid(axis="x", alpha=0.3)
     made.legend(loc="outside upper center", ncols=4)
     return curves.save(made, path)

@@ -52,8 +52,8 @@ def lidar_distance(robot: Any) -> float:
         x, y, z, yaw = robot.pose[0].tolist()
         figures = robot.robots.views[0].figures
         ahead = float(figures.lidar_ahead)  # type: ignore[attr-defined]
-        place = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
-        north, east, down = to_ned(*place)
+        position = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
+        north, east, down = to_ned(*position)
     elif isinstance(robot, AutopilotRobot) and robot.figures:
         v = robot.view(0)
         body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
@@ -128,7 +128,7 @@ def home_options(config: RunConfig, boots: int | None = None) -> dict[str, Any]:
 def jitter_of(config: RunConfig, robot: Any) -> float:
     """Default distance by which starts are moved [m, rad]: as in the run's evaluation; but a robot without noise that
     always
-    starts at one place would repeat the same episode."""
+    starts at one position would repeat the same episode."""
     starts = "start" in {**config.env_options, **config.evaluation.options}
     if config.evaluation.jitter == 0.0 and not starts and isinstance(robot, Turtlebot):
         return JITTER

@@ -92,11 +92,11 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
     """
     made, axes = curves.figure(14.0, 4.2 * ((len(groups) + 2) // 2), (len(groups) + 2) // 2, 2)
     flat = list(axes.flat)
-    for place, group in zip(flat, groups):
-        draw_raw(place, group.rewards[0], f"{group.name}, seed {group.runs[0].config.seed}", block)
-    raw = [place.get_ylim() for place in flat[: len(groups)]]
-    for place in flat[: len(groups)]:
-        place.set_ylim(min(low for low, _ in raw), max(high for _, high in raw))
+    for ax, group in zip(flat, groups):
+        draw_raw(ax, group.rewards[0], f"{group.name}, seed {group.runs[0].config.seed}", block)
+    raw = [ax.get_ylim() for ax in flat[: len(groups)]]
+    for ax in flat[: len(groups)]:
+        ax.set_ylim(min(low for low, _ in raw), max(high for _, high in raw))
     last = flat[len(groups)]
     draw_means(last, {group.name: group.rewards for group in groups}, block)
     for style, (name, means) in zip(("--", ":", "-."), paper.items()):

@@ -57,7 +57,7 @@ class AutopilotEnd:
         self._until_ack = 0
         """Command whose acknowledgement has to come first."""
         self.truth_us, self.truth = -1, truth.NOWHERE
-        """Where the vehicle really is, as last told, and when that was [us]."""
+        """Where the vehicle really is, as last reported, and when that was [us]."""
         self.refused = 0
         """Messages with numbers that cannot be right."""
         self.repeated = 0

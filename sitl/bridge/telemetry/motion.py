@@ -27,7 +27,7 @@ SPEED_ACCURACY = 0.8
 
 
 class GlobalPosition(NamedTuple):
-    """A place on the globe."""
+    """A position on the globe."""
 
     lat: int  # [degE7]
     lon: int  # [degE7]

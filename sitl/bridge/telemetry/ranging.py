@@ -64,9 +64,9 @@ def obstacle_distance(m: ObstacleDistance, v: Vehicle) -> bool:
         m.distances[k] = UNKNOWN
     sector, nearest = -1, math.inf
     for k in range(samples):
-        place = k if samples <= SECTORS else min(k * SECTORS // (samples - 1), SECTORS - 1)
-        if place != sector:
-            sector, nearest = place, math.inf
+        index = k if samples <= SECTORS else min(k * SECTORS // (samples - 1), SECTORS - 1)
+        if index != sector:
+            sector, nearest = index, math.inf
         nearest = min(nearest, float(s.lidar_ranges[samples - 1 - k]))
         m.distances[sector] = centimetres(nearest, longest)
     if samples <= SECTORS:

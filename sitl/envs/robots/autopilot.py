@@ -212,7 +212,7 @@ class AutopilotRobot:
         """Where a vehicle is prepared that is moved to other start poses; before the first reset.
 
         Raises:
-            EnvOptionError: a place so far away that no vehicle can be moved there.
+            EnvOptionError: a position so far away that no vehicle can be moved there.
         """
         north, east, _ = to_ned(*pose[:3])
         try:
@@ -391,7 +391,7 @@ class AutopilotRobot:
         vehicles = self._vehicles
         assert isinstance(vehicles, SocketVehicles)
         if watch.in_charge:
-            why = vehicles.taken() or vehicles.told_to_end() or watch.doubt(self.pose[index].tolist(), row)
+            why = vehicles.taken() or vehicles.asked_to_end() or watch.doubt(self.pose[index].tolist(), row)
             if why:
                 vehicles.hand_over(why)
         self.over[index] = not watch.in_charge
@@ -478,7 +478,7 @@ class AutopilotRobot:
 
     @property
     def camera_mount(self) -> tuple[float, float, float, float] | None:
-        """Where a camera is unless told otherwise: forward, left, up of the body's origin [m], as the lidar; and how
+        """Where a camera is by default: forward, left, up of the body's origin [m], as the lidar; and how
         far the robot's base lies ahead of that origin [m]. None: a vehicle in another process, or with a foreign
         autopilot, has none."""
         if not self._vehicles.has_snapshots:

@@ -40,8 +40,8 @@ MAX_ELSEWHERE = 8
 
 def check_parameters(simulation: Simulation) -> None:
     """Warn of parameters of an environment that have no effect."""
-    told = isinstance(simulation.scenario.params, FileValues)
-    if (idle := simulation.parameters.idle()) and not told:
+    given = isinstance(simulation.scenario.params, FileValues)
+    if (idle := simulation.parameters.idle()) and not given:
         warnings.warn(f"no effect in this simulator: {', '.join(idle)}", stacklevel=2)
 
 

@@ -59,7 +59,7 @@ class Origin:
 
 
 def _scenario(scenario: Scenario) -> Hashable:
-    """A scenario without its airframe, world, start and seed, which are told apart otherwise."""
+    """A scenario without its airframe, world, start and seed, which are distinguished otherwise."""
     return (
         scenario.home, scenario.estimator, type(scenario.params), tuple(sorted(scenario.parameters.items())),
         scenario.physics, tuple(scenario.faults), scenario.terrain,

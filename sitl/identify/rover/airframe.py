@@ -95,7 +95,7 @@ def _drive(found: Found, take: Any, changes: dict[str, Any]) -> None:
 
 def _steer(found: Found, take: Any, changes: dict[str, Any], base: Any) -> None:
     """Wheelbase, angle, time of the servo. The ratio of curvature at full steering to that of the slope about straight
-    on is tan(angle) / angle for front wheels, sin(angle) / angle for a turning circle: it tells the angle."""
+    on is tan(angle) / angle for front wheels, sin(angle) / angle for a turning circle: it gives the angle."""
     slope, radius, angle = found("steering_gain").value, found("turning_radius"), float(base.value("steering_angle"))
     source = "steering_gain"
     if radius.is_observed:

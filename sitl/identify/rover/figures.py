@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a rover from its logs. What a log cannot tell is said with the reason."""
+"""Figures of a rover from its logs. What a log cannot show is said with the reason."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ _TURNED = 0.1
 
 
 def figures(logs: Sequence[FlightLog]) -> list[Figure]:
-    """All figures of a rover that these logs tell, and the others with the reason."""
+    """All figures of a rover that these logs show, and the others with the reason."""
     data = stretches(logs)
     if isinstance(data, str):
         found = [sought.hidden(data) for sought in _all(None)]
@@ -142,16 +142,18 @@ def _throttle(data: Stretches) -> tuple[Array, ...]:
 
 
 def _both(
-    fit: DriveFit, sought: tuple[Sought, Sought], name: str, seconds: float, most: float, way: str
+    fit: DriveFit, sought: tuple[Sought, Sought], name: str, seconds: float, most: float, direction: str
 ) -> list[Figure]:
     """Speed without load, and at full throttle, one way."""
     if seconds < _BACKWARD_S:
-        return [one.hidden(f"it drove {way} for {seconds:.0f} s; {_BACKWARD_S:.0f} s are needed") for one in sought]
+        return [
+            one.hidden(f"it drove {direction} for {seconds:.0f} s; {_BACKWARD_S:.0f} s are needed") for one in sought
+        ]
     free = _made(sought[0], fit, *fit.interval(name))
     if most < _FULL:
         return [
             free,
-            sought[1].hidden(f"throttle {way} reached {100.0 * most:.0f} %; {100.0 * _FULL:.0f} % are needed"),
+            sought[1].hidden(f"throttle {direction} reached {100.0 * most:.0f} %; {100.0 * _FULL:.0f} % are needed"),
         ]
     return [free, _made(sought[1], fit, *fit.of(lambda model: model.value(name) - model.value("loss")))]
 
@@ -212,7 +214,7 @@ def gain(model: Model) -> float:
 
 def _servo(fit: DriveFit) -> Figure:
     if "servo" not in fit.names:
-        steps = sum(len(pair[0].places) for pair in fit.data.outputs)
+        steps = sum(len(pair[0].indices) for pair in fit.data.outputs)
         return SERVO.hidden(f"the wheels followed at once, as far as {steps} steps of the steering output tell")
     return _made(SERVO, fit, *fit.interval("servo"))
 

@@ -104,8 +104,8 @@ class DriveFit:
     def _move(self, onsets: Array) -> None:
         pairs = [[one.steps.onset.copy() for one in pair] for pair in self.data.outputs]
         for step, onset in zip(self._steps, onsets):
-            for channel, place in step.places:
-                pairs[step.log][channel][place] = onset
+            for channel, index in step.indices:
+                pairs[step.log][channel][index] = onset
         moved = [
             (pair[0].with_onset(first), pair[1].with_onset(second))
             for pair, (first, second) in zip(self.data.outputs, pairs)
@@ -198,7 +198,7 @@ class DriveFit:
             track = top * float(turn @ turn) / max(float(turn @ r), 1e-6)
             steerings: list[tuple[float, ...]] = [(factor * min(max(track, 0.05), 9.0), 0.0) for factor in (1.0, 1.4)]
         else:
-            at, known = (1e4 * series.stretch + series.place for series in (data.yaw_rate, data.speed))
+            at, known = (1e4 * series.stretch + series.sample for series in (data.yaw_rate, data.speed))
             x = np.interp(at, known, v) * turn
             bend = min(max(float(x @ r) / max(float(x @ x), 1e-9), 1e-3), 40.0)
             steerings = [(factor * bend, shape, 0.0) for factor in (1.0, 1.3) for shape in (0.4, -0.4)]

@@ -17,7 +17,7 @@ from .courses import Courses, drive
 from .stretches import Stretches
 
 BASES = {True: "skid_rover", False: "erle_rover"}
-"""Whether it skids -> the airframe that lends what no figure tells."""
+"""Whether it skids -> the airframe that lends what no figure shows."""
 _NO_SLIP = 1000.0
 
 Array = np.ndarray[Any, Any]

@@ -267,10 +267,10 @@ def _first(
         text = f"{worst_figure.title} {value}, {limit_text} allowed"
         return Divergence(worst_figure.at or 0.0, f"{text} ({worst_figure.words})" if worst_figure.words else text)
     first = min(found, key=lambda divergence: divergence.t)
-    place = differences["position"]
-    if "of the golden" not in first.words and place.first_over(limits.limit("position.max")) is not None:
-        worst = place.worst()
-        far = f"farthest {words.deviation(place, worst)}, {words.when(both, float(place.t[worst]))}"
+    position = differences["position"]
+    if "of the golden" not in first.words and position.first_over(limits.limit("position.max")) is not None:
+        worst = position.worst()
+        far = f"farthest {words.deviation(position, worst)}, {words.when(both, float(position.t[worst]))}"
         first = Divergence(first.t, f"{first.words}; {far}")
     return first
 

@@ -222,7 +222,7 @@ def _pictures(comparison: Comparison) -> str:
         from . import plots
 
         drawn = [
-            ("The way, from above", plots.plan(comparison)),
+            ("The path, from above", plots.plan(comparison)),
             ("What differs", plots.differing(comparison)),
             ("What was flown", plots.flown(comparison)),
         ]

@@ -118,10 +118,10 @@ def _figures(q: Quantity, time: Array, logged: Array, here: Array, difference: A
 
 def _variance(values: Array, member: Array) -> float:
     """About the mean of each window, over all columns."""
-    _, place = np.unique(member, return_inverse=True)
-    count = np.bincount(place).astype(float)
+    _, index = np.unique(member, return_inverse=True)
+    count = np.bincount(index).astype(float)
     total = 0.0
     for column in values.T:
-        mean = np.bincount(place, column) / count
-        total += float(np.square(column - mean[place]).mean())
+        mean = np.bincount(index, column) / count
+        total += float(np.square(column - mean[index]).mean())
     return total / values.shape[1]

@@ -101,7 +101,7 @@ class Inputs:
 
 
 def of(log: FlightLog) -> Inputs:
-    """Everything that a log tells of what was done to its vehicle."""
+    """Everything that a log shows of what was done to its vehicle."""
     found = Inputs()
     found.missions = _missions(log)
     found.modes = _modes(log)
@@ -111,7 +111,7 @@ def of(log: FlightLog) -> Inputs:
     if count := gaps.dropped(log):
         found.notes.append(f"the vehicle could not write {count} messages of the flight into its log (DSF.Dp)")
     commands = [(one.time, one.fields["command"]) for one in found.messages if "command" in one.fields]
-    start = gaps.untold_start(log, gaps.mode_names(log.kind, found.modes), commands, found.sticks)
+    start = gaps.uncommanded_start(log, gaps.mode_names(log.kind, found.modes), commands, found.sticks)
     if start is not None:
         found.messages = _in_time([*found.messages, Message(start + _START_S, "COMMAND_INT", _START)])
         found.notes.append("the log does not tell what began its mission on the ground: the twin is sent MISSION_START")
@@ -251,12 +251,12 @@ def _positions(log: FlightLog, notes: list[str]) -> Iterator[Message]:
     if left:
         notes.append(f"{left} set-points of GUIDED over terrain are left out")
     if on_globe:
-        notes.append(f"{on_globe} set-points of GUIDED are places on the globe, which logs keep to about a metre")
+        notes.append(f"{on_globe} set-points of GUIDED are positions on the globe, which logs keep to about a metre")
 
 
 def _on_the_globe(row: dict[str, float], mask: int, home: float) -> dict[str, Any]:
-    """A set-point whose place is in 1e-7 degrees and centimetres. Whether its altitude is above home or above the sea
-    is not logged: the nearer one is taken."""
+    """A set-point whose position is in 1e-7 degrees and centimetres. Whether its altitude is above home or above the
+    sea is not logged: the nearer one is taken."""
     alt = 0.01 * row["pZ"]
     return {
         "coordinate_frame": _GLOBAL if abs(alt - home) < abs(alt) else _ABOVE_HOME,

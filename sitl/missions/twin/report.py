@@ -41,7 +41,7 @@ _EFFECTS = (
     ("throttle", "mean throttle output", np.mean), ("current", "mean battery current", np.mean),
     ("voltage", "lowest battery voltage", np.min), ("consumed", "charge drawn", lambda x: x[-1, 0]),
 )  # fmt: skip
-"""Quantity, what is told of it, and how it follows from the values."""
+"""Quantity, what is reported of it, and how it follows from the values."""
 
 
 def verdict_of(twin: Twin) -> str:
@@ -210,7 +210,7 @@ def _pictures(twin: Twin) -> Iterable[str]:
     try:
         from . import plots
 
-        drawn = [("The way, from above", plots.plan(twin)), ("The flight over time", plots.flown(twin))]
+        drawn = [("The path, from above", plots.plan(twin)), ("The flight over time", plots.flown(twin))]
         if twin.segments:
             drawn.append(("Open segments: flown on from the logged state", plots.opened(twin)))
     except MissingExtra as error:

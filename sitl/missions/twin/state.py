@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle is put into the state that a log tells of one moment, as far as it tells it."""
+"""A vehicle is put into the state that a log shows of one moment, as far as it shows it."""
 
 from __future__ import annotations
 
@@ -98,13 +98,13 @@ class LoggedState:
 
     # ------------------------------------------------------------------
 
-    def put(self, simulation: Simulation, time: float, place: Vec3, driven: bool = False) -> None:
+    def put(self, simulation: Simulation, time: float, position: Vec3, driven: bool = False) -> None:
         """Put a copter that flies by its true state there.
 
         Args:
             simulation: the vehicle, armed and in the air.
             time: since arming [s].
-            place: where its body was when it was armed.
+            position: where its body was when it was armed.
             driven: its rotors do from now on what ``drive`` says, not what the autopilot wants.
         """
         v: Any = simulation.v
@@ -113,7 +113,7 @@ class LoggedState:
         v.physics.ground.state = GROUND_AIRBORNE  # else a simulation that stands stays on its ground
         body, control = v.physics.body, v.autopilot.control
         motion = np.array(self.motion.at(time))
-        origin = np.array(place)
+        origin = np.array(position)
         wanted = np.concatenate([origin + motion[:3] - self.start, motion[3:]])
         was = body.pos
         follows = self._follow_targets(control, time, wanted)

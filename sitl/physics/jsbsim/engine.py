@@ -173,7 +173,7 @@ class JsbsimEngine(Engine):
         return start.Motion((centre.x, centre.y, self._height - centre.z), velocity, euler_of(b.q), b.rates)
 
     def _lever(self, q: Quat, rates: Vec3) -> tuple[Vec3, Vec3]:
-        """From the origin of the body to its centre of mass: place [m] and velocity [m/s], NED."""
+        """From the origin of the body to its centre of mass: position [m] and velocity [m/s], NED."""
         ahead = self.model.ahead
         return rotate(q, Vec3(ahead, 0.0, 0.0)), rotate(q, Vec3(0.0, ahead * rates.z, -(ahead * rates.y)))
 

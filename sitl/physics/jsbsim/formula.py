@@ -126,9 +126,9 @@ def load(text: str, dt: float) -> Any:
     """
     jsbsim = library()
     with TemporaryDirectory(prefix="gym-sitl-jsbsim-") as folder:
-        place = Path(folder) / "aircraft" / NAME
-        place.mkdir(parents=True)
-        (place / f"{NAME}.xml").write_text(text, encoding="utf-8")
+        path = Path(folder) / "aircraft" / NAME
+        path.mkdir(parents=True)
+        (path / f"{NAME}.xml").write_text(text, encoding="utf-8")
         executive = jsbsim.FGFDMExec(folder)
         executive.set_debug_level(0)
         executive.disable_output()

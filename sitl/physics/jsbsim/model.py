@@ -82,8 +82,8 @@ class VehicleModel(ABC):
 def writer(vehicle: EngineVehicle, path: str, count: int) -> Callable[..., None]:
     """A function of ``count`` numbers that writes them as f8 from the field at ``path`` on."""
     dtype, memory = vehicle.fleet.dtype, vehicle.fleet.view("u1").data
-    place = vehicle.index * dtype.itemsize + offset(dtype, *path.split("."))
-    return partial(struct.Struct(f"<{count}d").pack_into, memory, place)
+    start = vehicle.index * dtype.itemsize + offset(dtype, *path.split("."))
+    return partial(struct.Struct(f"<{count}d").pack_into, memory, start)
 
 
 FOOT = 0.3048

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from ...core.constants import GRAVITY
 from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
-from .aircraft import Contact, place, written
+from .aircraft import Contact, location, written
 from .formula import difference, function, limited, product, total
 from .model import FOOT, POUND
 
@@ -107,6 +107,6 @@ def _force(name: str, speed: str, motor: int, mass: float, bound: float, at: tup
     wanted = product(difference(f"drive/speed{motor}", speed), mass / SLIP_TIME)
     formula = product(limited(wanted, bound), 1.0 / POUND)
     return (
-        f'<force name="{name}" frame="BODY">{function(f"force/{name}", formula)}{place(*at)}'
+        f'<force name="{name}" frame="BODY">{function(f"force/{name}", formula)}{location(*at)}'
         "<direction><x>1</x><y>0</y><z>0</z></direction></force>"
     )

@@ -23,9 +23,9 @@ the thrust."""
 @law
 def open_circuit(charge: float) -> float:
     """Open-circuit voltage, as a share of the full one, at a charge of 0 .. 1."""
-    place = min(max(charge, 0.0), 1.0) * 10.0
-    k = min(int(place), 9)
-    share = OPEN_CIRCUIT[k] + (place - k) * (OPEN_CIRCUIT[k + 1] - OPEN_CIRCUIT[k])
+    index = min(max(charge, 0.0), 1.0) * 10.0
+    k = min(int(index), 9)
+    share = OPEN_CIRCUIT[k] + (index - k) * (OPEN_CIRCUIT[k + 1] - OPEN_CIRCUIT[k])
     if charge < EMPTY:
         share *= max(charge, 0.0) / EMPTY
     return share

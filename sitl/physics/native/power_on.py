@@ -54,7 +54,7 @@ def place(p: Physics, home: Home) -> None:
 
 
 def wake(v: Vehicle[Physics]) -> None:
-    """Battery, wind and air as they are at this place; sensor errors are drawn and first samples taken."""
+    """Battery, wind and air as they are at this position; sensor errors are drawn and first samples taken."""
     p, w = v.physics, v.physics.wind
     p.battery.charge = 1.0
     p.battery.voltage = p.airframe.battery_voltage_full

@@ -36,13 +36,13 @@ SENSORS = 2
 
 
 class Beams(Record):
-    """A sensor's rays, and room to work in; arrays by their addresses."""
+    """A sensor's rays, and memory to work in; arrays by their addresses."""
 
     count: int  # rays; 0: the vehicle has no such sensor
     readings: int  # that are published, of as many rays or more
     rays: int  # unit vectors on the body, FRD, shape (3, count)
-    directions: int  # room for the same, NED, shape (3, count)
-    ranges: int  # room for what they meet [m], shape (count,)
+    directions: int  # memory for the same, NED, shape (3, count)
+    ranges: int  # memory for what they meet [m], shape (count,)
     origin: Vec3  # where they start, NED, down from z = 0 of the world's frame [m]
 
 
@@ -73,7 +73,7 @@ class RangerFigures(NamedTuple):
     noise: float
     """Standard deviation of a reading [m]."""
     at: Vec3
-    """Place on the body, FRD [m]."""
+    """Position on the body, FRD [m]."""
 
 
 @law
@@ -127,7 +127,7 @@ def aim(body: Body, at: Vec3, floor: float, beams: Beams) -> None:
 
     Args:
         body: position from the origin on the floor.
-        at: place of the sensor on the body, FRD [m].
+        at: position of the sensor on the body, FRD [m].
         floor: its height in the world's frame [m].
         beams: of the sensor.
     """

@@ -120,7 +120,7 @@ class Fix(Record):
 
 
 class Jam(Record):
-    """What a jammed GPS receiver makes of its place."""
+    """What a jammed GPS receiver makes of its position."""
 
     pos: Vec3  # NED, error [m]
     vel: Vec3  # NED [m/s]
@@ -134,7 +134,7 @@ class GpsFault(Record):
 
     is_on: bool
     delay: Int32  # [ticks]; -1: the airframe's
-    satellites: Int32  # that are told; -1: the airframe's
+    satellites: Int32  # that are reported; -1: the airframe's
     lat: Int32  # added [degE7]
     lon: Int32  # added [degE7]
     alt: Float32  # added [m]

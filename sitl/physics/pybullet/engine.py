@@ -170,7 +170,7 @@ class BulletEngine(Engine):
         return self._picture.render(*self._pose(), width, height, camera)
 
     def _pose(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Place and attitude that the record says, in Bullet's frame."""
+        """Position and attitude that the record says, in Bullet's frame."""
         b = self.vehicle.v.physics.body
         (north, east, down), (w, x, y, z) = b.pos, b.q
         return (north, -east, self.body.zero - down), (x, -y, -z, w)

@@ -153,9 +153,9 @@ class BulletRover(Engine):
         p, plan = client.p, self.model.layout
         half, base = 0.5 * plan.track, plan.wheelbase
         bend = math.tan(angle) / base if self._bends else math.sin(angle) * self._scale
-        places = (-math.atan(base * bend / (1.0 + half * bend)), -math.atan(base * bend / (1.0 - half * bend)))
+        angles = (-math.atan(base * bend / (1.0 + half * bend)), -math.atan(base * bend / (1.0 - half * bend)))
         p.setJointMotorControlArray(
-            self._number, self.model.steering, p.POSITION_CONTROL, targetPositions=places, **self._strength
+            self._number, self.model.steering, p.POSITION_CONTROL, targetPositions=angles, **self._strength
         )
 
     def _skid(self, client: Client) -> None:
@@ -246,9 +246,9 @@ class BulletRover(Engine):
         if self._picture is None:
             a, reach = vehicle.v.physics.airframe, self.model.layout.wheelbase
             self._picture = Picture(lambda c: build(c, a, vehicle.floor).body, vehicle.world, vehicle.floor, reach)
-        place, attitude = client.p.getBasePositionAndOrientation(self._number, client.id)
+        position, attitude = client.p.getBasePositionAndOrientation(self._number, client.id)
         joints = {k: client.p.getJointState(self._number, k, client.id)[0] for k in self.model.joints}
-        return self._picture.render(place, attitude, width, height, camera, joints)
+        return self._picture.render(position, attitude, width, height, camera, joints)
 
     def close(self) -> None:
         if self._picture is not None:

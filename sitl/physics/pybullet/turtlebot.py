@@ -143,8 +143,8 @@ class BulletTurtlebot:
         if self._picture is None:
             figures = self.v.figures
             self._picture = Picture(lambda c: build(c, figures, floor).body, self.world, floor, 0.5)
-        place, attitude = client.p.getBasePositionAndOrientation(self.model.body, client.id)
-        return self._picture.render(place, attitude, width, height, camera)
+        position, attitude = client.p.getBasePositionAndOrientation(self.model.body, client.id)
+        return self._picture.render(position, attitude, width, height, camera)
 
     def snapshot(self) -> bytes:
         """What the record does not hold. Among solids it goes on as if it had been restored (``client.save``)."""

@@ -28,7 +28,7 @@ ROTOR = 0.25
 """Inertia of both geared motors, as it appears at the rims, by the robot's mass [estimate]."""
 TORQUE = 1.0
 """Of each motor at its wheel [N m] [model]."""
-CASTER_PLACE = 0.115
+CASTER_OFFSET = 0.115
 """Ahead and behind the axle [m] [model]."""
 CASTER_RADIUS = 0.0176
 """[m] [model]."""
@@ -70,12 +70,12 @@ def build(client: Client, figures: Any, floor: float) -> TurtlebotModel:
         seen = p.createVisualShape(
             p.GEOM_CYLINDER, radius=radius - sag, length=0.02, rgbaColor=(0.1, 0.1, 0.1, 1.0), physicsClientId=id_
         )
-        place = (0.0, side, radius - sag - height)
-        links.append((parts.add(WHEEL_MASS, shape, seen, place, 0, ALONG_Y) - 1, radius, 0.5 - CASTER_LOAD, 1.0))
+        position = (0.0, side, radius - sag - height)
+        links.append((parts.add(WHEEL_MASS, shape, seen, position, 0, ALONG_Y) - 1, radius, 0.5 - CASTER_LOAD, 1.0))
     shape = p.createCollisionShape(p.GEOM_SPHERE, radius=CASTER_RADIUS, physicsClientId=id_)
-    for ahead in (CASTER_PLACE, -CASTER_PLACE):
-        place = (ahead, 0.0, CASTER_RADIUS - sag / STIFFER - height)
-        number = parts.add(0.5 * WHEEL_MASS, shape, -1, place, 0, turns=False) - 1
+    for ahead in (CASTER_OFFSET, -CASTER_OFFSET):
+        position = (ahead, 0.0, CASTER_RADIUS - sag / STIFFER - height)
+        number = parts.add(0.5 * WHEEL_MASS, shape, -1, position, 0, turns=False) - 1
         links.append((number, CASTER_RADIUS, CASTER_LOAD, STIFFER))
     mass = MASS - 3.0 * WHEEL_MASS
     top, bottom, wide = float(f.top), float(f.bottom), float(f.radius)

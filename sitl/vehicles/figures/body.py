@@ -102,12 +102,12 @@ class Ranging(Record):
     lidar_max: float = figure("m", "range; what is farther reads as nothing", 0.0, 600.0, 0.0)
     lidar_rate: float = figure("Hz", "scans a second", 0.1, 400.0, 10.0)
     lidar_noise: float = figure("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
-    lidar_at: Vec3 = figure("m", "its place on the body: forward, right, down", -100.0, 100.0, (0.0, 0.0, 0.0))
+    lidar_at: Vec3 = figure("m", "its position on the body: forward, right, down", -100.0, 100.0, (0.0, 0.0, 0.0))
     rangefinder_max: float = figure("m", "range of the one that looks down; 0 none", 0.0, 600.0, 0.0)
     rangefinder_min: float = figure("m", "least reading", 0.0, 10000.0, 0.0)
     rangefinder_rate: float = figure("Hz", "readings a second", 0.1, 400.0, 10.0)
     rangefinder_noise: float = figure("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
-    rangefinder_at: Vec3 = figure("m", "its place on the body", -100.0, 100.0, (0.0, 0.0, 0.0))
+    rangefinder_at: Vec3 = figure("m", "its position on the body", -100.0, 100.0, (0.0, 0.0, 0.0))
 
 
 class Figures(Body, Battery, Sensors, Outline, Ranging):

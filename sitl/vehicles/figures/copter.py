@@ -37,7 +37,7 @@ class Air(Record):
 
 
 class Hubs(Record):
-    """Places of the rotors; written from the airframe's rotors."""
+    """Positions of the rotors; written from the airframe's rotors."""
 
     rotor_count: int = figure("", "rotors", 1, ROTORS_MAX)
     rotor_x: Floats = figure("m", "hub positions, forward", -math.inf, count=ROTORS_MAX)

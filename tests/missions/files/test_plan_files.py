@@ -146,7 +146,7 @@ def test_null_is_keep_the_heading_or_nothing() -> None:
     picture = entry(command=2000, params=[0, 0, 1, None, None, None, None])
     found = plan.parse(text(entry(params=[0, 0, 0, None, None, None, 10]), picture)).mission.items
     assert math.isnan(found[1].p4)
-    assert found[1].no_place
+    assert found[1].no_location
     assert found[2].p4 == 0.0
 
 

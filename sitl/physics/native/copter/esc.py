@@ -20,7 +20,7 @@ def sample(rotors: Rotors, sensors: Sensors, figures: Figures, armed: bool, time
     """Write the speeds of all rotors; nothing without telemetry.
 
     The momentum model has no speeds: there a rotor turns ``rotors.rpm_max`` at full command. Controllers of armed
-    motors tell ``rotors.rpm_armed`` at least.
+    motors report ``rotors.rpm_armed`` at least.
     """
     if not rotors.telemetry:
         return

@@ -38,7 +38,7 @@ class Rotors(Record):
     thrust: Floats = array(ROTORS_MAX)  # [N]
     share: Floats = array(ROTORS_MAX)  # of their controls that is left (SIM_ENGINE_FAIL)
     stuck: int  # bits of those whose command stays (SIM_ENGINE_STUCK)
-    telemetry: bool  # speed controllers tell speeds
+    telemetry: bool  # speed controllers report speeds
     rpm_armed: float  # they tell so much at least while armed
     rpm_max: float  # of a rotor at full command, where the model has no speeds
     power: float  # taken from the battery by all [W]

@@ -32,7 +32,7 @@ EXACT = 0.02
 JAM_SILENT_TICKS, JAM_SILENT_MORE_TICKS = 400, 2000
 JAM_CHANGES = 0.3
 """Chance that a figure of a jammed receiver changes from fix to fix."""
-JAM_PLACE, JAM_SPEED = 500.0, 150.0
+JAM_POSITION, JAM_SPEED = 500.0, 150.0
 """Standard deviations of each axis [m, m/s]."""
 JAM_SATELLITES, LEAST_SATELLITES = 17, 4
 JAM_DOP = 60000.0
@@ -85,7 +85,7 @@ def send(r: GpsReceiver, place: Place, found: Measured, due: int, fix_type: int)
 def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
     """A jammed receiver's next fix, as ArduPilot's simulator has it: its type.
 
-    At first nothing is received for one to six seconds; then satellites come and go, and place, speed and dilutions
+    At first nothing is received for one to six seconds; then satellites come and go, and position, speed and dilutions
     jump now and again.
     """
     if r.jam_end == 0:
@@ -94,7 +94,7 @@ def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
         return GpsFixType.NO_FIX
     jam = r.jam
     if uniform(rng) < JAM_CHANGES:
-        jam.pos = JAM_PLACE * normal_vector(rng)
+        jam.pos = JAM_POSITION * normal_vector(rng)
     if uniform(rng) < JAM_CHANGES:
         jam.vel = JAM_SPEED * normal_vector(rng)
     if uniform(rng) < JAM_CHANGES:

@@ -18,14 +18,14 @@ from .state import Body
 
 
 class Beams(NamedTuple):
-    """The rays of a lidar, and room to work in."""
+    """The rays of a lidar, and memory to work in."""
 
     rays: Table
     """Unit vectors on the body, FRD, shape (3, rays)."""
     directions: Table
-    """Room, shape (3, rays)."""
+    """Memory, shape (3, rays)."""
     ranges: Line
-    """Room, shape (rays,)."""
+    """Memory, shape (rays,)."""
 
 
 @law

@@ -43,11 +43,11 @@ def wheel_speeds(f: Figures, forward: float, turn: float) -> WheelSpeeds:
 
 
 @law
-def free_distance(f: Figures, floor: float, solids: Table, place: Vec2) -> float:
-    """Distance [m] from the robot's cylinder, were its axis at a place (north, east [m]) of a floor (down [m]), to the
-    nearest solid; negative inside of one.
+def free_distance(f: Figures, floor: float, solids: Table, position: Vec2) -> float:
+    """Distance [m] from the robot's cylinder, were its axis at a position (north, east [m]) of a floor (down [m]), to
+    the nearest solid; negative inside of one.
     """
-    return nearest_of(solids, solids.shape[0], Volume(place, floor - f.top, floor - f.bottom, f.radius)).distance
+    return nearest_of(solids, solids.shape[0], Volume(position, floor - f.top, floor - f.bottom, f.radius)).distance
 
 
 @inlined
