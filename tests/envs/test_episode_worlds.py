@@ -367,7 +367,7 @@ def test_a_world_in_which_the_robot_cannot_start_is_refused(make):
     ],
 )
 def test_places_of_one_world_are_refused_in_several(task):
-    refused("was given places of one world", rover, ["rooms:seed=3", "open"], task=task())
+    refused("was given positions of one world", rover, ["rooms:seed=3", "open"], task=task())
     rover("open", task=task()).reset(seed=1)
 
 
