@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The course of AUTOTUNE: who may enter, what interrupts it, when it is level, where it leans back to, what comes next."""
+"""The course of AUTOTUNE: who may enter, what interrupts it, when it is level, what follows a twitch."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_it_begins_anew_goes_on_after_a_pause_and_tries_what_it_found() -> None:
     )
     assert t.roll.rate_d == 0.2  # D is no larger
     assert t.roll_before.rate_d == 0.5
-    assert p.ATC.RAT_RLL.I == pytest.approx(0.1 * t.roll_before.rate_p)
+    assert pytest.approx(0.1 * t.roll_before.rate_p) == p.ATC.RAT_RLL.I
     t.phase, t.axis, t.done, t.count = gains.PAUSED, YAW, 3, 2
     p.ATC.RAT_RLL.P = 0.33
     wait(v, 1.0)
@@ -129,8 +129,8 @@ def test_a_stick_interrupts_it_and_half_a_second_later_it_goes_on(stick: str, pl
         setattr(sticks, stick, 0.1)
     ap.params.ATC.RAT_RLL.P = 9.0
     assert autotune.is_overridden(v, 0.5 if stick == "climb" else 0.0, True)
-    assert ap.params.ATC.RAT_RLL.P == t.roll_before.rate_p
-    assert ap.params.ATC.RAT_RLL.I == t.roll_before.rate_i
+    assert t.roll_before.rate_p == ap.params.ATC.RAT_RLL.P
+    assert t.roll_before.rate_i == ap.params.ATC.RAT_RLL.I
     assert (tuple(t.place) == (1.0, 2.0)) == place_moves
     for name in ("roll", "pitch", "yaw"):
         setattr(sticks, name, 0.0)
@@ -336,7 +336,7 @@ def test_an_axis_ends_with_a_margin_of_its_angle_p_and_its_acceleration(axis, ac
     if axis == YAW:
         assert t.phase == gains.FOUND
         assert told(v, gains.AUTOTUNE_DID)[-1] == (gains.SUCCESS, 0.0)
-        assert v.autopilot.params.ATC.RAT_YAW.P == t.yaw_before.rate_p
+        assert t.yaw_before.rate_p == v.autopilot.params.ATC.RAT_YAW.P
     else:
         assert (t.axis, t.step, t.phase) == (axis + 1, rules.RATE_D_UP, gains.TUNING)
 
@@ -357,7 +357,7 @@ def test_gains_that_cannot_be_found_end_it(came_to: int, fails: bool, monkeypatc
     v.autopilot.params.ATC.RAT_RLL.P = 99.0
     autotune.learn(v)
     assert (t.phase == gains.FAILED) == fails
-    assert (v.autopilot.params.ATC.RAT_RLL.P == t.roll_before.rate_p) == fails
+    assert (t.roll_before.rate_p == v.autopilot.params.ATC.RAT_RLL.P) == fails
     assert told(v, gains.AUTOTUNE_DID)[-1] == ((gains.FAILURE, float(came_to)) if fails else (gains.D_LIMIT, 0.0))
 
 

@@ -117,7 +117,7 @@ def test_a_twitch_begins_from_the_present_motion(step: int) -> None:
     assert t.twitching
     by_angle = step in (rules.ANGLE_P_DOWN, rules.ANGLE_P_UP)
     assert t.rate == (0.2 if by_angle else 0.0)  # rates are measured from that of the start, those of angles are not
-    assert v.autopilot.params.ATC.RAT_PIT.I == pytest.approx(0.01 * t.pitch.rate_p)
+    assert pytest.approx(0.01 * t.pitch.rate_p) == v.autopilot.params.ATC.RAT_PIT.I
 
 
 @pytest.mark.parametrize("backwards", (False, True))
