@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DOCK and FOLLOW of the rover: conditions to enter, the line to the dock, where it stops, and keeping beside a lead."""
+"""DOCK and FOLLOW of the rover: conditions to enter, the line to the dock, where it stops, and keeping to a lead."""
 
 from __future__ import annotations
 
