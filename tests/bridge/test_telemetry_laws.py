@@ -59,7 +59,8 @@ def v() -> Copter:
     [
         (int16, -1.9, -1), (int16, 1e30, 32767), (int16, -math.inf, -32768), (int16, math.nan, -32768),
         (uint16, 65534.9, 65534), (uint16, math.inf, 65535), (uint16, -0.1, 0), (uint16, math.nan, 0),
-        (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647), (int32, math.nan, -2147483648),
+        (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647),
+        (int32, 3e9, 2147483647), (int32, -3e9, -2147483648), (int32, math.nan, -2147483648),
         (percent, 99.9, 99), (percent, 1e30, 100), (percent, -0.1, -1), (percent, math.nan, -1),
         (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, -1e-300, 0),
         (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
