@@ -257,7 +257,7 @@ def test_a_twitch_begins_when_it_was_level_for_a_quarter_of_a_second() -> None:
     assert not t.twitching
 
 
-@pytest.mark.parametrize("came_to", (rules.MEASURED, rules.TOO_LARGE, rules.NO_ROOM, rules.GOES_ON))
+@pytest.mark.parametrize("came_to", (rules.MEASURED, rules.TOO_LARGE, rules.TWITCH_AT_LEAST, rules.GOES_ON))
 def test_what_a_twitch_came_to(came_to: int) -> None:
     v = tuning()
     t = v.autopilot.modes.autotune
@@ -270,10 +270,10 @@ def test_what_a_twitch_came_to(came_to: int) -> None:
     autotune.tune(v)
     assert (t.roll.rate_p > p_before) == (came_to == rules.MEASURED)
     assert bool(t.backwards) == (came_to == rules.MEASURED)
-    failed = came_to == rules.NO_ROOM
+    failed = came_to == rules.TWITCH_AT_LEAST
     assert (t.phase == gains.FAILED) == failed
     assert bool(t.twitching) == (came_to == rules.GOES_ON)
-    assert ((gains.FAILURE, float(rules.NO_ROOM)) in told(v, gains.AUTOTUNE_DID)) == failed
+    assert ((gains.FAILURE, float(rules.TWITCH_AT_LEAST)) in told(v, gains.AUTOTUNE_DID)) == failed
     if came_to in (rules.MEASURED, rules.TOO_LARGE):
         assert (t.came_to, t.levelling_us) == (rules.GOES_ON, v.time_us)
 

@@ -242,7 +242,7 @@ def test_the_acceleration_is_up_to_the_greatest_rate() -> None:
         (0.5, 0.5, 0.6, 0.3, 1.0, rules.MEASURED, 1.0),
         (0.5, 0.5, 0.5, 0.3, 1.0, rules.TOO_LARGE, 0.9),
         (0.5, 0.5, 0.5, 0.299, 1.0, rules.GOES_ON, 1.0),
-        (0.5, 0.5, 0.5, 0.3, 0.2, rules.NO_ROOM, 0.2),
+        (0.5, 0.5, 0.5, 0.3, 0.2, rules.TWITCH_AT_LEAST, 0.2),
         (0.5, 0.5, 0.5, 0.3, 0.21, rules.TOO_LARGE, 0.189),
     ),
 )

@@ -134,7 +134,7 @@ def test_where_it_looks_for_the_target_again(behave: float, stage: int, place: t
     v = landing()
     ap = v.autopilot
     ap.modes.land.stage, ap.params.PLND.RET_BEHAVE = stage, behave
-    assert tuple(precision_land.place_to_try(ap.modes.land, ap.landing_target, ap.params.PLND)) == place
+    assert tuple(precision_land.position_to_try(ap.modes.land, ap.landing_target, ap.params.PLND)) == place
 
 
 @pytest.mark.parametrize("axis", range(3))
@@ -254,5 +254,5 @@ def test_near_the_ground_the_place_is_held_softly(landed_maybe: int, monkeypatch
     done: list[Any] = []
     monkeypatch.setattr(precision_land.position_start, "soften_for_landing_ne", lambda *args: done.append("soft"))
     monkeypatch.setattr(precision_land.position, "input_vel_accel_ne", lambda c, vel, acc: done.append(tuple(vel)))
-    assert not precision_land.hold_place(v, Vec2(1.0, 2.0))
+    assert not precision_land.hold_position(v, Vec2(1.0, 2.0))
     assert done == ["soft"] * landed_maybe + [(1.0, 2.0)]

@@ -227,7 +227,7 @@ def test_in_place_the_chirp_disturbs_what_is_measured_or_moves_the_place(
     turn_to(v, 0.5 * math.pi)  # forward is east, right is south
     place, state = v.autopilot.control.pos_ne, v.autopilot.modes.systemid
     start = tuple(state.place)
-    systemid.run_in_place(v, axis, 0.4)
+    systemid.run_at_position(v, axis, 0.4)
     push = (0.0, 0.4) if axis in (15, 17, 19) else (-0.4, 0.0)
     zero = (0.0, 0.0)
     assert disturbed == [axis <= 17]

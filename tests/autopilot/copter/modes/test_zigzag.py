@@ -216,7 +216,7 @@ def test_on_the_ground_the_sticks_fly(stage, landed, flown, monkeypatch):
     v = between_points(stage)
     v.autopilot.arming.landed = landed
     ran: list[str] = []
-    monkeypatch.setattr(zigzag, "run_way", lambda v: ran.append("way"))
+    monkeypatch.setattr(zigzag, "run_line", lambda v: ran.append("way"))
     monkeypatch.setattr(loiter, "run", lambda v: ran.append("loiter"))
     zigzag.run(v)
     assert ran == [flown]
@@ -228,7 +228,7 @@ def test_it_arrives_when_its_leg_is_flown(pending: int, monkeypatch: pytest.Monk
     v.autopilot.modes.nav.request_pending = pending
     monkeypatch.setattr(zigzag.waypoint, "advance", lambda *args: True)
     v.autopilot.params.ZIGZ.WP_DELAY = 5.0
-    zigzag.run_way(v)
+    zigzag.run_line(v)
     assert (v.autopilot.modes.zigzag.reached_us != 0) == (pending == 0)
 
 
@@ -256,8 +256,8 @@ def test_a_line_through_two_points_is_met_at_right_angles() -> None:
     state.a, state.b = Vec2(1.0, 1.0), Vec2(4.0, 5.0)
     here = Vec2(7.0, -2.0)
     for point, at in ((A, state.a), (B, state.b)):
-        place = zigzag.place_on_line(state, point, here)
+        place = zigzag.position_on_line(state, point, here)
         assert (place.x - at.x) * 3.0 + (place.y - at.y) * 4.0 == pytest.approx(0.0)
         assert (place.x - here.x) * 4.0 - (place.y - here.y) * 3.0 == pytest.approx(0.0)
-    aside = zigzag.place_beside(state, here, math.pi, 10.0)
+    aside = zigzag.position_beside(state, here, math.pi, 10.0)
     assert (aside.x, aside.y) == pytest.approx((7.0 - 8.0, -2.0 + 6.0))

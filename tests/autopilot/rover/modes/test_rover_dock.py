@@ -12,7 +12,7 @@ from sitl.autopilot.follow import FOLLOW_OFF, FOLLOW_OFFSET
 from sitl.autopilot.rover.control import position, speed
 from sitl.autopilot.rover.modes import dock, drive, follow
 from sitl.autopilot.rover.modes.dock import DOCK_DID, lead_in, slowed
-from sitl.autopilot.rover.modes.mode import PLACE_TO_STAY
+from sitl.autopilot.rover.modes.mode import POSITION_TO_HOLD
 from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover
 
@@ -91,7 +91,7 @@ def test_where_it_has_arrived(distance: float, seen: bool, located: bool, arrive
     assert told(rover, DOCK_DID) == ([(dock.ARRIVED, 0.0)] if arrives else [])
     dock.run(rover.v)
     assert told(rover, DOCK_DID) == []
-    assert dock.destination(rover.ap.modes) == (PLACE_TO_STAY, state.place)
+    assert dock.destination(rover.ap.modes) == (POSITION_TO_HOLD, state.place)
 
 
 @pytest.mark.parametrize(
