@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -69,9 +69,10 @@ class Campaign:
 
     def stages(self) -> list[tuple[str, list[Job]]]:
         """What is missing: title of a stage -> its jobs, the shortest first."""
-        real = ("other autopilots, seed 0", self._jobs(self.chosen, 0, self._real))
+        flown = [self._jobs([entry], self.flown_seed(entry), self._real) for entry in self.chosen]
+        real = ("other autopilots", self._shortest_first(job for jobs in flown for job in jobs))
         if self.only_programs:
-            there = [job for job in real[1] if not job.train and job.policy.exists()]
+            there = [job for job in real[1] if not job.train and job.is_here]
             return [(real[0], there)] if there else []
         plain = [entry for entry in self.chosen if not entry.is_variant]
         variants = [entry for entry in self.chosen if entry.is_variant]
@@ -88,6 +89,14 @@ class Campaign:
         found += [(f"variants, seed {seed}", self._jobs(variants, seed, _all)) for seed in later]
         return [(title, jobs) for title, jobs in found if jobs]
 
+    def flown_seed(self, entry: Entry) -> int:
+        """The training whose policy other autopilots fly: one that they have flown; else that of the policy in the
+        package, or the first whose policy is here."""
+        flown = [seed for seed in range(self.seeds) if any(self.episodes(entry, seed, what) for what in AUTOPILOTS)]
+        jobs = [self._job(entry, seed) for seed in range(self.seeds) if self.training(entry, seed) is not None]
+        here = sorted((job for job in jobs if job.is_here), key=lambda job: not job.is_shipped)
+        return next(iter([*flown, *(job.seed or 0 for job in here)]), 0)
+
     def _real(self, entry: Entry) -> tuple[str, ...]:
         return tuple(what for what in AUTOPILOTS if program_of(entry.name, what, self.programs))
 
@@ -98,19 +107,25 @@ class Campaign:
             missing = tuple(what for what in wanted(entry) if self.episodes(entry, number, what) is None)
             if missing:
                 train = seed is not None and self.training(entry, seed) is None
-                env = self.references.digest(entry.plain)
-                job = Job(entry.name, seed, missing, train, env, self.runs, programs=self.programs, steps=entry.steps)
-                if seed is not None and not train and not job.policy.exists() and shipped.key_of(entry.name) != job.key:
+                job = self._job(entry, seed, missing, train)
+                if seed is not None and not train and not job.is_here:
                     again = tuple(dict.fromkeys((*missing, *_all(entry))))
                     job = replace(job, whats=again)  # trained again, it may be another policy on this machine
                 jobs.append(job)
+        return self._shortest_first(jobs)
+
+    def _job(self, entry: Entry, seed: int | None, whats: tuple[str, ...] = (), train: bool = False) -> Job:
+        env = self.references.digest(entry.plain)
+        return Job(entry.name, seed, whats, train, env, self.runs, programs=self.programs, steps=entry.steps)
+
+    def _shortest_first(self, jobs: Iterable[Job]) -> list[Job]:
         return sorted(jobs, key=lambda job: sum(self.seconds(job)))
 
     # ------------------------------------------------------------------ times
 
     def seconds(self, job: Job) -> tuple[float, float]:
         """Estimated processor time of a job's training, and of its evaluations [s]."""
-        trains = job.seed is not None and not job.policy.exists()
+        trains = job.seed is not None and not job.is_here
         return self.expected(job.entry, None) if trains else 0.0, sum(
             self.expected(job.entry, what) for what in job.whats
         )

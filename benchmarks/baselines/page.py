@@ -134,8 +134,9 @@ def autopilots(found: Campaign) -> str:
     """Policies on the programs of other autopilots, beside the same episodes on ours."""
     rows = []
     for entry in found.chosen:
-        ours = found.episodes(entry, 0, NOMINAL)
-        real = [found.episodes(entry, 0, what) for what in AUTOPILOTS]
+        seed = found.flown_seed(entry)
+        ours = found.episodes(entry, seed, NOMINAL)
+        real = [found.episodes(entry, seed, what) for what in AUTOPILOTS]
         if entry.is_variant or ours is None or not any(real):
             continue
         count = max(len(one["reached"]) for one in real if one)

@@ -69,6 +69,16 @@ class Job:
         """Where the trained policy is kept."""
         return policy_file(self.runs, self.name, self.seed or 0, self.key)
 
+    @property
+    def is_shipped(self) -> bool:
+        """Whether the policy of the training is the one in the package."""
+        return shipped.key_of(self.name) == self.key
+
+    @property
+    def is_here(self) -> bool:
+        """Whether that policy need not be trained again."""
+        return self.policy.exists() or self.is_shipped
+
 
 def policy_file(runs: Path, name: str, seed: int, key: str) -> Path:
     """Where the policy of a training is kept: its key is part of the name, so that it is never mistaken for another."""
@@ -114,7 +124,7 @@ def _done(job: Job, send_progress: SendProgress, stop: Stopped) -> bool | None:
 
 def _shipped(job: Job) -> bool:
     """Take the policy that comes with the package, where that is the one of this training."""
-    if shipped.key_of(job.name) != job.key:
+    if not job.is_shipped:
         return False
     make_folder(job.policy.parent)
     write_bytes(job.policy, baselines.file(job.name).read_bytes())

@@ -347,7 +347,7 @@ def test_programs_fly_what_is_trained_and_nothing_else_is_done(few, trained, tmp
         Records(tmp_path / "results").add(work.train(job, print, bool))
         Records(tmp_path / "results").add(played(entry, 0, NOMINAL, "1111", job))
     [(title, jobs)] = found().stages()
-    assert title == "other autopilots, seed 0"
+    assert title == "other autopilots"
     assert {job.name: job.whats for job in jobs} == {
         "rover-waypoint": ("ardupilot",),
         "copter-hover": ("ardupilot", "px4"),
@@ -357,6 +357,20 @@ def test_programs_fly_what_is_trained_and_nothing_else_is_done(few, trained, tmp
         Records(tmp_path / "results").add(played(entries.load("copter-hover"), 0, what, bits, jobs[1]))
     assert [job.name for job in dict(found().stages())[title]] == ["rover-waypoint"]
     assert "| `copter-hover` | 100.0 (51 .. 100) | 3 of 3 | 3 of 3 | 2 of 3, 1 crashed |" in page.autopilots(found())
+
+
+def test_programs_fly_the_policy_of_the_package_where_none_has_flown(few, trained, tmp_path, monkeypatch):
+    found = made(tmp_path, seeds=3, checked=False)
+    fill(found, ["1111", "1110", "1100"])
+    jobs = [Job(NAME, seed, (), False, found.references.digest(NAME), found.runs) for seed in range(3)]
+    assert found.flown_seed(found.chosen[0]) == 0  # of none is the policy here
+    make_folder(jobs[1].policy.parent)
+    jobs[1].policy.write_bytes(b"p")
+    assert found.flown_seed(found.chosen[0]) == 1
+    monkeypatch.setattr(shipped, "key_of", lambda name: jobs[2].key)
+    assert found.flown_seed(found.chosen[0]) == 2
+    found.records.add(record(found, 0, "ardupilot", "1111"))
+    assert found.flown_seed(found.chosen[0]) == 0
 
 
 def played(entry, seed, what, bits, job):
