@@ -246,7 +246,7 @@ class Fleet:
         self._orders: Array = MoveOrder.fleet(0)
         self._order_views: list[MoveOrder] = []
         self._move_all: Callable[..., None] | None = None
-        self._figures: Any = self.records["physics"]["airframe"]
+        self._properties: Any = self.records["physics"]["airframe"]
         self._states = [shell.snapshot()] * count
         self.put(range(count), self._states[0])
 
@@ -366,7 +366,7 @@ class Fleet:
                 been in; None: from where they are.
 
         Raises:
-            OptionError: a move that cannot be made (a number out of its limits, a position in a solid, figures with
+            OptionError: a move that cannot be made (a number out of its limits, a position in a solid, properties with
                 which the vehicle does not hover), or a snapshot as of ``put``; no vehicle is changed.
         """
         rows = [which] if isinstance(which, int | np.integer) else list(which)
@@ -401,8 +401,8 @@ class Fleet:
         for order, row, move in zip(orders, rows, moves):
             v = self.view(row)
             move.write(order, int(row), v, kind)
-            for name, value in move.figures.items():
-                self._figures[name][row] = tuple(value) if isinstance(value, Sequence) else value
+            for name, value in move.properties.items():
+                self._properties[name][row] = tuple(value) if isinstance(value, Sequence) else value
             order.other_world = False
             if move.seed is not None:
                 rng.seed(v.rng, move.seed)
@@ -432,9 +432,8 @@ class Fleet:
                 f"vehicle {row} cannot be moved: at north {north:g}, east {east:g} m, {-down:g} m high, {name} would "
                 f"be in a solid of world {self.world(row).name!r}"  # type: ignore[union-attr]
             )
-        return (
-            f"vehicle {row} cannot be moved: {name} does not hover with figures {dict(move.figures)}, wind {move.wind}"
-        )
+        changed = f"properties {dict(move.properties)}, wind {move.wind}"
+        return f"vehicle {row} cannot be moved: {name} does not hover with {changed}"
 
     def snapshot(self, index: int) -> Snapshot:
         """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""

@@ -19,7 +19,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "frame", nargs="?", metavar="NAME|FILE", help="print this airframe as a .toml file (default: list them)"
     )
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the file instead of printing it")
-    add_json_option(parser, "a list of airframes, or one with all its figures")
+    add_json_option(parser, "a list of airframes, or one with all its properties")
     parser.set_defaults(function=show)
 
 

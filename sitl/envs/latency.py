@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 
 from .options import EnvOptionError
 from .robots.robot import Floats, Robot
 
 Ints = npt.NDArray[np.int64]
 
-LATENCY = Figure("latency", "s", "from a decision until its command reaches the robot", 0.0, 60.0, 0.0)
+LATENCY = Property("latency", "s", "from a decision until its command reaches the robot", 0.0, 60.0, 0.0)
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ class NavigateOptions:
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
             "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
             or a function of a random generator that gives one; None: the world's for the robot.
-        randomise: figure of the robot, "latency", or a fault whose amount is drawn -> (low, high), drawn for each
+        randomise: property of the robot, "latency", or a fault whose amount is drawn -> (low, high), drawn for each
             episode; "draws" -> N: of N sets; "identified" -> True: within the airframe's intervals, too. "identified":
             within these alone.
         latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.

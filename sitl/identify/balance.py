@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the centre of mass is, from the mean difference of the motors in a hover.
 
-Motors that differ in strength look the same: the figure is what the controllers have to hold against.
+Motors that differ in strength look the same: what is found is what the controllers have to hold against.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..autopilot.copter.control.frames import FRAMES
 from ..logs.dataflash import motors
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .hover import hovers, mean
 
@@ -29,8 +29,8 @@ SYSTEMATIC, LEANS = 0.01, 0.08
 """Half of the interval, and by the lean [rad]: wind on the rotors turns the vehicle, too."""
 
 
-def balance(logs: Sequence[FlightLog]) -> list[Figure]:
-    """Both figures."""
+def balance(logs: Sequence[FlightLog]) -> list[Estimate]:
+    """Both properties."""
     parts = [(log, part) for log in logs for part in hovers(log)]
     count = sum(len(part.output) for _, part in parts)
     if count < _LEAST:

@@ -27,7 +27,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="height over the ground from which on a copter's flight counts (2); less for a small one that flew low",
     )
     parser.add_argument(
-        "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the figures observable"
+        "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the properties observable"
     )
     parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
     parser.add_argument("--vehicle", choices=("copter", "rover"), default="copter", help="that drives --plan (copter)")
@@ -96,7 +96,7 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None, above:
 
         def begins(what: str) -> None:
             bar.bar_format = "{desc} ({elapsed})"
-            bar.set_description_str(f"figures: {what}")
+            bar.set_description_str(f"properties: {what}")
 
         found = identify(logs, mass, progress, begins, ABOVE_M if above is None else above)
     print(found.table())

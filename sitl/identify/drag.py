@@ -15,7 +15,7 @@ import numpy as np
 
 from ..core.constants import GRAVITY
 from ..physics.native.atmosphere import density
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .motion import Motion, motion
 from .regression import GUSTS_S, Fit, least_squares
@@ -88,7 +88,7 @@ class _Rows:
         self.force, self.groups, self.log = self.force[rows], self.groups[rows], self.log[rows]
 
 
-def drag(logs: Sequence[FlightLog]) -> list[Figure]:
+def drag(logs: Sequence[FlightLog]) -> list[Estimate]:
     """Drag and wind; the wind only of a single log."""
     rows = _Rows(logs)
     rows.at_one_height()
@@ -147,7 +147,7 @@ def _fitted(rows: _Rows, bias: Array, drift: Array) -> Fit:
     return least_squares(residuals, start, groups, int(GUSTS_S / _WINDOW_S))
 
 
-def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Figure]:
+def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Estimate]:
     found = []
     wind = np.zeros((len(rows.log), 3))
     wind[:, :2] = fit.value[5:].reshape(-1, 2)[np.unique(rows.log, return_inverse=True)[1]]
@@ -182,7 +182,7 @@ def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Figure]:
     return found
 
 
-def _wind(fit: Fit, data: str) -> list[Figure]:
+def _wind(fit: Fit, data: str) -> list[Estimate]:
     north, east = fit.value[5:7]
     spread = fit.covariance[5:7, 5:7]
     speed = float(np.hypot(north, east))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What to fly so that a log shows the figures: a mission, in the order of risk, around where it takes off."""
+"""What to fly so that a log shows the properties: a mission, in the order of risk, around where it takes off."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import optimize
 
-from .figure import NORMAL_95
+from .estimate import NORMAL_95
 
 Array = np.ndarray[Any, Any]
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .signals import within
 
@@ -39,7 +39,7 @@ _CORRELATED = 0.2
 """Of neighbours' changes: white noise has -0.5, and a filter between changes that."""
 
 
-def sensors(logs: Sequence[FlightLog]) -> list[Figure]:
+def sensors(logs: Sequence[FlightLog]) -> list[Estimate]:
     """Noise of all sensors that the logs have at rest."""
     ours = all("gym-sitl" in log.columns.firmware for log in logs)
     gyro, acc = _band(logs, "INS_GYRO_FILTER", ours), _band(logs, "INS_ACCEL_FILTER", ours)
@@ -90,7 +90,7 @@ def _at_rest(logs: Sequence[FlightLog], name: str, values: Callable[[Any], Array
 
 def _noise(
     logs: Sequence[FlightLog], sought: Sought, name: str, values: Callable[[Any], Array], root: float, step: float = 0.0
-) -> Figure:
+) -> Estimate:
     parts = _at_rest(logs, name, values)
     if not parts:
         return sought.hidden(f"{_LEAST} samples of {name} at rest, disarmed, are needed (LOG_DISARMED 1)")
@@ -110,7 +110,7 @@ def _noise(
     return sought.between(value, value - half, value + half, f"{rows} rows of {name} at rest")
 
 
-def _bias(logs: Sequence[FlightLog]) -> Figure:
+def _bias(logs: Sequence[FlightLog]) -> Estimate:
     parts = _at_rest(logs, "IMU", lambda t: _axes(t, "Gyr"))
     if not parts:
         return BIAS.hidden(f"{_LEAST} samples of IMU at rest, disarmed, are needed (LOG_DISARMED 1)")

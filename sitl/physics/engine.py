@@ -88,7 +88,7 @@ class Engine(ABC):
 
     @abstractmethod
     def place(self) -> None:
-        """Put the body where the record says (``physics.body``), at rest: power-on. Figures may have changed."""
+        """Put the body where the record says (``physics.body``), at rest: power-on. Properties may have changed."""
 
     @abstractmethod
     def move(self) -> None:

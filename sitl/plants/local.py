@@ -59,7 +59,7 @@ class LocalPlant(Plant):
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
-            if vehicle.airframe.figures.get("on_bench"):
+            if vehicle.airframe.properties.get("on_bench"):
                 raise EngineError(
                     f"physics {backend!r} has no bench for airframe {vehicle.airframe.name!r}; {NATIVE!r} has"
                 )

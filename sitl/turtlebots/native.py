@@ -37,7 +37,7 @@ class Turtlebots:
     Args:
         world: name, .toml file or World.
         count: of robots.
-        airframe: figures that all start with.
+        airframe: what all start with.
         lidar: rays and readings.
 
     Raises:
@@ -64,7 +64,7 @@ class Turtlebots:
         self.lidar = lidar
         self.count = count
         self.fleet = TurtlebotRecord.fleet(count)
-        self.fleet["figures"] = airframe.record()
+        self.fleet["airframe"] = airframe.record()
         self.scan: npt.NDArray[np.float32] = np.zeros((count, lidar.readings), np.float32)
         """Readings of the lidars [m], from right to left, inf for nothing in range; each call writes into it."""
         self.commands = np.full((count, 2), math.nan)
@@ -154,14 +154,14 @@ class Turtlebots:
         self.scan[index] = np.frombuffer(scan, np.float32)
         self.commands[index] = math.nan
 
-    def set_figure(self, index: int, name: str, value: float) -> None:
-        """Replace a figure of one robot (``sitl.vehicles.turtlebot.Figures``).
+    def set_property(self, index: int, name: str, value: float) -> None:
+        """Replace a property of one robot (``sitl.vehicles.turtlebot.Properties``).
 
         Raises:
-            AirframeError: no such figure, or a value outside its limits.
+            AirframeError: no such property, or a value outside its limits.
         """
         AIRFRAME.changed(**{name: value})
-        setattr(self.views[index].figures, name, float(value))
+        setattr(self.views[index].airframe, name, float(value))
 
     def pose(self, index: int = 0) -> tuple[float, float, float, float]:
         """x, y, z [m] and yaw [rad] of one robot."""

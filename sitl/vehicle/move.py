@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A prepared vehicle is put elsewhere, at another speed, in another wind, with other figures, within one instant.
+"""A prepared vehicle is put elsewhere, at another speed, in another wind, with other properties, within one instant.
 
 Body, estimator, controllers, home and origin move as one: what the autopilot believes of the vehicle is as true as it
 was. Time, modes, biases and what is learnt of them stay. The laws here put together what each subsystem has for itself
@@ -46,7 +46,7 @@ class MoveOrder(Record):
     wind_speed: float  # [m/s]
     wind_direction: float  # where it comes from [deg]
     wind_turbulence: float  # standard deviation [m/s]
-    other_figures: bool  # the airframe's figures have been changed in its record
+    other_properties: bool  # the airframe's properties have been changed in its record
     other_world: bool  # what the record says of solids and lidar readings is of another world
     result: int  # DONE, IN_SOLID or NO_HOVER: then the record is of no use
 

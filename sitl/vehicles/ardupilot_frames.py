@@ -14,7 +14,7 @@ from .copter_airframe import CCW, CW
 def _on_bench(airframe: Airframe, name: str) -> Airframe:
     """A vehicle that a bench turns, for calibrations (``sitl.physics.native.bench``)."""
     description = f"{airframe.description}, on a bench that turns it"
-    return replace(airframe, name=name, description=description, figures={**airframe.figures, "on_bench": 1})
+    return replace(airframe, name=name, description=description, properties={**airframe.properties, "on_bench": 1})
 
 
 FRAMES: dict[str, Airframe] = {
@@ -60,4 +60,4 @@ FRAMES: dict[str, Airframe] = {
         ),
     )
 }
-"""By name. See ``multicopter`` for the figures."""
+"""By name. See ``multicopter`` for the properties."""

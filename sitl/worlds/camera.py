@@ -30,7 +30,7 @@ from .geometry import (
     NORTH,
     RADIUS,
     SIN,
-    SOLID_FIGURES,
+    SOLID_COLUMNS,
     TOP,
     Floats,
     Solids,
@@ -55,7 +55,7 @@ TILE, TILE_CONTRAST = 1.0, 0.12
 """The floor is chequered: side of a square [m], and how much darker every other one is."""
 # Columns of a marking's row.
 MARK_NORTH, MARK_EAST, MARK_COS, MARK_SIN, MARK_LENGTH, MARK_WIDTH, MARK_RADIUS, MARK_RED = range(8)
-MARK_FIGURES = 10
+MARK_COLUMNS = 10
 
 
 class Camera(NamedTuple):
@@ -88,7 +88,7 @@ class Paint(NamedTuple):
     solids: Table
     """Shape (solids, 3)."""
     markings: Table
-    """Position and shape (NED [m]) and colour, shape (markings, MARK_FIGURES)."""
+    """Position and shape (NED [m]) and colour, shape (markings, MARK_COLUMNS)."""
 
 
 class Window(NamedTuple):
@@ -336,7 +336,7 @@ class Photographer:
         fixed, coloured = np.asarray(self._solids.rows), np.asarray(self._paint.solids)
         paint = self._paint._replace(solids=np.concatenate((coloured, colour)))
         for i in range(count):
-            rows = np.zeros((discs.shape[1], SOLID_FIGURES))
+            rows = np.zeros((discs.shape[1], SOLID_COLUMNS))
             rows[:, (NORTH, EAST, RADIUS, TOP, BOTTOM)] = discs[i]
             rows[:, COS] = 1.0
             solids = self._solids._replace(rows=np.concatenate((fixed, rows)))
@@ -346,7 +346,7 @@ class Photographer:
 def paint_of(world: World) -> Paint:
     """The colours of a world."""
     solids = np.array([COLOURS[solid.colour] for solid in world.solids], np.float64).reshape(-1, 3)
-    return Paint(solids, np.array([_mark(m) for m in world.markings], np.float64).reshape(-1, MARK_FIGURES))
+    return Paint(solids, np.array([_mark(m) for m in world.markings], np.float64).reshape(-1, MARK_COLUMNS))
 
 
 def _mark(marking: Marking) -> tuple[float, ...]:

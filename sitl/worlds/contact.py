@@ -30,7 +30,7 @@ from .geometry import (
     NORTH,
     RADIUS,
     SIN,
-    SOLID_FIGURES,
+    SOLID_COLUMNS,
     TOP,
     Floats,
     Geometry,
@@ -147,10 +147,10 @@ def gather(solids: Table, position: Vec2, reach: float, rows: Table) -> Listed:
             count += 1
         if row < capacity:
             for below in range(count - 1, row, -1):
-                for figure in range(SOLID_FIGURES):
-                    rows[below, figure] = rows[below - 1, figure]
-            for figure in range(SOLID_FIGURES):
-                rows[row, figure] = solids[k, figure]
+                for column in range(SOLID_COLUMNS):
+                    rows[below, column] = rows[below - 1, column]
+            for column in range(SOLID_COLUMNS):
+                rows[row, column] = solids[k, column]
     return Listed(count, complete)
 
 
@@ -200,7 +200,7 @@ def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floa
         geometry: of a world.
         north, east: the position [m].
         reach: distance seen from above up to which solids are listed [m].
-        rows: shape (K, SOLID_FIGURES): at most K solids are listed.
+        rows: shape (K, SOLID_COLUMNS): at most K solids are listed.
 
     Returns:
         How many rows were written, and the distance [m] of the nearest solid that was left out (inf: none was). As
@@ -211,5 +211,5 @@ def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floa
 
 
 def rows(count: int) -> Floats:
-    """Memory for ``near``: shape (solids, figures)."""
-    return np.zeros((count, SOLID_FIGURES))
+    """Memory for ``near``: shape (solids, SOLID_COLUMNS)."""
+    return np.zeros((count, SOLID_COLUMNS))

@@ -110,7 +110,7 @@ def car_park(seed: int = 0, difficulty: float = 0.5, size: float = 30.0, scale: 
         wall(a, b, f"wall {k}") for k, (a, b) in enumerate(zip(corners, corners[1:] + corners[:1]), 1)
     ]
     bays: list[Marking] = []
-    length, broad, high = (scale * figure for figure in CAR)
+    length, broad, high = (scale * side for side in CAR)
     for k, is_taken in enumerate(taken.tolist()):
         side = 1.0 if k < count else -1.0
         x, y, yaw = -half + width * (k % count + 0.5), side * (lane + 0.5 * depth), side * 0.5 * math.pi

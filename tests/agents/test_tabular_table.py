@@ -157,7 +157,7 @@ def test_in_the_other_worlds_too(world):
     same(f"Gazebo{world}TurtlebotLIDAR-v0", "sarsa", Settings())
 
 
-def test_with_random_starts_noise_and_figures():
+def test_with_random_starts_noise_and_properties():
     noise = {"range_noise": (0.0, 0.05), "wheel_radius_left": (0.0345, 0.0355)}
     outcomes = same(CIRCUIT2, "qlearn", Settings(), start="random", randomise=noise, step_time=0.3)
     assert not all(o.terminated for o in outcomes)

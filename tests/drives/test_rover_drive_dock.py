@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DOCK at a simulated beacon. Figures in comments: the same drive of ArduRover 4.7."""
+"""DOCK at a simulated beacon. Values in comments: the same drive of ArduRover 4.7."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Landings on a target: a simulated beacon, and LANDING_TARGET of a companion computer.
 
-Figures in comments: the same flight of ArduCopter 4.7.
+Values in comments: the same flight of ArduCopter 4.7.
 """
 
 from __future__ import annotations

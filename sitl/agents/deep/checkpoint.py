@@ -30,7 +30,7 @@ MODEL = "model.zip"
 _ABOUT, _STATE, _ARRAYS, _MEMORY = "about.json", "state.json", "state.npz", "memory.npz"
 _TENSORS, _SUFFIX = "tensors.pth", ".weights.pth"
 Score = tuple[float, ...]
-"""How good a model is, the most important figure first; greater is better."""
+"""How good a model is, the most important value first; greater is better."""
 _REMEMBERED = ("actions", "rewards", "dones", "timeouts")
 _SEEN = ("observations", "next_observations")
 """Arrays of a replay buffer; of a goal-conditioned one the latter are arrays by name, and it has those of _EPISODES."""
@@ -98,7 +98,7 @@ def score_of(path: Path) -> Score:
     """
     try:
         with _opened(path) as archive:
-            return tuple(float(figure) for figure in documents.of_json(unpack(archive, _ABOUT, MOST))["score"])
+            return tuple(float(value) for value in documents.of_json(unpack(archive, _ABOUT, MOST))["score"])
     except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
         raise AgentError(f"{path} is no best model: {error}") from None
 

@@ -75,7 +75,7 @@ class Recipe:
         """A run by this recipe; what is given replaces what the recipe says, options and settings one by one.
 
         Raises:
-            AgentError: a setting that the algorithm does not have, a figure that cannot be, or another environment
+            AgentError: a setting that the algorithm does not have or that cannot be, or another environment
                 than the recipe's.
             MissingExtra: the algorithm needs what is not installed.
         """

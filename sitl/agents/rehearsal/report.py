@@ -41,9 +41,9 @@ def write_changes(path: Path, sections: Mapping[str, Sequence[Rehearsed]]) -> No
             rows.append((title, one.name, "home", "", one.home.mean, 1.0, 1.0, 1.0, *_parts(one.home), *4 * [""], ""))
             advantages = [None] * len(one.changes) if one is rehearsed[0] else one.advantages(rehearsed[0])
             for change, tried, share, above in zip(one.changes, one.tried, one.transfer_ratios(), advantages):
-                figures: Sequence[Any] = ("",) * 6 if share is None else (tried.mean, *share, *_parts(tried))
+                values: Sequence[Any] = ("",) * 6 if share is None else (tried.mean, *share, *_parts(tried))
                 last = (*(above or ("", "", "")), int(tried.seen), tried.refused)
-                rows.append((title, one.name, change.name, change.group, *figures, *last))
+                rows.append((title, one.name, change.name, change.group, *values, *last))
     write_csv(path, CHANGES, rows)
 
 
@@ -63,8 +63,8 @@ def write_episodes(path: Path, sections: Mapping[str, Sequence[Rehearsed]], seed
         for title, rehearsed in sections.items()
         for one in rehearsed
         for name, tried in [("home", one.home), *zip([change.name for change in one.changes], one.tried)]
-        for run, *figures in zip(one.runs, tried.rewards, tried.crashed, tried.false_alarms)
-        for episode, (reward, crash, false) in enumerate(zip(*figures))
+        for run, *values in zip(one.runs, tried.rewards, tried.crashed, tried.false_alarms)
+        for episode, (reward, crash, false) in enumerate(zip(*values))
     )
     write_csv(path, EPISODES, rows)
 
@@ -137,8 +137,8 @@ def _section(document: Document, folder: Path, title: str, rehearsed: Sequence[R
 def _about(one: Rehearsed) -> list[str]:
     config = one.runs[0].config
     randomised = config.env_options.get("randomise")
-    figures = [name for name in randomised or () if name != DRAWS]
-    drawn = ", ".join(figures) or "one simulation"
+    drawn_names = [name for name in randomised or () if name != DRAWS]
+    drawn = ", ".join(drawn_names) or "one simulation"
     home = one.home
     seeds, episodes = home.rewards.shape
     return [

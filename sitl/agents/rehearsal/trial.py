@@ -50,11 +50,11 @@ def lidar_distance(robot: Any) -> float:
     """True horizontal distance from the lidar to the nearest solid at its height [m]; 0 where it is unknown."""
     if isinstance(robot, Turtlebot):
         x, y, z, yaw = robot.pose[0].tolist()
-        figures = robot.robots.views[0].figures
-        ahead = float(figures.lidar_ahead)  # type: ignore[attr-defined]
-        position = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
+        airframe = robot.robots.views[0].airframe
+        ahead = float(airframe.lidar_ahead)  # type: ignore[attr-defined]
+        position = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(airframe.lidar_height))  # type: ignore[attr-defined]
         north, east, down = to_ned(*position)
-    elif isinstance(robot, AutopilotRobot) and robot.figures:
+    elif isinstance(robot, AutopilotRobot) and robot.properties:
         v = robot.view(0)
         body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
         heading = euler_of(body.q).yaw

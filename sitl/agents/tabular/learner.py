@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A tabular learner: a table, the figures it learns by, random numbers. It chooses, learns, is saved and goes on."""
+"""A tabular learner: a table, the settings it learns by, random numbers. It chooses, learns, is saved and goes on."""
 
 from __future__ import annotations
 

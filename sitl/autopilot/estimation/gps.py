@@ -73,7 +73,7 @@ def read(ekf: Ekf, count: int) -> None:
 
 @law
 def is_sane(fix: Fix) -> bool:
-    """Whether the message is a 3D fix with figures that make sense."""
+    """Whether the message is a 3D fix with values that make sense."""
     lat, lon, alt = fix.gps_lat, fix.gps_lon, fix.gps_alt
     if fix.gps_fix < 3 or abs(lat) > 900000000 or abs(lon) > 1800000000 or (lat == 0 and lon == 0):
         return False

@@ -285,7 +285,7 @@ def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
 
 @law
 def farthest(fence: FenceState, chosen: int) -> float:
-    """How far beyond those of the fences ``chosen`` the vehicle is, the greatest of the figures [m]."""
+    """How far beyond those of the fences ``chosen`` the vehicle is, the greatest of the distances [m]."""
     over = 0.0
     for k in range(FENCES):
         if chosen >> k & 1 != 0:

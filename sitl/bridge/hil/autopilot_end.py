@@ -36,7 +36,7 @@ class AutopilotEnd:
     """One vehicle's autopilot on a link to its physics.
 
     Args:
-        fleet, index: the record, whose memory stays in place; it has the figures of its airframe.
+        fleet, index: the record, whose memory stays in place; it has the properties of its airframe.
         v: view of it.
         vehicle_type: MAV_TYPE for the heartbeat.
     """

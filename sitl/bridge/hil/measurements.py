@@ -30,7 +30,7 @@ class GpsWriter:
 
     Args:
         reader: of the record.
-        airframe: its record, with the figures of its receiver.
+        airframe: its record, with the properties of its receiver.
     """
 
     marks = (S + "count", S + "fix")
@@ -205,7 +205,7 @@ class Inbox:
     """Writes one vehicle's ``sensors``.
 
     Args:
-        fleet, index: the record, whose memory stays in place; it has the figures of its airframe.
+        fleet, index: the record, whose memory stays in place; it has the properties of its airframe.
         v: view of it.
     """
 

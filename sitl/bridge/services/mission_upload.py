@@ -77,7 +77,7 @@ def to_float(item: MissionItem, seq: int, is_current: bool, target: Sender, kind
 
 
 TIMEOUT_US = 8_000_000
-"""Without an item for so long [simulated us] the upload is given up (ArduPilot's figure)."""
+"""Without an item for so long [simulated us] the upload is given up (ArduPilot's value)."""
 ASK_AGAIN_US = 1_000_000
 
 

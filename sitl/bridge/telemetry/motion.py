@@ -258,7 +258,7 @@ class Ahrs(Message, name="AHRS"):
 
 @law
 def ahrs(m: Ahrs, v: Vehicle) -> bool:
-    """AHRS: gyro drift [rad/s]; the DCM figures of the message have no counterpart here and are zero."""
+    """AHRS: gyro drift [rad/s]; the DCM values of the message have no counterpart here and are zero."""
     m.drift = -v.autopilot.estimate.gyro_bias
     return True
 

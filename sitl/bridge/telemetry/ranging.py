@@ -154,10 +154,10 @@ def distance_sensor(m: DistanceSensor, v: Vehicle, port: Port) -> bool:
 @law
 def limits(v: Vehicle) -> Limits:
     """The range-finder's: of the airframe in a world, else RNGFND1_MIN and RNGFND1_MAX."""
-    figures, down = v.physics.airframe, v.physics.downward
+    airframe, down = v.physics.airframe, v.physics.downward
     if down.ranges:
         return Limits(down.range_min, down.range_max)
-    return Limits(figures.rangefinder_min, figures.rangefinder_max)
+    return Limits(airframe.rangefinder_min, airframe.rangefinder_max)
 
 
 class RangeFinder(Message, name="RANGEFINDER"):

@@ -154,7 +154,7 @@ def switch(encode: Encode) -> Callable[[Connection], None]:
     the other kind until then. It hovers meanwhile.
 
     Args:
-        encode: of the kind; its last figure at rest is the thrust.
+        encode: of the kind; its last number at rest is the thrust.
     """
 
     def hover(link: Connection) -> None:

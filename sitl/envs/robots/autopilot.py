@@ -34,7 +34,7 @@ from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.airframe import Value
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 from sitl.vehicles.receivers import equipped
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned, to_ned
@@ -147,8 +147,10 @@ class AutopilotRobot:
         is_driven = isinstance(made, FleetVehicles) and kind.drive is not None
         self.step_time, self.setpoints = 0.1, tuple(s for s in kind.setpoints if s is not MOTORS or is_driven)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
-        self.figures: Mapping[str, Figure] = (
-            {**{f.name: f for f in airframe.known if is_changeable(f)}, **made.extra_figures} if made.simulates else {}
+        self.properties: Mapping[str, Property] = (
+            {**{f.name: f for f in airframe.known if is_changeable(f)}, **made.extra_properties}
+            if made.simulates
+            else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
         each_boots = not made.simulates or choice is not None or (chosen.begin == BOOT and chosen.boots > 1)
@@ -204,7 +206,7 @@ class AutopilotRobot:
 
     # ------------------------------------------------------------------ episodes
 
-    def set_figure(self, index: int, name: str, value: Value) -> None:
+    def set_property(self, index: int, name: str, value: Value) -> None:
         """See ``Robot``."""
         self._vehicles.changed[index][name] = value
 

@@ -162,18 +162,18 @@ class FleetVehicles(InProcessVehicles):
     # ------------------------------------------------------------------ episodes
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        figures = tuple(sorted(self.changed[index].items()))
+        properties = tuple(sorted(self.changed[index].items()))
         base, world = self.base or self._start, self.worlds[index]
-        stays = pose == base and not figures and world is self.setup.world
+        stays = pose == base and not properties and world is self.setup.world
         if self.options.begin == BOOT or (self.options.boots == 1 and stays):
-            start, move = self._start_of(pose, figures, world, self._boot_of(seed)), None
+            start, move = self._start_of(pose, properties, world, self._boot_of(seed)), None
         else:
             boot, walks = draw(self.options.boots, seed)
             start = self._start_of(base, (), self.setup.world, boot)
             prepared = self._prepared.get(boot)
             if prepared is None or prepared.state is not start.state:
                 prepared = self._prepared[boot] = Prepared(start.state, self.setup, base)
-            move = prepared.to(pose, figures, seed, world, walks)
+            move = prepared.to(pose, properties, seed, world, walks)
         state = start.state
         if (ready := start.ready.get(self._used)) is not None:  # as the last episodes went on
             state = EpisodeState(ready, state.telemetry, state.origin, state.began_us, *self._used)

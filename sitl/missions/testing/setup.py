@@ -155,10 +155,10 @@ def setup(
     params = files.given(params)
     values = values | params
     if wind is not None:
-        figures = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
-        if not 1 <= len(figures) <= 3 or not all(map(math.isfinite, figures)):
+        given = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
+        if not 1 <= len(given) <= 3 or not all(map(math.isfinite, given)):
             raise OptionError(f"wind {wind!r} is neither a speed nor (speed, direction, turbulence)")
-        values.update(zip(WIND, figures))
+        values.update(zip(WIND, given))
     if frame is None:
         frame = KINDS[kind or DEFAULT].default_frame
     elif not isinstance(frame, Airframe):

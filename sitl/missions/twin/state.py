@@ -172,17 +172,17 @@ class LoggedState:
             return
         v: Any = simulation.v
         physics, params = v.physics, v.autopilot.params.MOT
-        rotors, figures = physics.rotors, physics.airframe
+        rotors, airframe = physics.rotors, physics.airframe
         low, high = (params.PWM_MIN, params.PWM_MAX) if params.PWM_MAX > params.PWM_MIN else (1000.0, 2000.0)
         top = speed_at_full(physics)
-        full = 1.0 if top == 1.0 else float(figures.speed_max)
+        full = 1.0 if top == 1.0 else float(airframe.speed_max)
         outputs = v.autopilot.control.motors.output
         for k, percent in enumerate(self.motors.at(time)):
             rotor = int(outputs[k])
-            if not 0 <= rotor < figures.rotor_count:
+            if not 0 <= rotor < airframe.rotor_count:
                 continue
             control = (low + 0.01 * percent * (high - low) - 1000.0) / 1000.0 * rotors.share[rotor]
-            command = (control - figures.control_min) / (figures.control_max - figures.control_min)
+            command = (control - airframe.control_min) / (airframe.control_max - airframe.control_min)
             rotors.command[rotor] = min(max(command, 0.0), 1.0)
             if at_once:
                 rotors.speed[rotor] = min(rotors.command[rotor] * full, top)

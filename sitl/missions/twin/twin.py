@@ -44,7 +44,7 @@ MODEL_S = 0.5
 _ABOVE_M = 1.0
 """Segments are in the air, at least so high above the position of arming."""
 WHOLE, LEGS, OPEN, MODEL, CHANGED = "", "legs.", "segments.", "model.", "changed."
-"""Beginnings of the names of figures."""
+"""Beginnings of the names of metrics."""
 
 
 @dataclass
@@ -92,8 +92,8 @@ class Twin:
         """Those of the findings that are differences, not what could not be judged."""
         return [text for text in self.findings if not text.startswith(NOT_JUDGED)]
 
-    def figures(self) -> dict[str, float]:
-        """All figures by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
+    def metrics(self) -> dict[str, float]:
+        """All metrics by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
         found: dict[str, float] = {}
         for part, agreements in (
             (WHOLE, self.whole), (LEGS, self.legs), (OPEN, self.segments), (MODEL, self.model),
@@ -111,7 +111,7 @@ class Twin:
             "log": str(self.log.path), "firmware": self.log.columns.firmware, "flight": self.log.number,
             "frame": self.frame, "seconds": self.log.span.length, "aligned": "arming",
             "changed": self.change.words, "notes": self.notes, "twin": self.went,
-            "changed_twin": self.went_changed, "findings": self.findings, "figures": self.figures(),
+            "changed_twin": self.went_changed, "findings": self.findings, "metrics": self.metrics(),
         }  # fmt: skip
 
 
@@ -400,4 +400,4 @@ def with_mass(airframe: Airframe, text: str) -> Airframe:
         raise OptionError(
             f"mass {text!r}: a mass [kg] is needed, or what is added to the {was:g} kg of the airframe: +0.5"
         )
-    return replace(airframe, figures={**airframe.figures, "mass": mass})
+    return replace(airframe, properties={**airframe.properties, "mass": mass})

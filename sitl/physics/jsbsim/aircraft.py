@@ -79,7 +79,7 @@ def planet() -> str:
 
 
 def mass_balance(a: Any) -> str:
-    """Mass and inertia of a vehicle's figures."""
+    """Mass and inertia of a vehicle's properties."""
     named = zip(("ixx", "iyy", "izz"), a.inertia, strict=True)
     moments = "".join(f'<{name} unit="SLUG*FT2">{value / SLUG_FOOT2!r}</{name}>' for name, value in named)
     weight = float(a.mass) / SLUG * POUNDS_BY_SLUG
@@ -91,7 +91,7 @@ def written(a: Any, name: str, span: float, contacts: Iterable[Contact], parts: 
     """The whole document.
 
     Args:
-        a: the vehicle's figures (``physics.airframe`` of a record).
+        a: the vehicle's properties (``physics.airframe`` of a record).
         name: of the aircraft.
         span: the size that turbulence takes it for [m].
         contacts: what touches the ground.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Formulas in JSBSim's XML (https://jsbsim-team.github.io/jsbsim/classJSBSim_1_1FGFunction.html).
 
-A formula is a string of XML; an empty one is zero and vanishes from sums and products, so that figures of zero leave
+A formula is a string of XML; an empty one is zero and vanishes from sums and products, so that properties of zero leave
 nothing to be computed.
 """
 

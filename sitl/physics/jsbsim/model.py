@@ -47,12 +47,12 @@ class VehicleModel(ABC):
         self.vehicle = vehicle
 
     def frames(self, a: Any) -> int:
-        """Frames of JSBSim a tick, of the vehicle's figures."""
+        """Frames of JSBSim a tick, of the vehicle's properties."""
         return 1
 
     @abstractmethod
     def document(self, a: Any, dt: float) -> str:
-        """The aircraft of figures for frames of dt [s]."""
+        """The aircraft of properties for frames of dt [s]."""
 
     def height(self, a: Any) -> float:
         """Of the centre of mass over the ground, standing [m]."""

@@ -20,9 +20,9 @@ from ...core.constants import GRAVITY, TICK_S
 from ...core.elementary import exp, hypot
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
-from ...vehicles.figures.body import Outline
+from ...vehicles.properties.body import Outline
 from ...worlds.contact import Contact, Volume, gather, nearest_of
-from ...worlds.geometry import BOTTOM, SOLID_FIGURES, TOP
+from ...worlds.geometry import BOTTOM, SOLID_COLUMNS, TOP
 from .records import OBSTACLES_MAX, Body, Obstacles
 
 REACH = 30.0
@@ -51,7 +51,7 @@ def list_solids(o: Obstacles, body: Body, solids: Table, floor: float) -> None:
     Args:
         o: the list.
         body: of the vehicle.
-        solids: of the world, shape (n, SOLID_FIGURES), down from z = 0 of its frame.
+        solids: of the world, shape (n, SOLID_COLUMNS), down from z = 0 of its frame.
         floor: height of the floor in the world's frame [m]; the list's rows count from the floor.
     """
     position, rows = Vec2(body.pos.x, body.pos.y), o.rows
@@ -60,8 +60,8 @@ def list_solids(o: Obstacles, body: Body, solids: Table, floor: float) -> None:
         rows[k, TOP] += floor
         rows[k, BOTTOM] += floor
     for k in range(listed.rows, OBSTACLES_MAX):
-        for figure in range(SOLID_FIGURES):
-            rows[k, figure] = 0.0
+        for column in range(SOLID_COLUMNS):
+            rows[k, column] = 0.0
     o.count, o.north, o.east, o.complete = listed.rows, position.x, position.y, listed.complete
     o.clear = 0.0
     o.wanted = False

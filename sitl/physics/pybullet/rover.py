@@ -14,7 +14,7 @@ import struct
 from typing import Any, ClassVar
 
 from ...core.constants import GRAVITY, TICK_S
-from ...vehicles.figures.rover import STEERING_FRONT_WHEELS
+from ...vehicles.properties.rover import STEERING_FRONT_WHEELS
 from ..engine import Array, Engine, EngineError, EngineVehicle, offset
 from . import worlds
 from .client import Client, forget, load, save
@@ -61,17 +61,17 @@ class BulletRover(Engine):
         self._forward_at = base + offset(vehicle.fleet.dtype, "physics", "wheels", "forward")
         self._client: Client | None = None
         self._picture: Picture | None = None
-        self._figures = b""
+        self._airframe = b""
 
     # ------------------------------------------------------------------ the model
 
     def _fit(self) -> Client:
-        """The world with a model of the vehicle as its figures are now."""
+        """The world with a model of the vehicle as its properties are now."""
         a = self.vehicle.v.physics.airframe
-        figures = bytes(a._bytes)
-        if self._client is None or figures != self._figures:
+        airframe = bytes(a._bytes)
+        if self._client is None or airframe != self._airframe:
             self.close()
-            self._figures = figures
+            self._airframe = airframe
             self._client = self._built(a)
         return self._client
 

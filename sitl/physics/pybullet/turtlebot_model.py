@@ -2,7 +2,7 @@
 """A Turtlebot as a multibody of Bullet: a base that stands on two driven wheels and two casters.
 
 Wheels and casters are spheres, which meet the floor in one exact point; wheels are sprung, casters slide without
-friction and are stiff, so that it does not nod. Solids meet the upright cylinder of the airframe. Figures that only
+friction and are stiff, so that it does not nod. Solids meet the upright cylinder of the airframe. Properties that only
 Bullet needs stand here, those of the robot in ``sitl.vehicles.turtlebot``.
 
 Sources: [model] kobuki.urdf.xacro, kobuki_gazebo.urdf.xacro of erlerobot/gym-gazebo; [estimate] this project's.
@@ -54,15 +54,15 @@ class TurtlebotModel:
     """Joints of the left and the right wheel."""
 
 
-def build(client: Client, figures: Any, floor: float) -> TurtlebotModel:
+def build(client: Client, airframe: Any, floor: float) -> TurtlebotModel:
     """Put a Turtlebot into a world of Bullet, at its origin, nose to x, at rest on its springs.
 
     Args:
         client: the world.
-        figures: of its airframe, in a record.
+        airframe: its properties, in a record.
         floor: its height in Bullet's frame [m].
     """
-    p, id_, f, height = client.p, client.id, figures, CENTRE_HEIGHT
+    p, id_, f, height = client.p, client.id, airframe, CENTRE_HEIGHT
     sag, half = SAG * float(f.wheel_radius), 0.5 * float(f.wheel_separation)
     parts, links = Parts(p), []
     for radius, side in ((float(f.wheel_radius_left), half), (float(f.wheel_radius_right), -half)):

@@ -68,7 +68,7 @@ def test_a_good_fix_is_sane_and_passes() -> None:
         ("gps_vel", (-(2**31), 0, 0)),
     ],
 )
-def test_a_fix_with_figures_that_make_no_sense_is_refused(name: str, value) -> None:
+def test_a_fix_with_values_that_make_no_sense_is_refused(name: str, value) -> None:
     sensors = _fix()
     sensors[name] = value
     assert not gps.is_sane(sensors)

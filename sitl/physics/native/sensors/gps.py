@@ -19,7 +19,7 @@ from ....core.kernels import law
 from ....core.mavlink import GpsFixType
 from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
-from ....vehicles.figures.body import Sensors as SensorFigures
+from ....vehicles.properties.body import Sensors as SensorProperties
 from ..records import GPS_RING, Body, Derived, Fix, GpsFault, GpsReceiver, Physics, Place
 from ..tick import Clock
 
@@ -31,7 +31,7 @@ EXACT = 0.02
 
 JAM_SILENT_TICKS, JAM_SILENT_MORE_TICKS = 400, 2000
 JAM_CHANGES = 0.3
-"""Chance that a figure of a jammed receiver changes from fix to fix."""
+"""Chance that a number of a jammed receiver changes from fix to fix."""
 JAM_POSITION, JAM_SPEED = 500.0, 150.0
 """Standard deviations of each axis [m, m/s]."""
 JAM_SATELLITES, LEAST_SATELLITES = 17, 4
@@ -57,7 +57,7 @@ def _axes(horizontal: float, vertical: float) -> Vec3:
 
 
 @law
-def measure(r: GpsReceiver, body: Body, a: SensorFigures, d: Derived, rng: Rng) -> Measured:
+def measure(r: GpsReceiver, body: Body, a: SensorProperties, d: Derived, rng: Rng) -> Measured:
     """Position and velocity with drift and noise."""
     scale = a.noise_scale
     r.drift = d.gps_drift_decay * r.drift + d.gps_drift_step * normal_vector(rng)
@@ -143,7 +143,7 @@ def take(p: Physics, r: GpsReceiver, tick: int, rng: Rng) -> None:
 
 
 @law
-def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, figures: SensorFigures) -> None:
+def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, airframe: SensorProperties) -> None:
     """Hand the oldest fix to the reader when its time has come."""
     if r.tail == r.head:
         return
@@ -157,9 +157,9 @@ def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, figures: SensorFigure
     if fix.type >= GpsFixType.FIX_3D:
         shown.gps_lat, shown.gps_lon, shown.gps_alt = fix.lat, fix.lon, fix.alt
         shown.gps_vel = fix.vel
-        shown.gps_eph = _nearest(100.0 * figures.gps_hdop)
-        shown.gps_epv = _nearest(100.0 * figures.gps_vdop)
-        shown.gps_satellites = int(figures.gps_satellites)
+        shown.gps_eph = _nearest(100.0 * airframe.gps_hdop)
+        shown.gps_epv = _nearest(100.0 * airframe.gps_vdop)
+        shown.gps_satellites = int(airframe.gps_satellites)
         if r.fault.is_on and r.fault.satellites >= 0:
             shown.gps_satellites = r.fault.satellites
         if fix.jammed:
