@@ -97,14 +97,14 @@ class Change:
         where = f"change {self.name!r}"
         if self.group not in GROUPS:
             raise AgentError(f"{where}: group = {self.group!r}; it is one of {', '.join(GROUPS)}")
-        for prop, value in _table(where, "scale", self.scale).items():
+        for name, value in _table(where, "scale", self.scale).items():
             if not _is_number(value):
-                raise AgentError(f"{where}: scale.{prop} = {value!r}; it must be a number")
-        for prop, given in _table(where, "set", self.set).items():
+                raise AgentError(f"{where}: scale.{name} = {value!r}; it must be a number")
+        for name, given in _table(where, "set", self.set).items():
             if not _is_number(given) and not (isinstance(given, list | tuple) and all(map(_is_number, given))):
-                raise AgentError(f"{where}: set.{prop} = {given!r}; it must be a number, or a list of a vector's")
-        for prop in {*self.scale} & {*self.set}:
-            raise AgentError(f"{where}: property {prop!r} is both scaled and set; give one of them")
+                raise AgentError(f"{where}: set.{name} = {given!r}; it must be a number, or a list of a vector's")
+        for name in {*self.scale} & {*self.set}:
+            raise AgentError(f"{where}: property {name!r} is both scaled and set; give one of them")
         if self.latency is not None and not (_is_number(self.latency) and self.latency >= 0.0):
             raise AgentError(f"{where}: latency = {self.latency!r}; it must be a number from 0 on [s]")
         if not _is_number(self.stretch) or not 0.1 <= self.stretch <= 10.0:
@@ -194,26 +194,26 @@ def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mappi
     return len(ranges) == len(values) and all(low <= values[name] <= high for name, (low, high) in ranges.items())
 
 
-def usual(robot: Any, prop: str) -> Value:
+def usual(robot: Any, name: str) -> Value:
     """Default value of a property of the robot.
 
     Raises:
         AgentError: it has none.
     """
-    if prop not in robot.properties:
-        hint = did_you_mean(prop, robot.properties)
-        raise AgentError(f"robot {robot.name!r} has no property {prop!r}{hint}")
+    if name not in robot.properties:
+        hint = did_you_mean(name, robot.properties)
+        raise AgentError(f"robot {robot.name!r} has no property {name!r}{hint}")
     airframe = getattr(robot, "airframe", None)
     try:
-        value: Any = np.asarray(airframe.value(prop), float)  # type: ignore[union-attr,type-var]
+        value: Any = np.asarray(airframe.value(name), float)  # type: ignore[union-attr,type-var]
     except (AttributeError, KeyError):
-        raise AgentError(f"property {prop!r} of robot {robot.name!r} has no usual value to scale: set it") from None
+        raise AgentError(f"property {name!r} of robot {robot.name!r} has no usual value to scale: set it") from None
     return tuple(value.tolist()) if value.ndim else float(value)
 
 
-def scaled(robot: Any, prop: str, factor: float) -> Value:
+def scaled(robot: Any, name: str, factor: float) -> Value:
     """``factor`` times the default value, rounded; of a vector each element."""
-    value = usual(robot, prop)
+    value = usual(robot, name)
     if isinstance(value, tuple):
         return tuple(float(f"{factor * one:.12g}") for one in value)
     return float(f"{factor * value:.12g}")  # type: ignore[operator]

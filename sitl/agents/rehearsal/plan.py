@@ -52,8 +52,8 @@ class Plan:
         _known(f"training: {', '.join(_TRAINING)}", self.training, _TRAINING)
         _known(f"randomise: {', '.join(_RANDOMISE)}", self.randomise, _RANDOMISE)
         for key in ("scale", "set"):
-            for prop, limits in _mapping(key, self.randomise.get(key, {})).items():
-                _range(f"randomise.{key}.{prop}", limits)
+            for name, limits in _mapping(key, self.randomise.get(key, {})).items():
+                _range(f"randomise.{key}.{name}", limits)
         if "latency" in self.randomise:
             _range("randomise.latency", self.randomise["latency"])
 
@@ -83,9 +83,9 @@ class Plan:
             AgentError: the robot has no such property.
         """
         out: dict[str, Any] = {}
-        for prop, (low, high) in self.randomise.get("scale", {}).items():
-            ends = scaled(robot, prop, low), scaled(robot, prop, high)
-            out[prop] = [np.minimum(*ends).tolist(), np.maximum(*ends).tolist()]
+        for name, (low, high) in self.randomise.get("scale", {}).items():
+            ends = scaled(robot, name, low), scaled(robot, name, high)
+            out[name] = [np.minimum(*ends).tolist(), np.maximum(*ends).tolist()]
         for name, limits in self.randomise.get("set", {}).items():
             out[name] = [float(limit) for limit in limits]
         if "latency" in self.randomise:
