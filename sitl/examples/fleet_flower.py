@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""256 copters in one process: each flies to its own position of a sunflower, and one compiled call advances all of
-them.
+"""256 copters in one process: each flies to its position of a sunflower, and one compiled call advances all of them.
 
     python examples/fleet_flower.py
 

@@ -24,7 +24,7 @@ from tests.agents.small_runs import CIRCUIT2, learner_for, make
 
 def fill(table, keys):
     for taken, key in enumerate(keys):
-        table.make_room(taken, 1)
+        table.reserve(taken, 1)
         slot = slot_of(table.keys, key)
         assert table.keys[slot] == EMPTY
         table.keys[slot], table.values[slot], table.visits[slot] = key, [key, -key, 0.5], [1, 2, 3]

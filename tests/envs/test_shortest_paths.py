@@ -157,7 +157,7 @@ def test_the_observation_is_told_from_the_estimate(robots):
     task, robot = many.unwrapped.session.task, many.unwrapped.session.robot
     expected = np.zeros((robots, 3))
     for _ in range(3):
-        task._ways.follow(robot.state, 2.0, expected)
+        task._paths.follow(robot.state, 2.0, expected)
         assert np.array_equal(seen[:, 3:], expected.astype(np.float32))
         assert not np.allclose(robot.state[:, :2], robot.true_state()[:, :2], atol=0.01)
         seen, *_ = many.step(np.tile(np.array([0.8, 0.3], np.float32), (robots, 1)))
@@ -195,11 +195,11 @@ def test_a_step_pays_what_the_free_way_is_shorter():
     with make() as env:
         env.reset(seed=3)
         task = env.unwrapped.session.task
-        before = float(task._ways.lengths(task._robot.pose)[0])
+        before = float(task._paths.lengths(task._robot.pose)[0])
         assert before >= float(task._distance[0]) - 0.5
         for _ in range(5):
             *_, terminated, _, info = env.step(np.array([0.5, 0.0], np.float32))
-            now = float(task._ways.lengths(task._robot.pose)[0])
+            now = float(task._paths.lengths(task._robot.pose)[0])
             assert not terminated and info["reward_progress"] == pytest.approx(before - now, abs=1e-9)
             before = now
 

@@ -211,7 +211,7 @@ def test_the_examples_of_the_page_run() -> None:
 def start_errors(env: SwarmEnv, seed: int) -> Any:
     """What vehicles say of their positions minus true positions, north and east [m], one after another."""
     env.reset(seed=seed)
-    return (env._told - np.hstack((env._true_positions(), np.zeros((len(env.swarm), 3)))))[:, :2].ravel()
+    return (env._reported - np.hstack((env._true_positions(), np.zeros((len(env.swarm), 3)))))[:, :2].ravel()
 
 
 def test_episodes_begin_with_boots_of_their_own() -> None:
