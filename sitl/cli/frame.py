@@ -32,7 +32,9 @@ def show(options: argparse.Namespace) -> int:
         return 0
     airframe = vehicles.load(options.frame)
     if options.json:
-        print_json({"kind": airframe.kind, "description": airframe.description, **vehicles.to_data(airframe)})
+        data = vehicles.to_data(airframe)
+        of_before = {"figures": data["properties"]}  # the key of version 0.1, until 0.4
+        print_json({"kind": airframe.kind, "description": airframe.description, **data, **of_before})
     elif options.out is None:
         print(vehicles.to_toml(airframe), end="")
     else:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from pathlib import Path
 
 import pytest
@@ -173,3 +174,9 @@ def test_sitl_frame_lists_prints_and_writes(tmp_path, capsys, monkeypatch) -> No
     assert "does not end in .toml" in capsys.readouterr().err
     assert cli.main(["frame", "--out", "mine.toml"]) == 2
     assert "which?" in capsys.readouterr().err
+
+
+def test_an_airframe_as_json_has_its_properties_under_the_key_of_version_0_1_too(capsys) -> None:
+    assert cli.main(["frame", "skid_rover", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["properties"]["track"] == data["figures"]["track"] == vehicles.load("skid_rover").properties["track"]
