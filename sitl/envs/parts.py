@@ -329,7 +329,7 @@ class Path:
     def gather(self, plan: Gathering) -> None:
         """See ``Part``."""
         task, width = self._task, len(self.columns)
-        writes = getattr(task, "ways_writer", lambda count, table, first: None)
+        writes = getattr(task, "offsets_writer", lambda count, table, first: None)
 
         def maker(table: Floats, first: int) -> Callable[[], object]:
             def copy() -> None:
