@@ -88,6 +88,14 @@ def fly_all(names: list[str], jobs: int) -> dict[str, Any]:
     return flown
 
 
+def with_kept_digests(names: list[str]) -> list[str]:
+    """Those of some flights whose digests the repository keeps; says which are left out."""
+    left_out = [name for name in names if not is_kept(name)]
+    if left_out:
+        print(f"left out, because no digests of other engines are kept: {', '.join(left_out)}", file=sys.stderr)
+    return [name for name in names if is_kept(name)]
+
+
 def record(path: Path, names: list[str], jobs: int) -> int:
     """Fly, and put the digests into the file that the repository keeps; returns how many could not be flown."""
     flown = fly_all(names, jobs)
@@ -214,9 +222,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(*names, sep="\n")
         return 0
     if options.command in ("record", "check"):
-        left_out, names = [name for name in names if not is_kept(name)], [name for name in names if is_kept(name)]
-        if left_out:
-            print(f"left out, because no digests of other engines are kept: {', '.join(left_out)}", file=sys.stderr)
+        names = with_kept_digests(names)
         if not names:
             parser.error("none is left: write and compare take all flights")
     print(f"tree {tree.root()}: {len(names)} flights", file=sys.stderr)

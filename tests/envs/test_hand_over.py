@@ -327,6 +327,19 @@ def test_a_copy_of_the_process_commands_no_vehicle():
         assert mode(simulation) == BRAKE
 
 
+class Clock:
+    """In place of ``time``: a millisecond goes by each time somebody looks, whatever else the machine does."""
+
+    now = 0.0
+
+    def monotonic(self):
+        self.now += 0.001
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+
 class BrokenStream:
     """A link that fails ``count`` times when something is sent or received, and then passes on what is sent."""
 
@@ -391,6 +404,7 @@ def test_what_ends_it(monkeypatch, answer, done):
     monkeypatch.setattr(hand_over, "BOUND_S", 0.2)
     monkeypatch.setattr(hand_over, "REPEAT_S", 0.01)
     monkeypatch.setattr(hand_over, "SILENCE_S", 0.05)
+    monkeypatch.setattr(hand_over, "time", Clock())
     stream = BrokenStream(7, answer)
     inbox = StepTelemetry(8)
     inbox.system, inbox.mode, inbox.armed = 1, GUIDED, True
