@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Speed of the simulator on this machine: ``python -m benchmarks`` prints every figure."""
+"""Speed of the simulator on this machine: ``python -m benchmarks`` prints every value."""

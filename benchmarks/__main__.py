@@ -182,7 +182,7 @@ def compile_times(kind: str) -> None:
 
 
 def measure(frame: str, repeats: int, compilation: bool) -> None:
-    """Print every figure of one airframe."""
+    """Print every value of one airframe."""
     kind = KINDS[vehicles.load(frame).kind]
     core = load_core(kind)
     pilot = begin(frame, core)
@@ -205,7 +205,7 @@ def measure(frame: str, repeats: int, compilation: bool) -> None:
 
 
 def main() -> None:
-    """Print every figure of the vehicles asked for; compilation too when asked for."""
+    """Print every value of the vehicles asked for; compilation too when asked for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--vehicle", choices=tuple(KINDS), help="the first airframe of this kind; else one of each")

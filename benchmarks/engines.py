@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """``python -m benchmarks.engines``: the same flights, firmware and parameters on every physics engine.
 
-Each vehicle goes through two scripts: commands in GUIDED, and a mission. All figures are of the simulator's truth, not
+Each vehicle goes through two scripts: commands in GUIDED, and a mission. All values are of the simulator's truth, not
 of the estimate, at equal times since the beginning of each phase.
 """
 
@@ -22,7 +22,7 @@ from sitl.physics.engines import BACKENDS, NATIVE
 from sitl.simulation import Simulation
 
 from .recorded import copter
-from .recorded.figures import shown
+from .recorded.metrics import shown
 from .recorded.pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)

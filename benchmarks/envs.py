@@ -96,8 +96,8 @@ def print_resets(repeats: int) -> None:
         kinds: tuple[tuple[str, dict[str, Any], int], ...] = (
             ("same start", {}, 200),
             ("new pose", {"start": "random"}, 200),
-            ("new figures", {"randomise": masses}, 200),
-            ("new pose and figures", both, 200),
+            ("new properties", {"randomise": masses}, 200),
+            ("new pose and properties", both, 200),
             ("the same by boot", {**both, "begin": "boot"}, 2),
         )
         for kind, given, number in kinds:
@@ -109,7 +109,7 @@ def print_resets(repeats: int) -> None:
 
 
 def main() -> None:
-    """Print every figure, and its ratio to CartPole-v1's of the same run."""
+    """Print every value, and its ratio to CartPole-v1's of the same run."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.envs")
     parser.add_argument("--repeats", type=int, default=7, metavar="N", help="runs of each, of which the median counts")
     parser.add_argument("--steps", type=int, default=20_000, metavar="N", help="of a run")

@@ -3,7 +3,7 @@
 
 Each copter and rover gets a velocity set-point by MAVLink and sends position and attitude ten times a simulated second;
 each Turtlebot gets its speeds directly and scans 36 beams in circuit2 after 0.6 s. Wall time, because threads share the
-work; the repeats of all sizes take turns, and each figure is a median.
+work; the repeats of all sizes take turns, and each value is a median.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ def costs(kind: str, start: Snapshot, count: int) -> None:
 
 
 def main() -> None:
-    """Print every figure."""
+    """Print every value."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.fleets")
     parser.add_argument("--repeats", type=int, default=5, metavar="N", help="runs of each, of which the median counts")
     parser.add_argument("--largest", type=int, default=4096, metavar="N", help="vehicles of the largest fleet")

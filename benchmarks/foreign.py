@@ -163,7 +163,7 @@ def line(name: str, found: list[Cost]) -> None:
 
 
 def main() -> None:
-    """Print the figures."""
+    """Print the values."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.foreign", description=__doc__.split("\n\n")[0])
     parser.add_argument("vehicle", choices=tuple(MODEL))
     parser.add_argument("--autopilot", required=True, help='as for "sitl run": ardupilot:PROGRAM, px4:PROGRAM')

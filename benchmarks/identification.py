@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How right ``sitl identify`` is: logs of our own vehicles, whose figures are known, on seeds that it never saw.
+"""How right ``sitl identify`` is: logs of our own vehicles, whose properties are known, on seeds that it never saw.
 
     python -m benchmarks.identification                          # 5 seeds of each airframe: 3 minutes
     python -m benchmarks.identification --seeds 101..125 --airframes erle_copter
-    python -m benchmarks.identification --keep logs --details    # the logs stay; a line for each figure of each log
+    python -m benchmarks.identification --keep logs --details    # the logs stay; a line for each property of each log
     python -m benchmarks.identification --physics pybullet       # of vehicles on another engine
 
 Each log is one flight of the mission of ``sitl identify --plan`` of five minutes, in a wind of 0 to 6 m/s with gusts;
 of a rover, a drive of its mission and by the sticks as ``--plan`` says.
-For each figure and airframe the table has the truth, in how many logs it was observed, in how many of these the
+For each property and airframe the table has the truth, in how many logs it was observed, in how many of these the
 interval holds the truth, the median error, and the median half of the interval.
 """
 
@@ -55,7 +55,7 @@ def airframe_of(name: str) -> Airframe:
     shipped, _, changed = name.partition(",")
     found = vehicles.load(shipped)
     if not found.value("battery_capacity"):
-        found = replace(found, figures={**found.figures, "battery_capacity": 5.0})
+        found = replace(found, properties={**found.properties, "battery_capacity": 5.0})
     if changed and isinstance(found, CopterAirframe):
         found = replace(found, rotors=tuple(rotor._replace(x=rotor.x + _HEAVY_M) for rotor in found.rotors))
     return found
@@ -154,17 +154,17 @@ def fly(name: str, seed: int, path: Path, physics: str, telemetry_hz: int = 0) -
 
 
 def truth(name: str, found: Identification, wind: dict[str, float]) -> dict[str, float]:
-    """What the figures of this flight were: those of the airframe, at the log's mean voltage and altitude."""
+    """What the properties of this flight were: those of the airframe, at the log's mean voltage and altitude."""
     airframe, log = airframe_of(name), found.logs[0]
     if isinstance(airframe, RoverAirframe):
         return {**expected(airframe), **_noises(airframe)}
     assert isinstance(airframe, CopterAirframe)
-    value = lambda figure: float(airframe.value(figure))  # noqa: E731
+    value = lambda key: float(airframe.value(key))  # noqa: E731
     copter = Copter(airframe, log.parameters, log.conditions)
-    known = {**copter.figures(), **wind}
+    known = {**copter.properties(), **wind}
     if found["hover_voltage"].is_observed:
         hovering = log.conditions._replace(voltage=found["hover_voltage"].value)
-        known["hover_output"] = Copter(airframe, log.parameters, hovering).figures()["hover_output"]
+        known["hover_output"] = Copter(airframe, log.parameters, hovering).properties()["hover_output"]
     for axis, letter in (("along", "x"), ("across", "y")):
         quadratic = 0.5 * copter.density / known[f"drag_bcoef_{letter}"]
         known[f"drag_{axis}"] = known["drag_mcoef"] * SPEED + quadratic * SPEED * SPEED
@@ -201,36 +201,36 @@ def judge(name: str, seed: int, folder: Path, physics: str, telemetry_hz: int = 
     found = identify(path.with_suffix(".tlog") if telemetry_hz else path)
     known = truth(name, found, winds)
     return {
-        figure.name: (known[figure.name], figure.value, figure.low, figure.high)
-        for figure in found.figures
-        if math.isfinite(known.get(figure.name, math.nan))
+        estimate.name: (known[estimate.name], estimate.value, estimate.low, estimate.high)
+        for estimate in found.estimates
+        if math.isfinite(known.get(estimate.name, math.nan))
     }
 
 
 def rows(name: str, results: list[dict[str, Result]]) -> Iterator[str]:
     """Lines of the table."""
-    for figure in results[0]:
-        all_of = np.array([result[figure] for result in results if figure in result])
+    for key in results[0]:
+        all_of = np.array([result[key] for result in results if key in result])
         seen = all_of[np.isfinite(all_of[:, 1])]
         true = np.median(all_of[:, 0])
         if not len(seen):
-            yield f"| {figure} | {name} | {true:.4g} | 0 of {len(all_of)} | | | |"
+            yield f"| {key} | {name} | {true:.4g} | 0 of {len(all_of)} | | | |"
             continue
         miss, half = seen[:, 1] - seen[:, 0], 0.5 * (seen[:, 3] - seen[:, 2])
-        if figure == "wind_from":
+        if key == "wind_from":
             miss = (miss + 180.0) % 360.0 - 180.0
         held = int((abs(miss) <= _reach(seen, miss)).sum())
-        if figure in _ABSOLUTE:
+        if key in _ABSOLUTE:
             size = [f"{np.median(abs(x)):.2g}" for x in (miss, half)]
         else:
             size = [f"{100.0 * np.median(abs(x / seen[:, 0])):.1f} %" for x in (miss, half)]
-        yield f"| {figure} | {name} | {true:.4g} | {len(seen)} of {len(all_of)} | {held} | {size[0]} | {size[1]} |"
+        yield f"| {key} | {name} | {true:.4g} | {len(seen)} of {len(all_of)} | {held} | {size[0]} | {size[1]} |"
 
 
 _ABSOLUTE = ("balance_forward", "balance_right", "motor_lag", "dead_time", "wind_from", "wind_speed", "thrust_expo") + (
     "roll_damping", "pitch_damping", "yaw_damping", "steering_trim", "side_difference", "rear_axle",
 )  # fmt: skip
-"""Figures that may be 0: their errors are in their own unit."""
+"""Properties that may be 0: their errors are in their own unit."""
 
 
 def _reach(seen: np.ndarray, miss: np.ndarray) -> np.ndarray:
@@ -246,7 +246,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the logs there")
     parser.add_argument("--telemetry", type=int, default=0, metavar="HZ", help="judge telemetry of this rate instead")
     parser.add_argument("--physics", choices=BACKENDS, default=NATIVE, help="what the vehicles move on")
-    parser.add_argument("--details", action="store_true", help="a line for each figure of each log")
+    parser.add_argument("--details", action="store_true", help="a line for each property of each log")
     options = parser.parse_args(argv)
     if options.telemetry and not {*ROVERS}.isdisjoint(options.airframes):
         parser.error(f"--telemetry is of copters: --airframes {' '.join(COPTERS[:3])}")
@@ -263,13 +263,13 @@ def main(argv: list[str] | None = None) -> int:
                     print(f"{name}, seed {seed}: {error}")
                     continue
                 if options.details:
-                    for figure, (true, value, low, high) in results[-1].items():
+                    for key, (true, value, low, high) in results[-1].items():
                         mark = "" if not math.isfinite(value) or low <= true <= high else "  <- not in it"
-                        print(f"{name} {seed} {figure}: {value:.5g} ({low:.5g} .. {high:.5g}), truth {true:.5g}{mark}")
+                        print(f"{name} {seed} {key}: {value:.5g} ({low:.5g} .. {high:.5g}), truth {true:.5g}{mark}")
             if results:
                 lines += rows(name, results)
     print(
-        "| figure | airframe | truth | observed in | interval holds the truth | median error | median half interval |"
+        "| property | airframe | truth | observed in | interval holds the truth | median error | median half interval |"
     )
     print("|---|---|---|---|---|---|---|")
     print("\n".join(lines))

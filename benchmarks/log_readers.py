@@ -50,7 +50,7 @@ def fly(path: Path, minutes: float) -> None:
     assert isinstance(airframe, CopterAirframe)
     large = {"battery_capacity": max(2.0 * minutes, 20.0)}
     bits.FAST, usual = _LOOP_HZ, bits.FAST
-    simulation = Simulation(replace(airframe, figures={**airframe.figures, **large}), seed=1, params=_PARAMETERS)
+    simulation = Simulation(replace(airframe, properties={**airframe.properties, **large}), seed=1, params=_PARAMETERS)
     try:
         attach(simulation, path)
         vehicle = Client(simulation)
@@ -134,7 +134,7 @@ def _log_reader(path: str) -> int:
 def _identify(path: str) -> int:
     from sitl.identify import identify
 
-    return sum(figure.is_observed for figure in identify(path).figures)
+    return sum(estimate.is_observed for estimate in identify(path).estimates)
 
 
 READERS: dict[str, tuple[str, Callable[[str], int], str]] = {
@@ -199,7 +199,7 @@ def main(argv: list[str] | None = None) -> int:
                 continue
             found = json.loads(result.stdout)
             ours = ours or found["seconds"]
-            count = f"{found['count']:,}" if not name.endswith("identify") else f"{found['count']} figures"
+            count = f"{found['count']:,}" if not name.endswith("identify") else f"{found['count']} properties"
             print(
                 f"| {name} ({remark}) | {count} | {found['seconds']:.2f} | {found['seconds'] / ours:.0f} | "
                 f"{found['bytes'] / size:.1f} |",

@@ -7,7 +7,7 @@ Other simulators need packages of other versions, so each may live in a virtual 
 
 Each interpreter measures what it has of CartPole, crazyflow, gym-pybullet-drones and PyFlyt; ours is always measured.
 All run this file, restricted to the same cores, one after the other, in turns. Wall time, because some use threads;
-figures are medians. Other simulators fly without an autopilot and without MAVLink.
+values are medians. Other simulators fly without an autopilot and without MAVLink.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def main() -> None:
     )
     parser.add_argument("--cores", type=int, default=1, metavar="N", help="cores that each may use (default 1)")
     parser.add_argument("--repeats", type=int, default=3, metavar="N", help="of which the median counts (default 3)")
-    parser.add_argument("--seconds", type=float, default=3.0, metavar="S", help="of wall time a figure (default 3)")
+    parser.add_argument("--seconds", type=float, default=3.0, metavar="S", help="of wall time a value (default 3)")
     parser.add_argument("--measure", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("only", nargs="*", metavar="NAME", help=f"of {', '.join(ROWS)} (default all)")
     options = parser.parse_args()
@@ -159,8 +159,8 @@ def main() -> None:
     found: dict[str, list[tuple[float, float, float]]] = {}
     for _ in range(options.repeats):
         for python in (sys.executable, *options.python):
-            for name, *figures in asked(python, options.cores, options.seconds, options.only):
-                found.setdefault(name, []).append((figures[0], figures[1], figures[2]))
+            for name, *values in asked(python, options.cores, options.seconds, options.only):
+                found.setdefault(name, []).append((values[0], values[1], values[2]))
     title = f"{options.cores} core(s), wall time"
     print(f"{title:36s} {'steps/s':>10s} {'x real time':>12s} {'cores used':>11s}   steps/s, all")
     for name, runs in found.items():

@@ -144,7 +144,7 @@ def measure_link(frame: str, repeats: int) -> None:
 
 
 def main() -> None:
-    """Print every figure."""
+    """Print every value."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.physics")
     parser.add_argument("--frame", choices=sorted(FLIGHTS), help="else all of these")
     parser.add_argument("--physics", choices=(*BACKENDS, "hil"), help="else all of these")

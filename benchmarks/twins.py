@@ -230,11 +230,11 @@ def twin_of(row: Row, programs: Path | None, folder: Path) -> Twin:
 
 
 def cells(found: Twin, names: Sequence[str], digits: int = 2) -> str:
-    """Figures of one cell."""
-    figures = found.figures()
+    """Metrics of one cell."""
+    metrics = found.metrics()
     texts = []
     for name in names:
-        value = figures.get(name, math.nan)
+        value = metrics.get(name, math.nan)
         if name.endswith(".vaf"):
             texts.append("-" if not math.isfinite(value) else "below 0" if value < 0.0 else f"{value:.0f}")
         else:
@@ -266,7 +266,7 @@ COLUMNS: dict[str, Mapping[str, tuple[str, ...]]] = {
         "in step: throttle [%]": ("legs.throttle.vaf",),
     },
 }
-"""Column -> its figures, by kind of vehicle."""
+"""Column -> its metrics, by kind of vehicle."""
 
 
 def table(kind: str, flown: Iterable[tuple[Row, Twin]]) -> Iterator[str]:
@@ -278,8 +278,8 @@ def table(kind: str, flown: Iterable[tuple[Row, Twin]]) -> Iterator[str]:
         seed = f", seed {row.seed}" if row.logged else ""
         logged = f"`{row.logged}`, seed 3" if row.logged else found.log.columns.firmware.split(" (")[0]
         frame = row.twin if row.twin == OWN else f"`{row.twin}`"
-        figures = " | ".join(cells(found, names) for names in columns.values())
-        yield f"| {row.flight}, {found.log.span.length:.0f} s | {logged} | {frame}{seed} | {figures} |"
+        metrics = " | ".join(cells(found, names) for names in columns.values())
+        yield f"| {row.flight}, {found.log.span.length:.0f} s | {logged} | {frame}{seed} | {metrics} |"
 
 
 def main(argv: Sequence[str] | None = None) -> int:

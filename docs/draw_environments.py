@@ -19,7 +19,7 @@ from sitl.agents import baselines, environments, learnt
 from sitl.envs.page.source import states
 from sitl.envs.targets.gates import Gates
 from sitl.envs.targets.moving import MovingTask
-from sitl.envs.targets.places import PlacesTask
+from sitl.envs.targets.target_task import TargetTask
 from sitl.view.scene.bearings import length_for
 
 SEED = 1000
@@ -57,7 +57,7 @@ def judged(env: Any) -> Any:
 
 def where(task: Any) -> Any:
     """x, y, z of the present target [m]."""
-    return task.targets[0].copy() if isinstance(task, PlacesTask) else np.array([*task.goals[0], np.nan])
+    return task.targets[0].copy() if isinstance(task, TargetTask) else np.array([*task.goals[0], np.nan])
 
 
 def draw_course(ax: Axes, env: Any, targets: Any) -> None:
@@ -86,7 +86,7 @@ def draw_course(ax: Axes, env: Any, targets: Any) -> None:
         ax.plot(*targets[:, :2].T, color=TARGET, lw=2.5, ls=(0, (2, 1)), label="target's path")
         ax.add_patch(Circle(targets[-1, :2], radius, fill=False, color=TARGET, lw=2, label=f"target, {radius:g} m"))
     else:
-        places = task.places[0] if isinstance(task, PlacesTask) else targets[-1:]
+        places = task.positions[0] if isinstance(task, TargetTask) else targets[-1:]
         for k, place in enumerate(places):
             label = f"goal, within {radius:g} m" if len(places) == 1 else f"waypoint, within {radius:g} m"
             label = label if k == 0 else ""
@@ -119,8 +119,8 @@ def frame_it(ax: Axes, env: Any, track: Any, targets: Any) -> None:
     """The axes around what matters, with a scale."""
     task, world = env.unwrapped.task, env.unwrapped.robot.world
     points = np.concatenate([track[:, :2], targets[:, :2]])
-    if isinstance(task, PlacesTask):
-        points = np.concatenate([points, task.places[0, :, :2]])
+    if isinstance(task, TargetTask):
+        points = np.concatenate([points, task.positions[0, :, :2]])
     if world.solids:
         x0, y0, x1, y1 = world.bounds
         points = np.concatenate([points, [(x0, y0), (x1, y1)]])
@@ -150,7 +150,7 @@ def draw(name: str, path: Path) -> None:
     draw_course(ax, env, targets)
     draw_track(ax, track, figure)
     title = f"{name}: trained policy, {track[-1, 3] - track[0, 3]:.1f} s"
-    if isinstance(env.unwrapped.task, PlacesTask) and env.unwrapped.task.flies:
+    if isinstance(env.unwrapped.task, TargetTask) and env.unwrapped.task.flies:
         low, high = max(track[:, 2].min(), 0.0), track[:, 2].max()
         title += f", z {low:.1f} .. {high:.1f} m"
     ax.set_title(title)

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))  # benchmarks are no part of 
 from benchmarks import engines
 from benchmarks.manoeuvres import __main__ as manoeuvres
 from benchmarks.recorded import __main__ as compare
-from benchmarks.recorded.figures import table
+from benchmarks.recorded.metrics import table
 from sitl.bridge import docs as mavlink
 from sitl.physics.engines import BACKENDS
 from sitl.scenario import ESTIMATORS
@@ -38,7 +38,7 @@ no wind):
   again, HOLD, RTL.
 
 The recordings are in `benchmarks/reference/`. gym-sitl gets the same MAVLink commands at the same times, with
-the airframes `ardupilot_quad` and `ardupilot_rover` and seed 0. All figures are from the autopilot's own estimate
+the airframes `ardupilot_quad` and `ardupilot_rover` and seed 0. All values are from the autopilot's own estimate
 (LOCAL_POSITION_NED, ATTITUDE).
 
 ## Copter, with the Kalman filter
@@ -96,7 +96,7 @@ def physics() -> str:
 def comparison() -> str:
     """comparison.md."""
     tables = {
-        f"{kind}_{estimator}": table(compare.figures(kind, estimator))
+        f"{kind}_{estimator}": table(compare.metrics(kind, estimator))
         for kind in compare.FLIGHTS
         for estimator in ESTIMATORS
     }

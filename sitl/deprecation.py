@@ -6,12 +6,13 @@ from __future__ import annotations
 import functools
 import warnings
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["SitlDeprecationWarning", "deprecated", "warn"]
+__all__ = ["SitlDeprecationWarning", "deprecated", "renamed", "warn"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
+T = TypeVar("T")
 
 
 class SitlDeprecationWarning(DeprecationWarning):
@@ -44,5 +45,33 @@ def deprecated(*, since: str, removed_in: str, instead: str) -> Callable[[Callab
             return function(*args, **kwargs)
 
         return warned
+
+    return decorate
+
+
+def renamed(old: str, new: str, *, since: str, removed_in: str) -> Callable[[type[T]], type[T]]:
+    """Decorator of a public class: an argument, and the attribute of that name, have got a new name.
+
+    The old one warns, and does what it did. Where both arguments are given the old one counts, because a copy by
+    ``dataclasses.replace`` gives both. A derived dataclass needs the decorator, too.
+    """
+
+    def decorate(cls: type[T]) -> type[T]:
+        made: Callable[..., None] = cls.__init__
+
+        @functools.wraps(made)
+        def initialise(self: T, *args: Any, **kwargs: Any) -> None:
+            if old in kwargs:
+                warn(f"{cls.__name__}({old}=)", since=since, removed_in=removed_in, instead=f"{new}=")
+                kwargs[new] = kwargs.pop(old)
+            made(self, *args, **kwargs)
+
+        def read(self: T) -> Any:
+            warn(f"{cls.__name__}.{old}", since=since, removed_in=removed_in, instead=new)
+            return getattr(self, new)
+
+        cls.__init__ = initialise  # type: ignore[method-assign, assignment]
+        setattr(cls, old, property(read, doc=f"Old name of ``{new}``."))
+        return cls
 
     return decorate

@@ -95,7 +95,7 @@ class _Worlds:
             if address:
                 own = slice(count * k // threads, count * (k + 1) // threads)
                 _, memory, _ = cast(Any, keeper)
-                self._rangings[own] = memory[0]  # sensors and room of its thread
+                self._rangings[own] = memory[0]  # sensors and buffers of its thread
         self.address: int = self._rangings.ctypes.data
         """Of one ``Ranging`` for each vehicle."""
         self._bytes = self._rangings.view("u1").reshape(count, -1)
@@ -159,7 +159,7 @@ class Fleet:
         count: number of vehicles.
         threads: that advance them; their number changes no bit of the result.
         core: the core of this kind of vehicle, if it is loaded already.
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
         options: the other fields of ``sitl.scenario.Scenario``: home, seed, params ...; the physics is native.
 
     Raises:
@@ -246,7 +246,7 @@ class Fleet:
         self._orders: Array = MoveOrder.fleet(0)
         self._order_views: list[MoveOrder] = []
         self._move_all: Callable[..., None] | None = None
-        self._figures: Any = self.records["physics"]["airframe"]
+        self._properties: Any = self.records["physics"]["airframe"]
         self._states = [shell.snapshot()] * count
         self.put(range(count), self._states[0])
 
@@ -284,7 +284,7 @@ class Fleet:
         if self._worlds is None:
             if self.shell.world is None:
                 raise OptionError(f"world {world.name!r}: a fleet that was made without a world stays in none")
-            self._worlds = self._part_ways()
+            self._worlds = self._separate()
         self._worlds.around(world)
         for row in rows:
             self._worlds.enter(int(row), world)
@@ -294,7 +294,7 @@ class Fleet:
         self._check(index)
         return self.shell.world if self._worlds is None else self._worlds.of[index].world
 
-    def _part_ways(self) -> _Worlds:
+    def _separate(self) -> _Worlds:
         """Let each vehicle measure by itself from now on."""
         worlds, count, threads = _Worlds(self), len(self), self.threads
         size, at = self.records.itemsize, (self._slots_at, worlds.address, worlds.ranging_size)
@@ -357,7 +357,7 @@ class Fleet:
                 rng.seed(rng.Rng(self._records_u1[row].data[at : at + rng.Rng.dtype.itemsize]), seed)
 
     def move(self, which: int | Iterable[int], moves: Move | Sequence[Move], snapshot: Snapshot | None = None) -> None:
-        """Put vehicles elsewhere within this instant, with all that they know of places; see docs/fleets.md.
+        """Put vehicles elsewhere within this instant, with all that they know of positions; see docs/fleets.md.
 
         Args:
             which: a vehicle, or several, each once.
@@ -366,8 +366,8 @@ class Fleet:
                 been in; None: from where they are.
 
         Raises:
-            OptionError: a move that cannot be made (a number out of its limits, a place in a solid, figures with which
-                the vehicle does not hover), or a snapshot as of ``put``; no vehicle is changed.
+            OptionError: a move that cannot be made (a number out of its limits, a position in a solid, properties with
+                which the vehicle does not hover), or a snapshot as of ``put``; no vehicle is changed.
         """
         rows = [which] if isinstance(which, int | np.integer) else list(which)
         each = [moves] * len(rows) if isinstance(moves, Move) else list(moves)
@@ -401,8 +401,8 @@ class Fleet:
         for order, row, move in zip(orders, rows, moves):
             v = self.view(row)
             move.write(order, int(row), v, kind)
-            for name, value in move.figures.items():
-                self._figures[name][row] = tuple(value) if isinstance(value, Sequence) else value
+            for name, value in move.properties.items():
+                self._properties[name][row] = tuple(value) if isinstance(value, Sequence) else value
             order.other_world = False
             if move.seed is not None:
                 rng.seed(v.rng, move.seed)
@@ -432,15 +432,14 @@ class Fleet:
                 f"vehicle {row} cannot be moved: at north {north:g}, east {east:g} m, {-down:g} m high, {name} would "
                 f"be in a solid of world {self.world(row).name!r}"  # type: ignore[union-attr]
             )
-        return (
-            f"vehicle {row} cannot be moved: {name} does not hover with figures {dict(move.figures)}, wind {move.wind}"
-        )
+        changed = f"properties {dict(move.properties)}, wind {move.wind}"
+        return f"vehicle {row} cannot be moved: {name} does not hover with {changed}"
 
     def snapshot(self, index: int) -> Snapshot:
         """The state of a vehicle, for ``put`` and for ``Simulation.restore``."""
         self._check(index)
         held = self._states[index]
-        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes(), held.bridge.channels[0].ways)
+        port = ChannelState(0, self._ports_u1[index, :STATE].tobytes(), held.bridge.channels[0].directions)
         bridge = held.bridge._replace(channels=(port,))
         world = held.world if self._worlds is None else self._worlds.of[index].world.name
         return replace(held, record=self._records_u1[index].tobytes(), bridge=bridge, world=world)
@@ -679,7 +678,7 @@ class Fleet:
     def _keep(self, row: int, state: Snapshot) -> None:
         """Note what the shell holds of a vehicle."""
         self._states[row] = state
-        if state.bridge.channels[0].ways is not None:
+        if state.bridge.channels[0].directions is not None:
             self._faulty.add(row)
         else:
             self._faulty.discard(row)

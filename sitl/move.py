@@ -10,18 +10,19 @@ from typing import Any
 
 from .core.elementary import atan2, cos, sin
 from .core.vectors import Vec2, Vec3
+from .deprecation import renamed
 from .errors import OptionError, did_you_mean
 from .vehicle.kind import Kind
 from .vehicle.move import MoveOrder
 from .vehicle.walks import walk
 from .vehicles import Airframe
 from .vehicles.airframe import Value
-from .vehicles.figures.figure import Figure
+from .vehicles.properties.property import Property
 
 WIND = (
-    Figure("wind_speed", "m/s", "of the steady wind", 0.0, 50.0, 0.0),
-    Figure("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0),
-    Figure("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0),
+    Property("wind_speed", "m/s", "of the steady wind", 0.0, 50.0, 0.0),
+    Property("wind_direction", "deg", "where it comes from", 0.0, 360.0, 180.0),
+    Property("wind_turbulence", "m/s", "standard deviation", 0.0, 20.0, 0.0),
 )
 """The numbers of ``Move.wind``."""
 _FARTHEST = 100_000.0
@@ -29,14 +30,15 @@ _HIGHEST = 10_000.0
 _FASTEST = 100.0
 _MISSION_RUNS = 1
 _MOST_SIGMA = 10.0
-_known: dict[type[Airframe], dict[str, Figure]] = {}
+_known: dict[type[Airframe], dict[str, Property]] = {}
 
 
+@renamed("figures", "properties", since="0.2", removed_in="0.4")
 @dataclass(frozen=True)
 class Move:
     """Where a vehicle is put, and how it is then; None: as it is.
 
-    Everything that the vehicle knows of places moves along: home, origin, targets.
+    Everything that the vehicle knows of positions moves along: home, origin, targets.
 
     Args:
         north, east: of the body's origin, from the world's origin, without a world from where the vehicles were
@@ -45,7 +47,7 @@ class Move:
         heading: from north towards east [rad].
         velocity: north, east, down, up to 100 m/s [m/s]; of a vehicle in the air, or along a rover's nose.
         wind: speed [m/s], where it comes from [deg], turbulence [m/s].
-        figures: of the airframe that are numbers or vectors of three: name -> value.
+        properties: of the airframe that are numbers or vectors of three: name -> value.
         seed: of the noise of all sensors from now on.
         walks: slow error of the receiver north and east, in standard deviations, before the heading is changed: as if
             it had walked there, so that the estimate has it, too.
@@ -57,7 +59,7 @@ class Move:
     heading: float | None = None
     velocity: tuple[float, float, float] | None = None
     wind: tuple[float, float, float] | None = None
-    figures: Mapping[str, Value] = field(default_factory=dict)
+    properties: Mapping[str, Value] = field(default_factory=dict)
     seed: int | None = None
     walks: tuple[float, float] | None = None
 
@@ -67,27 +69,27 @@ class Move:
         Raises:
             OptionError: one that cannot be taken, named, with what is allowed.
         """
-        place = -_FARTHEST, _FARTHEST
-        _number("north", self.north, *place, "m")
-        _number("east", self.east, *place, "m")
+        limits = -_FARTHEST, _FARTHEST
+        _number("north", self.north, *limits, "m")
+        _number("east", self.east, *limits, "m")
         if self.height is not None:
             _number("height", self.height, 1e-3, _HIGHEST, "m")
         _number("heading", self.heading, -1e6, 1e6, "rad")
         for name, value in zip(("north", "east", "down"), _three("velocity", self.velocity)):
             _number(f"velocity {name}", value, -_FASTEST, _FASTEST, "m/s")
-        for figure, value in zip(WIND, _three("wind", self.wind)):
-            _number(figure.name, value, figure.low, figure.high, figure.unit)
+        for prop, value in zip(WIND, _three("wind", self.wind)):
+            _number(prop.name, value, prop.low, prop.high, prop.unit)
         for name, value in zip(("north", "east"), _some("walks", self.walks, 2)):
             _number(f"walks {name}", value, -_MOST_SIGMA, _MOST_SIGMA, "standard deviations")
-        if self.figures:
+        if self.properties:
             known = _numbers(type(airframe))
-            for name, value in self.figures.items():
+            for name, value in self.properties.items():
                 if name not in known:
-                    raise OptionError(f"figure {name!r} cannot be changed by a move{did_you_mean(name, known)}")
-                figure = known[name]
-                elements: Any = (value,) if figure.length == 1 else _some(f"figure {name}", value, figure.length)
+                    raise OptionError(f"property {name!r} cannot be changed by a move{did_you_mean(name, known)}")
+                prop = known[name]
+                elements: Any = (value,) if prop.length == 1 else _some(f"property {name}", value, prop.length)
                 for one in elements:
-                    _number(f"figure {name}", one, figure.low, figure.high, figure.unit)
+                    _number(f"property {name}", one, prop.low, prop.high, prop.unit)
 
     def write(self, order: MoveOrder, vehicle: int, v: Any, kind: Kind) -> None:
         """Write it as the order for a vehicle.
@@ -109,9 +111,11 @@ class Move:
         body = v.physics.body
         here = body.pos
         order.vehicle = vehicle
-        order.says_place = self.north is not None or self.east is not None or self.walks is not None
-        if order.says_place:
-            order.place = Vec2(here.x if self.north is None else self.north, here.y if self.east is None else self.east)
+        order.says_position = self.north is not None or self.east is not None or self.walks is not None
+        if order.says_position:
+            order.position = Vec2(
+                here.x if self.north is None else self.north, here.y if self.east is None else self.east
+            )
         order.says_height = self.height is not None
         order.height = self.height or 0.0
         if self.walks is not None:
@@ -126,7 +130,7 @@ class Move:
         order.says_wind = self.wind is not None
         if self.wind is not None:
             order.wind_speed, order.wind_direction, order.wind_turbulence = self.wind
-        order.other_figures = bool(self.figures)
+        order.other_properties = bool(self.properties)
 
     def _check_along(self, vehicle: int, kind: Kind, body: Any) -> None:
         """Refuse a velocity that a vehicle on the ground cannot have."""
@@ -142,13 +146,13 @@ class Move:
             raise OptionError(f"velocity = {self.velocity!r}: vehicle {vehicle} is on the ground; {allowed}")
 
 
-def is_changeable(figure: Figure) -> bool:
-    """Whether a vehicle that was prepared with one value of a figure may go on with another."""
-    return figure.length in (1, 3) and not figure.whole
+def is_changeable(prop: Property) -> bool:
+    """Whether a vehicle that was prepared with one value of a property may go on with another."""
+    return prop.length in (1, 3) and not prop.whole
 
 
-def _numbers(kind: type[Airframe]) -> dict[str, Figure]:
-    """The figures that may be changed, by name."""
+def _numbers(kind: type[Airframe]) -> dict[str, Property]:
+    """The properties that may be changed, by name."""
     if kind not in _known:
         _known[kind] = {f.name: f for f in kind.known if is_changeable(f)}
     return _known[kind]

@@ -170,8 +170,8 @@ class Scenario:
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON has it; ``from_json`` makes the same scenario of that.
 
-        An airframe that has no name here is kept with its figures. A world made by a program is kept by its name alone
-        ("file" is None): ``from_json`` needs it again.
+        An airframe that has no name here is kept with its properties. A world made by a program is kept by its name
+        alone ("file" is None): ``from_json`` needs it again.
         """
         airframe, start = self.airframe, self.start
         frame: str | None
@@ -227,7 +227,7 @@ class Scenario:
 
 
 def _frame_of(data: Mapping[str, Any]) -> str | Airframe:
-    """Ours by its name, any other from its figures: a file may be Python, which would be run, or have changed since."""
+    """Ours by its name, any other from its properties: a file may be Python, which would run, or have changed since."""
     frame = data["frame"]
     if isinstance(frame, str) and not vehicles.is_file(frame):
         return frame

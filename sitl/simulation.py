@@ -103,7 +103,7 @@ class Simulation:
     Args:
         frame: airframe name, path of a file that defines one, an Airframe, or a whole ``Scenario``.
         core: the core of this kind of vehicle, if it is loaded already.
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
         options: the other fields of ``sitl.scenario.Scenario``: home, seed, estimator, params, world, start, physics.
 
     Raises:
@@ -462,7 +462,7 @@ class Simulation:
         return self.world is None and self.physics == NATIVE
 
     def truth(self) -> Carried:
-        """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
+        """Where the vehicle really is, as HIL_STATE_QUATERNION reports it."""
         return self.plant.truth()
 
     def close(self) -> None:
@@ -484,7 +484,7 @@ class Simulation:
         self.v.autopilot.ekf.use_external = self.estimator == "truth"
 
     def _follow_events(self) -> None:
-        """Tell clients of what happened in the core, and let the mission go on where it waits for that."""
+        """Report to clients what happened in the core, and let the mission go on where it waits for that."""
         self.bridge.report(self.aux.attend())  # first: what switches do makes events of its own
         self.v.autopilot.events.attention = False
         self.bridge.on_events()

@@ -26,6 +26,7 @@ from .core.constants import TICK_US
 from .core.elementary import cos, hypot, sin
 from .core.record_reader import RecordReader, locate
 from .core.vectors import Vec3
+from .deprecation import warn
 from .errors import OptionError
 from .physics.native.records import Wind
 from .physics.native.traffic import MOVER_SIZE, NOBODY, PUSHED, SLICE_US, Mover, SharedWind, let_meet, stir_wind
@@ -107,7 +108,7 @@ class Swarm:
         starts: a start pose for each: name of one of the world's, or x, y, z [m], yaw [deg] in the world's frame; None:
             on a grid, the first one at ``start``, or where the world has its vehicles start.
         spacing: of the grid [m].
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
         options: as of ``Simulation``, for all. Without a world they are on a plain without end, with home's heading.
 
     Raises:
@@ -208,9 +209,15 @@ class Swarm:
                 return
 
     @property
-    def heard(self) -> int:
+    def received(self) -> int:
         """How often clients on links of the router have said something, so far."""
-        return self.router.heard
+        return self.router.received
+
+    @property
+    def heard(self) -> int:
+        """Deprecated: ``received``."""
+        warn("Swarm.heard", since="0.2", removed_in="0.4", instead="Swarm.received")
+        return self.received
 
     def wait(self, seconds: float) -> bool:
         """Sleep until a client on one of these links says something, at most ``seconds`` of wall time."""
@@ -341,7 +348,7 @@ def _scenarios(
     spacing: float,
     options: dict[str, Any],
 ) -> list[Scenario]:
-    """What each vehicle is, with its place, seed and system id."""
+    """What each vehicle is, with its position, seed and system id."""
     each = [frames] * (1 if count is None else count) if isinstance(frames, Frame) else list(frames)
     if not 1 <= len(each) <= MOST or (count is not None and len(each) != count):
         raise OptionError(

@@ -23,8 +23,13 @@ settings.register_profile("any machine", deadline=None, derandomize=True, suppre
 settings.load_profile("any machine")
 
 
-LONGEST = ("test_the_site_builds_without_warnings", "test_the_examples_that_compile_a_core_do_what_they_say")
-"""They take minutes: at the end one worker would be at them while the others have nothing left."""
+LONGEST = (
+    "test_the_site_builds_without_warnings",
+    "test_the_examples_that_compile_a_core_do_what_they_say",
+    "test_a_tutorial_runs_as_it_stands[your-own-vehicle]",
+    "test_all_flights_are_the_same_as_on_other_machines",
+)
+"""They take a minute and more: at the end one worker would be at them while the others have nothing left."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 
 
 @pytest.mark.slow
-def test_every_figure_of_both_vehicles_is_printed(core: Core) -> None:
+def test_every_value_of_both_vehicles_is_printed(core: Core) -> None:
     load_core(KINDS["rover"])
     command = [sys.executable, "-m", "benchmarks", "--repeats", "1"]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -81,7 +81,7 @@ def test_readers_of_logs_are_compared_by_the_same_messages(capsys, tmp_path):
     named = ["ours", "pymavlink", "pymavlink, rows only", "ours: sitl identify"]
     assert log_readers.main(["--log", str(path), "--readers", *named]) == 0
     rows = re.findall(
-        r"^\| (.+?) \(.+\) \| ([\d,]+)(?: figures)? \| ([\d.]+) \| (\d+) \|", capsys.readouterr().out, re.M
+        r"^\| (.+?) \(.+\) \| ([\d,]+)(?: properties)? \| ([\d.]+) \| (\d+) \|", capsys.readouterr().out, re.M
     )
     assert [row[0] for row in rows] == named
     counts = [int(row[1].replace(",", "")) for row in rows]

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import ast
+import dataclasses
 from pathlib import Path
 
 import pytest
 
 import sitl
-from sitl.deprecation import SitlDeprecationWarning, deprecated
+from sitl.deprecation import SitlDeprecationWarning, deprecated, renamed
 
 PACKAGE = Path(sitl.__file__).parent
 
@@ -27,6 +28,31 @@ def test_a_call_warns_at_the_users_line_and_does_what_it_did() -> None:
         assert flew(2.0, speed=3.0) == 6.0
     assert found[0].filename == __file__
     assert flew.__name__ == "flew" and flew.__doc__ == "Old."
+
+
+@renamed("figures", "properties", since="0.2", removed_in="0.4")
+@dataclasses.dataclass(frozen=True)
+class Vehicle:
+    name: str
+    properties: float = 0.0
+
+
+def test_an_argument_that_was_renamed_warns_at_the_users_line_and_does_what_it_did() -> None:
+    with pytest.warns(
+        SitlDeprecationWarning, match=r"Vehicle\(figures=\) is deprecated since gym-sitl 0\.2 .* 0\.4; use properties="
+    ) as found:
+        assert Vehicle("x", figures=2.0) == Vehicle("x", 2.0)  # type: ignore[call-arg]
+    assert found[0].filename == __file__
+    with pytest.warns(SitlDeprecationWarning, match=r"Vehicle\.figures is deprecated .*; use properties") as found:
+        assert Vehicle("x", 2.0).figures == 2.0  # type: ignore[attr-defined]
+    assert found[0].filename == __file__
+    with pytest.warns(SitlDeprecationWarning, match=r"Vehicle\(figures=\)"):
+        assert dataclasses.replace(Vehicle("x", 2.0), figures=3.0) == Vehicle("x", 3.0)
+
+
+def test_the_new_name_of_an_argument_does_not_warn(recwarn: pytest.WarningsRecorder) -> None:
+    assert dataclasses.replace(Vehicle("x", properties=2.0), name="y").properties == 2.0
+    assert not recwarn.list
 
 
 def version(text: str) -> tuple[int, int]:

@@ -140,3 +140,11 @@ def test_what_the_tree_has_is_found_wherever_it_is() -> None:
     assert tree.locate("Turtlebots", "sitl.robots.nowhere") is Turtlebots
     with pytest.raises(tree.TreeError, match="defines NoSuchThing"):
         tree.locate("NoSuchThing", "sitl.simulation")
+
+
+def test_flights_on_other_engines_are_named_where_none_are_kept(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        command.main(["check", "--only", "jsbsim/copter/guided"])
+    told = capsys.readouterr().err
+    assert "left out, because no digests of other engines are kept: jsbsim/copter/guided\n" in told
+    assert "none is left" in told

@@ -38,7 +38,7 @@ EXCEPTIONS = [
     Exception_("sitl/physics/pybullet", "*", "Bullet computes by the C library, too; its flights have tolerances"),
     Exception_("sitl/physics/jsbsim", "*", "JSBSim computes by the C library, too; its flights have tolerances"),
     Exception_("sitl/agents/report", "*", "tables and intervals of trainings, by SciPy"),
-    Exception_("sitl/identify", "*", "figures of an airframe from its logs, by SciPy: an estimate, kept as a file"),
+    Exception_("sitl/identify", "*", "properties of an airframe from its logs, by SciPy: an estimate, kept as a file"),
     Exception_("sitl/agents/deep/checkpoint.py", "*", "training by torch, which repeats on one machine"),
     Exception_("sitl/agents/deep/onnx_file.py", "*", "a file for runtimes that compute as they like"),
     Exception_("sitl/envs/noise.py", ".standard_normal()", "where its tails are drawn anew"),

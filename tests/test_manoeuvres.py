@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Manoeuvres of ours beside the kept figures of a real ArduPilot: what agrees must go on agreeing."""
+"""Manoeuvres of ours beside the kept metrics of a real ArduPilot: what agrees must go on agreeing."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ BY_PERCENT = {"copter": 0.92, "rover": 0.87}
 @pytest.fixture(scope="module", params=sorted(manoeuvres.FLIGHTS))
 def flown(request: pytest.FixtureRequest) -> tuple[str, list[Row]]:
     kind: str = request.param
-    return kind, table.rows(manoeuvres.fly_ours(kind), table.kept(kind)["figures"])
+    return kind, table.rows(manoeuvres.fly_ours(kind), table.kept(kind)["metrics"])
 
 
-def test_nine_of_ten_figures_agree(flown: tuple[str, list[Row]]) -> None:
+def test_nine_of_ten_metrics_agree(flown: tuple[str, list[Row]]) -> None:
     kind, rows = flown
     assert len(rows) > 90
     wrong = [row for row in rows if not row.agrees]
@@ -38,9 +38,9 @@ def test_nine_of_ten_figures_agree(flown: tuple[str, list[Row]]) -> None:
     assert sum(map(table.within, rows)) / len(rows) >= BY_PERCENT[kind]
 
 
-def test_every_flight_has_all_its_kept_figures(flown: tuple[str, list[Row]]) -> None:
+def test_every_flight_has_all_its_kept_metrics(flown: tuple[str, list[Row]]) -> None:
     kind, rows = flown
-    kept = {(flight, name) for flight, figures in table.kept(kind)["figures"].items() for name in figures}
+    kept = {(flight, name) for flight, metrics in table.kept(kind)["metrics"].items() for name in metrics}
     assert {(row.flight, row.name) for row in rows} == kept, "fly them: python -m benchmarks.manoeuvres --ardupilot"
 
 
@@ -64,31 +64,31 @@ def test_the_page_shows_what_is_flown(flown: tuple[str, list[Row]]) -> None:
     ),
 )  # fmt: skip
 def test_the_rule(unit: str, ours: float, theirs: float, agrees: bool) -> None:
-    assert Row("flight", "figure", unit, ours, theirs).agrees == agrees
+    assert Row("flight", "metric", unit, ours, theirs).agrees == agrees
 
 
 def test_the_rule_without_short_times_and_small_angles() -> None:
     cases = (("s", 1.06, 1.0), ("m", 0.4, 0.0), ("deg", 0.9, 0.1), ("s", 1.04, 1.0), ("s", math.nan, math.nan))
-    assert [table.within(Row("flight", "figure", *case)) for case in cases] == [False, True, False, True, True]
+    assert [table.within(Row("flight", "metric", *case)) for case in cases] == [False, True, False, True, True]
 
 
-def test_kept_figures_are_json_and_the_table_is_markdown() -> None:
-    figures = {"a": {"time": (1.23456, "s"), "never": (math.nan, "m")}}
-    kept = json.loads(table.as_json("4.7", "2026-01-02", figures))
+def test_kept_metrics_are_json_and_the_table_is_markdown() -> None:
+    metrics = {"a": {"time": (1.23456, "s"), "never": (math.nan, "m")}}
+    kept = json.loads(table.as_json("4.7", "2026-01-02", metrics))
     assert kept == {
         "version": "4.7",
         "date": "2026-01-02",
-        "figures": {"a": {"time": [1.2346, "s"], "never": [None, "m"]}},
+        "metrics": {"a": {"time": [1.2346, "s"], "never": [None, "m"]}},
     }
     lines = table.markdown([Row("a", "time", "s", 1.0, 2.0), Row("a", "never", "m", math.nan, math.nan)]).splitlines()
     assert lines[2:] == ["| **differs** | time | s | 1.00 | 2.00 | -50.0 % |", "|  | never | m | - | - |  |"]
-    assert table.summary([Row("a", "time", "s", 1.0, 2.0)]) == "0 of 1 figures agree (0.0 %)"
+    assert table.summary([Row("a", "time", "s", 1.0, 2.0)]) == "0 of 1 metrics agree (0.0 %)"
 
 
 def test_the_median_of_flights_counts() -> None:
     flown = [{"a": {"time": (x, "s"), "never": (y, "m")}} for x, y in ((1.0, math.nan), (9.0, math.nan), (2.0, 3.0))]
-    (figures,) = table.medians(flown).values()
-    assert figures["time"] == (2.0, "s") and math.isnan(figures["never"][0])
+    (metrics,) = table.medians(flown).values()
+    assert metrics["time"] == (2.0, "s") and math.isnan(metrics["never"][0])
 
 
 def test_what_is_not_there_is_named(tmp_path: Path) -> None:
@@ -96,7 +96,7 @@ def test_what_is_not_there_is_named(tmp_path: Path) -> None:
         executable.find(tmp_path, "copter")
     with pytest.raises(OptionError, match="a rover has no flight 'loiter'; it has velocities, positions"):
         manoeuvres.chosen("rover", ["loiter"])
-    with pytest.raises(table.KeptFiguresError, match="no figures of a plane are kept"):
+    with pytest.raises(table.KeptMetricsError, match="no metrics of a plane are kept"):
         table.kept("plane")
 
 

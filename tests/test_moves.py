@@ -18,6 +18,7 @@ from sitl.client import Client, Endpoint
 from sitl.core import rng
 from sitl.core.geodesy import offset_ne
 from sitl.core.vectors import Vec2
+from sitl.deprecation import SitlDeprecationWarning
 from sitl.errors import OptionError
 from sitl.fleet import Fleet
 from sitl.move import Move
@@ -203,12 +204,12 @@ def test_it_flies_on_as_the_one_that_stayed(kind: str, prepared: Snapshot, place
 
 
 def test_compiled_and_plain_python_move_alike(fleet: Fleet, kind: str) -> None:
-    fleet.move(0, Move(12.0, -7.0, heading=2.0, wind=(3.0, 40.0, 1.0), figures={"mass": 1.3}, seed=7))
+    fleet.move(0, Move(12.0, -7.0, heading=2.0, wind=(3.0, 40.0, 1.0), properties={"mass": 1.3}, seed=7))
     plain = Fleet(fleet.scenario, 1, core=load_core(KINDS[kind]))
     plain.put(0, fleet.snapshot(1))
     orders = MoveOrder.fleet(1)
     order, v = MoveOrder.of(orders, 0), plain.view(0)
-    move = Move(12.0, -7.0, heading=2.0, wind=(3.0, 40.0, 1.0), figures={"mass": 1.3})
+    move = Move(12.0, -7.0, heading=2.0, wind=(3.0, 40.0, 1.0), properties={"mass": 1.3})
     move.write(order, 0, v, plain.kind)
     plain.records["physics"]["airframe"]["mass"][0] = 1.3
     rng.seed(v.rng, 7)
@@ -280,17 +281,17 @@ def test_scans_and_solids_are_those_of_the_new_place(kind: str) -> None:
     fleet.close()
 
 
-# ---------------------------------------------------------------------- figures, wind, speed
+# ---------------------------------------------------------------------- properties, wind, speed
 
 
 HOVERS = [
-    Move(figures={"mass": 0.8}),
-    Move(figures={"mass": 1.6}),
-    Move(figures={"thrust_coefficient": 7e-6}),
-    Move(figures={"rotor_drag": 2e-4}, wind=(5.0, 200.0, 0.0)),
+    Move(properties={"mass": 0.8}),
+    Move(properties={"mass": 1.6}),
+    Move(properties={"thrust_coefficient": 7e-6}),
+    Move(properties={"rotor_drag": 2e-4}, wind=(5.0, 200.0, 0.0)),
     Move(wind=(8.0, 90.0, 0.0)),
-    Move(heading=2.5, wind=(6.0, 10.0, 0.0), figures={"mass": 1.35, "time_constant_up": 0.02}),
-    Move(50.0, 3.0, heading=-2.0, figures={"speed_max": 760.0}),
+    Move(heading=2.5, wind=(6.0, 10.0, 0.0), properties={"mass": 1.35, "time_constant_up": 0.02}),
+    Move(50.0, 3.0, heading=-2.0, properties={"speed_max": 760.0}),
 ]
 
 
@@ -300,7 +301,7 @@ def hovering() -> Snapshot:
 
 
 @pytest.mark.parametrize("move", HOVERS)
-def test_a_copter_hovers_on_with_other_figures_in_another_wind(hovering: Snapshot, move: Move) -> None:
+def test_a_copter_hovers_on_with_other_properties_in_another_wind(hovering: Snapshot, move: Move) -> None:
     fleet = Fleet("erle_copter", 2)
     fleet.put((0, 1), hovering)
     fleet.move(1, move)
@@ -314,7 +315,7 @@ def test_a_copter_hovers_on_with_other_figures_in_another_wind(hovering: Snapsho
         assert np.linalg.norm(way[:2]) < np.linalg.norm(own[:2]) + 0.15, way
         assert max(variances(v)) < 0.3
     assert resets(v) == before and v.autopilot.arming.armed
-    for name, value in move.figures.items():
+    for name, value in move.properties.items():
         assert getattr(v.physics.airframe, name) == value
     if move.wind is not None:
         assert v.physics.wind.speed == v.autopilot.params.SIM.WIND_SPD == move.wind[0]
@@ -332,7 +333,7 @@ def test_it_hovers_as_one_that_took_off_so(hovering: Snapshot) -> None:
     own.advance(15.0)
     fleet = Fleet("erle_copter", 1)
     fleet.put(0, hovering)
-    fleet.move(0, Move(figures={"mass": 1.4}, wind=(5.0, 130.0, 0.0)))
+    fleet.move(0, Move(properties={"mass": 1.4}, wind=(5.0, 130.0, 0.0)))
     throttles: list[float] = []
     leans: list[Any] = []
     for v, advance in ((fleet.view(0), fleet.advance), (own.v, own.advance)):
@@ -373,7 +374,7 @@ def test_the_momentum_model_hovers_on_too() -> None:
     fleet = Fleet("ardupilot_quad", 1)
     fleet.put(0, start)
     v = fleet.view(0)
-    fleet.move(0, Move(figures={"mass": 1.2 * v.physics.airframe.mass}, wind=(4.0, 0.0, 0.0), heading=1.0))
+    fleet.move(0, Move(properties={"mass": 1.2 * v.physics.airframe.mass}, wind=(4.0, 0.0, 0.0), heading=1.0))
     z = v.physics.body.pos.z
     fleet.advance(3.0)
     assert v.physics.body.pos.z == pytest.approx(z, abs=0.2) and np.linalg.norm(v.physics.body.vel) < 0.25
@@ -433,20 +434,28 @@ WRONG = {
         (Move(velocity=(1.0, 2.0)), "three numbers"),  # type: ignore[arg-type]
         (Move(wind=(-1.0, 0.0, 0.0)), "wind_speed = -1.0"),
         (Move(wind=7.0), "three numbers"),  # type: ignore[arg-type]
-        (Move(figures={"mass": -1.0}), "figure mass = -1.0"),
-        (Move(figures={"mass": math.nan}), "figure mass = nan"),
-        (Move(figures={"masss": 1.0}), "did you mean 'mass'"),
-        (Move(figures={"substeps": 2.0}), "'substeps' cannot be changed"),
-        (Move(figures={"mass": 30.0}), "does not hover"),
-        (Move(figures={"thrust_coefficient": 1e-9}), "does not hover"),
+        (Move(properties={"mass": -1.0}), "property mass = -1.0"),
+        (Move(properties={"mass": math.nan}), "property mass = nan"),
+        (Move(properties={"masss": 1.0}), "did you mean 'mass'"),
+        (Move(properties={"substeps": 2.0}), "'substeps' cannot be changed"),
+        (Move(properties={"mass": 30.0}), "does not hover"),
+        (Move(properties={"thrust_coefficient": 1e-9}), "does not hover"),
     ],
     "rover": [
         (Move(height=2.0), "is not in the air"),
         (Move(velocity=(0.0, 1.0, 0.0), heading=0.0), "along its nose only"),
         (Move(north="1"), "north = '1'"),  # type: ignore[arg-type]
-        (Move(figures={"mass": 0.0}), "figure mass = 0.0"),
+        (Move(properties={"mass": 0.0}), "property mass = 0.0"),
     ],
 }
+
+
+def test_the_old_name_of_the_properties_works_and_warns() -> None:
+    with pytest.warns(SitlDeprecationWarning, match=r"Move\(figures=\).* use properties="):
+        move = Move(3.0, figures={"mass": 1.3})  # type: ignore[call-arg]
+    assert move == Move(3.0, properties={"mass": 1.3})
+    with pytest.warns(SitlDeprecationWarning, match=r"Move\.figures"):
+        assert move.figures == {"mass": 1.3}  # type: ignore[attr-defined]
 
 
 def test_what_cannot_be_is_refused_and_changes_nothing(fleet: Fleet, kind: str, prepared: Snapshot) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Our flights on ArduPilot's airframes against the recorded ones: the figures that agree must go on agreeing."""
+"""Our flights on ArduPilot's airframes against the recorded ones: the metrics that agree must go on agreeing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.recorded import __main__ as compare
-from benchmarks.recorded.figures import Figure, X, crossing, table
+from benchmarks.recorded.metrics import Metric, X, crossing, table
 from benchmarks.recorded.recording import RecordingError, recorded
 
 LOOSER = {  # percent, where docs/comparison.md says why
@@ -27,25 +27,25 @@ NOT_COMPARED = ("behind", "while it stands", "HOLD: below 0.1", "error at the en
 
 
 @pytest.fixture(scope="module", params=[(k, e) for k in ("copter", "rover") for e in ("ekf", "truth")])
-def figures(request: pytest.FixtureRequest) -> list[Figure]:
-    return compare.figures(*request.param)
+def metrics(request: pytest.FixtureRequest) -> list[Metric]:
+    return compare.metrics(*request.param)
 
 
-def test_times_speeds_and_angles_agree_within_five_percent(figures: list[Figure]) -> None:
-    compared = [f for f in figures if f.theirs and not any(part in f.name for part in NOT_COMPARED)]
+def test_times_speeds_and_angles_agree_within_five_percent(metrics: list[Metric]) -> None:
+    compared = [f for f in metrics if f.theirs and not any(part in f.name for part in NOT_COMPARED)]
     assert len(compared) > 25
     wrong = [f for f in compared if not abs(f.percent) <= LOOSER.get(f.name, 5.0)]
     assert not wrong
 
 
-def test_paths_agree_within_half_a_metre(figures: list[Figure]) -> None:
-    paths = [f for f in figures if "RMS" in f.name]
+def test_paths_agree_within_half_a_metre(metrics: list[Metric]) -> None:
+    paths = [f for f in metrics if "RMS" in f.name]
     assert len(paths) >= 5
     assert all(f.ours < 0.5 for f in paths), paths
 
 
-def test_places_agree_within_a_fifth_of_a_metre(figures: list[Figure]) -> None:
-    assert all(abs(f.ours - f.theirs) < 0.2 for f in figures if "error at the end" in f.name)
+def test_places_agree_within_a_fifth_of_a_metre(metrics: list[Metric]) -> None:
+    assert all(abs(f.ours - f.theirs) < 0.2 for f in metrics if "error at the end" in f.name)
 
 
 @pytest.mark.parametrize(("kind", "estimator"), [(k, e) for k in ("copter", "rover") for e in ("ekf", "truth")])
@@ -56,7 +56,7 @@ def test_the_page_shows_what_is_flown(kind: str, estimator: str) -> None:
     section = next(s for s in page.split("\n## ") if s.startswith(title))
     rows = re.findall(r"^\| (.+?) \| \S+ \| (-?[\d.]+|-) \|", section, re.MULTILINE)
     shown = {name: math.nan if ours == "-" else float(ours) for name, ours in rows}
-    flown = {f.name: f.ours for f in compare.figures(kind, estimator)}
+    flown = {f.name: f.ours for f in compare.metrics(kind, estimator)}
     assert shown == pytest.approx(flown, rel=0.01, abs=0.03, nan_ok=True), "run: python docs/make_pages.py"
 
 
@@ -74,7 +74,7 @@ def test_recordings_hold_the_manoeuvres() -> None:
 
 
 def test_the_table_is_markdown() -> None:
-    lines = table([Figure("a", "s", 1.05, 1.0), Figure("b", "m", 0.2, 0.0), Figure("c", "s", math.nan, 1.0)])
+    lines = table([Metric("a", "s", 1.05, 1.0), Metric("b", "m", 0.2, 0.0), Metric("c", "s", math.nan, 1.0)])
     assert lines.splitlines()[2:] == [
         "| a | s | 1.05 | 1.00 | +5.0 % |",
         "| b | m | 0.20 |  |  |",

@@ -90,7 +90,7 @@ def fly_all(names: list[str], jobs: int) -> dict[str, Any]:
 
 def record(path: Path, names: list[str], jobs: int) -> int:
     """Fly, and put the digests into the file that the repository keeps; returns how many could not be flown."""
-    flown = fly_all([name for name in names if is_kept(name)], jobs)
+    flown = fly_all(names, jobs)
     before = kept.load(path) if path.exists() else {}
     there = {name: flight for name, flight in before.items() if name in flights()}
     now = {name: kept.keep(digests) for name, digests in flown.items() if "error" not in digests}
@@ -102,7 +102,7 @@ def record(path: Path, names: list[str], jobs: int) -> int:
 
 def check(path: Path, names: list[str], jobs: int) -> list[str]:
     """Fly; what differs from the digests that the repository keeps, in words."""
-    flown = fly_all([name for name in names if is_kept(name)], jobs)
+    flown = fly_all(names, jobs)
     found = [f"{name}: it cannot be flown: {each['error']}" for name, each in flown.items() if "error" in each]
     now = {name: kept.keep(each) for name, each in flown.items() if "error" not in each}
     found += kept.differences(kept.load(path), now)
@@ -213,6 +213,12 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "list":
         print(*names, sep="\n")
         return 0
+    if options.command in ("record", "check"):
+        left_out, names = [name for name in names if not is_kept(name)], [name for name in names if is_kept(name)]
+        if left_out:
+            print(f"left out, because no digests of other engines are kept: {', '.join(left_out)}", file=sys.stderr)
+        if not names:
+            parser.error("none is left: write and compare take all flights")
     print(f"tree {tree.root()}: {len(names)} flights", file=sys.stderr)
     if options.command in ("record", "check"):
         path = options.file or tree.root() / kept.FILE

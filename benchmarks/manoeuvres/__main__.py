@@ -14,7 +14,7 @@ from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
 from . import copter, disturbed, executable, paths, rover, table
-from .flyer import Figures, Flyer
+from .flyer import Flyer, Metrics
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 FRAMES = {"copter": "ardupilot_quad", "rover": "ardupilot_rover"}
@@ -64,20 +64,20 @@ def chosen(kind: str, names: Sequence[str]) -> dict[str, Callable[[Flyer], None]
     return {name: flights[name] for name in names or flights}
 
 
-def fly_ours(kind: str, names: Sequence[str] = (), seed: int = 0) -> dict[str, Figures]:
-    """The figures of a simulation in this process."""
+def fly_ours(kind: str, names: Sequence[str] = (), seed: int = 0) -> dict[str, Metrics]:
+    """The metrics of a simulation in this process."""
     core, found = load_core(KINDS[kind]), {}
     for name, flight in chosen(kind, names).items():
         flyer = Flyer(Simulation(FRAMES[kind], home=HOME, seed=seed, core=core), RATES_HZ[kind])
         flight(flyer)
-        found[name] = flyer.figures
+        found[name] = flyer.metrics
     return found
 
 
 def fly_executable(
     path: Path, kind: str, names: Sequence[str], speedup: int, instance: int = 0
-) -> tuple[dict[str, Figures], str]:
-    """The figures of an executable, and its version."""
+) -> tuple[dict[str, Metrics], str]:
+    """The metrics of an executable, and its version."""
     found, version = {}, ""
     params = vehicles.load(FRAMES[kind]).parameters
     for name, flight in chosen(kind, names).items():
@@ -87,8 +87,8 @@ def fly_executable(
             flyer.wait_ready()
             flyer.params["SIM_SPEEDUP"] = speedup
             flight(flyer)
-        found[name] = flyer.figures
-        print(f"{kind} {name}: {len(flyer.figures)} figures of {path.name}", flush=True)
+        found[name] = flyer.metrics
+        print(f"{kind} {name}: {len(flyer.metrics)} metrics of {path.name}", flush=True)
     return found, version
 
 
@@ -106,10 +106,10 @@ def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) 
         f"{HEADING} by commands and sticks\n",
         "Scripts of this project fly a real ArduPilot and ours by MAVLink, with the same parameters (the defaults",
         "of the firmware and those of our airframe), in simulated time. ArduPilot's flights vary a little, because",
-        "its clock continues while a client writes. Its figures are medians of three flights, in",
+        "its clock continues while a client writes. Its values are medians of three flights, in",
         "`benchmarks/reference/`; they are from `python -m benchmarks.manoeuvres --ardupilot PATH --times 3",
         "--keep`, where PATH is the folder of `arducopter` and `ardurover`. Without `--ardupilot` the command",
-        "compares with these figures.",
+        "compares with these metrics.",
         f"\n{table.RULE}\n",
         f"**{table.summary(every)}**; by {table.PERCENT:g} % or {table.CLOSE['m']:g} m alone "
         f"{sum(map(table.within, every))} do. Most of the others are times below {table.SHORT_S:g} s.",
@@ -123,11 +123,11 @@ def section(found: Mapping[str, list[table.Row]], described: Mapping[str, str]) 
 
 
 def kept_beside_ours() -> str:
-    """The same with the kept figures of both kinds of vehicles."""
+    """The same with the kept metrics of both kinds of vehicles."""
     found, described = {}, {}
     for kind in sorted(FLIGHTS):
         kept = table.kept(kind)
-        found[kind] = table.rows(fly_ours(kind), kept["figures"])
+        found[kind] = table.rows(fly_ours(kind), kept["metrics"])
         described[kind] = f"ArduPilot {kept['version']} of {kept['date']}"
     return section(found, described)
 
@@ -138,14 +138,14 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("kind", nargs="?", choices=sorted(FLIGHTS), help="of vehicle (default: all)")
     top.add_argument("flights", nargs="*", metavar="FLIGHT", help="names of flights (default: all)")
     top.add_argument(
-        "--ardupilot", type=Path, metavar="PATH", help="executable, or folder with both; else kept figures"
+        "--ardupilot", type=Path, metavar="PATH", help="executable, or folder with both; else kept metrics"
     )
     top.add_argument(
         "--ours", type=Path, metavar="PATH", help="executable of ours instead of a vehicle in this process"
     )
     top.add_argument("--speedup", type=int, default=2, metavar="K", help="of executables (default 2)")
     top.add_argument("--times", type=int, default=1, metavar="N", help="fly --ardupilot N times, take each median")
-    top.add_argument("--keep", action="store_true", help="keep the figures of --ardupilot, in the package")
+    top.add_argument("--keep", action="store_true", help="keep the metrics of --ardupilot, in the package")
     top.add_argument("--page", type=Path, metavar="FILE", help="replace the page's section of these tables")
     return top
 
@@ -162,14 +162,14 @@ def main() -> None:
             flown = [
                 fly_executable(options.ardupilot, kind, options.flights, options.speedup) for _ in range(options.times)
             ]
-            theirs, version = table.medians([figures for figures, _ in flown]), flown[0][1]
+            theirs, version = table.medians([metrics for metrics, _ in flown]), flown[0][1]
             if options.keep:
                 path = Path(__file__).parents[1] / "reference" / table.file_name(kind)
-                others = table.kept(kind)["figures"] if options.flights and path.exists() else {}
+                others = table.kept(kind)["metrics"] if options.flights and path.exists() else {}
                 path.write_text(table.as_json(version, date, {**others, **theirs}), encoding="utf-8")
         else:
             kept = table.kept(kind)
-            theirs, version, date = kept["figures"], kept["version"], kept["date"]
+            theirs, version, date = kept["metrics"], kept["version"], kept["date"]
         if options.ours:
             ours, _ = fly_executable(options.ours, kind, options.flights, options.speedup)
         else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client that flies manoeuvres, keeps what telemetry says of them, and notes figures."""
+"""A client that flies manoeuvres, keeps what telemetry says of them, and notes metrics."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SETTLE_S = 5.0
 """Between being ready and the first command [s]."""
 REACTION_S = 0.5
 
-Figures = dict[str, tuple[float, str]]
+Metrics = dict[str, tuple[float, str]]
 """Value and unit by name."""
 
 
@@ -31,7 +31,7 @@ class Flyer(Client):
     """Flies one of the flights; ``rate_hz``: how often position and attitude are told."""
 
     def __init__(self, vehicle: Simulation | Connection, rate_hz: float) -> None:
-        self.figures: Figures = {}
+        self.metrics: Metrics = {}
         self._rows: list[tuple[float, ...]] = []
         self._attitude = (0.0,) * 6
         rates = {**RATES_HZ, "ATTITUDE": rate_hz, "LOCAL_POSITION_NED": rate_hz}
@@ -46,10 +46,10 @@ class Flyer(Client):
             self._rows.append((f.time_boot_ms * 1e-3, f.x, f.y, f.z, f.vx, f.vy, f.vz, *self._attitude))
 
     def note(self, name: str, unit: str, value: float) -> None:
-        """Keep a figure."""
-        if name in self.figures:
-            raise ValueError(f"figure {name!r} is noted twice")
-        self.figures[name] = (float(value), unit)
+        """Keep a metric."""
+        if name in self.metrics:
+            raise ValueError(f"metric {name!r} is noted twice")
+        self.metrics[name] = (float(value), unit)
 
     def fly(self, seconds: float, until: Callable[[], bool] = lambda: False) -> Track:
         """Let time pass, up to ``seconds`` or until the condition holds; gives what was flown."""

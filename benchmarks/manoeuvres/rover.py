@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .copter import arrivals, fastest, slowest, step_figures
+from .copter import arrivals, fastest, slowest, step_metrics
 from .flyer import Flyer
 
 STEERING, THROTTLE = 1, 3
@@ -37,7 +37,7 @@ def velocities(f: Flyer) -> None:
         f.note(f"{name}: covered", "m", t.covered)
     f.set_velocity(0.0, 3.0)
     t = f.fly(8.0)
-    step_figures(f, "3 m/s round a corner", t, t.yaw, 90.0, "deg")
+    step_metrics(f, "3 m/s round a corner", t, t.yaw, 90.0, "deg")
     f.note("3 m/s round a corner: fastest turn", "deg/s", float(t.r.max()))
     f.note("3 m/s round a corner: speed at the end", "m/s", float(t.speed[-1]))
     f.set_velocity(0.0, 0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was flown in a manoeuvre: columns over time, and the figures that are read off them."""
+"""What was flown in a manoeuvre: columns over time, and the metrics that are read off them."""
 
 from __future__ import annotations
 

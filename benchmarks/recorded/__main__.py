@@ -22,7 +22,7 @@ from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
 
 from . import copter, rover
-from .figures import Figure, table
+from .metrics import Metric, table
 from .pilot import Pilot
 from .recording import Recording, recorded
 
@@ -98,22 +98,22 @@ class ForeignVehicle:
 
 HOME = (-35.363262, 149.165237, 584.0, 0.0)
 Script = Callable[[Simulation], Pilot]
-Judge = Callable[[Recording, Recording], list[Figure]]
+Judge = Callable[[Recording, Recording], list[Metric]]
 
 FLIGHTS: dict[str, tuple[str, list[tuple[str, Script, Judge]]]] = {
     "copter": (
         "ardupilot_quad",
         [
-            ("copter_guided", copter.guided, copter.guided_figures),
-            ("copter_auto", copter.auto, copter.auto_figures),
+            ("copter_guided", copter.guided, copter.guided_metrics),
+            ("copter_auto", copter.auto, copter.auto_metrics),
         ],
     ),
-    "rover": ("ardupilot_rover", [("rover", rover.drive, rover.drive_figures)]),
+    "rover": ("ardupilot_rover", [("rover", rover.drive, rover.drive_metrics)]),
 }
-"""Airframe, and recording, script and figures of each flight, by kind of vehicle."""
+"""Airframe, and recording, script and metrics of each flight, by kind of vehicle."""
 
 
-def figures(kind: str, estimator: str = "ekf", seed: int = 0, autopilot: str = "native") -> list[Figure]:
+def metrics(kind: str, estimator: str = "ekf", seed: int = 0, autopilot: str = "native") -> list[Metric]:
     """Fly the recorded scripts of a kind of vehicle on ArduPilot's airframe and compare.
 
     With an ``autopilot`` other than ours (``sitl.foreign.choice``) that one flies our physics.
@@ -123,17 +123,17 @@ def figures(kind: str, estimator: str = "ekf", seed: int = 0, autopilot: str = "
     if choice is not None:
         if estimator != "ekf":
             raise OptionError(f"estimator {estimator!r}: autopilot {choice.name} has estimators of its own")
-        return foreign_figures(choice, kind, seed)
+        return foreign_metrics(choice, kind, seed)
     core = load_core(KINDS[kind])
-    found: list[Figure] = []
+    found: list[Metric] = []
     for name, script, judge in flights:
         simulation = Simulation(frame, home=HOME, seed=seed, estimator=estimator, core=core)
         found += judge(script(simulation).recording(), recorded(name))
     return found
 
 
-def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
-    """As ``figures``, flown by a foreign autopilot that is started for each flight.
+def foreign_metrics(choice: Choice, kind: str, seed: int = 0) -> list[Metric]:
+    """As ``metrics``, flown by a foreign autopilot that is started for each flight.
 
     Raises:
         OptionError: one that does not speak ArduPilot's commands.
@@ -142,7 +142,7 @@ def foreign_figures(choice: Choice, kind: str, seed: int = 0) -> list[Figure]:
     if choice.kind != ARDUPILOT:
         raise OptionError(f"autopilot {choice.name}: the recorded scripts are for ArduPilot")
     frame, flights = FLIGHTS[kind]
-    found: list[Figure] = []
+    found: list[Metric] = []
     for name, script, judge in flights:
         vehicle: Any = ForeignVehicle(choice, frame, HOME, seed)
         try:
@@ -161,7 +161,7 @@ def main() -> None:
     parser.add_argument("--autopilot", default="native", help=f"who flies: {FORMS}")
     options = parser.parse_args()
     for kind in [options.kind] if options.kind else sorted(FLIGHTS):
-        print(table(figures(kind, options.estimator, options.seed, options.autopilot)))
+        print(table(metrics(kind, options.estimator, options.seed, options.autopilot)))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The two recorded flights of a copter, flown with the same commands at the same times, and their figures."""
+"""The two recorded flights of a copter, flown with the same commands at the same times, and their metrics."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 
 from sitl.simulation import Simulation
 
-from .figures import PITCH, ROLL, VX, VY, YAW, Figure, X, Y, Z, crossing, path_rms, speeds, with_distance
+from .metrics import PITCH, ROLL, VX, VY, YAW, Metric, X, Y, Z, crossing, path_rms, speeds, with_distance
 from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 from .recording import Recording
 
@@ -60,12 +60,12 @@ def auto(simulation: Simulation, pilot: Pilot | None = None) -> Pilot:
     return pilot
 
 
-def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
-    """The figures of the GUIDED script."""
-    figures: list[Figure] = []
+def guided_metrics(ours: Recording, theirs: Recording) -> list[Metric]:
+    """The metrics of the GUIDED script."""
+    metrics: list[Metric] = []
 
     def add(name: str, unit: str, phase: str, duration: float, value) -> None:
-        figures.append(Figure(name, unit, value(ours.since(phase, duration)), value(theirs.since(phase, duration))))
+        metrics.append(Metric(name, unit, value(ours.since(phase, duration)), value(theirs.since(phase, duration))))
 
     for height in (0.1, 5.0, 9.5, 9.9):
         add(f"take-off: {height} m", "s", "takeoff", 25, lambda r, h=height: crossing(r, Z, -h))
@@ -81,7 +81,7 @@ def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
     add("3 m/s east: peak speed", "m/s", "vel_3E_10s", 10, lambda r: float(r[:, VY].max()))
     add("3 m/s east: covered in 10 s", "m", "vel_3E_10s", 10, lambda r: float(r[-1, Y] - r[0, Y]))
     behind = [behind_velocity(r.since("vel_3E_10s", 5.0)) for r in (ours, theirs)]
-    figures.append(Figure("3 m/s east: estimated position behind its own velocity after 5 s", "m", *behind))
+    metrics.append(Metric("3 m/s east: estimated position behind its own velocity after 5 s", "m", *behind))
     add("3 m/s east: lean", "deg", "vel_3E_10s", 10, lambda r: float(np.degrees(r[:, ROLL].max())))
     add("stop: distance", "m", "vel_zero", 6, lambda r: float(r[-1, Y] - r[0, Y]))
     add("stop: below 0.2 m/s", "s", "vel_zero", 6, lambda r: crossing(r, VY, 0.2))
@@ -91,13 +91,13 @@ def guided_figures(ours: Recording, theirs: Recording) -> list[Figure]:
     add("RTL: climbs to", "m", "RTL", 60, lambda r: float(-r[:, Z].min()))
     add("RTL: peak speed", "m/s", "RTL", 60, lambda r: float(speeds(r).max()))
     add("RTL: within 2 m of home", "s", "RTL", 60, near_home)
-    figures.append(
-        Figure("RTL: disarmed", "s", ours.disarmed - ours.phases["RTL"], theirs.disarmed - theirs.phases["RTL"])
+    metrics.append(
+        Metric("RTL: disarmed", "s", ours.disarmed - ours.phases["RTL"], theirs.disarmed - theirs.phases["RTL"])
     )
     for phase, duration in (("takeoff", 25.0), ("pos_step_20N", 25.0), ("vel_3E_10s", 16.0), ("RTL", 45.0)):
         rms = path_rms(ours.since(phase, duration), theirs.since(phase, duration))
-        figures.append(Figure(f"{phase}: RMS distance at equal times", "m", rms, 0.0))
-    return figures
+        metrics.append(Metric(f"{phase}: RMS distance at equal times", "m", rms, 0.0))
+    return metrics
 
 
 def behind_velocity(rows: np.ndarray) -> float:
@@ -112,16 +112,16 @@ def near_home(rows: np.ndarray) -> float:
     return crossing(with_distance(rows, 0.0, 0.0), 1, 2.0)
 
 
-def auto_figures(ours: Recording, theirs: Recording) -> list[Figure]:
-    """The figures of the AUTO square."""
+def auto_metrics(ours: Recording, theirs: Recording) -> list[Metric]:
+    """The metrics of the AUTO square."""
     start_o, start_t = ours.phases["mission_start"], theirs.phases["mission_start"]
     times = {seq: t - start_o for t, seq in ours.reached}
-    figures = [
-        Figure(f"AUTO: item {seq} reached", "s", times.get(seq, float("nan")), t - start_t) for t, seq in theirs.reached
+    metrics = [
+        Metric(f"AUTO: item {seq} reached", "s", times.get(seq, float("nan")), t - start_t) for t, seq in theirs.reached
     ]
-    figures.append(Figure("AUTO: disarmed", "s", ours.disarmed - start_o, theirs.disarmed - start_t))
+    metrics.append(Metric("AUTO: disarmed", "s", ours.disarmed - start_o, theirs.disarmed - start_t))
     rows_o, rows_t = ours.since("mission_start", 60.0), theirs.since("mission_start", 60.0)
     speed = [float(speeds(r).max()) for r in (rows_o, rows_t)]
-    figures.append(Figure("AUTO: peak speed", "m/s", *speed))
-    figures.append(Figure("AUTO: RMS distance at equal times", "m", path_rms(rows_o, rows_t), 0.0))
-    return figures
+    metrics.append(Metric("AUTO: peak speed", "m/s", *speed))
+    metrics.append(Metric("AUTO: RMS distance at equal times", "m", path_rms(rows_o, rows_t), 0.0))
+    return metrics

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The recorded drive of a rover, driven with the same commands at the same times, and its figures."""
+"""The recorded drive of a rover, driven with the same commands at the same times, and its metrics."""
 
 from __future__ import annotations
 
 from sitl.core import elementary_arrays as arrays
 from sitl.simulation import Simulation
 
-from .figures import VX, Figure, X, Y, crossing, path_rms, speeds, stopped, with_distance
+from .metrics import VX, Metric, X, Y, crossing, path_rms, speeds, stopped, with_distance
 from .pilot import POSITION_ONLY, VELOCITY_ONLY, Pilot, items
 from .recording import Recording
 
@@ -64,15 +64,15 @@ def drive(simulation: Simulation) -> Pilot:
     return pilot
 
 
-def drive_figures(ours: Recording, theirs: Recording) -> list[Figure]:
-    """The figures of the drive."""
-    figures: list[Figure] = []
+def drive_metrics(ours: Recording, theirs: Recording) -> list[Metric]:
+    """The metrics of the drive."""
+    metrics: list[Metric] = []
 
     def add(name: str, unit: str, phase: str, duration: float, value) -> None:
-        figures.append(Figure(name, unit, value(ours.since(phase, duration)), value(theirs.since(phase, duration))))
+        metrics.append(Metric(name, unit, value(ours.since(phase, duration)), value(theirs.since(phase, duration))))
 
     def compare_text(name: str, phase: str, text: str) -> None:
-        figures.append(Figure(name, "s", ours.text_time(phase, text), theirs.text_time(phase, text)))
+        metrics.append(Metric(name, "s", ours.text_time(phase, text), theirs.text_time(phase, text)))
 
     for speed in (1.0, 1.9):
         add(f"2 m/s north: {speed} m/s", "s", "vel_2N_10s", 10, lambda r, v=speed: crossing(r, VX, v))
@@ -90,10 +90,10 @@ def drive_figures(ours: Recording, theirs: Recording) -> list[Figure]:
         add(f"{name}: peak speed", "m/s", phase, 25, lambda r: float(speeds(r).max()))
         add(f"{name}: error at the end", "m", phase, 25, lambda r, t=target: float(with_distance(r, *t)[-1, 1]))
     for seq in range(1, len(SQUARE) + 1):
-        figures.append(Figure(f"AUTO: item {seq} reached", "s", ours.arrival("AUTO", seq), theirs.arrival("AUTO", seq)))
+        metrics.append(Metric(f"AUTO: item {seq} reached", "s", ours.arrival("AUTO", seq), theirs.arrival("AUTO", seq)))
     for seq in range(2, len(SQUARE) + 1):
         legs = [r.arrival("AUTO", seq) - r.arrival("AUTO", seq - 1) for r in (ours, theirs)]
-        figures.append(Figure(f"AUTO: from item {seq - 1} to {seq}", "s", *legs))
+        metrics.append(Metric(f"AUTO: from item {seq - 1} to {seq}", "s", *legs))
     add("AUTO: velocity along the first leg while it stands", "m/s", "AUTO", 0.2, lambda r: float(r[0, VX]))
     add("AUTO: peak speed", "m/s", "AUTO", 30, lambda r: float(speeds(r).max()))
     add("HOLD: speed at its begin", "m/s", "HOLD", 6, lambda r: float(speeds(r)[0]))
@@ -107,7 +107,7 @@ def drive_figures(ours: Recording, theirs: Recording) -> list[Figure]:
         recording.phases[FROM_FIRST] = recording.phases["AUTO"] + recording.arrival("AUTO", 1)
     for phase, duration, from_start in PATHS:
         rms = path_rms(ours.since(phase, duration), theirs.since(phase, duration), from_start)
-        figures.append(Figure(f"{phase}: RMS distance at equal times", "m", rms, 0.0))
+        metrics.append(Metric(f"{phase}: RMS distance at equal times", "m", rms, 0.0))
     whole = path_rms(ours.since("AUTO", 29.0), theirs.since("AUTO", 29.0))
-    figures.append(Figure("AUTO from its start on: path at equal times", "m", whole, 0.0))
-    return figures
+    metrics.append(Metric("AUTO from its start on: path at equal times", "m", whole, 0.0))
+    return metrics

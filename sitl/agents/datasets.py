@@ -150,7 +150,7 @@ def record(
 
 
 def name_of(env: str, expert: str) -> str:
-    """What the dataset of an expert's flights in an environment is called unless told otherwise."""
+    """What the dataset of an expert's flights in an environment is called by default."""
     name, _, version = env.rpartition(":")[2].rpartition("/")[2].rpartition("-v")
     return f"sitl/{name}/{expert}-v{version}" if name and version.isdigit() else f"sitl/{env}/{expert}-v0"
 
@@ -191,7 +191,7 @@ def _flown(env: gym.Env[Any, Any], expert: Expert, number: int, seed: int) -> An
     observation, _ = env.reset(seed=seed)
     expert.begin(seed)
     seen, actions, rewards, terminations, truncations = [observation], [], [], [], []
-    told: list[dict[str, Any]] = [_told(env, {})]
+    records: list[dict[str, Any]] = [_record(env, {})]
     ended = False
     while not ended:
         actions.append(expert.act(observation))
@@ -200,16 +200,16 @@ def _flown(env: gym.Env[Any, Any], expert: Expert, number: int, seed: int) -> An
         rewards.append(float(reward))
         terminations.append(terminated)
         truncations.append(truncated)
-        told.append(_told(env, info))
+        records.append(_record(env, info))
         ended = terminated or truncated
-    for name in told[-1]:
-        told[0].setdefault(name, 0.0)  # a reset costs nothing
+    for name in records[-1]:
+        records[0].setdefault(name, 0.0)  # a reset costs nothing
     observations = {name: [row[name] for row in seen] for name in seen[0]} if isinstance(seen[0], dict) else seen
-    infos = {name: np.array([row[name] for row in told]) for name in told[-1]}
+    infos = {name: np.array([row[name] for row in records]) for name in records[-1]}
     return EpisodeBuffer(number, seed, None, observations, actions, rewards, terminations, truncations, infos)
 
 
-def _told(env: gym.Env[Any, Any], info: dict[str, Any]) -> dict[str, Any]:
+def _record(env: gym.Env[Any, Any], info: dict[str, Any]) -> dict[str, Any]:
     """What a dataset keeps of a moment besides observation and reward."""
     found: dict[str, Any] = {"is_success": bool(info.get("is_success", False))}
     found |= {name: float(cost) for name, cost in info.items() if name == TOTAL or name.startswith(f"{TOTAL}_")}

@@ -21,7 +21,7 @@ from sitl.envs.mavlink.guard import Deed, Guard
 from sitl.envs.rewards import Floats
 from sitl.envs.targets.landing import Land
 from sitl.envs.targets.moving import MovingTask
-from sitl.envs.targets.places import PlacesTask
+from sitl.envs.targets.target_task import TargetTask
 
 from . import environments
 from .algorithms import Policy
@@ -37,7 +37,7 @@ REPLACED = (*SIMULATED, "connection", "guard", "reset", "wait")
 NEUTRAL = {"faults": None, "latency": 0.0, "randomise": None, "start": None}
 """Those of them that an environment may have by its id."""
 SLOW = 1.5
-"""Steps that take so many times as long as those that the policy was learnt with are told of."""
+"""Steps that take so many times as long as those that the policy was learnt with are reported."""
 
 
 class Flown(NamedTuple):
@@ -51,7 +51,7 @@ class Flown(NamedTuple):
     seconds: float
     """Time of the vehicle [s]."""
     off_path: float
-    """Mean distance from the straight way through the task's places, after each step [m]; nan: it has none."""
+    """Mean distance from the straight path through the task's positions, after each step [m]; nan: it has none."""
 
 
 @dataclass
@@ -75,7 +75,7 @@ class Deployed:
         """The result in lines; ``step_time``: what the policy was learnt with [s]."""
         lines, judged = [], " by its own estimate" if self.judge == ESTIMATE else ""
         for k, flown in enumerate(self.episodes):
-            off = "" if math.isnan(flown.off_path) else f", {flown.off_path:.2f} m off the straight way"
+            off = "" if math.isnan(flown.off_path) else f", {flown.off_path:.2f} m off the straight path"
             lines.append(
                 f"episode {k}: {flown.steps} steps, {flown.seconds:.1f} s, reward {flown.reward:.1f}, "
                 f"{'solved' if flown.solved else 'not solved'}{judged}{off}"
@@ -184,7 +184,7 @@ def fly(env: Any, policy: Policy, seed: int, out: Deployed, clock: Callable[[], 
     policy.begin(seed)
     out.judge = environments.judged_by(env)
     robot: Any = env.unwrapped.robot
-    places = _places(env.unwrapped.task)
+    positions = _positions(env.unwrapped.task)
     steps, total, ended, before = 0, 0.0, False, float(robot.time[0])
     trail = [robot.pose[0, :3].copy()]
     while not ended:
@@ -200,19 +200,19 @@ def fly(env: Any, policy: Policy, seed: int, out: Deployed, clock: Callable[[], 
         if "handed_over" in info:
             out.handed_over = str(info["handed_over"])
             break
-    off = math.nan if places is None else _off(np.array(trail), np.vstack([trail[:1], places]))
+    off = math.nan if positions is None else _off(np.array(trail), np.vstack([trail[:1], positions]))
     return Flown(steps, total, bool(info.get("is_success", False)), before, off)
 
 
-def _places(task: Any) -> Floats | None:
-    """x, y, z of a task's places [m], shape (n, 3); None: it has none, or they move."""
+def _positions(task: Any) -> Floats | None:
+    """x, y, z of a task's positions [m], shape (n, 3); None: it has none, or they move."""
     moves = isinstance(task, MovingTask) and not isinstance(task, Land)
-    return task.places[0].copy() if isinstance(task, PlacesTask) and not moves else None
+    return task.positions[0].copy() if isinstance(task, TargetTask) and not moves else None
 
 
-def _off(points: Floats, way: Floats) -> float:
+def _off(points: Floats, path: Floats) -> float:
     """Mean distance of points from a line through others, shapes (n, 3), (k, 3) [m]."""
-    a, legs = way[:-1], np.diff(way, axis=0)
+    a, legs = path[:-1], np.diff(path, axis=0)
     along = ((points[:, None] - a) * legs).sum(2) / np.maximum((legs * legs).sum(1), 1e-12)
     nearest = a + np.clip(along, 0.0, 1.0)[..., None] * legs
     return float(lengths(points[:, None] - nearest).min(1).mean())

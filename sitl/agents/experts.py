@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Experts that show how a task is done: the autopilot by its own modes, and policies.
 
-The autopilot's way is shown by velocities: an expert lets a copy of the vehicle go on in GUIDED or AUTO, looks at what
+The autopilot's path is shown by velocities: an expert lets a copy of the vehicle go on in GUIDED or AUTO, looks at what
 velocity it comes to, and gives the environment's action that asks for it. So what is recorded has been done in the
 environment itself, and can be done again.
 """
@@ -59,7 +59,7 @@ class _Autopilot(Expert):
                 f"expert {self.name!r}: actions of {named(env)} are {session.action.setpoint.name!r} set-points; it "
                 f"shows velocities: setpoint={VELOCITY.name!r}"
             )
-        if not hasattr(session.task, "places"):
+        if not hasattr(session.task, "positions"):
             raise AgentError(f"expert {self.name!r}: task {type(session.task).__name__} of {named(env)} has no targets")
         if POSITION not in robot.setpoints or not robot.has_snapshots:
             raise AgentError(f"expert {self.name!r}: {named(env)} needs a vehicle in process with our autopilot")
@@ -71,19 +71,19 @@ class _Autopilot(Expert):
         self._steps = max(round(ahead / session.seconds), 1)
 
     def _seen(self) -> Floats:
-        """Where the present place is for the autopilot, which flies by its estimate: where the agent sees it, x, y, z
-        [m]. Of tasks that are judged by where the vehicle really is, this is beside the place."""
+        """Where the present target is for the autopilot, which flies by its estimate: where the agent sees it, x, y, z
+        [m]. Of tasks that are judged by where the vehicle really is, this is beside the target."""
         x, y, z, yaw = self._robot.pose[0]
-        forward, left, up = self._task.ways(1)[0, 0]
+        forward, left, up = self._task.offsets(1)[0, 0]
         c, s = cos(yaw), sin(yaw)
         return np.array([x + forward * c - left * s, y + forward * s + left * c, z + up])
 
 
 class Guided(_Autopilot):
-    """GUIDED, told by position targets where the task's present place is; a copter keeps its heading."""
+    """GUIDED, told by position targets where the task's present target is; a copter keeps its heading."""
 
     name = "guided"
-    about = "the autopilot in GUIDED, told where the next place is (SET_POSITION_TARGET_LOCAL_NED)"
+    about = "the autopilot in GUIDED, told where the next target is (SET_POSITION_TARGET_LOCAL_NED)"
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""
@@ -102,23 +102,23 @@ class Guided(_Autopilot):
         return self._shown.action_for(velocity)
 
     def _aim(self) -> Floats:
-        """The present place; of a gate, a place behind it, or before it as long as the vehicle is too far beside."""
-        place, gates = self._seen(), getattr(self._task, "gates", ())
+        """The present target; of a gate, a point behind it, or before it as long as the vehicle is too far beside."""
+        position, gates = self._seen(), getattr(self._task, "gates", ())
         if not gates:
-            return place
+            return position
         yaw = gates[int(self._task.at[0]) % len(gates)].yaw
         through = np.array([cos(yaw), sin(yaw), 0.0])
-        way = place - self._robot.pose[0, :3]
-        before = float(products(way, through))
-        beside = math.sqrt(max(float(products(way, way)) - before * before, 0.0))
-        return place + (BEHIND_M if beside < 0.3 * before else -BEHIND_M) * through
+        offset = position - self._robot.pose[0, :3]
+        before = float(products(offset, through))
+        beside = math.sqrt(max(float(products(offset, offset)) - before * before, 0.0))
+        return position + (BEHIND_M if beside < 0.3 * before else -BEHIND_M) * through
 
 
 class Auto(_Autopilot):
-    """AUTO: a copy of the vehicle flies a mission of the task's places, whose path the episode then follows."""
+    """AUTO: a copy of the vehicle flies a mission of the task's targets, whose path the episode then follows."""
 
     name = "auto"
-    about = "the autopilot in AUTO, on a mission of the task's places, followed by velocities"
+    about = "the autopilot in AUTO, on a mission of the task's targets, followed by velocities"
 
     def begin(self, seed: int) -> None:
         """See ``Expert``."""
@@ -136,16 +136,16 @@ class Auto(_Autopilot):
             lat, lon, height, _ = simulation.home
             mission = [client.item("NAV_WAYPOINT", 0.0, 0.0)]
             ours, above = client.place_of(lat, lon), height - client.home()[2]
-            for place in self._way():
-                north, east, down = to_ned(*place)
+            for position in self._path():
+                north, east, down = to_ned(*position)
                 mission.append(client.item("NAV_WAYPOINT", ours[0] + north, ours[1] + east, above - down))
             client.upload(mission)
-            if hasattr(self._task, "radius"):  # else corners are cut beside places
+            if hasattr(self._task, "radius"):  # else corners are cut beside targets
                 name, unit = ("WPNAV_RADIUS", 100.0) if client.flies else ("WP_RADIUS", 1.0)
                 client.params[name] = 0.5 * unit * float(self._task.radius)
             client.start_mission()
         except ClientError as error:
-            raise AgentError(f"expert {self.name!r}: no mission of the task's places can be flown: {error}") from None
+            raise AgentError(f"expert {self.name!r}: no mission of the task's targets can be flown: {error}") from None
         rows: list[Floats] = []
         left = round(LONGEST_S / self._seconds)
         while left > 0:
@@ -159,17 +159,17 @@ class Auto(_Autopilot):
         flight[:, :3] += self._robot.pose[0, :3] - flight[0, :3]
         return flight
 
-    def _way(self) -> list[Floats]:
-        """Places of the mission: the task's; of gates, one before and one behind each."""
-        places: Floats = self._task.places[0] + (self._seen() - self._task.targets[0])
+    def _path(self) -> list[Floats]:
+        """Positions of the mission: the task's; of gates, one before and one behind each."""
+        positions: Floats = self._task.positions[0] + (self._seen() - self._task.targets[0])
         gates = getattr(self._task, "gates", ())
         if not gates:
-            return list(places)
+            return list(positions)
         found = []
-        for k, place in enumerate(places):
+        for k, position in enumerate(positions):
             yaw = gates[k % len(gates)].yaw
             through = BEHIND_M * np.array([cos(yaw), sin(yaw), 0.0])
-            found += [place - through, place + through]
+            found += [position - through, position + through]
         return found
 
     def act(self, observation: Any) -> Any:

@@ -127,11 +127,11 @@ def _gif_head(width: int, height: int) -> bytes:
     return screen + bytes(768) + b"\x21\xff\x0bNETSCAPE2.0\x03\x01" + struct.pack("<H", 0) + b"\x00"
 
 
-def _gif_picture(image: Any, place: tuple[int, int], ms: int) -> list[bytes]:
-    """A frame drawn over the one before at ``place`` (left, top) for ``ms`` milliseconds."""
+def _gif_picture(image: Any, corner: tuple[int, int], ms: int) -> list[bytes]:
+    """A frame drawn over the one before at ``corner`` (left, top) for ``ms`` milliseconds."""
     from PIL import GifImagePlugin
 
-    return GifImagePlugin.getdata(image, place, duration=ms, disposal=1)
+    return GifImagePlugin.getdata(image, corner, duration=ms, disposal=1)
 
 
 def _changed(before: npt.NDArray[np.uint8] | None, now: npt.NDArray[np.uint8]) -> tuple[int, int, int, int]:

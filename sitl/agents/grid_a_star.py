@@ -23,7 +23,7 @@ Floats = npt.NDArray[np.float64]
 CELL, MOST_CELLS = 0.2, 40_000
 """Side of a cell [m], which grows where a world would have more cells than that."""
 LEAST = 0.05
-"""Clearance that a way leaves at least [m]."""
+"""Clearance that a path leaves at least [m]."""
 CROWDED = 4.0
 """A metre close to solids counts as so many more, one with enough clearance as one."""
 _NEAR = [(i, j, hypot(i, j)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
@@ -55,7 +55,7 @@ class GridAStar:
 
     Args:
         robot: with its world and volume.
-        reach: how far beyond the world's solids ways may lead [m].
+        reach: how far beyond the world's solids paths may lead [m].
         comfort: clearance beyond which more is of no use [m].
     """
 
@@ -75,16 +75,16 @@ class GridAStar:
         self._free = clearance > LEAST
         self._costs = 1.0 + CROWDED * np.clip(1.0 - clearance / comfort, 0.0, 1.0)
 
-    def _cell_of(self, place: Floats) -> tuple[int, int]:
+    def _cell_of(self, position: Floats) -> tuple[int, int]:
         """The free cell that is nearest to x, y [m]."""
-        at = np.clip(((place - self._low) / self._cell).astype(int), 0, np.array(self._free.shape) - 1)
+        at = np.clip(((position - self._low) / self._cell).astype(int), 0, np.array(self._free.shape) - 1)
         if not self._free[tuple(at)]:
             cells = np.argwhere(self._free)
             at = cells[np.square(cells - at).sum(axis=1).argmin()]
         return int(at[0]), int(at[1])
 
     def path(self, here: Floats, there: Floats) -> Floats:
-        """Places from here to there (x, y [m]), both included, shape (n, 2); a straight line where none is found."""
+        """Positions from here to there (x, y [m]), both included, shape (n, 2); a straight line where none is found."""
         start, goal = self._cell_of(here), self._cell_of(there)
         free, costs, rows, columns = self._free, self._costs, *self._free.shape
         best, before = {start: 0.0}, {start: start}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The expert "pilot": leads a vehicle by velocities, around what stands in its way; the autopilot flies them in GUIDED.
 
-Where there are places, he knows the world: ways are planned around its solids. Where there are none, as in the paper's
-environments, he sees the lidar only, and turns to where there is space.
+Where there are targets, he knows the world: paths are planned around its solids. Where there are none, as in the
+paper's environments, he sees the lidar only, and turns to where there is space.
 """
 
 from __future__ import annotations
@@ -42,20 +42,20 @@ FAST, AMONG = 4.0, 1.2
 LOOK, LOOK_DRIVING = 1.2, 2.5
 """So far ahead on its way a copter, a rover is led [m]."""
 BEHIND = 2.0
-"""A way through a gate begins so far before it, and ends so far behind it [m]."""
+"""A path through a gate begins so far before it, and ends so far behind it [m]."""
 CIRCLE = 2.2
-"""Radius that a rover turns in [m]; of a place within, it backs first."""
+"""Radius that a rover turns in [m]; of a position within, it backs first."""
 ASTRAY = 1.5
-"""A way is planned anew when the vehicle is so far beside it [m]."""
+"""A path is planned anew when the vehicle is so far beside it [m]."""
 REPLAN = 10
-"""Steps between two plans for the same place, at least."""
+"""Steps between two plans for the same target, at least."""
 APPROACH = 5.0
 """A bay is approached along its heading from so far before it [m]."""
 SINK, LOW = 0.6, 1.5
 """Down onto a pad [m/s]; below this height the vehicle must be over it [m]."""
 COMFORT, COMFORT_DRIVING = 0.8, 2.0
 """Clearance that he likes a copter, a rover to have [m]."""
-SIGHT, CONE, SIDE, ROOMY = 5.0, math.radians(15.0), math.radians(100.0), 1.2
+SIGHT, CONE, SIDE, CLEARANCE = 5.0, math.radians(15.0), math.radians(100.0), 1.2
 """Readings count up to this [m]; what is beside him, from .. to; half of the lane that he needs, in crash ranges."""
 STRAIGHT = math.radians(12.0)
 """A gap within this is straight on."""
@@ -65,7 +65,7 @@ class Pilot(Expert):
     """See the module."""
 
     name = "pilot"
-    about = "a pilot who leads the autopilot by velocities along ways that he plans around the world's solids"
+    about = "a pilot who leads the autopilot by velocities along paths that he plans around the world's solids"
 
     def __init__(self, env: gym.Env[Any, Any]) -> None:
         navigate = env.unwrapped
@@ -76,13 +76,13 @@ class Pilot(Expert):
         self._turns: dict[int, Any] | None = None
         self._plans_in: PerWorld[GridAStar] | None = None
         self._path: Floats = np.zeros((0, 2))
-        """x, y [m] of the way that was planned, for the place of number ``_of``; ``_at`` of it he is, ``_since`` so
+        """x, y [m] of the path that was planned, for the position of number ``_of``; ``_at`` of it he is, ``_since`` so
         many steps it has been there."""
         self._of, self._at, self._since = -1, 0, 0
         self._backs = False
-        """Whether a rover backs, because it could not turn to the place ahead."""
+        """Whether a rover backs, because it could not turn to the position ahead."""
         self._task: Any = session.task
-        if not hasattr(self._task, "ways"):
+        if not hasattr(self._task, "offsets"):
             self._turns = _table_of_turns(env, session.action)
             return
         if session.action.setpoint is not VELOCITY or not hasattr(session.action, "nearest"):
@@ -114,50 +114,50 @@ class Pilot(Expert):
         """See ``Expert``."""
         if self._turns is not None:
             return self._turns[self._gap()]
-        ways = self._task.ways(3)[0]
-        return self._shown.action_for(self._flown(ways) if self._flies else self._driven(ways[0]))
+        offsets = self._task.offsets(3)[0]
+        return self._shown.action_for(self._flown(offsets) if self._flies else self._driven(offsets[0]))
 
     # ------------------------------------------------------------------ copters
 
-    def _flown(self, ways: Floats) -> Floats:
+    def _flown(self, offsets: Floats) -> Floats:
         """Velocity forward, left, up [m/s], turn [rad/s]: after what moves, around what stands."""
-        way, task = ways[0], self._task
+        offset, task = offsets[0], self._task
         if isinstance(task, MovingTask):
-            velocity = TRACKING_GAIN * way + (ways[2] - ways[1]) / AHEAD_S
+            velocity = TRACKING_GAIN * offset + (offsets[2] - offsets[1]) / AHEAD_S
             if isinstance(task, Land):
-                is_over = hypot(way[0], way[1]) < 0.7 * task.pad
-                velocity[2] = -SINK if is_over or -way[2] > LOW else 0.0
+                is_over = hypot(offset[0], offset[1]) < 0.7 * task.pad
+                velocity[2] = -SINK if is_over or -offset[2] > LOW else 0.0
             return np.append(velocity, 0.0)
         fast = FAST
         if getattr(task, "gates", ()):
-            way = self._turned(self._through() - self._here()[:3])
-        elif self._plans is not None and hypot(way[0], way[1]) > LOOK:
+            offset = self._turned(self._through() - self._here()[:3])
+        elif self._plans is not None and hypot(offset[0], offset[1]) > LOOK:
             here = self._here()
-            there = here[:2] + self._unturned(way)[:2]
-            way, fast = self._turned(np.append(self._ahead(here[:2], [there], LOOK) - here[:2], way[2])), AMONG
-        velocity = GAIN * way
+            there = here[:2] + self._unturned(offset)[:2]
+            offset, fast = self._turned(np.append(self._ahead(here[:2], [there], LOOK) - here[:2], offset[2])), AMONG
+        velocity = GAIN * offset
         return np.append(velocity * min(1.0, fast / max(float(lengths(velocity)), 1e-9)), 0.0)
 
     def _through(self) -> Floats:
-        """A place behind the present gate, or before it as long as the vehicle is too far beside: x, y, z [m]."""
+        """A position behind the present gate, or before it as long as the vehicle is too far beside: x, y, z [m]."""
         here, k = self._here()[:3], int(self._task.at[0])
         yaw = self._task.gates[k % len(self._task.gates)].yaw
-        place, along = here + self._unturned(self._task.ways(1)[0, 0]), np.array([cos(yaw), sin(yaw), 0.0])
-        way = place - here
-        before = float(products(way, along))
-        beside = math.sqrt(max(float(products(way, way)) - before * before, 0.0))
-        out: Floats = place + (BEHIND if beside < 0.3 * before else -BEHIND) * along
+        position, along = here + self._unturned(self._task.offsets(1)[0, 0]), np.array([cos(yaw), sin(yaw), 0.0])
+        offset = position - here
+        before = float(products(offset, along))
+        beside = math.sqrt(max(float(products(offset, offset)) - before * before, 0.0))
+        out: Floats = position + (BEHIND if beside < 0.3 * before else -BEHIND) * along
         return out
 
     # ------------------------------------------------------------------ rovers
 
-    def _driven(self, way: Floats) -> Floats:
-        """Velocity of a rover: towards a place ahead on its way, along an arc."""
+    def _driven(self, offset: Floats) -> Floats:
+        """Velocity of a rover: towards a position ahead on its way, along an arc."""
         here, task = self._here(), self._task
-        there = here[:2] + self._unturned(way)[:2]
+        there = here[:2] + self._unturned(offset)[:2]
         ahead = self._ahead(here[:2], self._stations(there), LOOK_DRIVING)
         forward, left, _ = self._turned(np.append(ahead - here[:2], 0.0))
-        bearing, away, left_over = atan2(left, forward), hypot(forward, left), hypot(way[0], way[1])
+        bearing, away, left_over = atan2(left, forward), hypot(forward, left), hypot(offset[0], offset[1])
         speed = 1.2 if abs(bearing) < 0.6 else 0.8
         if isinstance(task, Park | Hold):
             if left_over < 0.5 * task.radius:
@@ -173,7 +173,7 @@ class Pilot(Expert):
         return np.array([speed, 0.0, 0.0, turn])
 
     def _stations(self, there: Floats) -> list[Floats]:
-        """Places (x, y [m]) that a way of a rover leads over: through gates, into a bay along its heading."""
+        """Positions (x, y [m]) that a path of a rover leads over: through gates, into a bay along its heading."""
         task, gates = self._task, getattr(self._task, "gates", ())
         if isinstance(task, Park):
             yaw = float(task.headings[0])
@@ -182,13 +182,13 @@ class Pilot(Expert):
             return [there]
         found = []
         for k in range(int(task.at[0]), min(int(task.at[0]) + 2, task.per_robot)):
-            place = there if k == int(task.at[0]) else task.places[0, k, :2]
+            position = there if k == int(task.at[0]) else task.positions[0, k, :2]
             yaw = gates[k % len(gates)].yaw
             along = np.array([cos(yaw), sin(yaw)])
-            found += [place - BEHIND * along, place + BEHIND * along]
+            found += [position - BEHIND * along, position + BEHIND * along]
         return found
 
-    # ------------------------------------------------------------------ ways
+    # ------------------------------------------------------------------ paths
 
     def _here(self) -> Floats:
         """Where the vehicle really is, by which it is led around solids: x, y, z [m], yaw [rad]."""
@@ -197,7 +197,8 @@ class Pilot(Expert):
         return state[0, :4]
 
     def _ahead(self, here: Floats, stations: list[Floats], look: float) -> Floats:
-        """A place ``look`` [m] ahead on the way over stations; it is planned where there is none that leads there."""
+        """A position ``look`` [m] ahead on the path over stations; it is planned where there is none that leads
+        there."""
         k = int(self._task.at[0])
         self._since += 1
         if self._of == k and len(self._path):
@@ -217,34 +218,34 @@ class Pilot(Expert):
 
     def _beyond(self, here: Floats, look: float) -> Floats:
         out: Floats = self._path[-1]
-        for place in self._path[self._at :]:
-            if separation(place.tolist(), here.tolist()) >= look:
-                return np.asarray(place)
+        for position in self._path[self._at :]:
+            if separation(position.tolist(), here.tolist()) >= look:
+                return np.asarray(position)
         return out
 
-    def _turned(self, way: Floats) -> Floats:
+    def _turned(self, offset: Floats) -> Floats:
         """x, y, z of the world as forward, left, up."""
         yaw = float(self._here()[3])
         c, s = cos(yaw), sin(yaw)
-        return np.array([way[0] * c + way[1] * s, way[1] * c - way[0] * s, way[2]])
+        return np.array([offset[0] * c + offset[1] * s, offset[1] * c - offset[0] * s, offset[2]])
 
-    def _unturned(self, way: Floats) -> Floats:
+    def _unturned(self, offset: Floats) -> Floats:
         yaw = float(self._here()[3])
         c, s = cos(yaw), sin(yaw)
-        return np.array([way[0] * c - way[1] * s, way[0] * s + way[1] * c, way[2]])
+        return np.array([offset[0] * c - offset[1] * s, offset[0] * s + offset[1] * c, offset[2]])
 
-    # ------------------------------------------------------------------ without places
+    # ------------------------------------------------------------------ without targets
 
     def _gap(self) -> int:
         """Where the most space is: 0 straight on, 1 to the left, -1 to the right."""
         angles, robot = self._robot.angles, self._robot
         scan = np.minimum(robot.scan[0], SIGHT).astype(np.float64)
-        half = max(ROOMY * robot.crash_range, 1.2 * robot.volume.radius) + 0.1
+        half = max(CLEARANCE * robot.crash_range, 1.2 * robot.volume.radius) + 0.1
         tried = np.linspace(-1.6, 1.6, 33)
         turned = angles - tried[:, None]
         forward, aside = scan * arrays.cos(turned), np.abs(scan * arrays.sin(turned))
         clearance = np.where((forward > 0.0) & (aside < half) & (scan < SIGHT), forward, SIGHT).min(axis=1)
-        side = [scan[(way * angles > CONE) & (way * angles < SIDE)].min(initial=SIGHT) for way in (1.0, -1.0)]
+        side = [scan[(sign * angles > CONE) & (sign * angles < SIDE)].min(initial=SIGHT) for sign in (1.0, -1.0)]
         centred = (min(side[0], 2.0 * half) - min(side[1], 2.0 * half)) * tried
         best = float(tried[int(np.argmax(clearance - 0.3 * np.abs(tried) + centred))])
         return 0 if abs(best) <= STRAIGHT else 1 if best > 0.0 else -1

@@ -93,9 +93,11 @@ def rollout(
         name, value = ("episodes", episodes) if episodes < 1 else ("robots", robots)
         raise AgentError(f"{name} = {value}; it must be 1 or more")
     config = _config(policy, env, max_steps, dict(options or {}))
-    place = config.env_options.get("connection", INPROCESS)
-    if place != INPROCESS and (workers.jobs > 1 or workers.backend != BACKENDS[0]):
-        raise AgentError(f"connection {place!r} leads to one vehicle: one process of this machine flies it (--jobs 1)")
+    connection = config.env_options.get("connection", INPROCESS)
+    if connection != INPROCESS and (workers.jobs > 1 or workers.backend != BACKENDS[0]):
+        raise AgentError(
+            f"connection {connection!r} leads to one vehicle: one process of this machine flies it (--jobs 1)"
+        )
     if workers.backend == "local" and workers.jobs > 1:
         _check_sendable(policy)
     length = robots * EPISODES_A_ROBOT

@@ -148,8 +148,8 @@ CHECK_PARAMETERS, CHECK_MISSION, CHECK_RANGEFINDER, CHECK_CAMERA = 32, 1 << 14, 
 _LOW_BITS, _METHOD_BITS = 48, 5
 """Of failed checks in the first number of ARMING_REFUSED, and of the method in the second, below the others."""
 
-OBSTACLE_ROOM = 0.6
-"""Room that a copter with a proximity sensor needs around it [m]."""
+OBSTACLE_CLEARANCE = 0.6
+"""Clearance that a copter with a proximity sensor needs around it [m]."""
 ACC_DIFFERENCE, GYRO_DIFFERENCE = 0.75, math.radians(5.0)
 """Greatest differences of what two IMUs show [m/s^2], [rad/s]."""
 _BARO_US = 500_000
@@ -175,7 +175,7 @@ def refusal(a: float, b: float) -> tuple[int, int]:
 
 def _refusal_notes(v: Any, a: float, b: float) -> list[ChecksFailed]:
     failed, method = refusal(a, b)
-    return [] if method == ArmingMethod.MAVLINK else [ChecksFailed(failed)]  # a command tells of its own
+    return [] if method == ArmingMethod.MAVLINK else [ChecksFailed(failed)]  # a command reports its own
 
 
 def _arm(v: Any, is_armed: bool, method: float) -> Row:
@@ -334,12 +334,12 @@ def obstacle_check(seen: Proximity, time_us: int) -> int:
     for k in range(SECTORS):
         if sees(seen, k, time_us) and seen.distance[k] < nearest:
             sector, nearest = k, float(seen.distance[k])
-    return (max(int(nearest * 100.0), 1) << 3 | sector) << OBSTACLE_SHIFT if nearest <= OBSTACLE_ROOM else 0
+    return (max(int(nearest * 100.0), 1) << 3 | sector) << OBSTACLE_SHIFT if nearest <= OBSTACLE_CLEARANCE else 0
 
 
 def obstacle_text(found: int) -> str:
     """Status text of an obstacle that is too near."""
-    return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_ROOM:.1f}m)"
+    return f"Proximity {(found & 7) * 45} deg, {(found >> 3) * 0.01:.2f}m (want > {OBSTACLE_CLEARANCE:.1f}m)"
 
 
 def texts(failed: int, params: Parameters, prefix: str = "", own: Mapping[int, str] | None = None) -> list[str]:

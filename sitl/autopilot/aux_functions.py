@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Auxiliary functions: what switches (RCn_OPTION) and MAV_CMD_DO_AUX_FUNCTION do (shell side).
 
-Each firmware lists its own in ``FIRMWARE/aux_functions.py``. The core tells when a switch was moved (``aux_switch``).
+Each firmware lists its own in ``FIRMWARE/aux_functions.py``. The core reports when a switch was moved (``aux_switch``).
 Numbers: https://ardupilot.org/copter/docs/common-auxiliary-functions.html
 """
 
@@ -40,7 +40,7 @@ class Holder(Protocol):
 
 
 Action = Callable[[Holder, int], list[Note]]
-"""Takes the vehicle and the switch's position, and gives what there is to tell."""
+"""Takes the vehicle and the switch's position, and gives what there is to report."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class AuxFunctions:
         return notes + function.act(self._holder, abs(position))
 
     def run(self, number: int, position: int) -> tuple[bool, list[Note]]:
-        """MAV_CMD_DO_AUX_FUNCTION: whether there is such a function, and what to tell."""
+        """MAV_CMD_DO_AUX_FUNCTION: whether there is such a function, and what to report."""
         function = self._functions.get(number)
         if function is None:
             return False, [_unknown(number)]

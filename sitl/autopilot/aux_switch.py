@@ -35,7 +35,7 @@ def position(pulse: int) -> int:
 
 @law
 def watch(rc: Radio, arming: Arming, events: Events, time_us: int, params: Parameters) -> None:
-    """After each frame of the receiver: tell the shell of every switch that was moved and stayed for DEBOUNCE_US."""
+    """After each frame of the receiver: report to the shell every switch that was moved and stayed for DEBOUNCE_US."""
     arming.interlock_used = False
     for k in range(RC_INPUTS):
         option = int(params.RC[k].OPTION)

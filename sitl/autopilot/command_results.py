@@ -18,6 +18,6 @@ class CommandResult(IntEnum):
     ALREADY_FLYING = 5
     TOO_LOW = 6
     BEYOND_FENCE = 7
-    NOT_ON_A_WAY = 8
+    NOT_ON_A_PATH = 8
     NO_GROUND = 9
     """Its height is above the ground, of which nothing is known."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the core tells the shell: a ring of (time, code, two numbers) in the record, and what an event is.
+"""What the core reports to the shell: a ring of (time, code, two numbers) in the record, and what an event is.
 
 An event is declared once, in the file of the feature whose law emits it, with what is said and logged of it.
 ``FIRMWARE/events.py`` lists those of a firmware; the bridge and the logs act by that list.
@@ -11,14 +11,14 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
+from ..core.extensions import ExtensionError, Extensions
 from ..core.kernels import law
 from ..core.mavlink import MavSeverity
-from ..core.places import ExtensionError, Places
 from ..core.records import Floats, Ints, Record, array
 from .notes import EventNote, Text
 
 EVENT_RING = 64
-_PLACES = Places("SITL_EVENTS", "event")
+_EXTENSIONS = Extensions("SITL_EVENTS", "event")
 
 Row = tuple[str, tuple[Any, ...]]
 """A message of a DataFlash log: its name, and its values behind TimeUS."""
@@ -35,7 +35,8 @@ class Event(int):
         code: its number in the ring; no other event of the firmware has it.
         severity: MAV_SEVERITY of its text.
         says: its text (STATUSTEXT), as a format of ``a`` and ``b``; or one for each whole number ``a``, which may bring
-            a severity of its own; or a function of the vehicle's record, ``a`` and ``b`` that gives all that is told.
+            a severity of its own; or a function of the vehicle's record, ``a`` and ``b`` that gives all that is
+            reported.
             Empty: nothing is.
         log: its message in a DataFlash log, or a function, as above, that gives its messages.
     """
@@ -54,7 +55,7 @@ class Event(int):
         return Event(self, severity, says, log or self.log)
 
     def notes(self, v: Any, a: float, b: float) -> Sequence[EventNote]:
-        """What is told of it, as the vehicle's record ``v`` is."""
+        """What is reported of it, as the vehicle's record ``v`` is."""
         says, severity = self.says, self.severity
         if callable(says):
             return says(v, a, b)
@@ -80,17 +81,17 @@ def err(subsystem: int, code: int) -> Row:
     return "ERR", (subsystem, code)
 
 
-def register_event(firmware: str, place: str) -> None:
+def register_event(firmware: str, reference: str) -> None:
     """Give a firmware an event of another package, before the firmware is imported.
 
     Args:
         firmware: "copter" or "rover".
-        place: where the ``Event`` is: "package.module:NAME", importable by that name.
+        reference: where the ``Event`` is: "package.module:NAME", importable by that name.
 
     Raises:
-        ExtensionError: too late, or ``place`` is no such text.
+        ExtensionError: too late, or ``reference`` is no such text.
     """
-    _PLACES.add(firmware, place)
+    _EXTENSIONS.add(firmware, reference)
 
 
 def with_registered(firmware: str, listed: Sequence[Event]) -> dict[int, Event]:
@@ -105,11 +106,11 @@ def with_registered(firmware: str, listed: Sequence[Event]) -> dict[int, Event]:
             where = f"events of the {firmware}: {int(event)} stands behind {int(before)}"
             raise ValueError(f"{where}; they are in the order of their numbers; the greatest is {max(listed):d}")
     events = {int(event): event for event in listed}
-    for _, place, found in _PLACES.of(firmware):
+    for _, reference, found in _EXTENSIONS.of(firmware):
         if not isinstance(found, Event):
-            raise ExtensionError(f"event {place}: {found!r} is no Event")
+            raise ExtensionError(f"event {reference}: {found!r} is no Event")
         if int(found) in events:
-            raise ExtensionError(f"event {place}: the {firmware} has an event {int(found)} already")
+            raise ExtensionError(f"event {reference}: the {firmware} has an event {int(found)} already")
         events[int(found)] = found
     return events
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What failsafes watch: ground station, battery, estimator. What follows is each firmware's own.
 
-FAILSAFE (which, 1 on or 0 off) tells the shell.
+FAILSAFE (which, 1 on or 0 off) reports to the shell.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ VARIANCE = 7
 GLITCH = 10
 """The receiver's fixes are not believed."""
 SEVERE = (EKF, VARIANCE, VIBRATION, GLITCH)
-"""Told with MAV_SEVERITY_CRITICAL (a rover: the first two)."""
+"""Reported with MAV_SEVERITY_CRITICAL (a rover: the first two)."""
 
 _ON = {
     RADIO: "Radio Failsafe",
@@ -161,7 +161,7 @@ UNHEALTHY_US = 5_000_000
 
 @law
 def watch_monitor(fs: Failsafe, battery: BatteryState, armed: bool, events: Events, time_us: int) -> None:
-    """Ten times a second: tell once that the battery's monitor has failed, unless worse is known of the battery."""
+    """Ten times a second: report once that the battery's monitor has failed, unless worse is known of the battery."""
     lasts = time_us - battery.healthy_us > UNHEALTHY_US
     if armed and lasts and battery.driver != 0 and fs.battery == 0 and not fs.battery_missing:
         fs.battery_missing = True

@@ -32,7 +32,7 @@ class Firmware:
     give_back: Callable[[Any], None] = lambda v: None
     """Before a boot, also one in the air: parameters that a mode has changed for a time are what they were before."""
     fence_bytes: int = 672
-    """Room for fences in ArduPilot's storage,"""
+    """Space for fences in ArduPilot's storage,"""
     rally_bytes: int = 750
     """and for rally points."""
     events: Mapping[int, Event] = field(default_factory=dict)

@@ -128,20 +128,20 @@ def follow(lead: FollowState, p: Follow, pos: Vec3, time_us: int, dt: float) -> 
 
 
 @law
-def shape(lead: FollowState, p: Follow, told: Motion2, dt: float) -> None:
+def shape(lead: FollowState, p: Follow, reported: Motion2, dt: float) -> None:
     """Horizontal motion."""
     now = Motion2(horizontal(lead.pos), horizontal(lead.vel), horizontal(lead.acc))
     now = advance_2d(now, dt, _STILL, _STILL, _STILL)
-    acc = shape_pos_vel_accel_2d(told, now, Limits2(0.0, p.ACCEL_NE, p.JERK_NE), dt)
+    acc = shape_pos_vel_accel_2d(reported, now, Limits2(0.0, p.ACCEL_NE, p.JERK_NE), dt)
     lead.pos, lead.vel = with_down(now.pos, lead.pos.z), with_down(now.vel, lead.vel.z)
     lead.acc = with_down(acc, lead.acc.z)
 
 
 @law
-def shape_height(lead: FollowState, p: Follow, told: Motion, dt: float) -> None:
+def shape_height(lead: FollowState, p: Follow, reported: Motion, dt: float) -> None:
     """Vertical motion."""
     now = advance(Motion(lead.pos.z, lead.vel.z, lead.acc.z), dt, 0.0, 0.0, 0.0)
-    acc = shape_pos_vel_accel(told, now, Limits(0.0, 0.0, -p.ACCEL_D, p.ACCEL_D, p.JERK_D), dt)
+    acc = shape_pos_vel_accel(reported, now, Limits(0.0, 0.0, -p.ACCEL_D, p.ACCEL_D, p.JERK_D), dt)
     lead.pos, lead.vel = with_down(horizontal(lead.pos), now.pos), with_down(horizontal(lead.vel), now.vel)
     lead.acc = with_down(horizontal(lead.acc), acc)
 
@@ -150,15 +150,15 @@ def shape_height(lead: FollowState, p: Follow, told: Motion, dt: float) -> None:
 def shape_heading(lead: FollowState, p: Follow, heading: float, dt: float) -> None:
     """Heading."""
     now = advance(Motion(lead.heading, lead.heading_rate, lead.heading_acc), dt, 0.0, 0.0, 0.0)
-    told = Motion(now.pos + wrap_pi(heading - now.pos), lead.received_heading_rate, 0.0)
+    reported = Motion(now.pos + wrap_pi(heading - now.pos), lead.received_heading_rate, 0.0)
     accel_max, jerk_max = math.radians(p.ACCEL_H), math.radians(p.JERK_H)
-    acc = shape_pos_vel_accel(told, now, Limits(0.0, 0.0, -accel_max, accel_max, jerk_max), dt)
+    acc = shape_pos_vel_accel(reported, now, Limits(0.0, 0.0, -accel_max, accel_max, jerk_max), dt)
     lead.heading, lead.heading_rate, lead.heading_acc = wrap_pi(now.pos), now.vel, acc
 
 
 @law
 def offset(lead: FollowState, p: Follow) -> Vec3:
-    """Place beside the lead, NED [m]."""
+    """Position beside the lead, NED [m]."""
     given = Vec3(p.OFS_X, p.OFS_Y, p.OFS_Z)
     if lead.keeps_distance:
         given = lead.distance
@@ -167,7 +167,8 @@ def offset(lead: FollowState, p: Follow) -> Vec3:
 
 @law
 def keep_distance(lead: FollowState, p: Follow, pos: Vec3) -> bool:
-    """Without offsets, the place beside the lead is where the vehicle at ``pos`` [m] is now; True: it has become so."""
+    """Without offsets, the position beside the lead is where the vehicle at ``pos`` [m] is now; True:
+    it has become so."""
     if lead.keeps_distance or p.OFS_X != 0.0 or p.OFS_Y != 0.0 or p.OFS_Z != 0.0:
         return False
     away = pos - lead.received_pos

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Two GPS receivers: which of them is used (GPS_AUTO_SWITCH), and whether they agree.
 
-What a user sees of it is told in https://ardupilot.org/copter/docs/common-gps-blending.html
+What a user sees of it is described in https://ardupilot.org/copter/docs/common-gps-blending.html
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def count_of(receiver: int, sensors: Sensors) -> int:
 
 @law
 def time_of(receiver: int, sensors: Sensors) -> int:
-    """When a receiver was last heard [us]."""
+    """When a receiver was last received [us]."""
     return sensors.gps2.gps_time_us if receiver == 1 else sensors.gps_time_us
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the simulation tells of hits; ``a``: the speed [m/s]."""
+"""What the simulation reports of hits; ``a``: the speed [m/s]."""
 
 from __future__ import annotations
 

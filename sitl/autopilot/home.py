@@ -25,8 +25,8 @@ def set_here(home: HomeState, est: Estimate) -> bool:
     """Home is where the vehicle is; False without an origin."""
     if not est.origin_set:
         return False
-    place = add_offset(est.origin_lat, est.origin_lon, est.pos.x, est.pos.y)
-    home.lat, home.lon = _nearest(place.lat), _nearest(place.lon)
+    location = add_offset(est.origin_lat, est.origin_lon, est.pos.x, est.pos.y)
+    home.lat, home.lon = _nearest(location.lat), _nearest(location.lon)
     home.alt = est.origin_alt - est.pos.z
     home.pos = est.pos
     home.is_set = True
@@ -34,10 +34,10 @@ def set_here(home: HomeState, est: Estimate) -> bool:
 
 
 @law
-def set_place(home: HomeState, est: Estimate, lat: int, lon: int, alt: float) -> bool:
+def set_location(home: HomeState, est: Estimate, lat: int, lon: int, alt: float) -> bool:
     """Home at ``lat``, ``lon`` [degE7], ``alt`` above mean sea level [m], from where arming does not move it.
 
-    False without an origin or for a place that is not on the globe (home stays as it was).
+    False without an origin or for a location that is not on the globe (home stays as it was).
     """
     if not est.origin_set or not finite(alt) or abs(lat) > 900000000 or abs(lon) > 1800000000:
         return False

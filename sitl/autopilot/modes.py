@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, Generic, TypeVar
 
+from ..core.extensions import ExtensionError, Extensions
 from ..core.kernels import law
-from ..core.places import ExtensionError, Places
 from ..core.records import Record
 from .events import Event, Events, emit, err
 from .log_events import LogErrorSubsystem
@@ -77,8 +77,8 @@ _HINTS: dict[int, str] = {
 
 NUMBER_MAX = 2**24 - 1
 """A command of MAVLink carries the number as a float."""
-_PLACES = Places("SITL_MODES", "mode")
-_STATES = Places("SITL_MODE_STATES", "state of modes")
+_EXTENSIONS = Extensions("SITL_MODES", "mode")
+_STATES = Extensions("SITL_MODE_STATES", "state of modes")
 
 V = TypeVar("V")
 M = TypeVar("M", bound="Mode[Any]")
@@ -95,7 +95,7 @@ def accept(v: object) -> int:
 def enter(modes: Modes, events: Events, time_us: int, number: int, reason: int, auto: int) -> None:
     """Note that mode ``number`` has begun, and why.
 
-    The shell is told; at once when ``auto``, the mode that flies missions, begins or ends.
+    The shell is notified; at once when ``auto``, the mode that flies missions, begins or ends.
     """
     modes.previous = modes.number
     modes.number = number
@@ -109,7 +109,7 @@ def enter(modes: Modes, events: Events, time_us: int, number: int, reason: int, 
 
 @law
 def shown(modes: Modes) -> int:
-    """Number of the mode as clients are told it."""
+    """Number of the mode as clients get it."""
     return modes.shown if modes.shown != 0 else modes.number
 
 
@@ -148,7 +148,7 @@ class Mode(Generic[V]):
     """ArduPilot's custom mode."""
     name: str
     title: str = ""
-    """As ground stations are told it, where that is not the name."""
+    """As ground stations get it, where that is not the name."""
     run: Callable[[V], None]
     """Law of one period."""
     start: Callable[[V], int] = accept
@@ -187,36 +187,36 @@ def numbers(modes: Sequence[M], flag: str) -> tuple[int, ...]:
     return tuple(mode.number for mode in modes if getattr(mode, flag))
 
 
-def register_mode(firmware: str, place: str) -> None:
+def register_mode(firmware: str, reference: str) -> None:
     """Give a firmware a mode of another package, before the firmware is imported.
 
     Args:
         firmware: "copter" or "rover".
-        place: where its ``MODE`` is: "package.module:NAME", importable by that name.
+        reference: where its ``MODE`` is: "package.module:NAME", importable by that name.
 
     Raises:
-        ExtensionError: too late, or ``place`` is no such text.
+        ExtensionError: too late, or ``reference`` is no such text.
     """
-    _PLACES.add(firmware, place)
+    _EXTENSIONS.add(firmware, reference)
 
 
-def register_state(firmware: str, name: str, place: str) -> None:
-    """Give a firmware's record room for what a mode of another package remembers, before the firmware is imported.
+def register_state(firmware: str, name: str, reference: str) -> None:
+    """Give a firmware's record space for what a mode of another package remembers, before the firmware is imported.
 
     Laws read and write it as ``autopilot.modes.NAME``; it is zero at power-on, and part of snapshots.
 
     Args:
         firmware: "copter" or "rover".
         name: small letters, digits and "_", not taken.
-        place: where the class of the record is: "package.module:NAME", importable by that name. Its module imports
+        reference: where the class of the record is: "package.module:NAME", importable by that name. Its module imports
             nothing of the firmware.
 
     Raises:
         ExtensionError: too late, or an argument is no such text.
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-        raise ExtensionError(f"state of modes {place}: name {name!r} is not small letters, digits and _")
-    _STATES.add(f"{firmware}.{name}", place)
+        raise ExtensionError(f"state of modes {reference}: name {name!r} is not small letters, digits and _")
+    _STATES.add(f"{firmware}.{name}", reference)
 
 
 def with_states(firmware: str, record: type[S]) -> type[S]:
@@ -235,14 +235,14 @@ def with_registered(firmware: str, modes: tuple[M, ...]) -> tuple[M, ...]:
         ExtensionError: one cannot be imported, is no mode of this firmware, or has a number or name that is taken.
     """
     kind = type(modes[0])
-    for _, place, found in _PLACES.of(firmware):
+    for _, reference, found in _EXTENSIONS.of(firmware):
         if not isinstance(found, kind):
-            raise ExtensionError(f"mode {place}: {found!r} is no {kind.__name__}")
+            raise ExtensionError(f"mode {reference}: {found!r} is no {kind.__name__}")
         if not 0 <= found.number <= NUMBER_MAX:
-            raise ExtensionError(f"mode {place}: number {found.number} is not within 0 .. {NUMBER_MAX}")
+            raise ExtensionError(f"mode {reference}: number {found.number} is not within 0 .. {NUMBER_MAX}")
         for mode in modes:
             if found.number == mode.number or found.name == mode.name:
                 taken = f"{mode.name} ({mode.number})"
-                raise ExtensionError(f"mode {place}: {found.name} ({found.number}) takes the place of {taken}")
+                raise ExtensionError(f"mode {reference}: {found.name} ({found.number}) takes the place of {taken}")
         modes += (found,)
     return modes

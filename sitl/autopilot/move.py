@@ -13,7 +13,7 @@ from .avoidance import objects
 from .control.pid import Pid
 from .estimation.move import move_ekf, move_estimate
 from .landing_target.estimator import forget
-from .navigation.path import set_place
+from .navigation.path import set_position
 from .navigation.state import Leg, Nav
 from .smart_rtl_path import point, set_point
 from .state import Autopilot, Estimate, HomeState, PathState
@@ -30,8 +30,8 @@ def move_home(home: HomeState, e: Estimate, d: Displacement) -> None:
     if not home.is_set:
         return
     home.pos = moved(on_the_ground(d), home.pos)
-    place = add_offset(e.origin_lat, e.origin_lon, home.pos.x, home.pos.y)
-    home.lat, home.lon = _nearest(place.lat), _nearest(place.lon)
+    location = add_offset(e.origin_lat, e.origin_lon, home.pos.x, home.pos.y)
+    home.lat, home.lon = _nearest(location.lat), _nearest(location.lon)
 
 
 @law
@@ -49,7 +49,7 @@ def move_nav(nav: Nav, d: Displacement) -> None:
     move_leg(nav.next, d)
     nav.pos, nav.vel, nav.acc = moved(d, nav.pos), faster(d, nav.vel), turned(d, nav.acc)
     for k in range(nav.detour.left):
-        set_place(nav.detour, k, moved(d, vector_at(nav.detour.places, 3 * k)))
+        set_position(nav.detour, k, moved(d, vector_at(nav.detour.places, 3 * k)))
     nav.detour.bent_target = moved(d, nav.detour.bent_target)
     nav.request, nav.request_next = moved(d, nav.request), moved(d, nav.request_next)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the autopilot tells the outside besides telemetry: the bridge turns each into a message, or acts on it."""
+"""What the autopilot reports to the outside besides telemetry: the bridge turns each into a message, or acts on it."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ class Switched:
 
 @dataclass(frozen=True, slots=True)
 class ParametersFound:
-    """The firmware has changed these parameters for good: clients are told, and they are kept."""
+    """The firmware has changed these parameters for good: clients are sent them, and they are kept."""
 
     names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class ChecksFailed:
-    """Arming was refused; clients are told why."""
+    """Arming was refused; clients get the reasons."""
 
     failed: int
     """Bits of the failed checks (``arming_checks``)."""

@@ -58,7 +58,7 @@ class Check(NamedTuple):
     when_arming: bool = False
     """It counts at the moment of arming only, while there is a receiver."""
     forbids: bool = True
-    """Else it is only told."""
+    """Else it is only reported."""
 
 
 class Found(NamedTuple):
@@ -90,7 +90,7 @@ _COMPASSES = ("", "2", "3")
 _BATTERIES, _RANGEFINDERS = "23456789", "123456789A"
 _SOURCES_OF_YAW = (0, 1, 2, 3, 6, 8)
 _SENSORS_OF_YAW = {3: "Compass", 8: "GPS", 6: "VisualOdom"}
-"""What each of them needs, in the order in which a missing one is told; the first compass may be missing (1)."""
+"""What each of them needs, in the order in which a missing one is reported; the first compass may be missing (1)."""
 _ITEMS = {
     1: (21, "land"), 2: (85, "vtol land"), 4: (189, "do land start"), 8: (22, "takeoff"), 16: (84, "vtol takeoff"),
     64: (20, "RTL"),

@@ -65,8 +65,8 @@ MEANINGS = {
         for end, side in (("MIN", "Least"), ("MAX", "Greatest"))
     },
     **{
-        f"MNT1_{place}_{letter}": f"{axis} of the gimbal {text} [deg]"
-        for place, text in (("RETRACT", "when it is folded"), ("NEUTRAL", "in its neutral place"))
+        f"MNT1_{stance}_{letter}": f"{axis} of the gimbal {text} [deg]"
+        for stance, text in (("RETRACT", "when it is folded"), ("NEUTRAL", "in its neutral place"))
         for letter, axis in (("X", "Roll"), ("Y", "Pitch"), ("Z", "Yaw"))
     },
     **{

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rally points: places besides home that RTL returns to (RALLY_TOTAL, RALLY_LIMIT_KM, RALLY_INCL_HOME).
+"""Rally points: locations besides home that RTL returns to (RALLY_TOTAL, RALLY_LIMIT_KM, RALLY_INCL_HOME).
 
 https://ardupilot.org/copter/docs/common-rally-points.html
 """
@@ -38,7 +38,7 @@ RALLY_LOADED = Event(74, log=rows)
 
 @law
 def position(rally: RallyState, k: int, estimate: Estimate, home: HomeState) -> Vec3:
-    """Place of a point, NED from the origin [m]."""
+    """Location of a point, NED from the origin [m]."""
     flat = offset_ne(estimate.origin_lat, estimate.origin_lon, int(rally.lat[k]), int(rally.lon[k]))
     height = float(rally.alt[k])
     if rally.is_amsl[k] != 0:
@@ -60,10 +60,10 @@ def best(
     found, nearest = home.pos, 1e12
     if estimate.origin_set:
         for k in range(min(int(p.TOTAL), POINTS)):
-            place = position(rally, k, estimate, home)
-            away = norm2(horizontal(place) - horizontal(here))
-            if away < nearest and allows(fence, home, place, params.FENCE, heights.x, heights.y):
-                found, nearest = place, away
+            point = position(rally, k, estimate, home)
+            away = norm2(horizontal(point) - horizontal(here))
+            if away < nearest and allows(fence, home, point, params.FENCE, heights.x, heights.y):
+                found, nearest = point, away
     if nearest > 1e11 or (p.LIMIT_KM > 0.0 and nearest > p.LIMIT_KM * 1e3):
         return home.pos
     if p.INCL_HOME != 0.0 and nearest >= norm2(horizontal(home.pos) - horizontal(here)):

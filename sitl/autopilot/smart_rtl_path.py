@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The path that SMART_RTL goes back (SRTL_ACCURACY, SRTL_POINTS): where the vehicle has been since it was armed.
 
-A point is kept when it is SRTL_ACCURACY from the last one. Fifty new points, or little room, and the path is simplified
-(Ramer, Douglas and Peucker: points near the line between their neighbours go); when that is not enough, and before the
-way home begins, loops are cut out where two stretches of the path come close. The first point is home. Points are NED
-metres from the EKF origin; a rover's are all at 0 down.
+A point is kept when it is SRTL_ACCURACY from the last one. Fifty new points, or little space, and the path is
+simplified (Ramer, Douglas and Peucker: points near the line between their neighbours go); when that is not enough, and
+before the way home begins, loops are cut out where two stretches of the path come close. The first point is home.
+Points are NED metres from the EKF origin; a rover's are all at 0 down.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from .params.system import SmartRtl
 from .state import PATH_POINTS, PathState
 
 TIMEOUT_US = 15_000_000
-"""Without a position or without room for so long, the path is given up."""
-TOLD_US = 10_000_000
-"""How often it is said that there is little room."""
+"""Without a position or without space for so long, the path is given up."""
+REPORT_INTERVAL_US = 10_000_000
+"""How often it is said that there is little space."""
 NEW_POINTS, NEW_POINTS_MIN, MARGIN = 50, 10, 10
-"""New points that start a simplification; fewer do when less than MARGIN room is left."""
+"""New points that start a simplification; fewer do when less than MARGIN space is left."""
 EPSILON_RATIO = 0.5
 """Of SRTL_ACCURACY: how far a dropped point may lie from the simplified path."""
 LOOP_RATIO = 0.99
-"""Of SRTL_ACCURACY: stretches of the path closer than this are one place."""
+"""Of SRTL_ACCURACY: stretches of the path closer than this are one position."""
 
 BAD_POSITION, FULL = 0, 1
 """Why the path was given up."""
@@ -51,7 +51,7 @@ class Meeting(NamedTuple):
     """Where two stretches of the path come closest."""
 
     distance: float  # [m]
-    place: Vec3  # in the middle between them [m]
+    pos: Vec3  # in the middle between them [m]
 
 
 @law
@@ -73,16 +73,16 @@ def point(path: PathState, k: int) -> Vec3:
 
 
 @law
-def set_point(path: PathState, k: int, place: Vec3) -> None:
+def set_point(path: PathState, k: int, pos: Vec3) -> None:
     """Write point ``k`` of the path [m]."""
-    path.n[k] = place.x
-    path.e[k] = place.y
-    path.d[k] = place.z
+    path.n[k] = pos.x
+    path.e[k] = pos.y
+    path.d[k] = pos.z
 
 
 @law
-def begin(path: PathState, place: Vec3, position_ok: bool, time_us: int, params: SmartRtl) -> None:
-    """On arming: forget the path; it begins at ``place``, NED [m], if that is known (``position_ok``)."""
+def begin(path: PathState, pos: Vec3, position_ok: bool, time_us: int, params: SmartRtl) -> None:
+    """On arming: forget the path; it begins at ``pos``, NED [m], if that is known (``position_ok``)."""
     path.points = 0
     path.simplified = 0
     path.active = False
@@ -93,7 +93,7 @@ def begin(path: PathState, place: Vec3, position_ok: bool, time_us: int, params:
     path.good_us = time_us
     path.saved_us = time_us
     path.active = True
-    path.home_saved = add(path, place, params)
+    path.home_saved = add(path, pos, params)
 
 
 @law
@@ -104,8 +104,8 @@ def give_up(path: PathState, events: Events, time_us: int, reason: int) -> None:
 
 
 @law
-def record(path: PathState, place: Vec3, position_ok: bool, events: Events, time_us: int, params: SmartRtl) -> None:
-    """Three times a second, unless on the way home: note the place, NED [m], if it is known, and keep room."""
+def record(path: PathState, pos: Vec3, position_ok: bool, events: Events, time_us: int, params: SmartRtl) -> None:
+    """Three times a second, unless on the way home: note the position, NED [m], if it is known, and keep space."""
     if not path.active:
         return
     if not position_ok:
@@ -113,27 +113,27 @@ def record(path: PathState, place: Vec3, position_ok: bool, events: Events, time
             give_up(path, events, time_us, BAD_POSITION)
         return
     path.good_us = time_us
-    if add(path, place, params):
+    if add(path, pos, params):
         path.saved_us = time_us
     elif time_us - path.saved_us > TIMEOUT_US:
         give_up(path, events, time_us, FULL)
-    keep_room(path, params)
-    if is_tight(path, params) and (path.reported_us == 0 or time_us - path.reported_us >= TOLD_US):
+    keep_space(path, params)
+    if is_tight(path, params) and (path.reported_us == 0 or time_us - path.reported_us >= REPORT_INTERVAL_US):
         path.reported_us = time_us
         emit(events, time_us, PATH_LOW, 0.0, 0.0)
 
 
 @law
-def add(path: PathState, place: Vec3, params: SmartRtl) -> bool:
-    """Append a point [m]; False when there is no room. A point near the last one needs none."""
-    if not finite_vector(place):
+def add(path: PathState, pos: Vec3, params: SmartRtl) -> bool:
+    """Append a point [m]; False when there is no space. A point near the last one needs none."""
+    if not finite_vector(pos):
         return True
     if path.points > 0:
-        if length(place - point(path, path.points - 1)) < params.ACCURACY:
+        if length(pos - point(path, path.points - 1)) < params.ACCURACY:
             return True
     if path.points >= capacity(params):
         return False
-    set_point(path, path.points, place)
+    set_point(path, path.points, pos)
     path.points += 1
     return True
 
@@ -147,13 +147,13 @@ def drop_last(path: PathState) -> None:
 
 @law
 def is_tight(path: PathState, params: SmartRtl) -> bool:
-    """Whether little room is left."""
+    """Whether little space is left."""
     return capacity(params) - path.points <= MARGIN
 
 
 @law
-def keep_room(path: PathState, params: SmartRtl) -> None:
-    """Simplify now and then; cut loops only when that leaves little room."""
+def keep_space(path: PathState, params: SmartRtl) -> None:
+    """Simplify now and then; cut loops only when that leaves little space."""
     fresh = path.points - path.simplified
     tight = is_tight(path, params)
     if fresh >= NEW_POINTS or (tight and fresh >= NEW_POINTS_MIN):
@@ -259,7 +259,7 @@ def cut_loops(path: PathState, accuracy: float) -> None:
         while i > j:
             met = nearest(path, j, i)
             if met.distance < LOOP_RATIO * accuracy:
-                replace(path, j, i - 1, met.place)
+                replace(path, j, i - 1, met.pos)
                 i = 0
             else:
                 i -= 1
@@ -267,9 +267,9 @@ def cut_loops(path: PathState, accuracy: float) -> None:
 
 
 @law
-def replace(path: PathState, first: int, last: int, place: Vec3) -> None:
-    """Put ``place`` [m] where the points ``first`` .. ``last`` were."""
-    set_point(path, first, place)
+def replace(path: PathState, first: int, last: int, pos: Vec3) -> None:
+    """Put ``pos`` [m] where the points ``first`` .. ``last`` were."""
+    set_point(path, first, pos)
     for k in range(last + 1, path.points):
         set_point(path, k - last + first, point(path, k))
     path.points = path.points - last + first

@@ -176,7 +176,7 @@ class Failsafe(Record):
 class FollowState(Record):
     """Another vehicle, which FOLLOW follows (follow.py). NED from the origin."""
 
-    sender: int  # its system id; 0 none heard so far
+    sender: int  # its system id; 0 none received so far
     update_us: int  # its last report
     received_pos: Vec3  # of that report [m]
     received_vel: Vec3  # [m/s]
@@ -192,14 +192,14 @@ class FollowState(Record):
     heading_acc: float  # [rad/s^2]
     sends_more: bool  # it sends FOLLOW_TARGET: its GLOBAL_POSITION_INT is not needed
     keeps_distance: bool  # no offsets are given:
-    distance: Vec3  # the place beside it is this, as FOLL_OFS_TYPE says [m]
+    distance: Vec3  # the position beside it is this, as FOLL_OFS_TYPE says [m]
 
 
 class Modes(Record):
     """The modes: what those of all firmwares share."""
 
     number: int  # ArduPilot's custom mode
-    shown: int  # number that clients are told instead, 0 none (copter: AUTO_RTL, a part of AUTO)
+    shown: int  # number that clients are sent instead, 0 none (copter: AUTO_RTL, a part of AUTO)
     previous: int
     reason: int  # ArduPilot's ModeReason of the last change
     failsafe: Failsafe
@@ -215,7 +215,7 @@ class Modes(Record):
 
 
 PATH_POINTS = 500
-"""Room of SMART_RTL's path; SRTL_POINTS are used."""
+"""Capacity of SMART_RTL's path; SRTL_POINTS are used."""
 
 
 class PathState(Record):
@@ -226,8 +226,8 @@ class PathState(Record):
     points: int  # on the path; point 0 is home
     simplified: int  # so many from the start need no second look
     good_us: int  # last good position
-    saved_us: int  # last point that found room
-    reported_us: int  # when it was last said that there is little room
+    saved_us: int  # last point that found space
+    reported_us: int  # when it was last said that there is little space
     n: Floats = array(PATH_POINTS, stored="f4")  # NED [m]
     e: Floats = array(PATH_POINTS, stored="f4")
     d: Floats = array(PATH_POINTS, stored="f4")

@@ -26,7 +26,7 @@ MOST = 100.0
 class Pose(Record):
     """Where the vehicle is."""
 
-    count: int  # told so far
+    count: int  # reported so far
     time_us: int  # when the last one came
     pos: Vec3  # NED [m]
     q: Quat  # body to NED
@@ -44,7 +44,7 @@ class Velocity(Record):
 
 
 class VisualOdometry(Record):
-    """What another system told last."""
+    """What another system reported last."""
 
     kind: int  # VISO_TYPE at power-on, where there is such a system; 0 none
     pose: Pose

@@ -3,7 +3,7 @@
 shared MAVLink services ask of its autopilot; each firmware's own services ask more of theirs.
 
 Positions are NED metres from the estimator's origin, angles radians, speeds m/s. Methods say whether the
-autopilot did it; what it wants to tell the pilot meanwhile waits in ``take_notes``.
+autopilot did it; what it wants to report to the pilot meanwhile waits in ``take_notes``.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Vehicle(Protocol):
         ...
 
     def truth(self) -> Carried:
-        """Where the vehicle really is, as HIL_STATE_QUATERNION tells it."""
+        """Where the vehicle really is, as HIL_STATE_QUATERNION reports it."""
         ...
 
     def reseed(self, seed: int) -> None:
@@ -69,7 +69,7 @@ Vector = tuple[float, float, float]
 class Autopilot(Protocol):
     """What the services call; False: refused.
 
-    Speeds [m/s]; ``lat``, ``lon`` [1e-7 deg]; ``alt`` [m] above sea level; places in NED from the origin [m].
+    Speeds [m/s]; ``lat``, ``lon`` [1e-7 deg]; ``alt`` [m] above sea level; positions in NED from the origin [m].
     """
 
     def armed(self) -> bool: ...
@@ -90,8 +90,8 @@ class Autopilot(Protocol):
     def set_battery_left(self, percent: float) -> bool: ...
     def parameter_changed(self, name: str) -> None: ...
 
-    def guided_position(self, place: Vector) -> bool: ...
-    def set_roi(self, place: Vector | None) -> None: ...
+    def guided_position(self, position: Vector) -> bool: ...
+    def set_roi(self, position: Vector | None) -> None: ...
     def yaw_rate_target(self) -> float: ...
 
     def mission_items(self) -> tuple[MissionItem, ...]: ...

@@ -53,7 +53,7 @@ class BaseAutopilot:
         self.check_parameters()
 
     def take_notes(self) -> list[Note]:
-        """What there is to tell, once."""
+        """What there is to report, once."""
         notes, self._notes = self._notes, []
         return notes
 
@@ -145,7 +145,7 @@ class BaseAutopilot:
         return int(self._set_mode.request(self._v, number, BY_GROUND_STATION)) == 0  # refusals are events
 
     def _is_blocked(self, number: int) -> bool:
-        """Whether FLTMODE_GCSBLOCK keeps ground stations from choosing a mode; tells of it."""
+        """Whether FLTMODE_GCSBLOCK keeps ground stations from choosing a mode; reports it."""
         order, v = self._block_order, self._v
         blocked = number in order and modes.is_blocked(number, order, self._vehicle.parameters[MODE_BLOCK])
         if blocked:
@@ -160,7 +160,7 @@ class BaseAutopilot:
     def gripper_is(self, there: bool, is_open: bool) -> None:
         """The gripper has moved, or is there no more: nothing depends on it."""
 
-    def set_roi(self, place: Vector | None) -> None:
+    def set_roi(self, stored: Vector | None) -> None:
         """Keep the nose on a point, NED [m], or (None) no longer: not in vehicles that steer with it."""
 
     def yaw_rate_target(self) -> float:
@@ -181,7 +181,7 @@ class BaseAutopilot:
         return True
 
     def set_home(self, lat: int, lon: int, alt: float) -> bool:
-        return home.set_place(self._v.autopilot.home, self._v.autopilot.estimate, lat, lon, alt)
+        return home.set_location(self._v.autopilot.home, self._v.autopilot.estimate, lat, lon, alt)
 
     def set_origin(self, lat: int, lon: int, alt: float) -> bool:
         ap = self._v.autopilot
@@ -207,15 +207,15 @@ class BaseAutopilot:
 
     def mission_items(self) -> tuple[MissionItem, ...]:
         items = tuple(self._sequencer().mission.items)
-        place = self._v.autopilot.home
-        if not items or not place.is_set:
+        stored = self._v.autopilot.home
+        if not items or not stored.is_set:
             return items
-        return (stored_home(int(place.lat), int(place.lon), float(place.alt)), *items[1:])
+        return (stored_home(int(stored.lat), int(stored.lon), float(stored.alt)), *items[1:])
 
     def home_changed(self) -> None:
-        place, mission = self._v.autopilot.home, self._sequencer().mission
-        if place.is_set and not mission.items:  # home is item 0 of a mission that has no other
-            alone = stored_home(int(place.lat), int(place.lon), float(place.alt))
+        stored, mission = self._v.autopilot.home, self._sequencer().mission
+        if stored.is_set and not mission.items:  # home is item 0 of a mission that has no other
+            alone = stored_home(int(stored.lat), int(stored.lon), float(stored.alt))
             self._sequencer().extend_mission(self._v, Mission((alone,)))
 
     def current_item(self) -> int:

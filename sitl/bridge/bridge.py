@@ -23,8 +23,8 @@ from .frame import Frame
 from .links.faults import LinkFaults
 from .links.link import Link
 from .listener import Listener
+from .locations import Locations
 from .log_store import LogStore
-from .places import Places
 from .profile import load
 from .services import all_services
 from .services.command import Entry
@@ -50,7 +50,7 @@ from .wire.port import Port
 
 _HEARTBEAT, _SETUP_SIGNING = message("HEARTBEAT").id, message("SETUP_SIGNING").id
 EPOCH_US = 1_767_225_600_000_000
-"""Unix time at boot unless told otherwise: 2026-01-01 00:00:00 UTC [us]."""
+"""Unix time at boot by default: 2026-01-01 00:00:00 UTC [us]."""
 
 
 _write_goal = struct.Struct("<qqq").pack_into
@@ -67,9 +67,9 @@ class BridgeState(NamedTuple):
 class Bridge:
     """Speaks MAVLink for one vehicle to any number of clients.
 
-    The simulation calls ``receive`` whenever it wants clients to be heard. ``run`` advances the vehicle and sends what
-    the core can send, ``service`` sends the rest. Nothing here reads a wall clock: the same bytes at the same simulated
-    times give the same bytes.
+    The simulation calls ``receive`` whenever bytes of clients are to be read. ``run`` advances the vehicle and sends
+    what the core can send, ``service`` sends the rest. Nothing here reads a wall clock: the same bytes at the same
+    simulated times give the same bytes.
     """
 
     def __init__(self, vehicle: Vehicle, *, epoch_us: int = EPOCH_US, autopilot: Autopilot | None = None) -> None:
@@ -104,17 +104,17 @@ class Bridge:
         self._event_count: Callable[[], int] = self.reader.field("autopilot.events.count")
         self._parameters: dict[str, Callable[[], float]] = {}
         self.listeners: list[Listener] = []
-        """Are told of texts and parameters: ``listeners.append(logger)``."""
+        """Are notified of texts and parameters: ``listeners.append(logger)``."""
         self.logs: LogStore | None = None
         """On-board logs that clients may download (``sitl.logs.dataflash``)."""
         self.grants: Grants | None = None
         """Set by who lets clients push the clock (``sitl.run.standstill``)."""
         self.is_stepped = False
         """Set by who steps the vehicle from this process, and wants messages of every tick (``sitl.envs``)."""
-        self.places = Places(vehicle.v.autopilot, lambda lat, lon: self.get(TerrainService).rise(lat, lon))
+        self.locations = Locations(vehicle.v.autopilot, lambda lat, lon: self.get(TerrainService).rise(lat, lon))
         self._match_clocks()
         self._handlers: dict[int, tuple[int, Handler]] = {}
-        """By message number: place of the field target_system, -1 when there is none, and what is to be done."""
+        """By message number: offset of the field target_system, -1 when there is none, and what is to be done."""
         self.services: dict[type, Service] = {}
         for kind in all_services():
             service = self.profile.set_points(self) if kind is SetpointService else kind(self)
@@ -194,17 +194,17 @@ class Bridge:
     # ------------------------------------------------------------------ links
 
     @property
-    def heard(self) -> int:
+    def received(self) -> int:
         """How often clients have said something, so far."""
-        return self.board.heard
+        return self.board.received
 
     @property
     def links(self) -> Sequence[Link]:
-        """Ways on which clients may come."""
+        """Links on which clients may come."""
         return self.board.links
 
     def add_link(self, link: Link) -> None:
-        """Open a way for clients to reach the vehicle."""
+        """Open a link for clients to reach the vehicle."""
         self.board.add_link(link)
 
     def remove_link(self, link: Link) -> None:
@@ -229,7 +229,7 @@ class Bridge:
     def _channel_added(self, channel: Channel) -> None:
         self._channels_changed()
         channel.port.epoch_us = self.epoch_us + self._before_boot_us
-        if channel.peer.ways is None:  # else it has outlived a reboot
+        if channel.peer.directions is None:  # else it has outlived a reboot
             self.board.faults.follow(channel, self.is_clock_pushed)
         self.board.faults.look(self.channels)
         for service in self.services.values():
@@ -289,9 +289,9 @@ class Bridge:
         for channel in self.channels:
             data = channel.peer.take()
             if data:
-                board.heard += 1
-                if channel.peer.ways is not None:
-                    data = b"".join(channel.peer.ways.to_vehicle.carry_bytes(data, self.elapsed_us))
+                board.received += 1
+                if channel.peer.directions is not None:
+                    data = b"".join(channel.peer.directions.to_vehicle.carry_bytes(data, self.elapsed_us))
             if data or resume:
                 self._receive(channel, data)
         if journal is not None:
@@ -313,12 +313,13 @@ class Bridge:
         """Hear, and hand to clients, the frames that arrive now over links with faults."""
         board, now = self.board, self.elapsed_us
         for channel in self.channels:
-            ways, peer = channel.peer.ways, channel.peer
-            if ways is None or ways.due_us > now:
+            directions, peer = channel.peer.directions, channel.peer
+            if directions is None or directions.due_us > now:
                 continue
-            peer.outbox += ways.to_client.arrived(now)  # nothing else is queued: all that was due has been flushed
+            # nothing else is queued: all that was due has been flushed
+            peer.outbox += directions.to_client.arrived(now)
             peer.flush()
-            data = b"".join(ways.to_vehicle.arrived(now))
+            data = b"".join(directions.to_vehicle.arrived(now))
             if data:
                 self._receive(channel, data)
         if board.journal is not None:
@@ -457,7 +458,7 @@ class Bridge:
             self.core.transmit(channel.address, 1, REGULAR)
             if port.next_us > now:
                 return
-            if port.out_count:  # there was no more room, or it is the shell's turn
+            if port.out_count:  # there was no more space, or it is the shell's turn
                 channel.collect()
             number, by_shell = streams.first_due(port, now)
             if by_shell:
@@ -500,7 +501,7 @@ class Bridge:
                 if channel.port.out_count:
                     channel.collect()
                 self.core.transmit(channel.address, 1, number)
-                if channel.port.part == 0:  # all parts of it are sent: many need the room several times
+                if channel.port.part == 0:  # all parts of it are sent: many need the space several times
                     break
         return number in self.telemetry
 
@@ -542,8 +543,8 @@ class Bridge:
         """Let clients push the clock from now on."""
         self.grants = Grants()
         for channel in self.channels:
-            if channel.peer.ways is not None:
-                channel.peer.ways.hold(True)
+            if channel.peer.directions is not None:
+                channel.peer.directions.hold(True)
         if self.board.journal is not None:
             self.board.journal.lockstep(True)
         return self.grants
@@ -561,12 +562,12 @@ class Bridge:
         return self.services[kind]
 
     def on_events(self) -> None:
-        """Tell clients of all events that the core emitted since the last call."""
+        """Report to clients all events that the core emitted since the last call."""
         self.get(EventService).read()
         self.flush()
 
     def report(self, notes: list[Any]) -> None:
-        """Tell clients what the mission's sequencer gave back."""
+        """Report to clients what the mission's sequencer gave back."""
         if notes:
             self.get(EventService).notes(notes)
             self.flush()
@@ -598,7 +599,7 @@ class Bridge:
         switched(self, function, position)
 
     def say_pending(self) -> None:
-        """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""
+        """Report to clients what the core emitted and what the autopilot's laws gave back meanwhile."""
         self.get(EventService).read()
         self.get(EventService).notes(self.autopilot.take_notes())
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..core.constants import NEVER
 from .dialect import MessageType, message_by_id
 from .frame import Frame, encode_v1, encode_v2
-from .links.faulty_way import FaultyWay, Ways, WayState
+from .links.faulty_direction import Directions, DirectionState, FaultyDirection
 from .links.link import Peer
 from .wire.frames import COMPONENT
 from .wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
@@ -51,7 +51,7 @@ class ChannelState(NamedTuple):
 
     number: int
     port: bytes
-    ways: tuple[WayState, WayState] | None = None
+    directions: tuple[DirectionState, DirectionState] | None = None
     """Of a link with faults."""
 
 
@@ -69,7 +69,7 @@ class Channel:
         self._is_watched, self._logs = is_watched, logs
         self.port = Port()
         self.address = 0
-        """Of the port in memory, once the bridge has given it its place."""
+        """Address of the port, once the bridge has allotted its memory."""
         self.port.version, self.port.system, self.port.next_us = 2, system, NEVER
         self.spool: Spool | None = None
         """What the core sends while time passes, for a client that takes frames of several times in one piece."""
@@ -99,17 +99,19 @@ class Channel:
     def congested(self) -> bool:
         """Whether telemetry should wait: the client reads too slowly, or its link carries no more."""
         peer = self.peer
-        return peer.congested or (peer.ways is not None and peer.ways.to_client.is_full)
+        return peer.congested or (peer.directions is not None and peer.directions.to_client.is_full)
 
     def snapshot(self) -> ChannelState:
         """Everything that later frames depend on; what is in transit is the client's, unless the link has faults."""
-        ways = self.peer.ways
-        return ChannelState(self.number, bytes(self.port._bytes[:STATE]), ways.snapshot() if ways is not None else None)
+        faulty = self.peer.directions.snapshot() if self.peer.directions is not None else None
+        return ChannelState(self.number, bytes(self.port._bytes[:STATE]), faulty)
 
     def restore(self, state: ChannelState) -> None:
         """Go on from a snapshot of this channel."""
         self.port._bytes[:STATE] = state.port
-        self.peer.ways = Ways(*map(FaultyWay.restored, state.ways)) if state.ways is not None else None
+        self.peer.directions = (
+            Directions(*map(FaultyDirection.restored, state.directions)) if state.directions is not None else None
+        )
 
     # ------------------------------------------------------------------ out
 
@@ -163,7 +165,7 @@ class Channel:
     # ------------------------------------------------------------------ in
 
     def takes(self, data: bytes) -> bool:
-        """Hand bytes from the client to the port, if it has room for all of them."""
+        """Hand bytes from the client to the port, if it has space for all of them."""
         port = self.port
         size = port.in_size
         end = size + len(data)
@@ -174,10 +176,10 @@ class Channel:
         return True
 
     def feed(self, data: bytes) -> bytes:
-        """Hand bytes from the client to the port; returns those for which there is no room yet."""
-        room = IN_BYTES - self.port.in_size
-        self.takes(data[:room])
-        return data[room:]
+        """Hand bytes from the client to the port; returns those for which there is no space yet."""
+        free = IN_BYTES - self.port.in_size
+        self.takes(data[:free])
+        return data[free:]
 
     def frame(self) -> Frame:
         """The frame that the core stopped at."""

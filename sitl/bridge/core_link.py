@@ -15,7 +15,8 @@ from .wire.choose import Builder, Taker, message_of
 
 
 class CoreUnits(NamedTuple):
-    """Units of a firmware that hear and tell clients (``wire/link.py``), and the laws that they are made of."""
+    """Units of a firmware that receive from clients and send to them (``wire/link.py``), and the laws that they are
+    made of."""
 
     receive: Callable[..., None]
     transmit: Callable[..., None]

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..core.constants import NEVER
 from .channel import Channel
 from .links.faults import TO_CLIENT, TO_VEHICLE, LinkFaults
-from .links.faulty_way import NONE, FaultyWay, Ways
+from .links.faulty_direction import NONE, Directions, FaultyDirection
 from .links.link import Link
 
 
@@ -15,7 +15,7 @@ class FaultyLinks:
 
     def __init__(self) -> None:
         self.are_on = False
-        """Whether any client's link has some, or has frames under way since it had some."""
+        """Whether any client's link has some, or has frames in flight since it had some."""
         self._of_all: LinkFaults | None = None
         self._of: dict[Link, LinkFaults | None] = {}
 
@@ -48,24 +48,29 @@ class FaultyLinks:
 
     @staticmethod
     def give(channel: Channel, faults: LinkFaults | None, stands: bool = False) -> None:
-        """Give a client's link faults; frames under way arrive as they would have."""
+        """Give a client's link faults; frames in flight arrive as they would have."""
         peer = channel.peer
-        if faults is not None and peer.ways is None:
-            peer.ways = Ways(FaultyWay(faults, 2 * channel.number), FaultyWay(faults, 2 * channel.number + 1))
-            peer.ways.hold(stands)
-        if peer.ways is not None:
-            for way, direction in zip(peer.ways, (TO_VEHICLE, TO_CLIENT)):
-                way.faults = faults if faults is not None and faults.acts(direction) else NONE
+        if faults is not None and peer.directions is None:
+            peer.directions = Directions(
+                FaultyDirection(faults, 2 * channel.number), FaultyDirection(faults, 2 * channel.number + 1)
+            )
+            peer.directions.hold(stands)
+        if peer.directions is not None:
+            for direction, number in zip(peer.directions, (TO_VEHICLE, TO_CLIENT)):
+                direction.faults = faults if faults is not None and faults.acts(number) else NONE
 
     def look(self, channels: list[Channel]) -> None:
-        """Notice which links have faults; one that has none any more, and nothing under way, is as it was before."""
+        """Notice which links have faults; one that has none any more, and nothing in flight, is as it was before."""
         for channel in channels:
-            ways = channel.peer.ways
-            if ways is not None and all(way.is_idle for way in ways):
-                channel.peer.ways = None
-        self.are_on = any(channel.peer.ways is not None for channel in channels)
+            directions = channel.peer.directions
+            if directions is not None and all(direction.is_idle for direction in directions):
+                channel.peer.directions = None
+        self.are_on = any(channel.peer.directions is not None for channel in channels)
 
     @staticmethod
     def due_us(channels: list[Channel]) -> int:
         """When the next frame arrives, simulated time since the start [us]."""
-        return min((channel.peer.ways.due_us for channel in channels if channel.peer.ways is not None), default=NEVER)
+        return min(
+            (channel.peer.directions.due_us for channel in channels if channel.peer.directions is not None),
+            default=NEVER,
+        )

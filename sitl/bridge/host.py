@@ -17,9 +17,9 @@ from .channel import Channel
 from .dialect import MessageType
 from .links.link import Link
 from .listener import Listener
+from .locations import Locations
 from .log_store import LogStore
 from .mavlink_firmware import MavlinkFirmware
-from .places import Places
 
 
 class Host(Protocol):
@@ -32,13 +32,13 @@ class Host(Protocol):
     """Fields of the vehicle's record by name, as functions that read them."""
     channels: list[Channel]
     """Of all clients."""
-    places: Places
+    locations: Locations
     epoch_us: int
     """Unix time at the start of the simulation."""
     logs: LogStore | None
     """On-board logs that clients may download."""
     listeners: list[Listener]
-    """Are told of texts, parameters, commands and progress."""
+    """Are notified of texts, parameters, commands and progress."""
     telemetry: dict[int, MessageType]
     """Every message that can be sent, by its number."""
     by_shell: dict[int, Callable[[], bytes]]
@@ -53,7 +53,7 @@ class Host(Protocol):
 
     @property
     def links(self) -> Sequence[Link]:
-        """Ways on which clients may come."""
+        """Links on which clients may come."""
         ...
 
     @property
@@ -103,11 +103,11 @@ class Host(Protocol):
         ...
 
     def say_pending(self) -> None:
-        """Tell clients what the core emitted and what the autopilot's laws gave back meanwhile."""
+        """Report to clients what the core emitted and what the autopilot's laws gave back meanwhile."""
         ...
 
     def report(self, notes: list[Any]) -> None:
-        """Tell clients what the mission's sequencer gave back."""
+        """Report to clients what the mission's sequencer gave back."""
         ...
 
     # ------------------------------------------------------------------ what has happened, for other services

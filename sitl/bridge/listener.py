@@ -24,12 +24,12 @@ class Listener(Protocol):
         """A mission item was reached (MISSION_ITEM_REACHED)."""
         ...
 
-    def commanded(self, fields: Any, frame: int, is_place: bool, sender: Sender, result: int) -> None:
+    def commanded(self, fields: Any, frame: int, is_location: bool, sender: Sender, result: int) -> None:
         """A COMMAND_LONG or COMMAND_INT was answered.
 
         Args:
             fields: of the message.
-            frame, is_place: of a COMMAND_LONG: the MAV_FRAME that it is taken in, whether p5 and p6 are degrees.
+            frame, is_location: of a COMMAND_LONG: the MAV_FRAME that it is taken in, whether p5 and p6 are degrees.
             sender: its system and component.
             result: MAV_RESULT.
         """

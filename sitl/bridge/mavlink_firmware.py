@@ -41,7 +41,7 @@ class MavlinkFirmware:
     groups: Mapping[int, tuple[str, tuple[str, ...]]]
     """MAV_DATA_STREAM -> (ending of the MAV1_ rate parameter, messages)."""
     core: CoreUnits
-    """Units that hear and tell clients, with what they can build and take."""
+    """Units that receive from clients and send to them, with what they can build and take."""
     silent: frozenset[int] = frozenset()
     """Messages that one may ask for, and that it has nothing to say in (besides those of ``streams.OF_PARTS``)."""
     targets: Callable[[Any], Targets] = lambda v: Targets()

@@ -45,7 +45,7 @@ def _bytes(content: dict[str, Any]) -> bytes:
 
 
 def _described(p: Parameter) -> dict[str, Any]:
-    told: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "name": p.name,
         "type": _TYPES[p.kind],
         "group": p.name.split("_", 1)[0],
@@ -54,13 +54,13 @@ def _described(p: Parameter) -> dict[str, Any]:
         "default": _number(p, p.default),
     }
     if p.unit:
-        told["units"] = p.unit
+        entry["units"] = p.unit
     for key, value in (("min", p.low), ("max", p.high)):
         if math.isfinite(value):
-            told[key] = _number(p, value)
+            entry[key] = _number(p, value)
     if p.read_only:
-        told["volatile"] = True
-    return told
+        entry["volatile"] = True
+    return entry
 
 
 def _number(p: Parameter, value: float) -> float:

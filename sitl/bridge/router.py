@@ -85,11 +85,11 @@ class Router:
         self._links: list[Link] = []
         self._trunks: list[_Trunk] = []
         self._selector = selectors.DefaultSelector()
-        self.heard = 0
+        self.received = 0
         """How often clients have said something."""
 
     def add_link(self, link: Link, which: Iterable[int] | None = None) -> list[Link]:
-        """Open a way for clients to reach vehicles.
+        """Open a link for clients to reach vehicles.
 
         Args:
             link: open, and on no vehicle.
@@ -123,7 +123,7 @@ class Router:
         for client, ends, branches in self._trunks:
             data = client.take()
             if data:
-                self.heard += 1
+                self.received += 1
                 for end, branch in zip(ends, branches, strict=True):
                     end.deliver(branch, data)
         for link in self._links:

@@ -47,7 +47,7 @@ OFF = SigningState(b"", 0)
 
 
 class Signing:
-    """The key of a vehicle, its time stamp, and the last one of each stream that it has heard."""
+    """The key of a vehicle, its time stamp, and the last one of each stream that it has received."""
 
     def __init__(self, state: SigningState = OFF) -> None:
         self.key, self.timestamp = state.key, min(max(state.timestamp, 0), LAST)

@@ -41,14 +41,14 @@ class Signer(Protocol):
 
 
 class Journal(Protocol):
-    """Is told of everything that comes to the vehicle from outside, and of what goes out (a recording).
+    """Is notified of everything that comes to the vehicle from outside, and of what goes out (a recording).
 
-    Channels are told by their numbers, which no other channel of the run has, links by their place in the order in
+    Channels are told by their numbers, which no other channel of the run has, links by their position in the order in
     which they were added.
     """
 
     def link_added(self, link: Link) -> None:
-        """A way for clients to reach the vehicle; its peers follow."""
+        """A link for clients to reach the vehicle; its peers follow."""
 
     def link_removed(self, link: Link) -> None:
         """It is closed; its peers leave."""
@@ -117,7 +117,7 @@ class Switchboard:
         self.logs: list[Channel] = []
         """Those of the channels that get what the others are answered."""
         self.ports = Ports()
-        self.heard = 0
+        self.received = 0
         """How often clients have said something."""
         self.dropped: deque[str] = deque(maxlen=MAX_NOTES)
         """Why channels were lost or refused, for people; the oldest are forgotten where nobody takes them."""
@@ -140,7 +140,7 @@ class Switchboard:
         self._selector.close()
         self.links, self.dropped = old.links, old.dropped
         self.taps, self.client_taps = old.taps, old.client_taps
-        self.journal, self.heard, self.faults = old.journal, old.heard, old.faults
+        self.journal, self.received, self.faults = old.journal, old.received, old.faults
         self._selector, self._sockets = old._selector, old._sockets
         self._numbers, self._kept = old._numbers, {channel.peer: channel.number for channel in old.channels}
         for link in self.links:
@@ -152,7 +152,7 @@ class Switchboard:
         return signs or self.faults.are_on or bool(self.taps) or self.journal is not None
 
     def add_link(self, link: Link) -> None:
-        """Open a way for clients to reach the vehicle."""
+        """Open a link for clients to reach the vehicle."""
         self.links.append(link)
         if self.journal is not None:
             self.journal.link_added(link)
@@ -236,8 +236,8 @@ class Switchboard:
                 peer.outbox[:] = self.signer.sent(channel, peer.outbox)
             if self.journal is not None and peer.outbox:
                 self.journal.sent(channel, peer.outbox)
-            if peer.ways is not None:
-                peer.outbox[:] = peer.ways.to_client.carry(peer.outbox, self._clock())
+            if peer.directions is not None:
+                peer.outbox[:] = peer.directions.to_client.carry(peer.outbox, self._clock())
             peer.flush()
             if self.journal is not None:
                 self.journal.flushed(channel)

@@ -35,7 +35,7 @@ COMMANDS = {
     "arducopter": Listed("sitl.cli.drop_in", "run a copter in place of ArduPilot's arducopter"),
     "ardurover": Listed("sitl.cli.drop_in", "run a rover in place of ArduPilot's ardurover"),
     "examples": Listed("sitl.cli.examples", "list and copy the example programs"),
-    "identify": Listed("sitl.identify.cli", "find a copter's or rover's figures in its logs, as an airframe"),
+    "identify": Listed("sitl.identify.cli", "find a copter's or rover's properties in its logs, as an airframe"),
     "params": Listed("sitl.cli.params", "list the parameters, or look for some"),
     "frame": Listed("sitl.cli.frame", "list the airframes, or print one as a file to change and fly"),
     "world": Listed("sitl.cli.world", "list and draw worlds"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl demo copter`` and ``sitl demo rover``: a MAVSDK example drives the vehicle; figures, log and picture."""
+"""``sitl demo copter`` and ``sitl demo rover``: a MAVSDK example drives the vehicle; values, log and picture."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def demo(options: argparse.Namespace) -> int:
-    """Run the example, print the figures, draw."""
+    """Run the example, print the values, draw."""
     check_view(options)
     options.speedup = options.speedup or default_speedup(options)
     name = KINDS[options.vehicle].demo_script

@@ -149,13 +149,13 @@ def clock() -> Iterator[Finding]:
 def cache() -> Iterator[Finding]:
     """The compiled core."""
     folder = code_cache.cache_folder()
-    place = folder
-    while not place.exists():
-        place = place.parent
-    if not os.access(place, os.W_OK):
+    there = folder
+    while not there.exists():
+        there = there.parent
+    if not os.access(there, os.W_OK):
         yield Finding("cache", BROKEN, f"{folder} cannot be written", "export SITL_CACHE_DIR=A_FOLDER_OF_YOURS")
         return
-    free = shutil.disk_usage(place).free // 1_000_000
+    free = shutil.disk_usage(there).free // 1_000_000
     size = sum(file.stat().st_size for file in Path(folder).rglob("*") if file.is_file()) // 1_000_000
     enough = free >= SCRATCH_MB
     yield Finding("cache", OK if enough else BROKEN, f"{folder}, {size} MB, {free} MB of disk free")

@@ -19,7 +19,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "frame", nargs="?", metavar="NAME|FILE", help="print this airframe as a .toml file (default: list them)"
     )
     parser.add_argument("--out", type=Path, metavar="FILE.toml", help="write the file instead of printing it")
-    add_json_option(parser, "a list of airframes, or one with all its figures")
+    add_json_option(parser, "a list of airframes, or one with all its properties")
     parser.set_defaults(function=show)
 
 
@@ -32,7 +32,9 @@ def show(options: argparse.Namespace) -> int:
         return 0
     airframe = vehicles.load(options.frame)
     if options.json:
-        print_json({"kind": airframe.kind, "description": airframe.description, **vehicles.to_data(airframe)})
+        data = vehicles.to_data(airframe)
+        of_before = {"figures": data["properties"]}  # the key of version 0.1, until 0.4
+        print_json({"kind": airframe.kind, "description": airframe.description, **data, **of_before})
     elif options.out is None:
         print(vehicles.to_toml(airframe), end="")
     else:

@@ -56,7 +56,7 @@ def show(options: argparse.Namespace) -> int:
 @cache
 def pages() -> dict[str, Path]:
     """The pages by their names: those of the wheel, or of the repository that this package is in. A name that a page
-    of the top has, too, is told apart by the folder."""
+    of the top has, too, is distinguished by the folder."""
     root = next((folder for folder in (PACKAGE / "docs", PACKAGE.parent / "docs") if folder.is_dir()), PACKAGE / "docs")
     every = [page for folder in FOLDERS for page in sorted((root / folder).glob("*.md")) if page.stem != "index"]
     top = {page.stem for page in every if page.parent == root}

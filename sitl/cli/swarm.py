@@ -135,17 +135,17 @@ class SwarmStatus(Line):
 
     def __init__(self, swarm: Swarm, enabled: bool) -> None:
         self._swarm = swarm
-        self._told: deque[str] = deque()
+        self._lines: deque[str] = deque()
 
         def describe(factor: float) -> str:
             armed = sum(bool(vehicle.v.autopilot.arming.armed) for vehicle in swarm.vehicles)
             return f"{swarm.time_us * 1e-6:9.1f} s  {factor:6.1f}x  {armed} of {len(swarm)} armed"
 
-        super().__init__(self._told, lambda: swarm.time_us, describe, enabled)
+        super().__init__(self._lines, lambda: swarm.time_us, describe, enabled)
 
     def refresh(self) -> None:
         for vehicle in self._swarm.vehicles:
             dropped = vehicle.bridge.dropped
             while dropped:
-                self._told.append(f"system {vehicle.bridge.system}: {dropped.popleft()}")
+                self._lines.append(f"system {vehicle.bridge.system}: {dropped.popleft()}")
         super().refresh()

@@ -76,7 +76,7 @@ class ByteSocket(Outbox):
         self.listens = kind in ("udp", "udpin")
         """Whether it waits to be spoken to, by anybody who knows its port."""
         self.peer: tuple[str, int] | None = None
-        """Where datagrams go to: the first that was heard, until ``settle``."""
+        """Where datagrams go to: the first that was received, until ``settle``."""
         self._is_settled = False
         self._address, self._kind = (host, int(port)), kind
         self._open()

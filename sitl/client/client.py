@@ -36,9 +36,9 @@ class Moment:
 class Client(Files):
     """One vehicle, flown by MAVLink bytes: ``Client(Simulation("erle_copter"))`` or ``Client("udp:127.0.0.1:14550")``.
 
-    See ``Session`` for the arguments, and docs/client.md for all calls. Times are simulated seconds, places metres from
-    home, altitudes above home. What is awaited in vain raises an error that says what was seen last, when, and what the
-    vehicle said.
+    See ``Session`` for the arguments, and docs/client.md for all calls. Times are simulated seconds, positions metres
+    from home, altitudes above home. What is awaited in vain raises an error that says what was seen last, when, and
+    what the vehicle said.
     """
 
     # ------------------------------------------------------------------ other futures, of vehicles in this process

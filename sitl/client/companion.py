@@ -34,9 +34,9 @@ class Companion:
         """Send when it is time."""
         if now_us >= self._next_us:
             self._next_us = (now_us // self.PERIOD_US + 1) * self.PERIOD_US
-            self.tell()
+            self.send()
 
-    def tell(self) -> None:
+    def send(self) -> None:
         """Send one message."""
         raise NotImplementedError
 

@@ -332,14 +332,14 @@ class Remote(Connection):
         Raises:
             LinkLostError: none comes.
         """
-        heard: list[MessageType] = []
-        self.inbox.witness = lambda kind, _: heard.append(kind)
+        received: list[MessageType] = []
+        self.inbox.witness = lambda kind, _: received.append(kind)
         try:
             if isinstance(self.stream, ByteSocket) and self.stream.listens:
-                self._find_sender(self.stream, lambda: HEARTBEAT in heard)
+                self._find_sender(self.stream, lambda: HEARTBEAT in received)
             else:
                 self.endpoint.command(REQUEST_MESSAGE, HEARTBEAT.id, target=self.inbox.system or EVERYBODY)
-                self.exchange(lambda: HEARTBEAT in heard, within=self.patience)
+                self.exchange(lambda: HEARTBEAT in received, within=self.patience)
         finally:
             self.inbox.witness = None
 
@@ -365,7 +365,7 @@ class Remote(Connection):
             LinkLostError: it answers no question.
         """
         signs = proof.ask(self, max(round(min(self.patience, _PROOF_S) / _REPEAT_S), 1))
-        if not signs.heard:
+        if not signs.received:
             self.exchange(lambda: REQUEST_MESSAGE in self.inbox.acks, within=self.patience)
         self.doubt = signs.doubt
 
@@ -474,9 +474,9 @@ def connect(
         text: a form of ``open_stream``.
         inbox: gets what comes back.
         patience: wall time [s] without a message after which the vehicle is lost.
-        target: MAVLink id of the vehicle, where several share the link; 0: the first whose HEARTBEAT is heard.
+        target: MAVLink id of the vehicle, where several share the link; 0: the first whose HEARTBEAT is received.
         system, component: MAVLink ids of the client.
-        warn: is told when the time cannot be held, but not in a script under ``sitl exec``, whose clock is the
+        warn: called when the time cannot be held, but not in a script under ``sitl exec``, whose clock is the
             vehicle's.
 
     Raises:

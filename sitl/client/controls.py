@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a pilot does with any vehicle: modes, arming, places to go to, sticks."""
+"""What a pilot does with any vehicle: modes, arming, positions to go to, sticks."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class Controls(Waits):
         self.set_mode("RTL")
         self.wait_disarmed(timeout)
 
-    # ------------------------------------------------------------------ places
+    # ------------------------------------------------------------------ positions
 
     def place_of(self, lat: float, lon: float) -> tuple[float, float]:
         """North, east from home [m] of a latitude and longitude [deg]."""
@@ -136,7 +136,7 @@ class Controls(Waits):
         return (float(north), float(east))
 
     def location_of(self, north: float, east: float) -> tuple[int, int]:
-        """Latitude, longitude [degE7] of a place from home [m]."""
+        """Latitude, longitude [degE7] of a position from home [m]."""
         home = self.home()
         lat, lon = add_offset(home[0], home[1], north, east)
         return (round(lat), round(lon))
@@ -153,7 +153,7 @@ class Controls(Waits):
         return self.telemetry.home
 
     def set_position(self, north: float, east: float, altitude: float | None = None, yaw: float | None = None) -> None:
-        """In GUIDED: go to a place from home [m], at an altitude above home (None: its present one) and a yaw [deg].
+        """In GUIDED: go to a position from home [m], at an altitude above home (None: its present one) and a yaw [deg].
 
         PX4 goes into LOITER with it.
         """

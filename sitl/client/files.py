@@ -71,11 +71,11 @@ class Files(Missions):
             if head[2] == ACK and head[4] == READ and asked.get(head[0]) == head[7]:
                 found[head[7]] = data
 
-        places = range(0, size, DATA_BYTES)
-        missing = lambda: [at for at in places if at not in found]  # noqa: E731
+        offsets = range(0, size, DATA_BYTES)
+        missing = lambda: [at for at in offsets if at not in found]  # noqa: E731
         self.collect("FILE_TRANSFER_PROTOCOL", missing, ask, take, f"file {path}")
         self._ask_ftp(TERMINATE, b"", what=f"file {path}")
-        return b"".join(found[at] for at in places)
+        return b"".join(found[at] for at in offsets)
 
     def list_folder(self, path: str) -> list[str]:
         """Names in a folder of the vehicle; those of folders end with "/".
@@ -173,10 +173,10 @@ class Files(Missions):
             if m.id == number and m.count:
                 found[m.ofs] = bytes(m.data[: m.count])
 
-        places = range(0, size, PIECE)
-        self.collect("LOG_DATA", lambda: [at for at in places if at not in found], ask, take, f"log {number}")
+        offsets = range(0, size, PIECE)
+        self.collect("LOG_DATA", lambda: [at for at in offsets if at not in found], ask, take, f"log {number}")
         self.send("LOG_REQUEST_END")
-        return b"".join(found[at] for at in places)[:size]
+        return b"".join(found[at] for at in offsets)[:size]
 
 
 def _unpack(m: Any) -> tuple[tuple[int, ...], bytes]:

@@ -45,7 +45,7 @@ class Missions(Controls):
 
         Args:
             name: of its command, "NAV_WAYPOINT".
-            north, east: its place from home [m]; None: none, or where the vehicle is then.
+            north, east: its position from home [m]; None: none, or where the vehicle is then.
             altitude: above home [m].
             named: its other parameters, as for ``command``.
         """
@@ -55,7 +55,7 @@ class Missions(Controls):
         return MissionItem(number, MavFrame.GLOBAL_RELATIVE_ALT, p1, p2, p3, p4, x, y, altitude)
 
     def upload(self, mission: Mission | Sequence[MissionItem]) -> Mission:
-        """Upload a mission, home first; a home without a place becomes the vehicle's own.
+        """Upload a mission, home first; a home without a position becomes the vehicle's own.
 
         Raises:
             MissionRefusedError: the vehicle does not take it.
@@ -63,7 +63,7 @@ class Missions(Controls):
         """
         mission = mission if isinstance(mission, Mission) else Mission(tuple(mission))
         items = mission.items
-        if items and items[0].no_place:
+        if items and items[0].no_location:
             items = (home_item(*self.home()), *items[1:])
         self.telemetry.reached.clear()
         self.telemetry.items.clear()
@@ -79,7 +79,7 @@ class Missions(Controls):
         self.transfer(items, MavMissionType.FENCE)
 
     def upload_rally_points(self, items: Sequence[MissionItem]) -> None:
-        """Upload places to return to, as NAV_RALLY_POINT items; none clears them.
+        """Upload positions to return to, as NAV_RALLY_POINT items; none clears them.
 
         Raises:
             MissionRefusedError, WaitTimeoutError: as for ``upload``.

@@ -51,7 +51,7 @@ class Odometry(Companion):
         self.offset = Vec3(0.0, 0.0, 0.0)
         """Added to positions, NED [m]."""
 
-    def tell(self) -> None:
+    def send(self) -> None:
         """Send one message."""
         body, (at, speed), time = self.client.simulation.v.physics.body, self._noise, self.client.now - self._since
         draw = self._random.normal

@@ -43,7 +43,7 @@ CONTRADICTION_US = 1_200_000
 """So long is it listened to after all signs have come: another one with its ids may be slower, and sends a HEARTBEAT
 each second [us]."""
 CHANGE_US = 2_200_000
-"""And so long after that, when HEARTBEATs have told of a change: it has changed, or there are two [us]."""
+"""And so long after that, when HEARTBEATs have reported a change: it has changed, or there are two [us]."""
 
 
 class Link(Protocol):
@@ -95,7 +95,7 @@ class Signs:
         return self._against or (two if self.voices.doubt else "")
 
     @property
-    def heard(self) -> bool:
+    def received(self) -> bool:
         """Whether it has answered anything."""
         return bool(self._given or self._answers or self._against)
 

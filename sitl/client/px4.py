@@ -24,7 +24,7 @@ MODE_NAMES: Mapping[int, str] = {
 }
 """custom_mode of HEARTBEAT -> name, as pymavlink has them."""
 VALID = 1 | 2 | 4 | 16 | 32
-"""ESTIMATOR_STATUS_FLAGS: attitude, velocity, position on the earth, height. Before, PX4 tells a position, too, and a
+"""ESTIMATOR_STATUS_FLAGS: attitude, velocity, position on the earth, height. Before, PX4 reports a position, too, and a
 heading that knows no declination, or none at all."""
 READY, MISSION, OFFBOARD = "LOITER", "MISSION", "OFFBOARD"
 """Modes: in which it arms and goes where it is sent; of missions; of velocities that are sent."""
@@ -32,7 +32,7 @@ MISSION_ENDS = (MISSION, READY, "RTL", "LAND")
 """Modes in which a mission that was flown ends: an item that returns or lands changes the mode."""
 REPEAT_US = 200_000
 """Between two set-points: it leaves OFFBOARD when they come less than twice a second."""
-_PLACED = (MavCmd.NAV_TAKEOFF, MavCmd.NAV_LAND, MavCmd.NAV_WAYPOINT)
+_LOCATED = (MavCmd.NAV_TAKEOFF, MavCmd.NAV_LAND, MavCmd.NAV_WAYPOINT)
 """Commands whose items PX4 takes with a place only."""
 
 
@@ -62,15 +62,15 @@ def encoded(name: str, value: float, param_type: int) -> float:
 
 
 def mission(items: Sequence[MissionItem]) -> list[MissionItem]:
-    """A mission with home first as PX4 takes it: without home; each place is given; what needs none has no frame."""
+    """A mission with home first as PX4 takes it: without home; each position is given; what needs none has no frame."""
     made: list[MissionItem] = []
     x, y = (items[0].x, items[0].y) if items else (0, 0)
     for item in items[1:]:
-        if item.command in _PLACED and item.no_place:
+        if item.command in _LOCATED and item.no_location:
             item = item._replace(x=x, y=y)
         elif item.command == MavCmd.NAV_RETURN_TO_LAUNCH:
             item = item._replace(frame=MavFrame.MISSION)
-        if not item.no_place:
+        if not item.no_location:
             x, y = item.x, item.y
         made.append(item)
     return made

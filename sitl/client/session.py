@@ -517,7 +517,7 @@ class Session:
         return result
 
     def _mode_number(self, name: str) -> int:
-        self.passes(lambda: self.telemetry.mode_names, ANSWER_S)  # the vehicle's first HEARTBEAT tells its kind
+        self.passes(lambda: self.telemetry.mode_names, ANSWER_S)  # the vehicle's first HEARTBEAT reports its kind
         numbers = {mode: number for number, mode in self.telemetry.mode_names.items()}
         if name not in numbers:
             close = did_you_mean(name, numbers)

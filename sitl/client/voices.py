@@ -40,15 +40,16 @@ class Voices:
         self._recent: OrderedDict[tuple[int, int, bytes], None] = OrderedDict()
         self._count = self._breaks = 0
         self._last: int | None = None
-        self._places: dict[int, int] = {}
-        """Number of a frame to its place among all."""
+        self._indices: dict[int, int] = {}
+        """Number of a frame to its index among all."""
         self._time_ms = 0
         self._states: list[tuple[int, ...]] = []
-        """What HEARTBEATs have told, each change."""
+        """What HEARTBEATs have reported, each change."""
 
     @property
     def has_changed(self) -> bool:
-        """Whether HEARTBEATs have told of two states. If one vehicle has changed its own, the first does not return."""
+        """Whether HEARTBEATs have reported two states. If one vehicle has changed its own,
+        the first does not return."""
         return len(self._states) > 1
 
     def is_repeated(self, kind: MessageType, payload: bytes, sequence: int) -> bool:
@@ -73,11 +74,11 @@ class Voices:
         self._count += 1
         if self._last is not None:
             ahead = (sequence - self._last) & 0xFF
-            collides = self._count - self._places.get(sequence, -COLLISION - 1) <= COLLISION
+            collides = self._count - self._indices.get(sequence, -COLLISION - 1) <= COLLISION
             if collides or 128 <= ahead < 256 - LATE:
                 self._breaks += 1
         self._last = sequence
-        self._places[sequence] = self._count
+        self._indices[sequence] = self._count
         if self._breaks >= BREAKS:
             self._doubts("its frames have two series of numbers")
 
@@ -86,9 +87,9 @@ class Voices:
         if self._states and state == self._states[-1]:
             return
         if state in self._states or (self._states and state[:2] != self._states[-1][:2]):
-            told = " and ".join(f"{'armed' if armed else 'disarmed'} in mode {mode} (type {type})"
+            reported = " and ".join(f"{'armed' if armed else 'disarmed'} in mode {mode} (type {type})"
                                 for type, _, armed, mode in (self._states[-1], state))  # fmt: skip
-            self._doubts(f"its HEARTBEATs say by turns that it is {told}")
+            self._doubts(f"its HEARTBEATs say by turns that it is {reported}")
         self._states.append(state)
 
     def _clock(self, kind: MessageType, time_ms: int) -> None:

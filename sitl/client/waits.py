@@ -52,8 +52,8 @@ class Waits(Session):
         seen = self.telemetry
 
         def last() -> str:
-            place = "position known" if seen.has_position else "no position"
-            return f"{place}, pre-arm checks {'good' if seen.checked else 'not good'}"
+            position = "position known" if seen.has_position else "no position"
+            return f"{position}, pre-arm checks {'good' if seen.checked else 'not good'}"
 
         self.wait(lambda t: t.has_position and t.checked, timeout, READY, last)
 
@@ -172,7 +172,7 @@ class Waits(Session):
         timeout: float = 120.0,
         hold: float = 0.0,
     ) -> None:
-        """Until it is at a place from home [m], along the ground and in altitude each within ``accuracy``."""
+        """Until it is at a position from home [m], along the ground and in altitude each within ``accuracy``."""
         self._wait_location(north, east, altitude, accuracy, timeout, hold)
 
     def _wait_location(

@@ -13,10 +13,10 @@ from .records import Float32, Floats, Int32, Ints, Record, Stored, array
 from .vectors import Vec2, Vec3
 
 LIDAR_SAMPLES = 360
-"""Readings of a scan that there is room for."""
+"""Readings of a scan that there is space for."""
 
 ESCS = 8
-"""Motors with a speed controller that there is room for."""
+"""Motors with a speed controller that there is space for."""
 
 RC_INPUTS = 16
 """Channels of a receiver."""
@@ -68,7 +68,7 @@ class Sensors(GpsReading):
     # two more compasses; zero where there are none
     mag2: NarrowVec3  # field, body [gauss]
     mag3: NarrowVec3
-    mag_us: Ints = array(3, stored="i8")  # when each compass was last heard; 0: never, or its reader does not know
+    mag_us: Ints = array(3, stored="i8")  # when each compass was last received; 0: never, or its reader does not know
     # a second barometer
     baro_state: int  # 0: it shows what the first does; else bits ONE_BARO, BAROS_DIFFER
     baro2_count: int  # samples, while they differ
@@ -77,7 +77,7 @@ class Sensors(GpsReading):
     imu_state: int  # 0: it shows what the first does; else bits IMUS_DIFFER, GYRO_SILENT, ACC_SILENT
     acc2: NarrowVec3  # specific force, body [m/s^2]
     gyro2: NarrowVec3  # body rates [rad/s]
-    # ESC_TELEMETRY, of a vehicle whose speed controllers tell how fast motors turn
+    # ESC_TELEMETRY, of a vehicle whose speed controllers report how fast motors turn
     esc_count: int  # samples so far
     esc_time_us: int  # of the last one
     esc_motors: int

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How much of a build is done, told while its units are still being compiled."""
+"""How much of a build is done, reported while its units are still being compiled."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class BuildWork:
         self._begun: dict[str, float] = {}
         self._complete = 0.0
         self._seconds = 0.0
-        self._told = 0.0
+        self._reported = 0.0
 
     def begin(self, name: str, now: float) -> None:
         """A unit is being compiled from ``now`` [s] on."""
@@ -43,8 +43,8 @@ class BuildWork:
         running = sum(
             min((now - begun) / seconds_a_weight, _ALMOST * self._weights[name]) for name, begun in self._begun.items()
         )
-        self._told = max(self._told, self._complete + running)
-        return self._told
+        self._reported = max(self._reported, self._complete + running)
+        return self._reported
 
 
 FIRST_LINE = "gym-sitl compiles its core (once; later starts load it from the cache)"

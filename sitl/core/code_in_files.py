@@ -22,7 +22,7 @@ from typing import Any
 VARIABLE = "SITL_ALLOW_CODE"
 _ALL = "1"
 REACHED = ("tcp:", "udp:", "udpin:", "udpout:")
-"""How the place of an autopilot that runs already begins, behind its kind; all else is a program to start."""
+"""How the address of an autopilot that runs already begins, behind its kind; all else is a program to start."""
 _ACTS = ("env", "frame", "autopilot", "autopilot_path", "reset", "guard")
 """Options that run code or act on a vehicle; others of those that are refused open a socket, a window or a file."""
 

@@ -40,8 +40,8 @@ from .shipped.objects import ENVIRONMENT as OBJECT_ENVIRONMENT
 
 Progress = Callable[[str, float, float], None]
 """Called as ``progress(unit name, work done, work of all)``, several times a second, in estimated seconds of work."""
-_TOLD_S = 0.2
-"""Progress is told at least so often [s]."""
+_REPORT_S = 0.2
+"""Progress is reported at least so often [s]."""
 _SHOWN = 3000
 """Characters of each end of a long text."""
 _WHY = "Rejected as the implementation raised a specific error:\n"
@@ -262,7 +262,7 @@ def compile_tasks(tasks: Mapping[str, Unit], order: Order, progress: Progress | 
     Args:
         tasks: "MODULE:NAME" -> what is compiled.
         order: what workers make of it.
-        progress: told of it; None: lines on standard error.
+        progress: called with it; None: lines on standard error.
         jobs: processes; 0: one for each processor.
 
     Raises:
@@ -279,7 +279,7 @@ def compile_tasks(tasks: Mapping[str, Unit], order: Order, progress: Progress | 
 
 
 def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress) -> None:
-    """Tell of the progress of workers until all units are compiled.
+    """Report the progress of workers until all units are compiled.
 
     Raises:
         BuildError: one failed.
@@ -297,7 +297,7 @@ def _follow(process: subprocess.Popen[str], work: BuildWork, progress: Progress)
     failed, name = "", ""
     while any(thread.is_alive() for thread in listeners) or not steps.empty():
         try:
-            step, _, name = steps.get(timeout=_TOLD_S).strip().partition(" ")
+            step, _, name = steps.get(timeout=_REPORT_S).strip().partition(" ")
         except queue.Empty:
             step = ""
         now = time.monotonic()
@@ -365,7 +365,7 @@ def load(entry: Callable[..., Any], path: str, progress: Progress | None = None)
     Args:
         entry: a unit.
         path: of the record type of the fleets that it is for, ``package.module.NAME``.
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
     """
     if jit_disabled():
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle is put elsewhere with all that it remembers: what happens to each place, direction and heading.
+"""A vehicle is put elsewhere with all that it remembers: what happens to each position, direction and heading.
 
 First everything turns about the vertical, then it is shifted. A velocity may be added: the past is then put where the
 vehicle would have been had it moved so all the time.
@@ -18,7 +18,7 @@ from .vectors import Quat, Vec2, Vec3
 
 
 class Displacement(NamedTuple):
-    """Of all places of one frame."""
+    """Of all positions of one frame."""
 
     angle: float
     """From north towards east [rad]."""
@@ -28,7 +28,7 @@ class Displacement(NamedTuple):
     turn: Quat
     """The same as a rotation."""
     shift: Vec3
-    """Of places, after the turn, NED [m]."""
+    """Of positions, after the turn, NED [m]."""
     velocity: Vec3
     """Added after the turn, NED [m/s]."""
 
@@ -72,13 +72,13 @@ def turned_heading(d: Displacement, heading: float) -> float:
 
 @law
 def moved(d: Displacement, p: Vec3) -> Vec3:
-    """A place, NED [m]."""
+    """A position, NED [m]."""
     return turned(d, p) + d.shift
 
 
 @law
 def moved_ne(d: Displacement, p: Vec2) -> Vec2:
-    """A place, NE [m]."""
+    """A position, NE [m]."""
     return turned_ne(d, p) + horizontal(d.shift)
 
 
@@ -95,9 +95,9 @@ def faster_ne(d: Displacement, v: Vec2) -> Vec2:
 
 
 @law
-def move_past(d: Displacement, places: Floats, k: int, age: float) -> None:
-    """Row ``k`` of places where the vehicle was, ``age`` [s] ago."""
-    set_row_vector(places, k, moved(d, row_vector(places, k)) - age * d.velocity)
+def move_past(d: Displacement, positions: Floats, k: int, age: float) -> None:
+    """Row ``k`` of positions where the vehicle was, ``age`` [s] ago."""
+    set_row_vector(positions, k, moved(d, row_vector(positions, k)) - age * d.velocity)
 
 
 @law

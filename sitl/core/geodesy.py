@@ -20,7 +20,7 @@ _POLE = 900000000.0
 _RAD_PER_DEGE7 = math.pi / 180.0 * 1e-7
 
 
-class Place(NamedTuple):
+class Location(NamedTuple):
     """A point on the globe."""
 
     lat: float  # [degE7]
@@ -52,16 +52,16 @@ def offset_ne(lat0_e7: float, lon0_e7: float, lat_e7: float, lon_e7: float) -> V
 
 
 @law
-def add_offset(lat0_e7: float, lon0_e7: float, north: float, east: float) -> Place:
+def add_offset(lat0_e7: float, lon0_e7: float, north: float, east: float) -> Location:
     """The point (north, east) [m] away from point 0; beyond a pole it is as far on this side, as ArduPilot has it."""
     lat = lat0_e7 + north / METRES_PER_DEGE7
     lon = lon0_e7 + east / (METRES_PER_DEGE7 * longitude_scale(0.5 * (lat0_e7 + lat)))
     if abs(lat) > _POLE:
         lat = (2.0 * _POLE - abs(lat)) * sign(lat)
-    return Place(lat, wrap_longitude(lon))
+    return Location(lat, wrap_longitude(lon))
 
 
-def place_e7(lat0_e7: float, lon0_e7: float, north: float, east: float) -> tuple[int, int]:
+def location_e7(lat0_e7: float, lon0_e7: float, north: float, east: float) -> tuple[int, int]:
     """``add_offset`` in whole degE7 (shell side)."""
-    place = add_offset(lat0_e7, lon0_e7, north, east)
-    return round(place.lat), round(place.lon)
+    location = add_offset(lat0_e7, lon0_e7, north, east)
+    return round(location.lat), round(location.lon)

@@ -43,5 +43,5 @@ def _register(row: Callable[[int], int | float], numbers: tuple[int | float, ...
             made = ir.GlobalVariable(module, array, name, space)
             made.linkage, made.global_constant, made.unnamed_addr = "internal", True, True
             made.initializer = ir.Constant(array, [element(number) for number in numbers])
-        place = context.cast(builder, args[0], sig.args[0], types.int64)
-        return builder.load(builder.gep(module.globals[name], [ir.IntType(64)(0), place], inbounds=True))
+        index = context.cast(builder, args[0], sig.args[0], types.int64)
+        return builder.load(builder.gep(module.globals[name], [ir.IntType(64)(0), index], inbounds=True))

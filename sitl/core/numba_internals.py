@@ -72,7 +72,7 @@ def why_not(patch: str) -> str:
     for name, number in USED[patch].items():
         if not _is_there(name, number):
             return f"Numba {numba.__version__} has no {name}" + (f" of {number} arguments" if number else "")
-    if patch == "trust_laws" and not _pointers_tell_types():
+    if patch == "trust_laws" and not _pointers_have_types():
         return "parameters of functions of llvmlite do not say what they point to"
     return ""
 
@@ -101,7 +101,7 @@ def _is_there(name: str, count: int | None, exactly: bool = False) -> bool:
     return found_count == count or not exactly
 
 
-def _pointers_tell_types() -> bool:
+def _pointers_have_types() -> bool:
     """Whether the parameters of a function in LLVM's IR say what they point to."""
     from llvmlite import ir
 

@@ -82,7 +82,7 @@ class RecordType(types.Record):
 
 
 def _name(cls: type[Record]) -> str:
-    """By which Numba knows the type; also the types in machine code that was kept, of fields in other places.
+    """By which Numba knows the type; also the types in machine code that was kept, of fields at other offsets.
 
     It takes types of one name for the same: classes that are made by a function, or again, may share theirs.
     """
@@ -148,7 +148,7 @@ class _Fields(AttributeTemplate):
         return record.values.get(name) or record.typeof(name)
 
 
-def _place(builder: Any, context: Any, kind: RecordType, memory: Any, name: str) -> tuple[Any, Any, int]:
+def _address(builder: Any, context: Any, kind: RecordType, memory: Any, name: str) -> tuple[Any, Any, int]:
     """(Pointer to the first number, type of a number, how many) of a field."""
     stored = kind.typeof(name)
     number = stored.dtype if isinstance(stored, types.NestedArray) else stored
@@ -174,12 +174,12 @@ def _read(context: Any, builder: Any, kind: RecordType, memory: Any, name: str) 
     value = kind.values.get(name)
     if value is None:
         return record_getattr(context, builder, kind, memory, name)
-    place, number, count = _place(builder, context, kind, memory, name)
+    address, number, count = _address(builder, context, kind, memory, name)
     if value in (types.float64, types.int64):
-        return context.cast(builder, builder.load(place, align=_alignment(kind)), number, value)
+        return context.cast(builder, builder.load(address, align=_alignment(kind)), number, value)
     if value is types.boolean:
-        return builder.icmp_signed("!=", builder.load(place), context.get_constant(types.int64, 0))
-    numbers = [builder.load(cgutils.gep_inbounds(builder, place, k), align=_alignment(kind)) for k in range(count)]
+        return builder.icmp_signed("!=", builder.load(address), context.get_constant(types.int64, 0))
+    numbers = [builder.load(cgutils.gep_inbounds(builder, address, k), align=_alignment(kind)) for k in range(count)]
     return make_value(context, builder, value, [context.cast(builder, n, number, types.float64) for n in numbers])
 
 
@@ -191,15 +191,15 @@ def _write(context: Any, builder: Any, sig: Any, args: Any, name: str) -> None:
     if value is None:
         record_setattr(context, builder, sig, args, name)
         return
-    place, number, _ = _place(builder, context, kind, memory, name)
+    address, number, _ = _address(builder, context, kind, memory, name)
     if value in TYPES.values():
         for k, part in enumerate(components(builder, value, what)):
             narrow = context.cast(builder, part, types.float64, number)
-            builder.store(narrow, cgutils.gep_inbounds(builder, place, k), align=_alignment(kind))
+            builder.store(narrow, cgutils.gep_inbounds(builder, address, k), align=_alignment(kind))
         return
     if value is types.boolean:
         what, given = context.cast(builder, what, given, types.boolean), types.boolean
-    builder.store(context.cast(builder, what, given, number), place, align=_alignment(kind))
+    builder.store(context.cast(builder, what, given, number), address, align=_alignment(kind))
 
 
 def _alignment(kind: RecordType) -> int | None:

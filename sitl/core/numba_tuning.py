@@ -112,13 +112,13 @@ def _compile_unchecked_calls() -> Callable[[], None]:
             return original(self, builder, callee, result, kinds, args, attrs)
         to_result, to_failure = callee.function_type.args[:2]
         with builder.goto_entry_block():
-            place = builder.alloca(to_result.pointee)
+            address = builder.alloca(to_result.pointee)
             is_entry = caller.name.startswith("cfunc.")
             failure = builder.alloca(to_failure.pointee) if is_entry else self._get_excinfo_argument(caller)
         given = self._get_arg_packer(kinds).as_arguments(builder, args)
-        builder.call(callee, [place, failure, *given], attrs=() if attrs is None else attrs)
+        builder.call(callee, [address, failure, *given], attrs=() if attrs is None else attrs)
         status = self._get_return_status(builder, RETCODE_OK, ir.Constant(to_failure.pointee, None))
-        value = ir.Constant(to_result.pointee, None) if result is types.none else builder.load(place)
+        value = ir.Constant(to_result.pointee, None) if result is types.none else builder.load(address)
         return status, self.context.get_returned_value(builder, result, value)
 
     CPUCallConv.call_function = call

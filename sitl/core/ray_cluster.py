@@ -21,7 +21,7 @@ _LOCAL = "local"
 _KNOCK_S = 5.0
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 _QUIET = {"RAY_USAGE_STATS_ENABLED": "0", "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0"}
-"""For an instance of ours: it reports to nobody, and does not tell of changes to come."""
+"""For an instance of ours: it reports to nobody, and does not report changes to come."""
 
 
 def require() -> None:

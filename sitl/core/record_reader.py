@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fast reads of a few fields of a vehicle record.
 
-Attribute access on a ``numpy`` record costs about a microsecond a field. Here the place of each field in
+Attribute access on a ``numpy`` record costs about a microsecond a field. Here the offset of each field in
 memory is worked out once, and one ``struct`` call then gives all of them as Python numbers (about 0.3 us for
 ten fields).
 """
@@ -45,7 +45,7 @@ def locate(dtype: np.dtype[Any], path: str) -> tuple[int, str, int]:
     return offset, _CODES[base.str], int(np.prod(shape, dtype=int)) if shape else 1
 
 
-def place_of(dtype: np.dtype[Any], path: str) -> int:
+def offset_of(dtype: np.dtype[Any], path: str) -> int:
     """Offset of a record or field in a record [bytes]: "physics.body"."""
     offset = 0
     for name in path.split("."):
@@ -59,7 +59,7 @@ def place_of(dtype: np.dtype[Any], path: str) -> int:
 def addresses(fleet: np.ndarray[Any, Any], index: int, *paths: str) -> tuple[int, ...]:
     """Addresses in memory of records or fields of vehicle ``index`` of a fleet, which must stay where it is."""
     at = fleet.ctypes.data + index * fleet.dtype.itemsize
-    return tuple(at + place_of(fleet.dtype, path) for path in paths)
+    return tuple(at + offset_of(fleet.dtype, path) for path in paths)
 
 
 class RecordReader:
@@ -75,13 +75,13 @@ class RecordReader:
 
     def fields(self, *paths: str) -> Callable[[], tuple[Any, ...]]:
         """A function that returns the present values of ``paths``, in that order, flattened."""
-        places = [locate(self._dtype, path) for path in paths]
+        fields = [locate(self._dtype, path) for path in paths]
         layout, at = "<", 0
         slots: list[int] = []
-        start = min(offset for offset, _, _ in places)
+        start = min(offset for offset, _, _ in fields)
         number_of: dict[int, int] = {}
-        for k in sorted(range(len(places)), key=lambda i: places[i][0]):
-            offset, code, count = places[k]
+        for k in sorted(range(len(fields)), key=lambda i: fields[i][0]):
+            offset, code, count = fields[k]
             gap = offset - start - at
             if gap < 0:
                 raise UnknownFieldError(f"{paths[k]!r} is asked for twice")
@@ -89,7 +89,7 @@ class RecordReader:
             at = offset - start + count * struct.calcsize("<" + code)
             number_of[k] = len(slots)
             slots.extend([k] * count)
-        order = [number_of[k] + j for k in range(len(paths)) for j in range(places[k][2])]
+        order = [number_of[k] + j for k in range(len(paths)) for j in range(fields[k][2])]
         unpack_from = struct.Struct(layout).unpack_from
         memory, first = self._memory, self._base + start
         if order == list(range(len(order))):

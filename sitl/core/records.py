@@ -19,8 +19,8 @@ mypy know the fields::
     v = Copter.of(fleet, 0)  # a vehicle in a fleet's memory
 
 Numbers, booleans, vectors, quaternions and Euler angles read and write as values; arrays and nested records are
-references to the record's memory. A subclass goes on with the fields of its base, whose places it keeps; those of
-several bases follow each other, where a field of two of them is at its place in the later one.
+references to the record's memory. A subclass goes on with the fields of its base, whose offsets it keeps; those of
+several bases follow each other, where a field of two of them is at its offset in the later one.
 
 A property that is a law is read like a field, in laws too, and worked out at each read::
 
@@ -207,7 +207,7 @@ def _own_hints(cls: type) -> dict[str, Any]:
 
 
 def _declared(name: str, hint: Any, default: Any, inherited: Field | None) -> Field:
-    """The field that an annotation, with its default, declares (its place is worked out later)."""
+    """The field that an annotation, with its default, declares (its offset is worked out later)."""
     note = inherited.note if inherited is not None else None
     if isinstance(default, _Noted):
         note, default = default.note, default.stored
@@ -245,13 +245,13 @@ _REFERENCES = tuple(f"_reference_{k}" for k in range(64))
 """Where a record keeps its arrays, records and rows of records, in the order of its fields."""
 
 
-_ROOM, _WIDE = 32, 64
+_NARROW, _WIDE = 32, 64
 """Records that are not small have a multiple of so many bytes; of more than one of these, a multiple of so many."""
 
 
-def _with_room(close: np.dtype[Any]) -> np.dtype[Any]:
+def _padded(close: np.dtype[Any]) -> np.dtype[Any]:
     """The type with unused memory at its end."""
-    step = _ROOM if close.itemsize <= _ROOM else _WIDE
+    step = _NARROW if close.itemsize <= _NARROW else _WIDE
     fields: Any = close.fields
     described: Any = {
         "names": close.names,
@@ -280,10 +280,10 @@ class Record(metaclass=_RecordMeta):
     """Name -> field, in the order of memory."""
     properties: ClassVar[dict[str, Any]] = {}
     """Name -> law, of properties."""
-    _places: ClassVar[tuple[tuple[str, Field], ...]] = ()
+    _references: ClassVar[tuple[tuple[str, Field], ...]] = ()
     _stores: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Views of the memory as numbers of one size: (attribute, letter of the numbers)."""
-    keeps_places: ClassVar[bool] = True
+    keeps_offsets: ClassVar[bool] = True
     """Whether a field that a subclass declares again stays where the base has it; else it goes where it is declared."""
     _small: ClassVar[int] = 32
     """Records of no more bytes have no unused memory at their end. The others mostly have some, so that a new field
@@ -301,7 +301,7 @@ class Record(metaclass=_RecordMeta):
         for base in cls.__bases__:
             fields = getattr(base, "fields", {})
             inherited_fields = {n: f for n, f in inherited_fields.items() if n not in fields} | fields
-        order = [name for name in inherited_fields if cls.keeps_places or name not in own]
+        order = [name for name in inherited_fields if cls.keeps_offsets or name not in own]
         declared = []
         for name in dict.fromkeys((*order, *own)):
             inherited = inherited_fields.get(name)
@@ -314,7 +314,7 @@ class Record(metaclass=_RecordMeta):
             raise TypeError(f"{cls.__name__}: fields {taken} are attributes of records themselves; choose other names")
         close = np.dtype([(f.name, f.numpy) for f in declared], align=True)
         offsets: Any = close.fields or {}
-        cls.dtype = close if close.itemsize <= cls._small else _with_room(close)
+        cls.dtype = close if close.itemsize <= cls._small else _padded(close)
         cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
         own_laws = {name: p.fget for name, p in vars(cls).items() if isinstance(p, property)}
         cls.properties = cls.properties | own_laws
@@ -329,12 +329,12 @@ class Record(metaclass=_RecordMeta):
 
     @classmethod
     def lay_out(cls, references: list[Field]) -> None:
-        """Give each array, record and row of records a place of its own in the object."""
+        """Give each array, record and row of records an attribute of its own in the object."""
         if len(references) > len(_REFERENCES):
             raise TypeError(f"{cls.__name__}: {len(references)} arrays and records; at most {len(_REFERENCES)}")
-        cls._places = tuple(zip(_REFERENCES, references))
-        for place, field in cls._places:
-            setattr(cls, field.name, _reference_access(place))
+        cls._references = tuple(zip(_REFERENCES, references))
+        for attribute, field in cls._references:
+            setattr(cls, field.name, _reference_access(attribute))
 
     def __init__(self, memory: Any = None) -> None:
         """A record on ``memory`` (a memoryview of its size), or of zeros in memory of its own."""
@@ -343,8 +343,8 @@ class Record(metaclass=_RecordMeta):
         self._bytes = memory
         for store, letter in self._stores:
             setattr(self, store, memory.cast(letter))
-        for place, f in self._places:
-            setattr(self, place, _reference(f, memory[f.offset :]))
+        for attribute, f in self._references:
+            setattr(self, attribute, _reference(f, memory[f.offset :]))
 
     @classmethod
     def of(cls, fleet: np.ndarray[Any, Any], index: int) -> Self:
@@ -368,7 +368,7 @@ class Record(metaclass=_RecordMeta):
 
     @classmethod
     def layout(cls, names: Container[str] | None = None) -> str:
-        """The size of the record, and names, types and places of its fields as text: machine code depends on it.
+        """The size of the record, and names, types and offsets of its fields as text: machine code depends on it.
 
         Args:
             names: fields of other names, and what is in them, are left out: the code mentions none of them.
@@ -477,8 +477,8 @@ def _value_access(cls: type[Value], field: Field) -> property:
     return property(read, write)
 
 
-def _reference_access(place: str) -> property:
-    read = attrgetter(place)  # no Python frame for a read
+def _reference_access(attribute: str) -> property:
+    read = attrgetter(attribute)  # no Python frame for a read
 
     def write(self: Any, value: Any) -> None:
         held = read(self)

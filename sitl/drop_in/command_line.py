@@ -18,7 +18,7 @@ BASE_PORT, STICKS_PORT, PHYSICS_PORT = 5760, 5501, 9002
 PORTS_AN_INSTANCE = 10
 SERIAL_PORTS = 10
 DEVICES = {0: "tcp:0:wait", 1: "tcp:2", 2: "tcp:3"}
-"""What the serial ports are unless told otherwise; others are not connected."""
+"""What the serial ports are by default; others are not connected."""
 _SHORT = {
     "w": "wipe", "h": "help", "u": "unhide-groups", "s": "speedup", "r": "rate", "C": "console", "I": "instance",
     "S": "synthetic-clock", "O": "home", "M": "model", "F": "fg",

@@ -55,7 +55,7 @@ class Session:
         program: "arducopter" or "ardurover".
         line: its command line.
         say: prints a line.
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
         on_built: called when all is compiled, before ports and logs are opened.
 
     Raises:
@@ -92,8 +92,8 @@ class Session:
                 say(f"not taken: the mission of {str(path)!r} (MAV_MISSION_RESULT {result})")
         simulation.bridge.autopilot.take_notes()
         self._mission = simulation.mission
-        self._places = (self.storage.fence, self.storage.rally)
-        simulation.bridge.get(MissionService).keep(*self._places, counted=True)
+        self._lists = (self.storage.fence, self.storage.rally)
+        simulation.bridge.get(MissionService).keep(*self._lists, counted=True)
         if (kept := self.storage.signing).key:  # as after any reboot: what was sent before is not taken again
             kept = kept._replace(timestamp=kept.timestamp + WINDOW)
             simulation.bridge.get(SigningService).signing = Signing(kept)
@@ -163,7 +163,7 @@ class Session:
     def reached(self, seq: int) -> None:
         """Progress is for clients."""
 
-    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+    def commanded(self, fields: Any, frame: int, is_location: bool, sender: tuple[int, int], result: int) -> None:
         """Commands are for the vehicle."""
 
     def parameter_set(self, name: str) -> None:
@@ -212,10 +212,10 @@ class Session:
         if mission is not self._mission:
             self._mission = mission
             self.storage.keep_mission(mission.items)
-        places = self.simulation.bridge.get(MissionService).lists
-        if places != self._places:
-            self._places = places
-            self.storage.keep_places(*places)
+        lists = self.simulation.bridge.get(MissionService).lists
+        if lists != self._lists:
+            self._lists = lists
+            self.storage.keep_lists(*lists)
         self._keep_key()
         self.storage.write()
         dropped = self.simulation.bridge.dropped

@@ -15,7 +15,7 @@ SINCE_S = 1_451_606_400
 _EVERY_US = 1_000_000
 _KEPT_EVERY_S = 30
 _LEAST_M, _MOST_M = 0.5, 300.0
-"""What counts of a second's way: less is noise."""
+"""What counts of a second's distance: less is noise."""
 _RESET = ("BOOTCNT", "FLTTIME", "RUNTIME", "FLTCNT", "DISTFLWN")
 
 
@@ -24,7 +24,7 @@ class Statistics:
 
     Args:
         simulation: the vehicle, just powered on.
-        keep: told name and value of each parameter that changes.
+        keep: called with name and value of each parameter that changes.
     """
 
     def __init__(self, simulation: Simulation, keep: Callable[[str, float], None]) -> None:
@@ -77,8 +77,8 @@ class Statistics:
             pending["FLTCNT"] += not before
             here = ap.estimate.pos
             here = Vec3(float(here.x), float(here.y), float(here.z))
-            if self._was is not None and (way := norm(here - self._was)) >= _LEAST_M:
-                pending["DISTFLWN"] += min(way, _MOST_M)
+            if self._was is not None and (distance := norm(here - self._was)) >= _LEAST_M:
+                pending["DISTFLWN"] += min(distance, _MOST_M)
             self._was = here
         else:
             self._was = None

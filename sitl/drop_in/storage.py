@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the autopilot keeps when it is switched off, as a file: parameters, lists of places, signing key."""
+"""What the autopilot keeps when it is switched off, as a file: parameters, lists of locations, signing key."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ MOST_BYTES = 1 << 24
 """Of the file."""
 MOST_ITEMS = 65535
 """Of a list: its numbers have 16 bits."""
-_PLACE = range(-(1 << 31), 1 << 31)
+_INT32 = range(-(1 << 31), 1 << 31)
 _RANGES = {
-    "command": range(1 << 16), "frame": range(1 << 8), "x": _PLACE, "y": _PLACE, "autocontinue": range(1 << 8),
+    "command": range(1 << 16), "frame": range(1 << 8), "x": _INT32, "y": _INT32, "autocontinue": range(1 << 8),
     "current": range(1 << 8),
 }  # fmt: skip
 """Fields of an item that are whole."""
@@ -75,7 +75,7 @@ class Storage:
         for items, commands in ((self.fence, FENCE_COMMANDS), (self.rally, (MavCmd.NAV_RALLY_POINT,))):
             for item in items:
                 if item.command not in commands or not abs(item.z) <= _HIGHEST:
-                    raise ValueError(f"{item} is no such place")
+                    raise ValueError(f"{item} is no such location")
         fence.load(FenceState(), list(fence.shapes(self.fence)))
         key, timestamp = kept.get("signing", ("", 0))
         if type(timestamp) is not int or not 0 <= timestamp <= LAST:
@@ -107,7 +107,7 @@ class Storage:
         self.mission = items
         self._is_changed = True
 
-    def keep_places(self, fences: tuple[MissionItem, ...], rally: tuple[MissionItem, ...]) -> None:
+    def keep_lists(self, fences: tuple[MissionItem, ...], rally: tuple[MissionItem, ...]) -> None:
         """Keep fences and rally points."""
         self.fence, self.rally = fences, rally
         self._is_changed = True

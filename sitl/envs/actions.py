@@ -44,7 +44,7 @@ LOITER_STICKS = Setpoint("loiter", RC_OVERRIDE.columns)
 VELOCITY = Setpoint("velocity", ("forward [m/s]", "left [m/s]", "up [m/s]", "turn [rad/s]"))
 """SET_POSITION_TARGET_LOCAL_NED, velocities along the body's heading; turn counter-clockwise."""
 POSITION = Setpoint("position", ("x [m]", "y [m]", "z [m]", "yaw [rad]"))
-"""SET_POSITION_TARGET_LOCAL_NED, a place in the frame of world files."""
+"""SET_POSITION_TARGET_LOCAL_NED, a position in the frame of world files."""
 ATTITUDE = Setpoint("attitude", ("roll [rad]", "pitch [rad]", "turn [rad/s]", "climb or throttle [-1, 1]"))
 """SET_ATTITUDE_TARGET; roll to the right, pitch up, turn counter-clockwise."""
 ACCELERATION = Setpoint("acceleration", ("forward [m/s^2]", "left [m/s^2]", "up [m/s^2]", "turn [rad/s]"))
@@ -80,11 +80,11 @@ class Action(Protocol):
     def space(self) -> gym.Space[Any]:
         """Action space of one robot."""
 
-    def room(self, count: int) -> npt.NDArray[Any]:
+    def buffer(self, count: int) -> npt.NDArray[Any]:
         """A zero array for the actions of ``count`` robots, shape (count,) or (count, columns)."""
 
     def check(self, action: Any) -> Any:
-        """One robot's action as a row of the array that ``room`` returns.
+        """One robot's action as a row of the array that ``buffer`` returns.
 
         Raises:
             InvalidAction: it is not in the space.
@@ -156,7 +156,7 @@ class Discrete:
         self.space: gym.spaces.Discrete = gym.spaces.Discrete(len(rows))
         self._count = len(rows)
 
-    def room(self, count: int) -> npt.NDArray[Any]:
+    def buffer(self, count: int) -> npt.NDArray[Any]:
         """See ``Action``."""
         return np.zeros(count, np.int64)
 
@@ -206,7 +206,7 @@ class Continuous:
             raise EnvOptionError(f"columns {columns!r}: each must be another of 0 .. {setpoint.width - 1}")
         first = self.columns[0] if self.columns else 0
         together = self.columns == list(range(first, first + len(self.columns)))
-        self._place = slice(first, first + len(self.columns)) if together else self.columns
+        self._slice = slice(first, first + len(self.columns)) if together else self.columns
         if len(low) != len(self.columns) or len(high) != len(self.columns):
             raise EnvOptionError(f"limits {low!r} .. {high!r} are not {len(self.columns)} numbers each")
         if not all(a < b for a, b in zip(low, high)):
@@ -214,7 +214,7 @@ class Continuous:
         self.space = gym.spaces.Box(np.array(low, np.float32), np.array(high, np.float32))
         self._low, self._high = self.space.low.tolist(), self.space.high.tolist()
 
-    def room(self, count: int) -> npt.NDArray[Any]:
+    def buffer(self, count: int) -> npt.NDArray[Any]:
         """See ``Action``."""
         return np.zeros((count, len(self.columns)))
 
@@ -262,7 +262,7 @@ class Continuous:
         return True
 
     def take(self, actions: npt.NDArray[Any], out: Floats) -> bool:
-        """Write actions of many robots, shape (count, columns), as ``check`` gives them, into an array that ``room``
+        """Write actions of many robots, shape (count, columns), as ``check`` gives them, into an array that ``buffer``
         returned. False: an action is not in the space, or they are no such array; nothing is written."""
         if actions.dtype.kind not in "fiu" or actions.shape != out.shape:
             return False
@@ -270,7 +270,7 @@ class Continuous:
 
     def commands(self, actions: npt.NDArray[Any], out: Floats) -> None:
         """See ``Action``."""
-        out[:, self._place] = actions
+        out[:, self._slice] = actions
 
     def nearest(self, command: Floats) -> npt.NDArray[np.float32]:
         """The action whose set-point is nearest to one, of shape (setpoint.width,)."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The room of an episode: where places are drawn, and which an agent's positions are scaled to."""
+"""The space of an episode: where positions are drawn, and which an agent's positions are scaled to."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .robots.robot import Floats, Robot
 REACH = 10.0
 """An arena reaches at least so far from the start [m]."""
 LOWEST, HIGHEST = 1.0, 8.0
-"""Heights above the floor between which places in the air are drawn [m]."""
+"""Heights above the floor between which positions in the air are drawn [m]."""
 
 
 class Arena(NamedTuple):
@@ -27,14 +27,14 @@ class Arena(NamedTuple):
     high: tuple[float, float, float]
 
     def draw(self, rng: np.random.Generator, margin: float = 0.0) -> Floats:
-        """A place in it, ``margin`` [m] from its sides, shape (3,)."""
+        """A position in it, ``margin`` [m] from its sides, shape (3,)."""
         low, high = np.array(self.low), np.array(self.high)
         low[:2], high[:2] = low[:2] + margin, high[:2] - margin
         return rng.uniform(low, np.maximum(high, low))
 
-    def around(self, places: Floats) -> Arena:
-        """The smallest one that holds this one and places, shape (n, 3)."""
-        low, high = np.minimum(self.low, places.min(axis=0)), np.maximum(self.high, places.max(axis=0))
+    def around(self, positions: Floats) -> Arena:
+        """The smallest one that holds this one and positions, shape (n, 3)."""
+        low, high = np.minimum(self.low, positions.min(axis=0)), np.maximum(self.high, positions.max(axis=0))
         return Arena(tuple(low.tolist()), tuple(high.tolist()))
 
     def grown(self, by: float) -> Arena:

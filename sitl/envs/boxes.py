@@ -56,8 +56,8 @@ class Parts:
         """Name and unit of each number."""
         self._width = len(self.columns)
         ends = np.cumsum([0, *(len(part.columns) for part in self._parts)]).tolist()
-        self._places = [slice(a, b) for a, b in pairwise(ends)]
-        self.slices = dict(zip(self.names, self._places))
+        self._spans = [slice(a, b) for a, b in pairwise(ends)]
+        self.slices = dict(zip(self.names, self._spans))
         """Where the numbers of each part are."""
         self._low = np.array([bound for part in self._parts for bound in part.low], np.float32)
         self._high = np.array([bound for part in self._parts for bound in part.high], np.float32)
@@ -80,7 +80,7 @@ class Parts:
         """What one compiled call gathers, and what is left."""
         plan, left = Gathering(self._session), []
         gathers = arrays_stay(self._session.robot)
-        for part, where in zip(self._parts, self._places):
+        for part, where in zip(self._parts, self._spans):
             if gathers and stands_for(part, "gather", "write"):
                 plan.at(where.start)
                 cast(GatheredPart, part).gather(plan)
@@ -123,8 +123,8 @@ class GoalConditioned(Parts):
 
     def space(self, robot: Robot) -> gym.Space[Any]:
         """See ``Observation``."""
-        place = gym.spaces.Box(-FAR, FAR, (3,), np.float32)
-        return gym.spaces.Dict({"observation": super().space(robot), "achieved_goal": place, "desired_goal": place})
+        at = gym.spaces.Box(-FAR, FAR, (3,), np.float32)
+        return gym.spaces.Dict({"observation": super().space(robot), "achieved_goal": at, "desired_goal": at})
 
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""

@@ -46,18 +46,18 @@ def state_of(step: Step) -> Floats:
 
 
 @law
-def write_distances(solids: Table, places: Table, radius: float, bottom: float, top: float, out: Line) -> None:
+def write_distances(solids: Table, positions: Table, radius: float, bottom: float, top: float, out: Line) -> None:
     """Write how far the nearest solid is from each robot [m], below 0 inside; inf: there is none.
 
     Args:
         solids: rows of a ``Geometry``.
-        places: x, y, z [m] of the robots' bases in the world's frame, shape (count, 3 or more).
+        positions: x, y, z [m] of the robots' bases in the world's frame, shape (count, 3 or more).
         radius: of the robots' volume [m].
         bottom, top: heights of its ends above the base [m].
         out: shape (count,).
     """
     for i in range(out.shape[0]):
-        north, east, down = to_ned(places[i, 0], places[i, 1], places[i, 2])
+        north, east, down = to_ned(positions[i, 0], positions[i, 1], positions[i, 2])
         body = Volume(Vec2(north, east), down - top, down - bottom, radius)
         out[i] = nearest_of(solids, solids.shape[0], body).distance
 
@@ -102,14 +102,14 @@ class Fence(_Limit):
         arena = self.box or (arena_at(index) if arena_at else arena_of(robot, world=world_of(robot, index)))
         self._low[index], self._high[index] = arena
         if self.box is None:
-            self._low[index, 2] = -math.inf  # an arena's floor is where places are drawn from, and pads lie below it
+            self._low[index, 2] = -math.inf  # an arena's floor is where positions are drawn from, and pads lie below it
         if not flies(robot):
             self._low[index, 2], self._high[index, 2] = -math.inf, math.inf
 
     def __call__(self, step: Step) -> Floats:
         """See ``rewards.Term``."""
-        place = state_of(step)[:, :3]
-        out: Floats = np.asarray(((place < self._low) | (place > self._high)).any(axis=1), np.float64)
+        position = state_of(step)[:, :3]
+        out: Floats = np.asarray(((position < self._low) | (position > self._high)).any(axis=1), np.float64)
         return out
 
 
@@ -134,14 +134,14 @@ class Proximity(_Limit):
 
     def distances(self, step: Step) -> Floats:
         """Distance of each robot's volume to the nearest solid [m], shape (count,)."""
-        places = np.ascontiguousarray(state_of(step)[:, :3])
-        out = np.empty(len(places))
+        positions = np.ascontiguousarray(state_of(step)[:, :3])
+        out = np.empty(len(positions))
         rows: dict[int, list[int]] = {}
         for index, world in enumerate(self._worlds):
             rows.setdefault(id(world), []).append(index)
         for which in rows.values():
             found = np.empty(len(which))
-            _distances(self._worlds[which[0]].geometry.solids, places[which], *self._volume, found)
+            _distances(self._worlds[which[0]].geometry.solids, positions[which], *self._volume, found)
             out[which] = found
         return out
 

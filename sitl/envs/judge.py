@@ -52,7 +52,7 @@ class Judge:
         self.by = TRUTH if asked == TRUTH and self.knows_truth else ESTIMATE
         """Of ``JUDGES``: what it goes by."""
         self._state: Floats | None = None
-        self._is_told = False
+        self._is_reported = False
         """Whether somebody says when robots move."""
         self._stays = arrays_stay(robot)
         self._is_true = self.by == TRUTH
@@ -60,11 +60,11 @@ class Judge:
 
     def moved(self) -> None:
         """Robots have moved: what was known of them is old."""
-        self._state, self._is_told = None, True
+        self._state, self._is_reported = None, True
 
     def state(self) -> Floats:
         """True states, as ``SensingRobot.true_state``; calculated once a step. To be read only."""
-        if self._state is None or not self._is_told:
+        if self._state is None or not self._is_reported:
             self._state = self._robot.true_state()
         return self._state
 

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 
 from .options import EnvOptionError
 from .robots.robot import Floats, Robot
 
 Ints = npt.NDArray[np.int64]
 
-LATENCY = Figure("latency", "s", "from a decision until its command reaches the robot", 0.0, 60.0, 0.0)
+LATENCY = Property("latency", "s", "from a decision until its command reaches the robot", 0.0, 60.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -82,9 +82,9 @@ class Latency:
         if not math.isfinite(seconds):
             self._check(seconds)
         self.ticks[index] = self._check(round(seconds / self._tick) * self._tick)
-        self._make_room(int(self.ticks[index]) // self._step + 1)
+        self._reserve(int(self.ticks[index]) // self._step + 1)
 
-    def _make_room(self, rows: int) -> None:
+    def _reserve(self, rows: int) -> None:
         before = len(self._kept)
         if rows <= before:
             return
@@ -117,7 +117,7 @@ class Latency:
 
     def recall(self, index: int, memory: Memory) -> None:
         """Restore the pending commands of one robot."""
-        self._make_room(memory.ticks // self._step + 1)
+        self._reserve(memory.ticks // self._step + 1)
         self.ticks[index], self._done[index] = memory.ticks, memory.done
         for age, row in enumerate(reversed(memory.kept), 1):
             self._kept[(memory.done - age) % len(self._kept), index] = row

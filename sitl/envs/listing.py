@@ -129,7 +129,7 @@ def lines(row: dict[str, Any]) -> Iterator[str]:
         policy = preset + "-discrete" if "Discrete" in row["id"] else preset
         command = f"sitl rollout {policy} {row['id']} --episodes 20"
         yield f"\n  {command:72s}  a trained policy that comes with the package"
-        yield f"  {f'sitl help {camel_case(preset)}':72s}  its page: reward, ends of an episode, figures"
+        yield f"  {f'sitl help {camel_case(preset)}':72s}  its page: reward, ends of an episode, results"
     else:
         yield ""
     yield f'  gymnasium.make("sitl.envs:{row["id"]}")'

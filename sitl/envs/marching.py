@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fast marching method: lengths of the shortest ways over a grid to one place."""
+"""The fast marching method: lengths of the shortest paths over a grid to one position."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from sitl.core.array_kernels import IntLine, IntTable, Line
 from sitl.core.kernels import law
 
 LISTS = 64
-"""Number of lists in which cells wait, by the cost of their way in whole numbers; a power of two."""
+"""Number of lists in which cells wait, by the cost of their path in whole numbers; a power of two."""
 COST_MOST = 30.0
-"""Of a cell: what it adds to a way must not reach round all lists."""
+"""Of a cell: what it adds to a path must not reach round all lists."""
 NOBODY = -1
 
 
 @law
 def reach(a: float, b: float, cost: float) -> float:
     """Distance of a cell whose neighbours along the two axes have the distances ``a`` and ``b``: where the distance
-    grows by ``cost`` a cell. inf: no way leads over that neighbour."""
+    grows by ``cost`` a cell. inf: no path leads over that neighbour."""
     low, high = min(a, b), max(a, b)
     if high - low >= cost:
         return low + cost
@@ -40,7 +40,7 @@ def leave(firsts: IntLine, links: IntTable, cell: int) -> None:
 
 @law
 def wait(firsts: IntLine, links: IntTable, cell: int, length: float) -> int:
-    """Let a cell wait in the list for its way's cost; returns how many more cells wait now."""
+    """Let a cell wait in the list for its path's cost; returns how many more cells wait now."""
     number, waits = int(length), links[cell, 2]
     if waits == number:
         return 0
@@ -56,23 +56,24 @@ def wait(firsts: IntLine, links: IntTable, cell: int, length: float) -> int:
 
 @law
 def march(costs: Line, columns: int, row: float, column: float, firsts: IntLine, links: IntTable, out: Line) -> None:
-    """Write what the way of least cost over free cells costs from each cell to a place: its length where each costs 1.
+    """Write what the path of least cost over free cells costs from each cell to a position: its length where each costs
+    1.
 
-    Cells wait in lists, by the cost of their way, not in a heap. One that has passed on its way, and then gets a
+    Cells wait in lists, by the cost of their path, not in a heap. One that has passed on its way, and then gets a
     cheaper one from a cell of the same list, waits again. So the numbers are those of a heap, in half the time.
 
     Sources: Sethian, "A fast marching level set method for monotonically advancing fronts", PNAS 93, 1996; Yatziv,
     Bartesaghi and Sapiro, "O(N) implementation of the fast marching algorithm", J. Comput. Phys. 212, 2006 (lists).
 
     Args:
-        costs: of a cell's side of way in each cell, row after row, up to ``COST_MOST``; 0: no way leads there, as at
+        costs: of a cell's side of path in each cell, row after row, up to ``COST_MOST``; 0: no path leads there, as at
             the whole edge; shape (rows * columns,).
         columns: of the grid.
-        row, column: the place; the middle of the first cell is 0, 0.
-        firsts: room for the lists, shape (LISTS,).
-        links: room for who waits where, shape (rows * columns or more, 3): the cells before and after in a list, and
+        row, column: the position; the middle of the first cell is 0, 0.
+        firsts: memory for the lists, shape (LISTS,).
+        links: memory for who waits where, shape (rows * columns or more, 3): the cells before and after in a list, and
             the whole number that the list is for.
-        out: cost of the way, in cells where each costs 1, shape (rows * columns,); inf where no way leads.
+        out: cost of the path, in cells where each costs 1, shape (rows * columns,); inf where no path leads.
     """
     rows, waiting, number = costs.shape[0] // columns, 0, 0
     for cell in range(costs.shape[0]):
@@ -99,7 +100,7 @@ def march(costs: Line, columns: int, row: float, column: float, firsts: IntLine,
             there = cell + (1 if side == 0 else -1 if side == 1 else columns if side == 2 else -columns)
             cost, before = costs[there], out[there]
             if cost == 0.0 or before <= key:
-                continue  # no way there, or as short as one over this cell can be
+                continue  # no path there, or as short as one over this cell can be
             length = reach(min(out[there - columns], out[there + columns]), min(out[there - 1], out[there + 1]), cost)
             if length < before:
                 out[there] = length

@@ -65,8 +65,8 @@ class Navigate(gym.Env[Any, Any]):
         session = self._session
         self._check, self._actions, self._advance = session.check, session.actions, session.advance
         self._observe, self._info = session.observation.observe, session.info
-        told = session.faults is not None or session.details or session.costs
-        self._plain_info = type(session.task).info is Task.info and not told
+        has_more = session.faults is not None or session.details or session.costs
+        self._plain_info = type(session.task).info is Task.info and not has_more
         self._infos_stay = session.infos_stay()
         self._takes: list[tuple[str, Callable[[], Any]]] | None = None
         """Entries of ``info`` and what gives them, where the arrays that they are taken from stay; None: not yet."""

@@ -163,10 +163,10 @@ class WithGoal:
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         pose, other = robot.pose, self.other.observe(robot)
-        way = self._task.goals - pose[:, :2]
-        bearing = arrays.atan2(way[:, 1], way[:, 0]) - pose[:, 3]
+        offset = self._task.goals - pose[:, :2]
+        bearing = arrays.atan2(offset[:, 1], offset[:, 0]) - pose[:, 3]
         bearing = arrays.atan2(arrays.sin(bearing), arrays.cos(bearing))
-        goal = np.stack([arrays.hypot(way[:, 0], way[:, 1]), bearing], axis=1).astype(np.float32)
+        goal = np.stack([arrays.hypot(offset[:, 0], offset[:, 1]), bearing], axis=1).astype(np.float32)
         return {**(other if isinstance(other, dict) else {"scan": other}), "goal": goal}
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's environments as data (Zamora et al., "Extending the OpenAI Gym for robotics", arXiv:1608.05742).
 
-Figures are those of the authors' code at the time of the paper (erlerobot/gym-gazebo).
+Values are those of the authors' code at the time of the paper (erlerobot/gym-gazebo).
 """
 
 from __future__ import annotations

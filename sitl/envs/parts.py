@@ -152,8 +152,9 @@ class Heading:
         plan.compute(2, lambda table, first: _headings.bind(robot.state, table, first))
 
 
-class Told:
-    """What a vehicle tells by a message of its own: "acceleration", "battery", "wind", "range_finder" (``REPORTS``)."""
+class Reported:
+    """What a vehicle reports by a message of its own: "acceleration", "battery", "wind",
+    "range_finder" (``REPORTS``)."""
 
     reads_scan = False
 
@@ -183,7 +184,7 @@ class Told:
 
 
 class TrueReport:
-    """What a vehicle would tell by a message, as it really is: "true_acceleration", "true_battery", "true_wind"."""
+    """What a vehicle would report by a message, as it really is: "true_acceleration", "true_battery", "true_wind"."""
 
     reads_scan = False
 
@@ -297,7 +298,7 @@ class LastAction:
         plan.take(CHOSEN if self._rows else ACTIONS, 0, len(self.columns))
 
 
-WAY = ("ahead [m]", "to the left [m]", "above [m]")
+OFFSET = ("ahead [m]", "to the left [m]", "above [m]")
 
 
 class Path:
@@ -311,28 +312,28 @@ class Path:
     def __init__(self, count: int = 3) -> None:
         self.count = count
         targets = ("target",) if count == 1 else tuple(f"target {k + 1}" for k in range(count))
-        self.columns = tuple(f"{target} {name}" for target in targets for name in WAY)
+        self.columns = tuple(f"{target} {name}" for target in targets for name in OFFSET)
         self.high = (3.0 * FAR,) * (3 * count)
         self.low = (-3.0 * FAR,) * (3 * count)
 
     def prepare(self, session: Surroundings) -> None:
         """See ``Part``."""
-        if not hasattr(session.task, "ways"):
+        if not hasattr(session.task, "offsets"):
             raise EnvOptionError(f'observation "goal", "path": task {session.task!r} has no target')
         self._task = session.task
 
     def write(self, out: Narrow) -> None:
         """See ``Part``."""
-        out[:] = self._task.ways(self.count).reshape(out.shape)
+        out[:] = self._task.offsets(self.count).reshape(out.shape)
 
     def gather(self, plan: Gathering) -> None:
         """See ``Part``."""
         task, width = self._task, len(self.columns)
-        writes = getattr(task, "ways_writer", lambda count, table, first: None)
+        writes = getattr(task, "offsets_writer", lambda count, table, first: None)
 
         def maker(table: Floats, first: int) -> Callable[[], object]:
             def copy() -> None:
-                table[:, first : first + width] = task.ways(self.count).reshape(-1, width)
+                table[:, first : first + width] = task.offsets(self.count).reshape(-1, width)
 
             found: Callable[[], object] | None = writes(self.count, table, first)
             return found or copy
@@ -408,7 +409,7 @@ class GoalHeading:
 PARTS: dict[str, Callable[[], Part]] = {
     **{name: lambda name=name: State(name) for name in (*SENSES, *(TRUE + sense for sense in SENSES))},  # type: ignore[misc]
     "heading": Heading,
-    **{name: lambda name=name: Told(name) for name in REPORTS},  # type: ignore[misc]
+    **{name: lambda name=name: Reported(name) for name in REPORTS},  # type: ignore[misc]
     **{name: lambda name=name: TrueReport(name) for name in TRUE_REPORTS},  # type: ignore[misc]
     "height": Height,
     "true_height": lambda: Height(is_true=True),

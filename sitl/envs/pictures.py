@@ -31,19 +31,19 @@ from .robots.robot import Floats, Robot, world_of
 from .worlds import PerWorld
 
 MOST_PIXELS = 1_000_000
-PLACE = 7
-"""Numbers of a place: NED [m], attitude (w, x, y, z)."""
+POSE = 7
+"""Numbers of a pose: NED [m], attitude (w, x, y, z)."""
 
 
 @law
-def write_places(states: Table, ahead: float, mount: Line, out: Table) -> None:
+def write_poses(states: Table, ahead: float, mount: Line, out: Table) -> None:
     """Write where cameras are.
 
     Args:
         states: of the robots (``senses.SensingRobot``), shape (m, 12).
         ahead: how far the robot's base lies ahead of the body's origin [m].
-        mount: place on the body, forward, right, down [m], and how far the camera looks down [rad].
-        out: place NED [m], attitude (w, x, y, z), shape (m, 7).
+        mount: position on the body, forward, right, down [m], and how far the camera looks down [rad].
+        out: position NED [m], attitude (w, x, y, z), shape (m, 7).
     """
     tilt = quat_from_euler(Euler(0.0, -mount[3], 0.0))
     for i in range(out.shape[0]):
@@ -59,7 +59,7 @@ def write_places(states: Table, ahead: float, mount: Line, out: Table) -> None:
         out[i, 3], out[i, 4], out[i, 5], out[i, 6] = turned.w, turned.x, turned.y, turned.z
 
 
-_places = Kernel(write_places)
+_poses = Kernel(write_poses)
 
 
 class Picture:
@@ -69,7 +69,7 @@ class Picture:
         width, height: in pixels, which are square.
         field_of_view: from the left to the right edge [deg].
         reach: how far it sees [m]; depths beyond read as it.
-        at: place on the robot: forward, left, up of its body's origin [m]; None: that of its lidar.
+        at: position on the robot: forward, left, up of its body's origin [m]; None: that of its lidar.
         pitch: how far it looks down [deg].
         rate: pictures a second [Hz], whole steps apart; None: one each step.
         latency: age of a picture when it is seen [s], whole steps.
@@ -125,10 +125,10 @@ class Picture:
         self._mount = np.array([forward, -left, -up, self._pitch])
         self._robot, self._others = robot, getattr(robot, "others", None)
         discs = 0 if self._others is None else self._others().shape[1]
-        self._past = Past(self.name, robot.count, PLACE + DISC * discs, seconds, self._rate, self._latency)
+        self._past = Past(self.name, robot.count, POSE + DISC * discs, seconds, self._rate, self._latency)
         """Where the camera was, and what moved about, at the ends of the last steps."""
         self._photographers = PerWorld(Photographer(robot.world, self._optics).in_world)
-        self._places = np.zeros((robot.count, PLACE))
+        self._poses = np.zeros((robot.count, POSE))
 
     # ------------------------------------------------------------------ episodes
 
@@ -146,10 +146,10 @@ class Picture:
 
     def _look(self) -> Floats:
         """What the pictures of now need, a row a robot."""
-        _places(self._robot.true_state(), self._ahead, self._mount, self._places)
+        _poses(self._robot.true_state(), self._ahead, self._mount, self._poses)
         if self._others is None:
-            return self._places
-        return np.concatenate((self._places, self._others().reshape(len(self._places), -1)), axis=1)
+            return self._poses
+        return np.concatenate((self._poses, self._others().reshape(len(self._poses), -1)), axis=1)
 
     def memory(self, index: int) -> Film:
         """See ``Remembering``."""
@@ -168,22 +168,22 @@ class Picture:
     def observe(self, robot: Robot) -> Any:
         """See ``Observation``."""
         seen = self._past.seen()
-        places, discs = np.ascontiguousarray(seen[:, :PLACE]), seen[:, PLACE:].reshape(len(seen), -1, DISC)
-        out = self._take_in_worlds(places, discs)
+        poses, discs = np.ascontiguousarray(seen[:, :POSE]), seen[:, POSE:].reshape(len(seen), -1, DISC)
+        out = self._take_in_worlds(poses, discs)
         if self._noise > 0.0:
             for i, rng in enumerate(self._past.generators()):
                 out[i] = self._spoilt(out[i] + self._noise * standard_normal(rng, out[i].shape, np.float32))
         return out
 
-    def _take_in_worlds(self, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+    def _take_in_worlds(self, poses: Floats, discs: Floats) -> npt.NDArray[Any]:
         """Pictures of all robots, each in its world."""
-        worlds = [world_of(self._robot, index) for index in range(len(places))]
+        worlds = [world_of(self._robot, index) for index in range(len(poses))]
         if all(world is worlds[0] for world in worlds):
-            return self._take(self._photographers(worlds[0]), places, discs)
+            return self._take(self._photographers(worlds[0]), poses, discs)
         each = ((self._photographers(world), slice(k, k + 1)) for k, world in enumerate(worlds))
-        return np.concatenate([self._take(one, places[row], discs[row]) for one, row in each])
+        return np.concatenate([self._take(one, poses[row], discs[row]) for one, row in each])
 
-    def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
+    def _take(self, photographer: Photographer, poses: Floats, discs: Floats) -> npt.NDArray[Any]:
         raise NotImplementedError
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
@@ -200,8 +200,8 @@ class Depth(Picture):
         """See ``Observation``."""
         return gym.spaces.Box(0.0, self._optics.reach, (self._optics.height, self._optics.width), np.float32)
 
-    def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
-        return photographer.depths(places, discs)
+    def _take(self, photographer: Photographer, poses: Floats, discs: Floats) -> npt.NDArray[Any]:
+        return photographer.depths(poses, discs)
 
     def _spoilt(self, noisy: npt.NDArray[np.float32]) -> npt.NDArray[Any]:
         return np.clip(noisy, 0.0, self._optics.reach)
@@ -222,8 +222,8 @@ class Camera(Picture):
         channels = 1 if self._grey else 3
         return gym.spaces.Box(0, 255, (self._optics.height, self._optics.width, channels), np.uint8)
 
-    def _take(self, photographer: Photographer, places: Floats, discs: Floats) -> npt.NDArray[Any]:
-        colours = photographer.colours(places, discs)
+    def _take(self, photographer: Photographer, poses: Floats, discs: Floats) -> npt.NDArray[Any]:
+        colours = photographer.colours(poses, discs)
         if not self._grey:
             return colours
         shares = np.array([77, 150, 29], np.uint32)  # of 256: luma of ITU-R BT.601

@@ -27,11 +27,11 @@ from .tasks_v1 import TRACK
 from .worlds import TRAINING
 
 SEEN = ("goal", "velocity", "attitude", "rates", "last_action")
-ON_A_WAY = ("path", "velocity", "attitude", "rates", "last_action")
+ON_A_PATH = ("path", "velocity", "attitude", "rates", "last_action")
 AMONG = (*SEEN, "scan")
 INDOORS = (*AMONG, "pose", "heading")
 DRIVEN = ("goal", "velocity", "last_action")
-DRIVEN_ON_A_WAY = ("path", "velocity", "last_action")
+DRIVEN_ON_A_PATH = ("path", "velocity", "last_action")
 
 
 def _copter_moves(fast: float) -> dict[str, tuple[float, ...]]:
@@ -89,7 +89,8 @@ def _rover(task: Task, parts: tuple[str, ...] = DRIVEN, **options: Any) -> dict[
 
 
 def _among(crash: float = -20.0, **others: Any) -> Task:
-    """One place among solids. To leave the arena costs as much as a crash, or robots that are stuck learn to leave."""
+    """One position among solids. To leave the arena costs as much as a crash, or robots that are stuck learn to
+    leave."""
     return Among(crash_reward=crash, out_reward=crash, **others)
 
 
@@ -110,27 +111,27 @@ _CONTINUOUS: dict[str, Callable[[], dict[str, Any]]] = {
         Hold((8.0, 0.0), 1.0, is_sparse=True), observation=GoalConditioned(("heading", *DRIVEN[1:]))
     ),
     "copter-waypoint": lambda: _copter(Waypoints(1)),
-    "copter-course": lambda: _copter(Waypoints(5), ON_A_WAY),
-    "copter-gates": lambda: _copter(Gates(TRACK), ON_A_WAY),
-    "copter-race": lambda: _copter(Gates(TRACK, laps=3), ON_A_WAY),
-    "copter-trajectory": lambda: _copter(Trajectory("eight", speed=(1.0, 3.0)), ON_A_WAY),
-    "copter-follow": lambda: _copter(Follow(), ON_A_WAY),
+    "copter-course": lambda: _copter(Waypoints(5), ON_A_PATH),
+    "copter-gates": lambda: _copter(Gates(TRACK), ON_A_PATH),
+    "copter-race": lambda: _copter(Gates(TRACK, laps=3), ON_A_PATH),
+    "copter-trajectory": lambda: _copter(Trajectory("eight", speed=(1.0, 3.0)), ON_A_PATH),
+    "copter-follow": lambda: _copter(Follow(), ON_A_PATH),
     "copter-land": lambda: _copter(Land()),
-    "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_WAY),
+    "copter-land-moving": lambda: _copter(Land(speed=0.5), ON_A_PATH),
     "copter-forest": lambda: _copter(_among(ceiling=3.0), AMONG, world="forest:seed=1", take_off=1.5, action=_slow()),
     # Rooms: a crash costs less than to hover until the time limit, or policies learn to hover.
     "copter-rooms": lambda: _copter(
         _among(-10.0, ceiling=3.0), INDOORS, world="rooms:seed=1", take_off=1.5, action=_slow()
     ),
     "rover-waypoint": lambda: _rover(Waypoints(1)),
-    "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_WAY),
+    "rover-course": lambda: _rover(Waypoints(4), DRIVEN_ON_A_PATH),
     "rover-labyrinth": lambda: _rover(
         _among(), (*DRIVEN, "scan", "pose", "heading"), world="labyrinth:seed=1,size=60,scale=3"
     ),
     "rover-slalom": lambda: _rover(
-        Gates(crash_reward=-20.0), DRIVEN_ON_A_WAY, world="slalom:seed=1", start=Near((0.0, 0.0, 0.0), (1.0, 1.5, 0.4))
+        Gates(crash_reward=-20.0), DRIVEN_ON_A_PATH, world="slalom:seed=1", start=Near((0.0, 0.0, 0.0), (1.0, 1.5, 0.4))
     ),
-    "rover-race": lambda: _rover(Gates(laps=2, crash_reward=-20.0), (*DRIVEN_ON_A_WAY, "scan"), world="track:seed=1"),
+    "rover-race": lambda: _rover(Gates(laps=2, crash_reward=-20.0), (*DRIVEN_ON_A_PATH, "scan"), world="track:seed=1"),
     "rover-parking": lambda: _rover(
         Park(crash_reward=-20.0),
         ("goal", "goal_heading", "velocity", "last_action", "scan"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Domain randomisation: figures of the robot, and its latency, drawn anew for every episode."""
+"""Domain randomisation: properties of the robot, and its latency, drawn anew for every episode."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from sitl.vehicle.faults import Failure, is_fault
 from sitl.vehicles import Airframe
 from sitl.vehicles.airframe import Value
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 
 from .faults import FailingRobot, amount_of, drawn
 from .latency import LATENCY, Latency
@@ -21,13 +21,14 @@ from .robots.robot import Robot
 
 Range = tuple[Value, Value]
 Randomise = str | Mapping[str, Range | Callable[[np.random.Generator], Any] | int]
-"""Figure, or fault -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of sets;
-IDENTIFIED -> whether the intervals of the airframe are among them. IDENTIFIED itself: only these. Vectors are drawn
-element by element. A fault ("gps/wrong", "motor:2", "SIM_WIND_SPD") begins with the episode; its amount is drawn."""
+"""Property, or fault -> (low, high) of a uniform distribution, or a function that draws a value; DRAWS -> number of
+sets; IDENTIFIED -> whether the intervals of the airframe are among them. IDENTIFIED itself: only these. Vectors are
+drawn element by element. A fault ("gps/wrong", "motor:2", "SIM_WIND_SPD") begins with the episode; its amount is
+drawn."""
 IDENTIFIED = "identified"
-"""Key, or value of the option: each figure within the 95 % interval that was measured (``Airframe.intervals``)."""
+"""Key, or value of the option: each property within the 95 % interval that was measured (``Airframe.intervals``)."""
 DRAWS = "draws"
-"""Key whose value N means: N sets of figures are drawn once (always the same ones), and each episode takes one."""
+"""Key whose value N means: N sets of properties are drawn once (always the same ones), and each episode takes one."""
 _MAX_DRAWS = 100_000
 
 
@@ -42,27 +43,27 @@ def ranges_of(randomise: Any) -> Mapping[str, Any]:
     if isinstance(randomise, str) and randomise == IDENTIFIED:
         return {IDENTIFIED: True}
     raise EnvOptionError(
-        f"randomise = {randomise!r}; it must map figures to (low, high), or be {IDENTIFIED!r} or None (null)"
+        f"randomise = {randomise!r}; it must map properties to (low, high), or be {IDENTIFIED!r} or None (null)"
     )
 
 
 class Randomisation:
-    """Draws figures of a robot, and amounts of faults, for each episode.
+    """Draws properties of a robot, and amounts of faults, for each episode.
 
     Args:
-        ranges: see ``ranges_of``; "latency" is one of the figures.
-        robot: robot whose figures are drawn.
+        ranges: see ``ranges_of``; "latency" is one of the properties.
+        robot: robot whose properties are drawn.
         latency: latency of its commands; None: it has none.
 
     Raises:
-        EnvOptionError: unknown figure or fault, no valid range, or a range beyond the limits.
+        EnvOptionError: unknown property or fault, no valid range, or a range beyond the limits.
     """
 
     def __init__(self, ranges: Mapping[str, Any], robot: Robot, latency: Latency | None = None) -> None:
         self.ranges: dict[str, Any] = _with_intervals(ranges, robot)
         self._latency = latency
         draws = self.ranges.pop(DRAWS, None)
-        known = {**robot.figures, LATENCY.name: LATENCY}
+        known = {**robot.properties, LATENCY.name: LATENCY}
         self._faults: dict[str, Failure] = {}
         self._failing: dict[int, list[Failure]] = {}
         """Robot -> what fails in its next episode."""
@@ -70,7 +71,7 @@ class Randomisation:
             if is_fault(name):
                 self._faults[name] = amount_of(name, values if callable(values) else _range(name, values, 1), robot)
             elif name not in known:
-                raise unknown("randomise: figure", name, [*known, DRAWS])
+                raise unknown("randomise: property", name, [*known, DRAWS])
             elif not callable(values):
                 self._check(known[name], values, robot)
         self._sets: list[dict[str, Any]] | None = None
@@ -81,16 +82,16 @@ class Randomisation:
             self._sets = [self._drawn(rng) for _ in range(draws)]
 
     @staticmethod
-    def _check(figure: Figure, values: Any, robot: Robot) -> None:
-        name = figure.name
-        low, high = _range(name, values, figure.length)
+    def _check(prop: Property, values: Any, robot: Robot) -> None:
+        name = prop.name
+        low, high = _range(name, values, prop.length)
         ends = np.atleast_1d(low), np.atleast_1d(high)
-        if not all(figure.low <= least <= most <= figure.high for least, most in zip(*ends)):
-            limits = f"{figure.low:g} .. {figure.high:g} {figure.unit}".strip()
+        if not all(prop.low <= least <= most <= prop.high for least, most in zip(*ends)):
+            limits = f"{prop.low:g} .. {prop.high:g} {prop.unit}".strip()
             raise EnvOptionError(f"randomise: {name} = {values!r}; it must be low <= high within {limits}")
         if name in ("range_max", "lidar_max"):
             robot.range_max = max(robot.range_max, high)
-        if name == "radius":  # random places have room for the greatest
+        if name == "radius":  # random positions have clearance for the greatest
             robot.volume = replace(robot.volume, radius=max(robot.volume.radius, high))
 
     def _drawn(self, rng: np.random.Generator) -> dict[str, Any]:
@@ -100,17 +101,17 @@ class Randomisation:
         }
 
     def draw(self, index: int, robot: Robot, seed: tuple[int, int]) -> None:
-        """Give one robot its figures for the next episode; ``seed`` is of the random numbers that draw them."""
+        """Give one robot its properties for the next episode; ``seed`` is of the random numbers that draw them."""
         if not self.ranges and self._sets is None:
             return  # most environments: to make a generator would take longer than the rest of their reset
         rng = np.random.default_rng(seed)
-        figures = self._drawn(rng) if self._sets is None else self._sets[int(rng.integers(len(self._sets)))]
+        properties = self._drawn(rng) if self._sets is None else self._sets[int(rng.integers(len(self._sets)))]
         self._failing[index] = []
-        for name, value in figures.items():
+        for name, value in properties.items():
             if name in self._faults:
                 self._failing[index].append(drawn(self._faults[name], value, robot))
             elif name != LATENCY.name:
-                robot.set_figure(index, name, value)
+                robot.set_property(index, name, value)
             elif self._latency is not None:
                 self._latency.set(index, value)
 
@@ -153,6 +154,6 @@ def _range(name: str, values: Any, length: int) -> tuple[Any, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """A float, or a tuple of floats: what ``Robot.set_figure`` takes."""
+    """A float, or a tuple of floats: what ``Robot.set_property`` takes."""
     found = np.asarray(value, float)
     return tuple(found.tolist()) if found.ndim else float(found)

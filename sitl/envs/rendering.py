@@ -17,7 +17,7 @@ from sitl.worlds import Marking, Solid
 
 from .robots.robot import Robot, world_of
 from .targets.gates import Gates
-from .targets.places import PlacesTask
+from .targets.target_task import TargetTask
 from .tasks import ReachGoal, Task
 
 RENDER_MODES = ["rgb_array", "human", "window"]
@@ -28,7 +28,7 @@ PHOTOGRAPH = (640, 480)
 _BORDER = 0.5
 """Margin around the world [m]."""
 _ROUND_GATES = 2.5
-"""Room round the middle of a gate, for the turns of who passes it [m]."""
+"""Space round the middle of a gate, for the turns of who passes it [m]."""
 _PAPER, _WALL, _LOW_WALL = (250, 250, 247), (62, 68, 76), (190, 194, 198)
 _RAY, _TRAIL, _BODY, _CRASHED, _NOSE = (222, 168, 90), (70, 130, 180), (40, 90, 160), (200, 50, 40), (255, 255, 255)
 _GOAL = (60, 150, 80)
@@ -103,7 +103,7 @@ class Renderer:
         """Note where the world begins; its lengths along x and y, with a border [m]."""
         task = self._task
         x0, y0, x1, y1 = self._world.bounds
-        if isinstance(task, PlacesTask):
+        if isinstance(task, TargetTask):
             low, high = task.arena_at(self._index)
             x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
         for gate in task.gates_at(self._index) if isinstance(task, Gates) else ():
@@ -169,13 +169,13 @@ class Renderer:
         canvas, robot = self._canvas, self._robot
         canvas.blit(self._with_trail, (0, 0))
         if isinstance(self._task, ReachGoal):
-            self._draw_place(pygame, *self._task.goals[self._index].tolist())
+            self._draw_target(pygame, *self._task.goals[self._index].tolist())
         elif isinstance(self._task, Gates):
             self._draw_gates(pygame, self._task)
-        elif isinstance(self._task, PlacesTask):
+        elif isinstance(self._task, TargetTask):
             present = min(int(self._task.at[self._index]), self._task.per_robot - 1)
-            for x, y, _ in self._task.places[self._index, present:].tolist():
-                self._draw_place(pygame, x, y)
+            for x, y, _ in self._task.positions[self._index, present:].tolist():
+                self._draw_target(pygame, x, y)
         x, y, _, yaw = robot.pose[self._index].tolist()
         middle = self._point(x, y)
         for angle, reading in zip(robot.angles.tolist(), robot.scan[self._index].tolist()):
@@ -189,7 +189,7 @@ class Renderer:
         pygame.draw.line(canvas, _NOSE, middle, nose, max(int(0.25 * radius), 1))
         return canvas
 
-    def _draw_place(self, pygame: Any, x: float, y: float) -> None:
+    def _draw_target(self, pygame: Any, x: float, y: float) -> None:
         radius = getattr(self._task, "radius", 0.0)
         pygame.draw.circle(self._canvas, _GOAL, self._point(x, y), max(radius * self._scale, 3.0), 2)
 

@@ -31,10 +31,10 @@ class SafetyVectorEnv(VectorWrapper):
         """See above."""
         observations, rewards, terminated, truncated, infos = self.env.step(actions)
         costs = np.zeros(self.num_envs)
-        told = [found for found in (infos, infos.get("final_info")) if isinstance(found, dict) and TOTAL in found]
-        if not told and (self.num_envs > 0 and infos):
+        with_costs = [found for found in (infos, infos.get("final_info")) if isinstance(found, dict) and TOTAL in found]
+        if not with_costs and (self.num_envs > 0 and infos):
             raise missing(self.env)
-        for found in told:
+        for found in with_costs:
             costs += np.where(found["_" + TOTAL], found[TOTAL], 0.0)
             found[COST_SUM], found["_" + COST_SUM] = found.pop(TOTAL), found.pop("_" + TOTAL)
         return observations, rewards, costs, terminated, truncated, infos

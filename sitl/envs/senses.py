@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a robot says of itself, by name: columns of its state, as telemetry tells it or as it really is."""
+"""What a robot says of itself, by name: columns of its state, as telemetry reports it or as it really is."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FAR = 10_000.0
 
 
 class Report(NamedTuple):
-    """Columns of what a vehicle tells besides its state."""
+    """Columns of what a vehicle reports besides its state."""
 
     columns: tuple[str, ...]
     """Name and unit of each number."""
@@ -89,7 +89,7 @@ class SensingRobot(Protocol):
 
     @property
     def state(self) -> Floats:
-        """As telemetry tells it, shape (count, 12)."""
+        """As telemetry reports it, shape (count, 12)."""
 
     def true_state(self) -> Floats:
         """As it really is, shape (count, 12).
@@ -99,7 +99,7 @@ class SensingRobot(Protocol):
         """
 
     def judged_state(self) -> Floats:
-        """What tasks judge by, shape (count, 12): as it really is; where nobody knows, as telemetry tells it."""
+        """What tasks judge by, shape (count, 12): as it really is; where nobody knows, as telemetry reports it."""
 
 
 @runtime_checkable
@@ -114,7 +114,7 @@ class ReportingRobot(Protocol):
         """Let it send a message of MAVLink with each step; before the first reset.
 
         Raises:
-            EnvOptionError: the robot does not have what the message tells.
+            EnvOptionError: the robot does not have what the message reports.
         """
 
     def true_reports(self) -> Floats:

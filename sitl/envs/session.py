@@ -59,7 +59,7 @@ def write_crash_rewards(crashed: Flags, rewards: Line, out: Line) -> None:
         out[i] = rewards[i] if crashed[i] else 0.0
 
 
-_tell = Kernel(write_crash_rewards)
+_write_crashes = Kernel(write_crash_rewards)
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class NavigateOptions:
         start: name of one of the world's start poses, "turned" (the robot's, with a random heading), "random",
             "random:N" (one of N random poses), a pose (x, y, yaw) or (x, y, z, yaw) in the world file's frame [m, rad],
             or a function of a random generator that gives one; None: the world's for the robot.
-        randomise: figure of the robot, "latency", or a fault whose amount is drawn -> (low, high), drawn for each
+        randomise: property of the robot, "latency", or a fault whose amount is drawn -> (low, high), drawn for each
             episode; "draws" -> N: of N sets; "identified" -> True: within the airframe's intervals, too. "identified":
             within these alone.
         latency: simulated time from a decision until its command takes effect [s], a whole number of the robot's ticks.
@@ -205,7 +205,7 @@ class Session:
         """The same for an array of actions: see ``Continuous.clip_all``; None: they are not clipped."""
         if options.clip_actions and hasattr(self.action, "clip"):
             self.check, self.clip_all = self.action.clip, getattr(self.action, "clip_all", None)
-        self.actions = self.action.room(count)
+        self.actions = self.action.buffer(count)
         """Actions of the next ``advance``, a row a robot, as ``check`` returns them."""
         self.acted = np.zeros(count, np.bool_)
         """Whether each robot's episode has had an action, shape (count,)."""
@@ -274,8 +274,8 @@ class Session:
             raise EnvOptionError(f"world: robot {self.robot.name!r} stays in the world {now.name!r}; give one world")
         if getattr(self.task, "is_of_one_world", False):
             raise EnvOptionError(
-                f"world: task {type(self.task).__name__} was given places of one world (goal, places, gates or bays); "
-                "leave them out, and each world has its own; or give one world"
+                f"world: task {type(self.task).__name__} was given positions of one world (goal, places, gates or "
+                "bays); leave them out, and each world has its own; or give one world"
             )
         try:
             for world in draw.listed or [draw.first]:
@@ -419,12 +419,12 @@ class Session:
         cast(LateRobot, self.robot).advance_late(self.seconds, latency.waits, rows)
 
     def info(self) -> dict[str, npt.NDArray[Any]]:
-        """What the task tells of this step, what ``details`` names, and the number of the fault that has begun; a row a
-        robot. The arrays are written anew by the next step."""
+        """What the task reports of this step, what ``details`` names, and the number of the fault that has begun; a row
+        a robot. The arrays are written anew by the next step."""
         found = self.task.info(self.step)
         if self.details:
             self.write_details()
-            found |= self._told_in_detail()
+            found |= self._details_of_step()
         if self.costs:
             found |= self.costs.of(self.step)
         return found if self.faults is None else {**found, "fault": self.faults.seen(self.robot.time)}
@@ -439,7 +439,7 @@ class Session:
         """Bring the arrays up to date that ``details`` names and nothing else writes."""
         details, judge = self.details, self.judge
         if "rewards" in details:
-            _tell.unchecked()(np.ascontiguousarray(self.step.crashed), self.rewards, self._crash_paid)
+            _write_crashes.unchecked()(np.ascontiguousarray(self.step.crashed), self.rewards, self._crash_paid)
         if judge.knows_truth:
             if "true_pose" in details:
                 judge.state()
@@ -448,7 +448,7 @@ class Session:
         if "events" in details:
             np.not_equal(self.robot.collided, 0, self._touched)
 
-    def _told_in_detail(self) -> dict[str, npt.NDArray[Any]]:
+    def _details_of_step(self) -> dict[str, npt.NDArray[Any]]:
         """What ``details`` names."""
         found: dict[str, npt.NDArray[Any]] = {}
         step, crashed = self.step, self.step.crashed

@@ -85,7 +85,7 @@ def flood(free: IntTable, row: int, column: int, todo: IntLine) -> None:
     Args:
         free: 1 where a cell is free.
         row, column: of the cell.
-        todo: room, as long as there are cells.
+        todo: memory, as long as there are cells.
     """
     rows, columns, count = free.shape[0], free.shape[1], 1
     todo[0] = row * columns + column
@@ -141,7 +141,9 @@ class ReachableCells:
         """Cells along x and y."""
         if rows * columns > _CELL_LIMIT:
             size = f"{extent[0]:.0f} x {extent[1]:.0f} m"
-            raise EnvOptionError(f"random places in world {self._world.name!r}: {size} is too large; say where instead")
+            raise EnvOptionError(
+                f"random positions in world {self._world.name!r}: {size} is too large; say where instead"
+            )
         first = ((np.array(start.position[:2]) - self.low) / self.cell).astype(int).tolist()
         free = self._free(rows, columns)
         is_free = bool(free[first[0], first[1]])
@@ -149,7 +151,7 @@ class ReachableCells:
         self.cells = np.argwhere(free == 2).astype(np.min_scalar_type(max(rows, columns)))
         """Indices of the cells along x and y, shape (n, 2); the first one is included even when it is not free."""
         if len(self.cells) == 1 and not is_free:
-            where = f"random places in world {self._world.name!r}"
+            where = f"random positions in world {self._world.name!r}"
             raise EnvOptionError(f"{where}: {robot.name} has no room at start {start.name!r} to set out")
 
     def _free(self, rows: int, columns: int) -> npt.NDArray[np.int64]:
@@ -279,17 +281,17 @@ class Starts:
             found = full_pose(pose, self._z)
         except ValueError as error:
             raise EnvOptionError(f"start: {error}") from None
-        self._check_room(found)
+        self._check_clearance(found)
         return found
 
-    def _check_room(self, pose: Pose) -> None:
+    def _check_clearance(self, pose: Pose) -> None:
         """Refuse a pose inside of a solid: all readings are 0 there, which is no crash, so the robot could drive
         out."""
         north, east, down = to_ned(*pose[:3])
         volume, world = self._robot.volume, self._world
-        room = world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0
-        if distance(*room) < 0.0:
-            solid = world.solids[clearance(*room).solid]
+        volume_there = world.geometry, north, east, down - volume.top, down - volume.bottom, 0.0
+        if distance(*volume_there) < 0.0:
+            solid = world.solids[clearance(*volume_there).solid]
             what = f"{type(solid).__name__.lower()} {solid.name!r}"
             x, y, z, _ = pose
             raise EnvOptionError(f"start: ({x:g}, {y:g}, {z:g}) in world {world.name!r} is inside of {what}")

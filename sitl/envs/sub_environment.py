@@ -22,7 +22,7 @@ from .worlds import WorldOption
 
 _ROWS = ("pose", "velocity", "scan", "collided", "time", "worlds", "floors")
 _BY_INDEX = ("link", "simulation", "view", "snapshot", "photograph")
-_OF_ALL = ("apply", "advance", "advance_late", "look", "reset", "restore", "set_figure", "close", "enter")
+_OF_ALL = ("apply", "advance", "advance_late", "look", "reset", "restore", "set_property", "close", "enter")
 
 
 class OfSubEnvironments(VectorEnv[Any, Any, Any]):

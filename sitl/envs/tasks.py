@@ -107,7 +107,7 @@ class Task:
         return self._range > 0.0 or any(reads_scan(term) for term in self.terms)
 
     is_of_one_world = False
-    """Whether it was given places of one world, so that episodes can be in no other."""
+    """Whether it was given positions of one world, so that episodes can be in no other."""
 
     def enter(self, index: int, robot: Robot) -> None:
         """Called when one robot's next episode is in another world than its last one (``robots.robot.world_of``);
@@ -198,11 +198,11 @@ class ReachGoal(Task):
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
-        place = self.judged_pose()[index, :2]
+        position = self.judged_pose()[index, :2]
         cells = None if self._cells_in is None else self._cells_in(world_of(robot, index))
         for _ in range(_DRAWS if cells else 1):
             self.goals[index] = cells.draw(rng) if cells else self.goal
-            self._distance[index] = arrays.hypot(*(place - self.goals[index]))  # as in ``judge``, to the last bit
+            self._distance[index] = arrays.hypot(*(position - self.goals[index]))  # as in ``judge``, to the last bit
             if self._distance[index] > self.radius:
                 break
 

@@ -6,7 +6,8 @@ Three rules, which ``benchmarks.cheating`` checks for every id by playing agains
 - From whatever state, a crash, the floor or the end of the arena is worth less than whatever else until the time limit.
   ``FAIL`` is less than the price of the whole time plus all that progress could still lose: see ``worst_of``.
 - Reaching the goal pays more than all progress. Progress is the difference of a potential (Ng, Harada and Russell,
-  "Policy invariance under reward transformations", ICML 1999), so that ways that come back to their start earn nothing.
+  "Policy invariance under reward transformations", ICML 1999), so that paths that come back to their start earn
+  nothing.
 - Where each second near a target pays, it pays by a curve that is steep about the radius of success.
 """
 

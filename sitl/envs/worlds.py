@@ -39,7 +39,7 @@ _WORD = (1 << 64) - 1
 _STREAM = 4 << 40
 """Second word of the seeds of the numbers that choose worlds: see ``session.RANDOMISE_STREAM``."""
 MOST = 256
-"""Worlds of which an environment keeps what it has found out (free places, arenas, start poses)."""
+"""Worlds of which an environment keeps what it has found out (free positions, arenas, start poses)."""
 _EAGER = 64
 """Up to so many listed worlds are looked at when an environment is made; later ones, when an episode is in them."""
 T = TypeVar("T")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A race through gates with Betaflight in the loop: a policy of body rates and thrust, 50 times a second.
 
-The policy is a cascade of three proportional controllers, written by hand: way to the next gates -> velocity -> lean ->
-body rates. Its actions and observations are those that a learnt policy would have; each episode is flown twice, and the
-two flights are the same.
+The policy is a cascade of three proportional controllers, written by hand: offset to the next gates -> velocity -> lean
+-> body rates. Its actions and observations are those that a learnt policy would have; each episode is flown twice, and
+the two flights are the same.
 
     python examples/betaflight_gates.py
 
@@ -40,8 +40,8 @@ class Policy:
         """Roll, pitch, turn rate and thrust, within [-1, 1]."""
         gate, after, velocity, attitude = seen[0:3], seen[3:6], seen[9:12], seen[13:15]
         near = max(0.0, 1.0 - float(np.linalg.norm(gate)) / self._speed)
-        way = gate + 0.3 * near * (after - gate)  # the turn begins before the gate
-        wanted = self._speed * way / max(float(np.linalg.norm(way)), 0.1)
+        offset = gate + 0.3 * near * (after - gate)  # the turn begins before the gate
+        wanted = self._speed * offset / max(float(np.linalg.norm(offset)), 0.1)
         wanted[2] = np.clip(1.5 * gate[2], -2.0, 2.0)
         push = np.clip(1.8 * (wanted - velocity), -6.0, 6.0)  # forward, left, up [m/s^2]
         self._hover += 0.0002 * push[2]

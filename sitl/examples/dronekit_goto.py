@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The usual DroneKit script: connect, arm, take off, go to three places, come home.
+"""The usual DroneKit script: connect, arm, take off, go to three positions, come home.
 
     sitl exec --speedup max -- python examples/dronekit_goto.py        (CONNECTION: udpin:0.0.0.0:14550)
 
@@ -20,7 +20,7 @@ try:
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is missing: pip install matplotlib dronekit future") from None
 
-PLACES = ((2.5e-4, 0.0, 10.0), (2.5e-4, 3e-4, 20.0), (0.0, 3e-4, 10.0))
+POSITIONS = ((2.5e-4, 0.0, 10.0), (2.5e-4, 3e-4, 20.0), (0.0, 3e-4, 10.0))
 """Latitude, longitude [deg] from home, height above home [m]."""
 
 
@@ -35,7 +35,7 @@ def wait(what: str, condition, seconds: float) -> None:
 
 
 def is_near(vehicle, goal) -> bool:
-    """Whether the vehicle is within about a metre of a place."""
+    """Whether the vehicle is within about a metre of a position."""
     here = vehicle.location.global_relative_frame
     return abs(here.lat - goal.lat) + abs(here.lon - goal.lon) < 1e-5 and abs(here.alt - goal.alt) < 1
 
@@ -44,9 +44,9 @@ def main() -> None:
     """Fly, and draw the flight."""
     vehicle = connect(sys.argv[1] if len(sys.argv) > 1 else "udpin:0.0.0.0:14550", wait_ready=True, timeout=60)
     wait("ready to arm", lambda: vehicle.is_armable, 90)
-    home, places = vehicle.location.global_frame, []
+    home, positions = vehicle.location.global_frame, []
     vehicle.add_attribute_listener(
-        "location.local_frame", lambda _vehicle, _name, p: places.append((p.east, p.north, -p.down))
+        "location.local_frame", lambda _vehicle, _name, p: positions.append((p.east, p.north, -p.down))
     )
     vehicle.mode = VehicleMode("GUIDED")
     wait("GUIDED", lambda: vehicle.mode.name == "GUIDED", 5)
@@ -54,7 +54,7 @@ def main() -> None:
     wait("armed", lambda: vehicle.armed, 5)
     vehicle.simple_takeoff(10)
     wait("at height", lambda: vehicle.location.global_relative_frame.alt > 9.7, 30)
-    for north, east, height in PLACES:
+    for north, east, height in POSITIONS:
         goal = LocationGlobalRelative(home.lat + north, home.lon + east, height)
         vehicle.simple_goto(goal, groundspeed=6)
         wait(f"{height:.0f} m above {north:g}, {east:g}", functools.partial(is_near, vehicle, goal), 60)
@@ -64,7 +64,7 @@ def main() -> None:
 
     figure = plt.figure(figsize=(5, 4.4), layout="constrained")
     axes = figure.add_subplot(projection="3d")
-    axes.plot(*zip(*places))
+    axes.plot(*zip(*positions))
     axes.set_box_aspect(None, zoom=0.85)  # room for the labels
     axes.set(xlabel="east [m]", ylabel="north [m]", zlabel="height [m]")
     figure.savefig("dronekit_goto.png", dpi=80)

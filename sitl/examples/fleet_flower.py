@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""256 copters in one process: each flies to its own place of a sunflower, and one compiled call advances all of them.
+"""256 copters in one process: each flies to its position of a sunflower, and one compiled call advances all of them.
 
     python examples/fleet_flower.py
 
@@ -55,20 +55,20 @@ def main() -> None:
             "SET_POSITION_TARGET_LOCAL_NED", target_system=1, coordinate_frame=LOCAL_NED,
             type_mask=POSITION_ONLY, x=radius * math.cos(turn), y=radius * math.sin(turn), z=-10.0,
         )  # fmt: skip
-    places = [fleet.records["physics"]["body"]["pos"].copy()]
+    positions = [fleet.records["physics"]["body"]["pos"].copy()]
     clock = time.process_time()
-    while len(places) <= FLIGHT_S / 0.2:
+    while len(positions) <= FLIGHT_S / 0.2:
         fleet.advance(0.2)
         fleet.drop_telemetry()
-        places.append(fleet.records["physics"]["body"]["pos"].copy())
+        positions.append(fleet.records["physics"]["body"]["pos"].copy())
     clock = time.process_time() - clock
     print(f"{COUNT} copters, {FLIGHT_S:.0f} s: {COUNT * FLIGHT_S / clock:.0f} times real time, all together")
     fleet.close()
 
-    ways = np.array(places)  # step, copter, axis
+    paths = np.array(positions)  # step, copter, axis
     figure, axes = plt.subplots(figsize=(5, 5), layout="constrained")
-    axes.plot(ways[:, :, 1], ways[:, :, 0], color="0.85", linewidth=0.7, zorder=1)
-    axes.scatter(ways[-1, :, 1], ways[-1, :, 0], c=range(COUNT), cmap="viridis", s=14, zorder=2)
+    axes.plot(paths[:, :, 1], paths[:, :, 0], color="0.85", linewidth=0.7, zorder=1)
+    axes.scatter(paths[-1, :, 1], paths[-1, :, 0], c=range(COUNT), cmap="viridis", s=14, zorder=2)
     axes.set(xlabel="east [m]", ylabel="north [m]", aspect="equal", title=f"{COUNT} copters after {FLIGHT_S:.0f} s")
     figure.savefig("fleet_flower.png", dpi=80)
 

@@ -2,7 +2,7 @@
 """A GPS receiver lies by 3, 6 and 20 m: what the autopilot believes, and where the copter really goes.
 
 A small error passes the checks of the Kalman filter and moves the copter. A large one is refused for ten seconds;
-then the filter begins anew at the wrong place, and the copter stays.
+then the filter begins anew at the wrong position, and the copter stays.
 
     python examples/gps_glitch.py
 

@@ -3,7 +3,8 @@
 
 The inner loops are the autopilot's: LOITER takes sticks as wanted velocities, brakes when they are centred, holds the
 position, and leans against the wind, 400 times a second. What is learnt is what a pilot learns: how far to move which
-stick, and when to let go. Beside it a pilot by rule: sticks in proportion to the way to the goal, less the velocity.
+stick, and when to let go. Beside it a pilot by rule: sticks in proportion to the distance to the goal, less the
+velocity.
 
     python examples/loiter_sticks.py --steps 200000
 

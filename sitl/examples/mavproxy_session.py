@@ -77,13 +77,13 @@ def main() -> None:
         os.killpg(proxy.pid, signal.SIGKILL)  # at the end of its input MAVProxy would wait for a child of its own
 
     (file,) = folder.rglob("*.tlog")
-    tlog, times, heights, way = mavutil.mavlink_connection(str(file)), [], [], []
+    tlog, times, heights, path = mavutil.mavlink_connection(str(file)), [], [], []
     while (m := tlog.recv_match(type="LOCAL_POSITION_NED")) is not None:
         times.append(m.time_boot_ms * 1e-3)
         heights.append(-m.z)
-        way.append((m.y, m.x))
+        path.append((m.y, m.x))
     figure, (plan, climb) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
-    plan.plot(*zip(*way))
+    plan.plot(*zip(*path))
     plan.set(xlabel="east [m]", ylabel="north [m]", aspect="equal")
     climb.plot(times, heights)
     climb.set(xlabel="time since boot [s]", ylabel="height [m]")

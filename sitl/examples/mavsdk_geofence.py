@@ -62,8 +62,8 @@ def main() -> None:
         Param(system).set_param_int(name, value)
 
     wait_for("ready to arm", lambda: telemetry.health().is_armable, 60.0)
-    way = []
-    telemetry.subscribe_position_velocity_ned(lambda p, _: way.append((p.position.east_m, p.position.north_m)))
+    path = []
+    telemetry.subscribe_position_velocity_ned(lambda p, _: path.append((p.position.east_m, p.position.north_m)))
     action.set_takeoff_altitude(10.0)
     action.arm()
     action.takeoff()
@@ -79,7 +79,7 @@ def main() -> None:
     norths, easts = zip(*corners, corners[0])
     figure, axes = plt.subplots(figsize=(5, 4.6), layout="constrained")
     axes.plot(easts, norths, "r--", label="fence")
-    axes.plot(*zip(*way), label="flight")
+    axes.plot(*zip(*path), label="flight")
     axes.plot(0, 0, "ks", label="home")
     axes.set(xlabel="east [m]", ylabel="north [m]", aspect="equal")
     axes.legend()

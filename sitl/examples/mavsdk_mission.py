@@ -26,7 +26,7 @@ MISSION, GLOBAL_RELATIVE_ALT = 2, 3
 
 
 def item(seq: int, command: int, lat_deg: float = 0.0, lon_deg: float = 0.0, alt_m: float = 0.0) -> MissionItem:
-    """One mission item, altitude above home; one without a place has the frame MISSION."""
+    """One mission item, altitude above home; one without a position has the frame MISSION."""
     return MissionItem(
         seq=seq,
         frame=MISSION if command == RETURN_TO_LAUNCH else GLOBAL_RELATIVE_ALT,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A plain MAVSDK 4.x script for a rover: arm, drive a 20 m square as a mission, go to a place, return, disarm.
+"""A plain MAVSDK 4.x script for a rover: arm, drive a 20 m square as a mission, go to a position, return, disarm.
 
 Nothing here knows of the simulator: it is what one would run against a real ArduPilot rover.
 
@@ -38,7 +38,7 @@ def item(seq: int, lat_deg: float, lon_deg: float) -> MissionItem:
 
 
 def offset(lat_deg: float, lon_deg: float, north_m: float, east_m: float) -> tuple[float, float]:
-    """The place so many metres to the north and to the east."""
+    """The position so many metres to the north and to the east."""
     east_degrees = east_m / METRES_PER_DEGREE / math.cos(math.radians(lat_deg))
     return lat_deg + north_m / METRES_PER_DEGREE, lon_deg + east_degrees
 
@@ -49,11 +49,11 @@ def square(lat_deg: float, lon_deg: float) -> list[MissionItem]:
     return [item(seq, *offset(lat_deg, lon_deg, *corner)) for seq, corner in enumerate(corners)]
 
 
-def distance(telemetry: Telemetry, place: tuple[float, float]) -> float:
-    """How far the rover is from a place [m]."""
+def distance(telemetry: Telemetry, position: tuple[float, float]) -> float:
+    """How far the rover is from a position [m]."""
     here = telemetry.position()
-    north = (here.latitude_deg - place[0]) * METRES_PER_DEGREE
-    east = (here.longitude_deg - place[1]) * METRES_PER_DEGREE * math.cos(math.radians(place[0]))
+    north = (here.latitude_deg - position[0]) * METRES_PER_DEGREE
+    east = (here.longitude_deg - position[1]) * METRES_PER_DEGREE * math.cos(math.radians(position[0]))
     return math.hypot(north, east)
 
 
@@ -93,9 +93,9 @@ def main() -> None:
     mission.start_mission()
     wait_for("square driven", mission.is_mission_finished, 600.0)  # a small rover makes 0.25 m/s
 
-    place = offset(*home, 10.0, -10.0)
-    action.goto_location(*place, here.absolute_altitude_m, 0.0)
-    wait_for("10 m north and west of home", lambda: distance(telemetry, place) < 3.0, 90.0)
+    position = offset(*home, 10.0, -10.0)
+    action.goto_location(*position, here.absolute_altitude_m, 0.0)
+    wait_for("10 m north and west of home", lambda: distance(telemetry, position) < 3.0, 90.0)
 
     action.return_to_launch()
     wait_for("home again", lambda: distance(telemetry, home) < 3.0, 120.0)

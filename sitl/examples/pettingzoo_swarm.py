@@ -39,23 +39,23 @@ def giving_way(observation: np.ndarray) -> np.ndarray:
 
 
 def main() -> None:
-    """Fly both, and draw the ways."""
+    """Fly both, and draw the paths."""
     env = SwarmEnv("crossing", count=COUNT)
     figure, panels = plt.subplots(1, 2, figsize=(8, 4.2), sharex=True, sharey=True, layout="constrained")
     for axes, act in zip(panels, (straight_on, giving_way)):
         observations, _ = env.reset(seed=1)
-        ways, hit = {agent: [] for agent in env.agents}, set()
+        paths, hit = {agent: [] for agent in env.agents}, set()
         while env.agents:
             actions = {agent: act(observations[agent]) for agent in env.agents}
             observations, _, _, _, infos = env.step(actions)
             for agent, info in infos.items():
-                ways[agent].append(info["true_place"])  # north, east, down [m]
+                paths[agent].append(info["true_place"])  # north, east, down [m]
                 if info["was_hit"]:
                     hit.add(agent)
         name = act.__name__.replace("_", " ")
         print(f"{name}: {len(hit)} copters hit")
-        for agent, way in ways.items():
-            norths, easts, _ = zip(*way)
+        for agent, path in paths.items():
+            norths, easts, _ = zip(*path)
             (line,) = axes.plot(easts, norths)
             axes.plot(easts[0], norths[0], "s", color=line.get_color())
             if agent in hit:

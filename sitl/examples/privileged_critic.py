@@ -40,7 +40,7 @@ class TrueGoal(Path):
         self.robot = session.robot
 
     def write(self, out: np.ndarray) -> None:
-        out[:] = self._task.ways_from(self.robot.true_state(), 1).reshape(out.shape)
+        out[:] = self._task.offsets_from(self.robot.true_state(), 1).reshape(out.shape)
 
 
 SEEN = ["goal", "velocity", "attitude", "rates", "last_action"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A mission by plain pymavlink: upload it item by item, fly it in AUTO, and plot the way flown over the way planned.
+"""A mission by plain pymavlink: upload it item by item, fly it in AUTO, and plot the path flown over the path planned.
 
     sitl exec --speedup max -- python examples/pymavlink_mission.py        (CONNECTION: udpin:0.0.0.0:14550)
 
@@ -60,30 +60,30 @@ def main() -> None:
     home = wait(link, "GLOBAL_POSITION_INT", lambda m: m.lat != 0)
     lat, lon = home.lat * 1e-7, home.lon * 1e-7
     wide = METRES_A_DEGREE * math.cos(math.radians(lat))
-    places = [(lat + north / METRES_A_DEGREE, lon + east / wide, height) for north, east, height in PLAN]
+    waypoints = [(lat + north / METRES_A_DEGREE, lon + east / wide, height) for north, east, height in PLAN]
     upload(link, [
         (mavlink.MAV_CMD_NAV_WAYPOINT, lat, lon, 0.0),  # item 0 is home
         (mavlink.MAV_CMD_NAV_TAKEOFF, 0.0, 0.0, PLAN[0][2]),
-        *((mavlink.MAV_CMD_NAV_WAYPOINT, *place) for place in places),
+        *((mavlink.MAV_CMD_NAV_WAYPOINT, *waypoint) for waypoint in waypoints),
         (mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0, 0.0),
     ])  # fmt: skip
     link.arducopter_arm()
     link.motors_armed_wait()
     link.set_mode_auto()  # AUTO, and MISSION_START
 
-    way, armed = [], True
+    path, armed = [], True
     while armed:
         m = wait(link, ["GLOBAL_POSITION_INT", "HEARTBEAT", "MISSION_ITEM_REACHED", "STATUSTEXT"])
         if m.get_type() == "GLOBAL_POSITION_INT":
             east, north = (m.lon * 1e-7 - lon) * wide, (m.lat * 1e-7 - lat) * METRES_A_DEGREE
-            way.append((m.time_boot_ms * 1e-3, east, north, m.relative_alt * 1e-3))
+            path.append((m.time_boot_ms * 1e-3, east, north, m.relative_alt * 1e-3))
         elif m.get_type() == "HEARTBEAT":
             armed = bool(m.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
         else:
             print(m.text if m.get_type() == "STATUSTEXT" else f"item {m.seq} reached", flush=True)
     print("landed and disarmed")
 
-    times, easts, norths, heights = zip(*way)
+    times, easts, norths, heights = zip(*path)
     figure, (plan, climb) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
     plan.plot([p[1] for p in PLAN], [p[0] for p in PLAN], "o--", color="0.5", label="planned")
     plan.plot(easts, norths, label="flown")

@@ -29,8 +29,8 @@ values = defaultdict(lambda: np.zeros(3))
 
 
 def drive(number: int, explore: float) -> tuple[float, np.ndarray]:
-    """Drive one episode and learn from each step; its reward, and the places on its way [m]."""
-    state, done, total, way = tuple(env.reset(seed=number)[0]), False, 0.0, []
+    """Drive one episode and learn from each step; its reward, and the positions on its way [m]."""
+    state, done, total, path = tuple(env.reset(seed=number)[0]), False, 0.0, []
     while not done:
         action = int(rng.integers(3)) if rng.random() < explore else int(np.argmax(values[state]))
         observation, reward, terminated, truncated, _ = env.step(action)
@@ -38,17 +38,17 @@ def drive(number: int, explore: float) -> tuple[float, np.ndarray]:
         best = 0.0 if terminated else values[after].max()
         values[state][action] += LEARN * (reward + DISCOUNT * best - values[state][action])
         state, total = after, total + float(reward)
-        way.append(env.unwrapped.robot.pose[0, :2].copy())
-    return total, np.array(way)
+        path.append(env.unwrapped.robot.pose[0, :2].copy())
+    return total, np.array(path)
 
 
 def main() -> None:
-    """Learn, and draw the curve and the way that it drives in the end."""
+    """Learn, and draw the curve and the path that it drives in the end."""
     rewards = [drive(number, EXPLORE * DECAY**number)[0] for number in range(EPISODES)]
     mean = np.convolve(rewards, np.ones(50) / 50, "valid")
-    total, way = drive(EPISODES, explore=0.0)
+    total, path = drive(EPISODES, explore=0.0)
     print(f"mean reward of the first 50 episodes {mean[0]:.0f}, of the last 50 {mean[-1]:.0f}")
-    print(f"without random actions: {len(way)} steps, reward {total:.0f}")
+    print(f"without random actions: {len(path)} steps, reward {total:.0f}")
 
     figure, (curve, plan) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
     curve.plot(rewards, color="0.8", linewidth=0.5, label="of each episode")
@@ -57,8 +57,8 @@ def main() -> None:
     curve.legend(loc="upper left")
     for solid in env.unwrapped.world.solids:
         plan.fill(*solid.footprint().T, color="0.3")
-    plan.plot(way[:, 0], way[:, 1])
-    plan.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title=f"{len(way)} steps, reward {total:.0f}")
+    plan.plot(path[:, 0], path[:, 1])
+    plan.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", title=f"{len(path)} steps, reward {total:.0f}")
     figure.savefig("q_learning.png", dpi=80)
 
 

@@ -22,14 +22,14 @@ SEED = 7
 
 
 def drive(env: gym.Env, act) -> tuple[np.ndarray, float, dict]:
-    """One episode: its places x, y [m], its reward, and what the last step tells."""
+    """One episode: its positions x, y [m], its reward, and what the last step tells."""
     observation, _ = env.reset(seed=SEED)
-    way, total, done = [], 0.0, False
+    path, total, done = [], 0.0, False
     while not done:
         observation, reward, terminated, truncated, info = env.step(act(observation))
-        way.append(info["true_pose"][:2])
+        path.append(info["true_pose"][:2])
         total, done = total + float(reward), terminated or truncated
-    return np.array(way), total, info
+    return np.array(path), total, info
 
 
 def main() -> None:
@@ -41,7 +41,7 @@ def main() -> None:
     figure, panels = plt.subplots(1, 2, figsize=(8, 4.2), sharey=True, layout="constrained")
     agents = {"random": lambda observation: env.action_space.sample(), "rover-race": found.policy.act}
     for axes, (name, act) in zip(panels, agents.items()):
-        way, total, info = drive(env, act)
+        path, total, info = drive(env, act)
         laps = f"best lap {info['best_lap']:.1f} s" if info["is_success"] else f"{info['passed']} gates passed"
         print(f"{name}: reward {total:.0f}, {laps}")
         world = env.unwrapped.world
@@ -49,8 +49,8 @@ def main() -> None:
             axes.fill(*solid.footprint().T, color="0.3")
         for gate in (marking for marking in world.markings if marking.name.startswith("gate")):
             axes.fill(*gate.footprint().T, color="tab:green", alpha=0.4)
-        axes.plot(*way.T, color="tab:blue")
-        axes.plot(*way[0], "o", color="tab:orange", label="start")
+        axes.plot(*path.T, color="tab:blue")
+        axes.plot(*path[0], "o", color="tab:orange", label="start")
         axes.set(xlabel="x [m]", aspect="equal", title=f"{name}: {laps}")
     panels[0].set_ylabel("y [m]")
     panels[0].legend(loc="center")

@@ -19,7 +19,7 @@ except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is missing: pip install matplotlib") from None
 
 KEEP_M, AHEAD_M = 2.5, 3.5
-"""Distance from the wall, and the free way ahead below which it turns to the left."""
+"""Distance from the wall, and the free distance ahead below which it turns to the left."""
 SPEED_M_S, TURN_DEG_S = 1.2, 40.0
 STEP_S, LIMIT_S = 0.1, 500.0
 EXIT_Y_M = -36.0
@@ -36,13 +36,13 @@ def steer(angles: np.ndarray, ranges: np.ndarray) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Drive, and draw the way in the maze."""
+    """Drive, and draw the path in the maze."""
     rover = Client(Simulation("erle_rover", world="maze_erlerover", seed=1))
     rover.wait_ready()
     rover.set_mode("GUIDED")
     rover.arm()
     body, obstacles = rover.simulation.v.physics.body, rover.simulation.v.physics.obstacles
-    places, begin = [], rover.now
+    positions, begin = [], rover.now
     with rover.messages("OBSTACLE_DISTANCE", rate_hz=1 / STEP_S) as scans:
         rover.delay(0.5)
         while rover.now < begin + LIMIT_S and -body.pos.y > EXIT_Y_M:
@@ -52,18 +52,18 @@ def main() -> None:
             speed, turn = steer(angles, ranges)
             rover.set_velocity(speed, 0, yaw_rate=turn, body=True)
             rover.delay(STEP_S)
-            places.append((body.pos.x, -body.pos.y))  # the world's x is north, y is west
-    way = np.array(places)
-    metres = np.hypot(*np.diff(way, axis=0).T).sum()
-    found = "out" if way[-1, 1] <= EXIT_Y_M else "not out"
+            positions.append((body.pos.x, -body.pos.y))  # the world's x is north, y is west
+    path = np.array(positions)
+    metres = np.hypot(*np.diff(path, axis=0).T).sum()
+    found = "out" if path[-1, 1] <= EXIT_Y_M else "not out"
     print(f"{found} after {metres:.0f} m and {rover.now - begin:.0f} s, walls hit: {obstacles.hit_count}")
 
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
     for solid in rover.simulation.world.solids:
         axes.fill(*solid.footprint().T, color="0.3")
-    axes.plot(*way.T)
-    axes.plot(*way[0], "o", color="tab:orange")
-    axes.annotate(" start", way[0], va="bottom")
+    axes.plot(*path.T)
+    axes.plot(*path[0], "o", color="tab:orange")
+    axes.annotate(" start", path[0], va="bottom")
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     figure.savefig("rover_wall_following.png", dpi=80)
 

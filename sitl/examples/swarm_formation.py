@@ -32,12 +32,12 @@ POSITION_ONLY = 0b110111111000
 METRES_A_DEGREE = 111_319.5
 
 mavlink = mavutil.mavlink
-Place = tuple[float, float]
+Position = tuple[float, float]
 """North, east [m] of the first vehicle's start."""
 
 
 class Swarm:
-    """Vehicles on one link, told apart by their system ids."""
+    """Vehicles on one link, distinguished by their system ids."""
 
     def __init__(self, url: str, count: int, lockstep: bool) -> None:
         self.link = mavutil.mavlink_connection(url, source_system=255)
@@ -52,9 +52,9 @@ class Swarm:
         self.hits: dict[int, str] = {}
         self.tracks: dict[int, list[tuple[float, float, float]]] = {system: [] for system in self.ids}
         """North, east [m] of the first vehicle's start, and height [m]."""
-        self.formations: list[tuple[str, list[Place]]] = []
+        self.formations: list[tuple[str, list[Position]]] = []
         """Where the vehicles were at the end of each move."""
-        self.origin: Place | None = None
+        self.origin: Position | None = None
 
     def wait(self, seconds: float) -> None:
         """Let simulated time go by, and listen."""
@@ -78,7 +78,7 @@ class Swarm:
         for system, track in self.tracks.items():
             if system in self.positions:
                 message = self.positions[system]
-                track.append((*self.place(system), message.relative_alt * 1e-3))
+                track.append((*self.position(system), message.relative_alt * 1e-3))
 
     def hear(self, message) -> None:
         """Note what a message says."""
@@ -112,7 +112,7 @@ class Swarm:
             self.link.mav.command_long_send(system, 1, number, 0, *padded)
         self.wait_until(what, lambda: all(self.accepted.get((system, number)) for system in self.ids), 10.0)
 
-    def place(self, system: int) -> Place:
+    def position(self, system: int) -> Position:
         """Where a vehicle is."""
         lat, lon = (getattr(self.positions[system], name) * 1e-7 for name in ("lat", "lon"))
         if self.origin is None:
@@ -120,9 +120,9 @@ class Swarm:
         east = (lon - self.origin[1]) * math.cos(math.radians(self.origin[0]))
         return (lat - self.origin[0]) * METRES_A_DEGREE, east * METRES_A_DEGREE
 
-    def send(self, system: int, place: Place) -> None:
+    def send(self, system: int, position: Position) -> None:
         """A set-point at the height of all."""
-        north, east = place
+        north, east = position
         lat = self.origin[0] + north / METRES_A_DEGREE
         lon = self.origin[1] + east / METRES_A_DEGREE / math.cos(math.radians(self.origin[0]))
         self.link.mav.set_position_target_global_int_send(
@@ -130,9 +130,9 @@ class Swarm:
             HEIGHT_M, 0, 0, 0, 0, 0, 0, 0, 0,
         )  # fmt: skip
 
-    def move(self, what: str, goals: dict[int, Place], seconds: float = MOVE_S) -> None:
-        """Fly to places, all arriving at the same time: their ways do not cross when ``assign`` chose the goals."""
-        begin = {system: self.place(system) for system in self.ids}
+    def move(self, what: str, goals: dict[int, Position], seconds: float = MOVE_S) -> None:
+        """Fly to positions, all arriving at the same time: their paths do not cross when ``assign`` chose the goals."""
+        begin = {system: self.position(system) for system in self.ids}
         steps = round(seconds / STEP_S)
         for step in range(1, steps + 1):
             share = 0.5 - 0.5 * math.cos(math.pi * step / steps)
@@ -141,34 +141,34 @@ class Swarm:
                 self.send(system, (n0 + share * (n1 - n0), e0 + share * (e1 - e0)))
             self.wait(STEP_S)
         self.wait(3.0)
-        errors = [math.dist(self.place(system), goals[system]) for system in self.ids]
-        self.formations.append((what, [self.place(system) for system in self.ids]))
+        errors = [math.dist(self.position(system), goals[system]) for system in self.ids]
+        self.formations.append((what, [self.position(system) for system in self.ids]))
         print(f"{self.now:6.1f} s  {what}: within {max(errors):.2f} m", flush=True)
 
 
-def assign(places: dict[int, Place], slots: list[Place]) -> dict[int, Place]:
-    """A slot for each vehicle, such that the squares of all ways together are least that swaps can make them."""
-    goals = dict(zip(places, slots, strict=True))
+def assign(positions: dict[int, Position], slots: list[Position]) -> dict[int, Position]:
+    """A slot for each vehicle, such that the squares of all paths together are least that swaps can make them."""
+    goals = dict(zip(positions, slots, strict=True))
     swapped = True
     while swapped:
         swapped = False
-        for a, b in itertools.combinations(places, 2):
-            now = math.dist(places[a], goals[a]) ** 2 + math.dist(places[b], goals[b]) ** 2
-            then = math.dist(places[a], goals[b]) ** 2 + math.dist(places[b], goals[a]) ** 2
+        for a, b in itertools.combinations(positions, 2):
+            now = math.dist(positions[a], goals[a]) ** 2 + math.dist(positions[b], goals[b]) ** 2
+            then = math.dist(positions[a], goals[b]) ** 2 + math.dist(positions[b], goals[a]) ** 2
             if then < now - 1e-9:
                 goals[a], goals[b] = goals[b], goals[a]
                 swapped = True
     return goals
 
 
-def ring(count: int, centre: Place, angle: float = 0.0) -> list[Place]:
-    """Places on a circle."""
+def ring(count: int, centre: Position, angle: float = 0.0) -> list[Position]:
+    """Positions on a circle."""
     angles = [angle + math.tau * k / count for k in range(count)]
     return [(centre[0] + RING_M * math.cos(a), centre[1] + RING_M * math.sin(a)) for a in angles]
 
 
-def arrow(count: int, centre: Place) -> list[Place]:
-    """Places on two lines that meet in the north."""
+def arrow(count: int, centre: Position) -> list[Position]:
+    """Positions on two lines that meet in the north."""
     return [
         (centre[0] + 10.0 - 2.5 * (k // 2), centre[1] + (1 if k % 2 else -1) * (1.5 + 2.5 * (k // 2)))
         for k in range(count)
@@ -185,20 +185,20 @@ def fly(swarm: Swarm) -> None:
     swarm.wait(5.0)
     swarm.command_all("GUIDED", mavlink.MAV_CMD_DO_SET_MODE, 1, GUIDED)
     swarm.command_all("armed", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-    starts = {system: swarm.place(system) for system in swarm.ids}
+    starts = {system: swarm.position(system) for system in swarm.ids}
     swarm.command_all("take-off", mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, HEIGHT_M)
     swarm.wait(LIFT_S)
-    centre = tuple(sum(place[axis] for place in starts.values()) / len(starts) for axis in (0, 1))
+    centre = tuple(sum(position[axis] for position in starts.values()) / len(starts) for axis in (0, 1))
     goals = assign(starts, ring(len(starts), centre))
     swarm.move("ring", goals)
     steps = 20
-    for step in range(1, steps + 1):  # each from its own place on
+    for step in range(1, steps + 1):  # each from its own position on
         for system, (north, east) in goals.items():
             angle = math.atan2(east - centre[1], north - centre[0]) + TURN_RAD * step / steps
             swarm.send(system, ring(1, centre, angle)[0])
         swarm.wait(1.0)
-    swarm.move("arrow", assign({system: swarm.place(system) for system in swarm.ids}, arrow(len(starts), centre)))
-    swarm.move("square", assign({system: swarm.place(system) for system in swarm.ids}, list(starts.values())))
+    swarm.move("arrow", assign({system: swarm.position(system) for system in swarm.ids}, arrow(len(starts), centre)))
+    swarm.move("square", assign({system: swarm.position(system) for system in swarm.ids}, list(starts.values())))
     swarm.command_all("land", mavlink.MAV_CMD_NAV_LAND)
     swarm.wait_until("landed and disarmed", lambda: not swarm.armed, LAND_S)
     for system, text in swarm.hits.items():

@@ -58,19 +58,19 @@ def main() -> None:
     vehicle.wait_ready()
     vehicle.set_rate("LOCAL_POSITION_NED", 1 / STEP_S)
     vehicle.take_off(10)
-    figure, (ways, curves) = plt.subplots(1, 2, figsize=(8, 3.8), layout="constrained")
+    figure, (plan, curves) = plt.subplots(1, 2, figsize=(8, 3.8), layout="constrained")
     rounds = [reference(ROUND_S * k / 200) for k in range(201)]
-    ways.plot([p[1] for p in rounds], [p[0] for p in rounds], "--", color="0.6", label="reference")
+    plan.plot([p[1] for p in rounds], [p[0] for p in rounds], "--", color="0.6", label="reference")
     for name, feed_forward in (("proportional", 0.0), ("with feed-forward", 1.0)):
         with vehicle.fork():
             norths, easts, errors = fly(vehicle, feed_forward)
         late = errors[len(errors) // 5 :]
         rms = math.sqrt(sum(e * e for e in late) / len(late))
         print(f"{name}: {rms:.2f} m rms from the reference")
-        ways.plot(easts, norths, label=name)
+        plan.plot(easts, norths, label=name)
         curves.plot([STEP_S * k for k in range(len(errors))], errors)
-    ways.set(xlabel="east [m]", ylabel="north [m]", aspect="equal")
-    figure.legend(*ways.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    plan.set(xlabel="east [m]", ylabel="north [m]", aspect="equal")
+    figure.legend(*plan.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     curves.set(xlabel="time [s]", ylabel="distance from the reference [m]")
     figure.savefig("velocity_controller.png", dpi=80)
 

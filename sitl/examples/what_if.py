@@ -34,7 +34,7 @@ def main() -> None:
     begin, start = vehicle.now, vehicle.position
     print(f"{vehicle.groundspeed:.1f} m/s, {start.north:.1f} m north of home")
 
-    figure, (ways, speeds) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
+    figure, (distances, speeds) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
     for mode in MODES:
         with vehicle.fork():
             vehicle.rc(throttle=1500)  # the stick in the middle, for LOITER
@@ -46,11 +46,11 @@ def main() -> None:
                 speed.append(vehicle.groundspeed)
                 vehicle.delay(STEP_S)
         print(f"{mode:9s} goes {max(ahead):4.1f} m further")
-        ways.plot(times, ahead, label=mode)
+        distances.plot(times, ahead, label=mode)
         speeds.plot(times, speed)
-    ways.set(xlabel="time since the mode changed [s]", ylabel="further north [m]")
+    distances.set(xlabel="time since the mode changed [s]", ylabel="further north [m]")
     speeds.set(xlabel="time since the mode changed [s]", ylabel="ground speed [m/s]")
-    ways.legend()
+    distances.legend()
     figure.savefig("what_if.png", dpi=80)
 
 

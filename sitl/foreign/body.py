@@ -26,13 +26,13 @@ from .exchange import (
     LINE_SIZE,
     MMSGHDR,
     MOST_LINES,
+    MOTION,
     NAME_SIZE,
     NOTE,
     NUMBERS,
     OUTPUTS,
     PIECES,
-    PLACE,
-    TELL,
+    REPORT,
     WAITS,
     Exchange,
     acted,
@@ -48,7 +48,7 @@ _FAR_US = 1 << 62
 
 
 class BodyLines(Sequence[bytes]):
-    """Steps one vehicle and tells of it in JSON lines; as a sequence, the lines of the last step.
+    """Steps one vehicle and reports it in JSON lines; as a sequence, the lines of the last step.
 
     Args:
         plant: its physics.
@@ -73,7 +73,7 @@ class BodyLines(Sequence[bytes]):
         self._text: Array = np.zeros((MOST_LINES, LINE_SIZE), "u1")
         self._vectors: Array = np.zeros((MOST_LINES, 2), "i8")
         self._vectors[:, 0] = self._text.ctypes.data + LINE_SIZE * np.arange(MOST_LINES)
-        before, numbers = np.zeros(PLACE), np.zeros(NUMBERS)
+        before, numbers = np.zeros(MOTION), np.zeros(NUMBERS)
         self._kept: list[Array] = [text, before, numbers, self._text, self._vectors]
         x.pieces, x.before, x.numbers, x.lines, x.vectors = (array.ctypes.data for array in self._kept)
         self._act = acted.function()
@@ -125,7 +125,7 @@ class BodyLines(Sequence[bytes]):
         x.rate, x.pulses[:], x.stage = rate, pulses[:OUTPUTS], ASKED
 
     def step(self, until_us: int | None) -> list[bytes]:
-        """The step, at most until a time [us since power-on]; gives the lines that tell of it."""
+        """The step, at most until a time [us since power-on]; gives the lines that report it."""
         x, plant = self.exchange, self.plant
         x.until_us = _FAR_US if until_us is None else until_us
         self._act(self._address, BEGIN)
@@ -134,7 +134,7 @@ class BodyLines(Sequence[bytes]):
                 self._act(self._address, NOTE)
             plant.tick()
         x.left, x.stage = 0, WAITS
-        self._act(self._address, TELL)
+        self._act(self._address, REPORT)
         return list(self)
 
     def __len__(self) -> int:

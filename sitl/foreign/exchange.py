@@ -23,10 +23,10 @@ from ..core.system_call import call_system
 from ..physics.native.records import Body, Obstacles, Wind
 
 LINE_SIZE = 1024
-"""Room for a line, and for a datagram of an autopilot."""
+"""Space for a line, and for a datagram of an autopilot."""
 DATAGRAMS = 6
 """As many are read at once."""
-PLACE = 10
+MOTION = 10
 """Position, attitude (w x y z), velocity."""
 MAGIC_16, MAGIC_32 = 18458, 29569
 SIZE_16, SIZE_32 = 40, 72
@@ -48,7 +48,7 @@ both in its table), and does not arm without a range from a sensor that it has.
 """
 _POSITION, _ATTITUDE, _VELOCITY, _EULER, _RANGE, _VANE, _SPEED, _BATTERY, NUMBERS = 6, 9, 13, 16, 19, 20, 21, 22, 24
 _BEGIN, _END_OF_MOTION, _END_OF_VANE, _END = range(NUMBERS, NUMBERS + 4)
-BEGIN, NOTE, TELL, CONVERSE = range(4)
+BEGIN, NOTE, REPORT, CONVERSE = range(4)
 """What ``act`` does."""
 WAITS, ASKED, STEPS = range(3)
 """Of a step: nobody has asked for one; a frame has; it has begun."""
@@ -86,7 +86,7 @@ class Exchange(Record):
     parts: int  # lines of it
     has_range: bool
     has_vane: bool
-    before: int  # address of the place at its last tick's beginning, PLACE numbers
+    before: int  # address of the body's motion at its last tick's beginning, MOTION numbers
     numbers: int  # address of NUMBERS numbers of a line
     # the lines
     pieces: int  # address of PIECES, one after the other
@@ -134,7 +134,7 @@ def actuate(x: Exchange) -> None:
 
 
 @law
-def write_place(x: Exchange, numbers: Floats, at: int) -> None:
+def write_motion(x: Exchange, numbers: Floats, at: int) -> None:
     """Write where the body is now: position, attitude, velocity."""
     body = record_at(Body, x.body)
     pos, q, vel = body.pos, body.q, body.vel
@@ -177,7 +177,7 @@ def gather(x: Exchange) -> None:
     numbers, rates, force, vel = floats_at(x.numbers, NUMBERS), body.rates_mean, body.specific_force, body.vel
     numbers[0], numbers[1], numbers[2] = rates.x, rates.y, rates.z
     numbers[3], numbers[4], numbers[5] = force.x, force.y, force.z
-    write_place(x, numbers, _POSITION)
+    write_motion(x, numbers, _POSITION)
     euler = euler_of(body.q)
     numbers[_EULER], numbers[_EULER + 1], numbers[_EULER + 2] = euler.roll, euler.pitch, euler.yaw
     numbers[_RANGE] = min(float(sensors.rangefinder_range[0]), x.range_max + 1.0)  # out of range: farther than it sees
@@ -194,7 +194,7 @@ def gather(x: Exchange) -> None:
 @law
 def write_line(x: Exchange, text: Bytes, time_us: int, share: float) -> int:
     """Write a line of a time between the tick's beginning (``share`` 0) and end; gives its length."""
-    numbers, was = floats_at(x.numbers, NUMBERS), floats_at(x.before, PLACE)
+    numbers, was = floats_at(x.numbers, NUMBERS), floats_at(x.before, MOTION)
     at = write_time(text, _piece(x, text, 0, _BEGIN), time_us)
     for n in range(NUMBERS):
         if n == _EULER:
@@ -211,7 +211,7 @@ def write_line(x: Exchange, text: Bytes, time_us: int, share: float) -> int:
 
 
 @law
-def tell(x: Exchange) -> None:
+def report(x: Exchange) -> None:
     """Write the last tick as ``parts`` lines, each at its LINE_SIZE of ``lines``, and their lengths into ``vectors``.
 
     The last line is the state at the end of the tick. Those before it are on the straight way there; rates and force
@@ -237,7 +237,7 @@ def begin(x: Exchange) -> None:
 @law
 def finish(x: Exchange) -> None:
     """The step is done: answer it."""
-    tell(x)
+    report(x)
     call_system(x.send, x.socket, x.outbox, x.parts, 0, 0)  # one that is lost is asked for again
     x.first, x.ahead, x.stage = x.count, x.parts - 1, WAITS
     x.answers -= 1
@@ -296,7 +296,7 @@ def converse(x: Exchange) -> int:
                 if obstacles.wanted:
                     call_unit(x.list_near, x.records, x.vehicles, x.index, x.ranging, 0, 0)
                 if x.left == 1:
-                    write_place(x, floats_at(x.before, PLACE), 0)
+                    write_motion(x, floats_at(x.before, MOTION), 0)
                 call_unit(x.step, x.records, x.vehicles, x.index, 0, 0, 0)
                 x.left -= 1
                 if x.measure_us <= clock[0]:
@@ -317,9 +317,9 @@ def act(exchange: int, deed: int) -> int:
     if deed == BEGIN:
         begin(x)
     elif deed == NOTE:
-        write_place(x, floats_at(x.before, PLACE), 0)
-    elif deed == TELL:
-        tell(x)
+        write_motion(x, floats_at(x.before, MOTION), 0)
+    elif deed == REPORT:
+        report(x)
     else:
         return converse(x)
     return 0

@@ -2,7 +2,7 @@
 """What an exchange of the HIL link takes on each tick, as laws: an answer of PX4, a tick, HIL_SENSOR and the truth.
 
 ``converse`` makes many exchanges in one call, system calls included, on Linux and native physics. It leaves to Python
-(``hil_host``) whatever is not the answer to the present tick, and ticks with more to tell than these two messages.
+(``hil_host``) whatever is not the answer to the present tick, and ticks with more to report than these two messages.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ..physics.native.records import Body, Obstacles, Place
 INBOX_BYTES = 2048
 """Bytes that are read at once."""
 MARKS = 16
-"""As many fields of a record may say that there is something else to tell."""
+"""As many fields of a record may say that there is something else to report."""
 GREATEST = 10.0
 """No control is that large."""
 HEADER = 10
@@ -41,7 +41,7 @@ HEADER = 10
 NO_SIGNAL = 0x4000
 """MSG_NOSIGNAL: that the other end has gone is found when it is read from."""
 IS_DONE, IS_NEWS, IS_SILENT, IS_ODD = range(4)
-"""How ``converse`` ends: at the time, or after the ticks, that are allowed; a tick is done that has more to tell, or
+"""How ``converse`` ends: at the time, or after the ticks, that are allowed; a tick is done that has more to report, or
 that a sensor of a world has to measure in; no answer came; what came is Python's to judge."""
 
 
@@ -87,7 +87,7 @@ class HilExchange(Record):
     obstacles: int
     lowest: float  # controls of rotors that stand and that turn fastest
     highest: float
-    marks: int  # fields that say that there is something else to tell
+    marks: int  # fields that say that there is something else to report
     mark_at: Ints = array(MARKS, stored="i8")  # their addresses
     mark_size: Ints = array(MARKS, stored="i8")
     seen: int  # address of what they were, 8 bytes each
@@ -108,7 +108,7 @@ class HilExchange(Record):
     sequence: int  # of the last frame that was sent
     system: int
     component: int
-    mag: int  # samples that were told last
+    mag: int  # samples that were reported last
     baro: int
     altitude: float
     truth_every_us: int  # 0: nobody wants it
@@ -194,8 +194,8 @@ def write_truth(x: HilExchange, at: int, time_us: int) -> int:
 
 
 @law
-def tell(x: HilExchange) -> int:
-    """Write a tick that has nothing else to tell, the truth before it where that is due; gives the length."""
+def report(x: HilExchange) -> int:
+    """Write a tick that has nothing else to report, the truth before it where that is due; gives the length."""
     now_us, size = ints_at(x.clock, 1)[0], 0
     is_due = x.truth_every_us > 0 and x.truth_due_us <= now_us
     if is_due:  # it is counted behind, as Python does
@@ -250,7 +250,7 @@ def converse(exchange: int) -> int:
         x.answers -= 1
         if x.measure_us <= clock[0] or has_news(x):
             return IS_NEWS
-        call_system(x.send, x.socket, x.outbox, tell(x), NO_SIGNAL, 0)
+        call_system(x.send, x.socket, x.outbox, report(x), NO_SIGNAL, 0)
     return IS_DONE
 
 

@@ -76,7 +76,7 @@ class HilTicks:
         self._act = conversed.function()
 
     def load_state(self) -> None:
-        """Take over what has been told so far."""
+        """Take over what has been reported so far."""
         x, end = self.exchange, self.end
         x.began_us, x.sequence = end.clock.began_us, end.measurements.sender.sequence
         x.mag, x.baro, x.altitude = end.measurements.imu.sent

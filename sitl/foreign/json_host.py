@@ -158,10 +158,10 @@ class JsonHost:
         if self._lines.is_quick:
             self._converse(until_us, answers)
             return
-        told = self._lines.step(until_us)
+        states = self._lines.step(until_us)
         self._answered = self._wall()
-        self.end.answer(told, self._answered)
-        for line in told:
+        self.end.answer(states, self._answered)
+        for line in states:
             self._send(line)
 
     def _converse(self, until_us: int | None, answers: int) -> None:
@@ -182,7 +182,7 @@ class JsonHost:
 
     def serve(self, running: Callable[[], bool], on_turn: Callable[[], None] = lambda: None) -> None:
         """Answer until ``running()`` is false; ``on_turn`` is called from time to time, also without requests. An
-        autopilot that falls silent is told of, and time stands."""
+        autopilot that falls silent is reported, and time stands."""
         turn, turns = self.listen, 0
         silence = Silence(self._say, lambda: f"{self.time_us * 1e-6:.4f} s")
         while True:

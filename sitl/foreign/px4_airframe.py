@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PX4's parameters for a copter of ours, from the figures of its airframe.
+"""PX4's parameters for a copter of ours, from the properties of its airframe.
 
 Its control allocator scales torques so that what a rate loop commands, 1, moves each rotor's thrust by a known part of
 the greatest one (``ControlAllocationPseudoInverse``: roll and pitch by the root of their mean square, yaw to 1). With
@@ -16,7 +16,7 @@ from ..core.constants import GRAVITY, TICK_HZ
 from ..core.elementary import hypot
 from ..core.sums import products
 from ..vehicles import Airframe, CopterAirframe
-from ..vehicles.figures.copter import THRUST_MOMENTUM
+from ..vehicles.properties.copter import THRUST_MOMENTUM
 
 AIR_DENSITY = 1.225
 """[kg/m^3]"""

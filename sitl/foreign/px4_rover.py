@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PX4's parameters for a rover of ours, from the figures of its airframe: an Ackermann rover, or a differential one.
+"""PX4's parameters for a rover of ours, from the properties of its airframe: an Ackermann rover, or a differential one.
 
 Limits are those of the airframe's own ArduPilot parameters, where it has them.
 """
@@ -11,7 +11,7 @@ import math
 from ..core.constants import TICK_HZ
 from ..core.elementary import tan
 from ..vehicles import RoverAirframe
-from ..vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ..vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
 
 ACKERMANN, DIFFERENTIAL = "gz_rover_ackermann", "gz_rover_differential"
 """PX4_SIM_MODEL: airframes of PX4's own, without their simulator."""

@@ -53,7 +53,7 @@ class Px4Session(SlicedSession):
         self.relay: UdpRelay | None = None
         self.clients = choice.connection
         self._params = SimParameterPort(plant)
-        self._given, self._is_told = dict(params or {}), False
+        self._given, self._is_set = dict(params or {}), False
         self.server: PhysicsServer | None = None
         with contextlib.ExitStack() as undo:
             if is_relayed_by_slice:
@@ -76,8 +76,8 @@ class Px4Session(SlicedSession):
 
     def act(self) -> None:
         self._params.act()
-        if not self._is_told and self.relay is not None and self.relay.frames and self.process is not None:
-            self._is_told = True
+        if not self._is_set and self.relay is not None and self.relay.frames and self.process is not None:
+            self._is_set = True
             for name in px4.unknown_names(self.process, self._given):
                 self.say(f"--params: {self.name} has no parameter {name}; it is left out")
 

@@ -14,7 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from ..bridge.links.link import Link, Peer, heard
+from ..bridge.links.link import Link, Peer, receive_all
 from ..bridge.links.tcp import refuse_echo
 from ..bridge.links.udp import DATAGRAM_BYTES
 from .process import HOST, Cutter
@@ -75,7 +75,7 @@ class Relay:
         """Relay pending frames; waits up to ``seconds`` [s] wall time for one."""
         if self._autopilot is None:
             self._connect()
-        for _, data in heard(self._selector, self._links, self._peers, seconds):
+        for _, data in receive_all(self._selector, self._links, self._peers, seconds):
             self._to_autopilot(data)
         self._push()
 

@@ -23,7 +23,7 @@ class Wind:
 
     def __init__(self, plant: LocalPlant) -> None:
         self._set = SimulatedPlant(plant).set_parameter
-        self._told: deque[tuple[str, float]] = deque()
+        self._received: deque[tuple[str, float]] = deque()
 
     def frame(self, raw: bytes) -> None:
         """One frame of the autopilot or a client; in any thread."""
@@ -34,9 +34,9 @@ class Wind:
             fields = frame.kind.decode(frame.payload)
             name = fields.param_id.decode("ascii", "replace")
             if name.startswith(WIND):
-                self._told.append((name, float(fields.param_value)))
+                self._received.append((name, float(fields.param_value)))
 
     def blow(self) -> None:
         """Let the physics have what was told since; in its own thread, between two ticks."""
-        while self._told:
-            self._set(*self._told.popleft())
+        while self._received:
+            self._set(*self._received.popleft())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The airframe of a copter or rover from its logs, each figure with a 95 % interval (docs/identify.md).
+"""The airframe of a copter or rover from its logs, each property with a 95 % interval (docs/identify.md).
 
 from sitl.identify import identify
 
@@ -14,14 +14,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .figure import Figure
+    from .estimate import Estimate
     from .flight import FlightLog, IdentifyError
     from .identification import Identification, identify
 
-__all__ = ["Figure", "FlightLog", "Identification", "IdentifyError", "identify"]
+__all__ = ["Estimate", "FlightLog", "Identification", "IdentifyError", "identify"]
 
 _MODULES = {
-    "Figure": "figure",
+    "Estimate": "estimate",
     "FlightLog": "flight",
     "Identification": "identification",
     "IdentifyError": "flight",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the centre of mass is, from the mean difference of the motors in a hover.
 
-Motors that differ in strength look the same: the figure is what the controllers have to hold against.
+Motors that differ in strength look the same: what is found is what the controllers have to hold against.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..autopilot.copter.control.frames import FRAMES
 from ..logs.dataflash import motors
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .hover import hovers, mean
 
@@ -29,8 +29,8 @@ SYSTEMATIC, LEANS = 0.01, 0.08
 """Half of the interval, and by the lean [rad]: wind on the rotors turns the vehicle, too."""
 
 
-def balance(logs: Sequence[FlightLog]) -> list[Figure]:
-    """Both figures."""
+def balance(logs: Sequence[FlightLog]) -> list[Estimate]:
+    """Both properties."""
     parts = [(log, part) for log in logs for part in hovers(log)]
     count = sum(len(part.output) for _, part in parts)
     if count < _LEAST:
@@ -47,9 +47,9 @@ def balance(logs: Sequence[FlightLog]) -> list[Figure]:
         expo = log.parameter("MOT_THST_EXPO", default=0.65)
         c = np.clip((part.motors - low) / (high - low), 0.0, 1.0)
         thrust = c * (1.0 - expo + expo * c)
-        places = np.array([[motor.forward, motor.right] for motor in frame])
-        places = (places - places.mean(0)) / np.hypot(*(places - places.mean(0)).T).max()
-        rows.append(thrust @ places / thrust.sum(1)[:, None])
+        positions = np.array([[motor.forward, motor.right] for motor in frame])
+        positions = (positions - positions.mean(0)) / np.hypot(*(positions - positions.mean(0)).T).max()
+        rows.append(thrust @ positions / thrust.sum(1)[:, None])
         groups.append(np.full(len(rows[-1]), k))
     values, group = np.vstack(rows), np.concatenate(groups)
     lean = float(np.mean(np.concatenate([part.rows[:, 4] for _, part in parts])))

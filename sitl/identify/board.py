@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures that copters and rovers have alike: the battery's resistance, and vibration."""
+"""Properties that copters and rovers have alike: the battery's resistance, and vibration."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .regression import GUSTS_S, least_squares
 
@@ -25,7 +25,7 @@ CAPACITY = Sought("battery_capacity", "Ah", "charge of the full battery")
 VIBRATION = Sought("vibration", "m/s^2", "vibration while it moves (VIBE, greatest axis)")
 
 
-def resistance(logs: Sequence[FlightLog]) -> Figure:
+def resistance(logs: Sequence[FlightLog]) -> Estimate:
     """The battery's resistance, from how the voltage follows the current besides the charge that is used up; where the
     current changes too little, the firmware's own estimate at the end of the last flight, which knows the take-off."""
     found = _by_current(logs)
@@ -43,7 +43,7 @@ def resistance(logs: Sequence[FlightLog]) -> Figure:
     return found
 
 
-def _by_current(logs: Sequence[FlightLog]) -> Figure:
+def _by_current(logs: Sequence[FlightLog]) -> Estimate:
     volts, shapes, groups = [], [], []
     for k, log in enumerate(logs):
         if not log.has("BAT"):
@@ -76,7 +76,7 @@ def _by_current(logs: Sequence[FlightLog]) -> Figure:
     return RESISTANCE.found(value, error, f"{len(y)} rows of BAT")
 
 
-def vibration(logs: Sequence[FlightLog]) -> Figure:
+def vibration(logs: Sequence[FlightLog]) -> Estimate:
     """Mean vibration while it moved."""
     parts = []
     for log in logs:

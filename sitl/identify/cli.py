@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""``sitl identify``: an airframe's file from the logs of a vehicle; ``--plan``: what to fly so that logs tell more."""
+"""``sitl identify``: an airframe's file from the logs of a vehicle; ``--plan``: what to fly so that logs show more."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="height over the ground from which on a copter's flight counts (2); less for a small one that flew low",
     )
     parser.add_argument(
-        "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the figures observable"
+        "--plan", type=Path, metavar="FILE.waypoints", help="write a mission that makes the properties observable"
     )
     parser.add_argument("--home", metavar="LAT,LON", help="where the mission of --plan takes off [deg] (needed)")
     parser.add_argument("--vehicle", choices=("copter", "rover"), default="copter", help="that drives --plan (copter)")
@@ -41,7 +41,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what the logs tell; write the airframe or the plan."""
+    """Print what the logs show; write the airframe or the plan."""
     if options.plan is None and not options.logs:
         raise OptionError("LOG is missing: a .bin or .tlog log, or --plan FILE for what to fly")
     if options.out is not None and options.out.suffix != ".toml":
@@ -96,7 +96,7 @@ def _identify(logs: Sequence[Path], mass: float | None, out: Path | None, above:
 
         def begins(what: str) -> None:
             bar.bar_format = "{desc} ({elapsed})"
-            bar.set_description_str(f"figures: {what}")
+            bar.set_description_str(f"properties: {what}")
 
         found = identify(logs, mass, progress, begins, ABOVE_M if above is None else above)
     print(found.table())

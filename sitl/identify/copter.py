@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a copter from its logs. Each is a function of the logs; what a log cannot tell is said with the reason."""
+"""Properties of a copter from its logs. Each is a function of the logs; what a log cannot show has the reason."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .balance import balance
 from .board import CAPACITY, resistance, vibration
 from .drag import drag
-from .figure import Begins, Figure, silent
+from .estimate import Begins, Estimate, silent
 from .flight import FlightLog
 from .hover import hover
 from .rates import rates
@@ -16,12 +16,12 @@ from .sensors import sensors
 from .thrust import thrust_expo
 
 
-def figures(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
-    """All figures of a copter that these logs tell, and the others with the reason.
+def estimates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Estimate]:
+    """All properties of a copter that these logs show, and the others with the reason.
 
     Args:
         logs: of one vehicle.
-        begins: is told what is worked on, which takes longest where rates are fast and flights long.
+        begins: called with what is worked on, which takes longest where rates are fast and flights long.
     """
     begins("hover")
     hovering = hover(logs)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A copter's airframe by the figures of its logs."""
+"""A copter's airframe by the properties of its logs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _KEPT = ("ATC_", "FRAME_", "INS_ACCEL_FILTER", "INS_GYRO_FILTER", "MOT_", "PSC_"
 
 
 def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Model:
-    """The shipped airframe with the rotors of the log's FRAME_CLASS and FRAME_TYPE, changed by figures.
+    """The shipped airframe with the rotors of the log's FRAME_CLASS and FRAME_TYPE, changed by properties.
 
     Raises:
         IdentifyError: there is no shipped airframe with such rotors, or the hover output was not found.
@@ -74,15 +74,17 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Mod
 
 def _authority(base: CopterAirframe, parameters: Mapping[str, float]) -> dict[str, float]:
     """Effectiveness of roll, pitch and yaw of a vehicle that is tuned as the shipped airframe: times the rate
-    controller's gain it is the same. It stands for what the logs do not tell; a vehicle with much more of it would not
+    controller's gain it is the same. It stands for what the logs do not show; a vehicle with much more of it would not
     fly with these gains."""
     own = {parameter.name: parameter.default for parameter in TABLE} | dict(base.parameters)
-    figures = Copter(base, {**own, **{k: parameters[k] for k in ("FRAME_CLASS", "FRAME_TYPE")}}, _SHIPPED).figures()
+    properties = Copter(
+        base, {**own, **{k: parameters[k] for k in ("FRAME_CLASS", "FRAME_TYPE")}}, _SHIPPED
+    ).properties()
     found = {}
     for axis, short in (("roll", "RLL"), ("pitch", "PIT"), ("yaw", "YAW")):
         gain = f"ATC_RAT_{short}_P"
         share = own[gain] / parameters[gain] if parameters.get(gain, 0.0) > 0.0 else 1.0
-        found[axis] = figures[f"{axis}_effectiveness"] * share
+        found[axis] = properties[f"{axis}_effectiveness"] * share
     return found
 
 
@@ -103,11 +105,11 @@ def _scaled(
     )
     if found("thrust_expo").is_observed:
         expo = found("thrust_expo").value
-        if "battery_capacity" in cells:  # its sag is in the figure, and in the model besides
+        if "battery_capacity" in cells:  # its sag is in the property, and in the model besides
             sag = found("battery_resistance").value * found("hover_current").value / found("hover_voltage").value
             expo = exponent(slope_of(expo, command) * (1.0 + 2.0 * sag), command)
     expo = min(max(expo, 0.0), 1.0)
-    base = replace(base, figures={**base.figures, **cells})
+    base = replace(base, properties={**base.properties, **cells})
     speed = outflow(base, mass, command, expo, density(first.altitude))
     changes: dict[str, float | tuple[float, ...]] = {
         "mass": mass,
@@ -129,12 +131,12 @@ def _scaled(
         name="identified",
         description=f"identified from {', '.join(log.path.name for log in logs)}",
         rotors=base.rotors,
-        figures={**base.figures, **changes},
+        properties={**base.properties, **changes},
         parameters=kept({**base.parameters, **_own(first.parameters)}, ("",), TABLE),
     )
 
 
 def _own(parameters: Mapping[str, float]) -> dict[str, float]:
-    """Those that are the log's; pulses are not: figures count outputs from MOT_PWM_MIN to _MAX."""
+    """Those that are the log's; pulses are not: properties count outputs from MOT_PWM_MIN to _MAX."""
     kept_ones = {name: value for name, value in parameters.items() if name.startswith(_KEPT)}
     return {name: value for name, value in kept_ones.items() if not name.startswith("MOT_PWM_M")}

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..core.constants import GRAVITY
 from ..physics.native.atmosphere import density
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .motion import Motion, motion
 from .regression import GUSTS_S, Fit, least_squares
@@ -39,11 +39,11 @@ _WINDOW_S = 0.5
 _LAYER_M = 3.0
 _LEAST_S = 30.0
 _LEAST_SPREAD = 1.5
-"""Speeds over the ground, north or east, spread by less than this [m/s]: wind and drag are not told apart."""
+"""Speeds over the ground, north or east, spread by less than this [m/s]: wind and drag are not distinguished."""
 _MOST_RELATIVE = 0.3
 _BIAS, _BIAS_ROOT = 0.05, 0.4
-"""Error of the accelerometer's mean [m/s^2] (assumed): with one heading it is not told apart from wind. By residuals of
-about 0.15 m/s^2, of which 8 in a row are alike, its weight is this root."""
+"""Error of the accelerometer's mean [m/s^2] (assumed): with one heading it is not distinguished from wind. By residuals
+of about 0.15 m/s^2, of which 8 in a row are alike, its weight is this root."""
 SYSTEMATIC = 0.04
 """Relative half of the interval for what the model leaves out."""
 
@@ -57,7 +57,7 @@ class _Rows:
 
     def __init__(self, logs: Sequence[FlightLog]) -> None:
         moves: list[Motion] = []
-        forces, groups, places = [], [], []
+        forces, groups, numbers = [], [], []
         for k, log in enumerate(logs):
             if not log.has("IMU", "XKF1", "ATT"):
                 continue
@@ -70,12 +70,12 @@ class _Rows:
                 moves.append(motion(log, edges))
                 forces.append(means(imu.time, acc, edges))
                 groups.append(np.full(len(edges) - 1, 100 * k + j))
-                places.append(np.full(len(edges) - 1, k))
+                numbers.append(np.full(len(edges) - 1, k))
         if not moves:
             moves, forces = [Motion(*(np.zeros(0),) * 3, np.zeros((0, 3)), np.zeros(0))], [np.zeros((0, 3))]
-            groups = places = [np.zeros(0, int)]
+            groups = numbers = [np.zeros(0, int)]
         self.motion = Motion(*(np.concatenate(columns) for columns in zip(*moves)))
-        self.force, self.groups, self.log = np.vstack(forces), np.concatenate(groups), np.concatenate(places)
+        self.force, self.groups, self.log = np.vstack(forces), np.concatenate(groups), np.concatenate(numbers)
 
     def at_one_height(self) -> None:
         """Only windows in the layer in which most of the fast flight was."""
@@ -88,7 +88,7 @@ class _Rows:
         self.force, self.groups, self.log = self.force[rows], self.groups[rows], self.log[rows]
 
 
-def drag(logs: Sequence[FlightLog]) -> list[Figure]:
+def drag(logs: Sequence[FlightLog]) -> list[Estimate]:
     """Drag and wind; the wind only of a single log."""
     rows = _Rows(logs)
     rows.at_one_height()
@@ -130,12 +130,12 @@ def _fitted(rows: _Rows, bias: Array, drift: Array) -> Fit:
     for k in np.unique(rows.log):
         which = rows.log == k
         force[which, :2] -= np.linspace(-1.0, 1.0, which.sum())[:, None] * drift
-    names, place = np.unique(rows.log, return_inverse=True)
+    names, numbers = np.unique(rows.log, return_inverse=True)
     root = np.sqrt(np.clip(-rows.force[:, 2] / GRAVITY, 0.3, 3.0))
 
     def residuals(p: Array) -> Array:
-        wind = np.zeros((len(place), 3))
-        wind[:, :2] = p[5:].reshape(len(names), 2)[place]
+        wind = np.zeros((len(numbers), 3))
+        wind[:, :2] = p[5:].reshape(len(names), 2)[numbers]
         u, v, _ = rows.motion.along_body(rows.motion.velocity - wind).T
         along = force[:, 0] - p[3] + p[0] * root * u + p[1] * u * abs(u)
         across = force[:, 1] - p[4] + p[0] * root * v + p[2] * v * abs(v)
@@ -147,7 +147,7 @@ def _fitted(rows: _Rows, bias: Array, drift: Array) -> Fit:
     return least_squares(residuals, start, groups, int(GUSTS_S / _WINDOW_S))
 
 
-def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Figure]:
+def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Estimate]:
     found = []
     wind = np.zeros((len(rows.log), 3))
     wind[:, :2] = fit.value[5:].reshape(-1, 2)[np.unique(rows.log, return_inverse=True)[1]]
@@ -182,7 +182,7 @@ def _drags(fit: Fit, rows: _Rows, altitude: float, data: str) -> list[Figure]:
     return found
 
 
-def _wind(fit: Fit, data: str) -> list[Figure]:
+def _wind(fit: Fit, data: str) -> list[Estimate]:
     north, east = fit.value[5:7]
     spread = fit.covariance[5:7, 5:7]
     speed = float(np.hypot(north, east))

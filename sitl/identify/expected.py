@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the figures of an airframe would be in a log: to set its inertia by them, and to judge estimates."""
+"""What the properties of an airframe would be in a log: to set its inertia by them, and to judge estimates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..autopilot.copter.control.thrust_curve import air_density_ratio, command_f
 from ..core.constants import GRAVITY
 from ..physics.native.atmosphere import density
 from ..vehicles import CopterAirframe
-from ..vehicles.figures.copter import THRUST_MOMENTUM
+from ..vehicles.properties.copter import THRUST_MOMENTUM
 
 Array = np.ndarray[Any, Any]
 
@@ -118,8 +118,8 @@ class Copter:
             low, high = (middle, high) if self.thrust(middle) < weight else (low, middle)
         return low
 
-    def figures(self) -> dict[str, float]:
-        """By the names of the figures."""
+    def properties(self) -> dict[str, float]:
+        """By the names of the properties."""
         a, at = self.airframe, self.hover
         slope = (self.thrust(at + _STEP) - self.thrust(at - _STEP)) / (2.0 * _STEP)
         twist = (self.moment(at + _STEP) - self.moment(at - _STEP)) / (2.0 * _STEP)

@@ -59,7 +59,7 @@ class FlightLog:
 
     Args:
         path: of a .bin, a .log as text, or a .tlog.
-        progress: is told how far it is read.
+        progress: called with how far it is read.
         above: height over the ground from which on a copter's flight counts [m].
 
     Raises:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.constants import GRAVITY
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .outputs import controls
 from .regression import GUSTS_S, Fit, least_squares
@@ -35,7 +35,7 @@ HOVER_VOLTAGE = Sought("hover_voltage", "V", "battery voltage at which hover_out
 HOVER_CURRENT = Sought("hover_current", "A", "battery current in the hover")
 
 
-def hover(logs: Sequence[FlightLog]) -> list[Figure]:
+def hover(logs: Sequence[FlightLog]) -> list[Estimate]:
     """Output, voltage and current that carry the weight."""
     found_in = [_without_bias(hovers(log)) for log in logs]
     parts = [part.rows for found in found_in for part in found]

@@ -15,50 +15,50 @@ from .. import vehicles
 from ..core.whole_file import write_whole
 from ..logs.dataflash.columns import Progress
 from ..vehicles import Airframe
-from .copter import figures
+from .copter import estimates
 from .copter_airframe import model_of
-from .figure import Begins, Figure, silent
+from .estimate import Begins, Estimate, silent
 from .flight import ABOVE_M, FlightLog, IdentifyError
 from .model import Model
 from .rover.airframe import RoverModel
 from .rover.airframe import model_of as rover_model_of
-from .rover.figures import figures as rover_figures
+from .rover.estimates import estimates as rover_estimates
 from .rover.sought import LOAD
 from .telemetry import judged
 
 _LEAST_EFFICIENCY = 0.1
 """Of motors with gears: with less a mass is a slip of the pen."""
 _CELLS = ("hover_voltage", "battery_voltage")
-"""Figures of which the number of cells follows, at whose ends there may be one more."""
+"""Properties of which the number of cells follows, at whose ends there may be one more."""
 
 _ASSUMED = 2.0
-"""By this an assumed figure may be off, either way."""
+"""By this an assumed property may be off, either way."""
 
 
 @dataclass(frozen=True)
 class Identification:
-    """What logs tell.
+    """What logs show.
 
     Args:
         logs: the logs.
-        figures: all that was looked for.
+        estimates: all that was looked for.
         mass: as the user gave it [kg]; None: not given.
     """
 
     logs: tuple[FlightLog, ...]
-    figures: tuple[Figure, ...]
+    estimates: tuple[Estimate, ...]
     mass: float | None = None
 
-    def __getitem__(self, name: str) -> Figure:
-        """A figure by its name."""
-        for figure in self.figures:
-            if figure.name == name:
-                return figure
+    def __getitem__(self, name: str) -> Estimate:
+        """A property by its name."""
+        for estimate in self.estimates:
+            if estimate.name == name:
+                return estimate
         raise KeyError(name)
 
     def table(self) -> str:
-        """A line for each figure."""
-        return "\n".join(map(str, self.figures))
+        """A line for each property."""
+        return "\n".join(map(str, self.estimates))
 
     @property
     def kind(self) -> str:
@@ -67,7 +67,7 @@ class Identification:
 
     def airframe(self) -> Airframe:
         """A shipped airframe with the rotors of the log's FRAME_CLASS and FRAME_TYPE, or the steering of its
-        SERVOn_FUNCTION, changed as far as figures were found, with intervals of what follows from them.
+        SERVOn_FUNCTION, changed as far as properties were found, with intervals of what follows from them.
 
         Raises:
             IdentifyError: there is no shipped airframe with such rotors, or what moves it (hover output; speed and
@@ -76,17 +76,18 @@ class Identification:
         return self._with_intervals(self._model())
 
     def _with_intervals(self, model: Model | RoverModel) -> Airframe:
-        """How far off the airframe's figures may be: those of the logs are moved to the ends of their intervals one at
-        a time, and what that does to a figure of the airframe is added up in squares, as of independent errors."""
+        """How far off the airframe's properties may be: those of the logs are moved to the ends of their intervals
+        one at a time, and what that does to a property of the airframe is added up in squares, as of independent
+        errors."""
         airframe: Airframe = model.airframe
         squares: dict[str, list[Any]] = {}
-        for k, figure in enumerate(self.figures):
-            if not figure.is_observed or figure.name in _CELLS:
+        for k, estimate in enumerate(self.estimates):
+            if not estimate.is_observed or estimate.name in _CELLS:
                 continue
-            for end in {figure.low, figure.high}:
-                moved = [*self.figures[:k], replace(figure, value=end), *self.figures[k + 1 :]]
-                other = replace(self, figures=tuple(moved))._model().airframe
-                for name, value in other.figures.items():
+            for end in {estimate.low, estimate.high}:
+                moved = [*self.estimates[:k], replace(estimate, value=end), *self.estimates[k + 1 :]]
+                other = replace(self, estimates=tuple(moved))._model().airframe
+                for name, value in other.properties.items():
                     if self.kind == "rover" and name not in model.notes:
                         continue  # a length that goes with the vehicle's size
                     change: Any = np.subtract(value, airframe.value(name))
@@ -94,7 +95,7 @@ class Identification:
                         below, above = squares.setdefault(name, [np.zeros_like(change), np.zeros_like(change)])
                         below += np.minimum(change, 0.0) ** 2
                         above += np.maximum(change, 0.0) ** 2
-        limits = {figure.name: (figure.low, figure.high) for figure in airframe.known}
+        limits = {prop.name: (prop.low, prop.high) for prop in airframe.known}
         intervals: dict[str, Any] = {}
         for name, (below, above) in squares.items():
             middle = np.asarray(airframe.value(name), float)
@@ -108,7 +109,9 @@ class Identification:
     def doubts(self) -> list[str]:
         """What the logs say against the mass that was given: of a rover the battery tells it by the motors'
         efficiency."""
-        load = next((figure for figure in self.figures if figure.name == LOAD.name and figure.is_observed), None)
+        load = next(
+            (estimate for estimate in self.estimates if estimate.name == LOAD.name and estimate.is_observed), None
+        )
         if load is None or self.mass is None or _LEAST_EFFICIENCY * load.low <= self.mass <= load.high:
             return []
         low, high = (share * load.value for share in (_LEAST_EFFICIENCY, 1.0))
@@ -130,9 +133,9 @@ class Identification:
         head = [f"Identified from {log.path.name}: {log.columns.firmware}, {log.seconds:.0f} s" for log in self.logs]
         head += [
             "",
-            *map(str, self.figures),
+            *map(str, self.estimates),
             "",
-            "Figures without the word 'identified' are those of the airframe that",
+            "Properties without the word 'identified' are those of the airframe that",
         ]
         if self.kind == "copter":
             head += [
@@ -157,13 +160,13 @@ def identify(
     begins: Begins = silent,
     above: float = ABOVE_M,
 ) -> Identification:
-    """The figures of the copter or rover that these logs are of.
+    """The properties of the copter or rover that these logs are of.
 
     Args:
         logs: .bin or .tlog files of flights of one vehicle.
         mass: of the vehicle [kg].
-        progress: is told how far each log is read.
-        begins: is told which figures are worked on.
+        progress: called with how far each log is read.
+        begins: called with which properties are worked on.
         above: height over the ground from which on a copter's flight counts [m].
 
     Raises:
@@ -185,8 +188,8 @@ def identify(
     forms = {log.is_telemetry for log in found}
     if len(forms) > 1:
         words = ", ".join(f"{log.path.name} ({'telemetry' if log.is_telemetry else 'on-board'})" for log in found)
-        raise IdentifyError(f"logs of two forms, which tell different figures: {words}; give those of one form")
+        raise IdentifyError(f"logs of two forms, which tell different properties: {words}; give those of one form")
     if found[0].kind == "rover":
         begins("drive, steering, battery, sensors")
-    seen = figures(found, begins) if found[0].kind == "copter" else rover_figures(found)
+    seen = estimates(found, begins) if found[0].kind == "copter" else rover_estimates(found)
     return Identification(tuple(found), tuple(judged(seen, found)), mass)

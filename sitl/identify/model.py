@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The airframe that figures make of a shipped one."""
+"""The airframe that properties make of a shipped one."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import Any
 
 from ..core.constants import GRAVITY
 from ..vehicles import CopterAirframe
+from .estimate import Estimate
 from .expected import Conditions, Copter
-from .figure import Figure
 from .shared import NOISES
 
 
 class Model:
-    """A shipped airframe that takes over one figure after the other.
+    """A shipped airframe that takes over one property after the other.
 
     Args:
         base: with the mass, drag and inertia scaled to it.
         parameters: of the log's firmware.
         conditions: of the log.
-        found: a figure of the log by its name.
-        authority: effectiveness of roll, pitch, yaw where the logs do not tell it.
+        found: a property of the log by its name.
+        authority: effectiveness of roll, pitch, yaw where the logs do not show it.
     """
 
     def __init__(
@@ -31,12 +31,12 @@ class Model:
         base: CopterAirframe,
         parameters: Mapping[str, float],
         conditions: Conditions,
-        found: Callable[[str], Figure],
+        found: Callable[[str], Estimate],
         authority: Mapping[str, float],
     ) -> None:
         self.airframe = base
         self.notes: dict[str, str] = {}
-        """Figure of the airframe -> what it follows from."""
+        """Property of the airframe -> what it follows from."""
         self._parameters, self._conditions, self._found = parameters, conditions, found
         self._authority = authority
         self._drag()
@@ -45,47 +45,47 @@ class Model:
         self._yaw()
         self._balance()
         for name in NOISES:
-            if (figure := found(name)).is_observed:
-                self._set(figure, **{name: figure.value})
+            if (estimate := found(name)).is_observed:
+                self._set(estimate, **{name: estimate.value})
 
-    def _set(self, source: Figure, **values: Any) -> None:
-        self.airframe = replace(self.airframe, figures={**self.airframe.figures, **values})
+    def _set(self, source: Estimate, **values: Any) -> None:
+        self.airframe = replace(self.airframe, properties={**self.airframe.properties, **values})
         self.notes |= dict.fromkeys(values, f"identified, by {source}")
 
     def _assume(self, source: str, **values: Any) -> None:
-        self.airframe = replace(self.airframe, figures={**self.airframe.figures, **values})
+        self.airframe = replace(self.airframe, properties={**self.airframe.properties, **values})
         self.notes |= dict.fromkeys(values, f"assumed, by {source}")
 
     def _value(self, name: str) -> float:
         return float(self.airframe.value(name))
 
     def _expected(self) -> dict[str, float]:
-        return self._copter().figures()
+        return self._copter().properties()
 
     def _copter(self) -> Copter:
         return Copter(self.airframe, self._parameters, self._conditions)
 
     def _drag(self) -> None:
-        if (figure := self._found("drag_mcoef")).is_observed:
-            scale = figure.value / self._expected()["drag_mcoef"]
-            self._set(figure, momentum_drag=scale * self._value("momentum_drag"))
+        if (estimate := self._found("drag_mcoef")).is_observed:
+            scale = estimate.value / self._expected()["drag_mcoef"]
+            self._set(estimate, momentum_drag=scale * self._value("momentum_drag"))
         area, mass = list(self.airframe.value("drag_area")), self._value("mass")
         for k, axis in enumerate("xy"):
-            if (figure := self._found(f"drag_bcoef_{axis}")).is_observed:
-                area[k] = mass / figure.value
-                self._set(figure, drag_area=tuple(area))
+            if (estimate := self._found(f"drag_bcoef_{axis}")).is_observed:
+                area[k] = mass / estimate.value
+                self._set(estimate, drag_area=tuple(area))
 
     def _motors(self) -> None:
         if (lag := self._found("motor_lag")).is_observed and lag.low > 0.0:
             self._set(lag, time_constant_up=lag.value, time_constant_down=lag.value)
 
     def _inertia(self) -> None:
-        """Angular acceleration by output: inertia, since places and thrust of the motors are given."""
+        """Angular acceleration by output: inertia, since positions and thrust of the motors are given."""
         moments, expected = list(self.airframe.value("inertia")), self._expected()
         factors = []
         for k, axis in enumerate(("roll", "pitch")):
-            if (figure := self._found(f"{axis}_effectiveness")).is_observed:
-                factors.append(expected[figure.name] / figure.value)
+            if (estimate := self._found(f"{axis}_effectiveness")).is_observed:
+                factors.append(expected[estimate.name] / estimate.value)
                 moments[k] *= factors[-1]
         if factors:
             moments[2] *= sum(factors) / len(factors)
@@ -104,12 +104,12 @@ class Model:
             self._set(self._found("roll_damping"), angular_damping=damping)
 
     def _yaw(self) -> None:
-        if not (figure := self._found("yaw_effectiveness")).is_observed:
-            lever = self._value("yaw_lever") * self._authority["yaw"] / self._expected()[figure.name]
+        if not (estimate := self._found("yaw_effectiveness")).is_observed:
+            lever = self._value("yaw_lever") * self._authority["yaw"] / self._expected()[estimate.name]
             self._assume("ATC_RAT_YAW_P: effectiveness by gain is the shipped airframe's", yaw_lever=lever)
             return
-        lever = self._value("yaw_lever") * figure.value / self._expected()[figure.name]
-        self._set(figure, yaw_lever=lever)
+        lever = self._value("yaw_lever") * estimate.value / self._expected()[estimate.name]
+        self._set(estimate, yaw_lever=lever)
         spin_up = self._found("yaw_spin_up")
         if spin_up.is_observed and spin_up.low > 0.0 and self._value("time_constant_up") > 0.0:
             copter, at = self._copter(), self._copter().hover
@@ -122,9 +122,9 @@ class Model:
         rotors = self.airframe.rotors
         reach = max(math.hypot(rotor.x, rotor.y) for rotor in rotors)
         for name, axis in (("balance_forward", "x"), ("balance_right", "y")):
-            figure = self._found(name)
-            if figure.is_observed and (figure.low > 0.0 or figure.high < 0.0):
-                moved = -figure.value * reach
+            estimate = self._found(name)
+            if estimate.is_observed and (estimate.low > 0.0 or estimate.high < 0.0):
+                moved = -estimate.value * reach
                 rotors = tuple(rotor._replace(**{axis: getattr(rotor, axis) + moved}) for rotor in rotors)
         self.airframe = replace(self.airframe, rotors=rotors)
 

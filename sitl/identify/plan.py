@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What to fly so that a log tells the figures: a mission, in the order of risk, around where it takes off."""
+"""What to fly so that a log shows the properties: a mission, in the order of risk, around where it takes off."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ADVICE_COPTER = """\
 4. Be ready to take over in LOITER."""
 _ADVICE_ROVER = """\
 1. LOG_BITMASK: throttle, steering, IMU, RC and battery (65535, which is the default). Log on the ground, too:
-   LOG_DISARMED 1. Set BATT_MONITOR for voltage and current. Free, level ground of {room:.0f} m to each side.
+   LOG_DISARMED 1. Set BATT_MONITOR for voltage and current. Free, level ground of {space:.0f} m to each side.
    Let it stand for half a minute before arming.
 2. The mission: legs at rising speeds, a slalom, legs in reverse. It lies around --home; look at it in your ground
    station before you drive it.
@@ -38,7 +38,7 @@ _TAKEOFF, _WAYPOINT, _SPEED, _HOME, _TURN, _REVERSE = 22, 16, 178, 20, 115, 194
 _LEG_S, _SHORT_S = 8.0, 3.0
 """A rover's legs, by its speed [s]."""
 _TURNS = ((90, 1), (180, -1), (90, 1), (60, -1), (120, 1), (60, -1))
-"""Angle [deg] and direction of turns at a place."""
+"""Angle [deg] and direction of turns at a position."""
 
 
 Item = tuple[float, ...]
@@ -47,10 +47,10 @@ Item = tuple[float, ...]
 
 def advice(kind: str, speed: float) -> str:
     """What to set and to do, besides the mission, of a kind of vehicle."""
-    return ADVICE[kind].format(room=(_LEG_S + 2.0 * _SHORT_S) * speed)
+    return ADVICE[kind].format(space=(_LEG_S + 2.0 * _SHORT_S) * speed)
 
 
-def _place(home: tuple[float, float], north: float, east: float, up: float, hold: float = 0.0) -> Item:
+def _waypoint(home: tuple[float, float], north: float, east: float, up: float, hold: float = 0.0) -> Item:
     lon = home[1] + east * _M / math.cos(math.radians(home[0]))
     return _WAYPOINT, hold, 0, 0, 0, home[0] + north * _M, lon, up
 
@@ -58,11 +58,11 @@ def _place(home: tuple[float, float], north: float, east: float, up: float, hold
 def rover_items(latitude: float, longitude: float, speed: float) -> list[Item]:
     """Of a rover whose fastest leg is of this speed [m/s], home first."""
     home, leg, short = (latitude, longitude), _LEG_S * speed, _SHORT_S * speed
-    found = [_place(home, 0, 0, 0)]
+    found = [_waypoint(home, 0, 0, 0)]
 
-    def drive(share: float, *places: tuple[float, float]) -> None:
+    def drive(share: float, *positions: tuple[float, float]) -> None:
         found.append((_SPEED, 1, share * speed, 0, 0, 0, 0, 0))
-        found.extend(_place(home, north, east, 0) for north, east in places)
+        found.extend(_waypoint(home, north, east, 0) for north, east in positions)
 
     drive(0.5, (leg, 0), (leg, leg))
     drive(1.0, (0, leg), (0, 0), (leg, 0), (0, leg))
@@ -77,10 +77,10 @@ def rover_items(latitude: float, longitude: float, speed: float) -> list[Item]:
 def items(latitude: float, longitude: float) -> list[Item]:
     """Of a copter, home first."""
     home = (latitude, longitude)
-    found: list[Item] = [_place(home, 0, 0, 0)]
+    found: list[Item] = [_waypoint(home, 0, 0, 0)]
 
     def go(north: float, east: float, up: float, hold: float = 0.0) -> None:
-        found.append(_place(home, north, east, up, hold))
+        found.append(_waypoint(home, north, east, up, hold))
 
     found.append((_TAKEOFF, 0, 0, 0, 0, 0, 0, 15))
     go(0, 0, 15, 30)

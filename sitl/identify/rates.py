@@ -7,7 +7,7 @@ About each axis
 
 with p the rate and u the output of RATE. What is logged of p went through the low-pass of INS_GYRO_FILTER: u is sent
 through the same one. Effectiveness changes with the thrust and with the air that comes through the rotors: terms of u
-by both are besides, so that the figure is that of a hover. Air that pushes the rotors aside turns the vehicle, too: the
+by both are besides, so that the value is that of a hover. Air that pushes the rotors aside turns the vehicle, too: the
 specific force is a term; and about yaw a rotor that speeds up, by a term of u'.
 
 In a closed loop disturbances are in u, too, and output and rate are logged more slowly than they change. So instruments
@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.constants import GRAVITY
-from .figure import NORMAL_95, Begins, Figure, Sought, silent
+from .estimate import NORMAL_95, Begins, Estimate, Sought, silent
 from .flight import FlightLog
 from .moments import WEAK, Block, JointFit, fit
 from .motion import motion
@@ -55,7 +55,7 @@ DAMPING, DAMPING_SHARE = 0.15, 0.1
 _MOST_DAMPING = 1.0
 SPIN_UP_SHARE = 0.08
 TIMING_S = 0.004
-"""Lag and dead time are told apart no better."""
+"""Lag and dead time are distinguished no better."""
 
 AXES = (("roll", "R", "Roll"), ("pitch", "P", "Pitch"), ("yaw", "Y", "Yaw"))
 LAG = Sought("motor_lag", "s", "time constant of motors and their controllers")
@@ -137,8 +137,8 @@ def _filters(count: int, rate: float, cutoff: float) -> _Filters:
     return _Filters(s, band, gyro)
 
 
-def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
-    """All that RATE tells."""
+def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Estimate]:
+    """All that RATE reports."""
     usable = [log for log in logs if log.has("RATE", "ATT", "IMU", "XKF1") and log.stream("RATE").rate >= _LEAST_HZ]
     if not usable:
         had = [log.stream("RATE").rate for log in logs if log.has("RATE")]
@@ -186,7 +186,7 @@ def rates(logs: Sequence[FlightLog], begins: Begins = silent) -> list[Figure]:
     blocks = (_block(parts, axis == "yaw", rate, by_path) for axis, (parts, by_path) in chosen.items())
     found = fit(blocks, shared, np.array([0.01, 0.005]), found)
     data = f"{seconds:.0f} s of RATE, ATT, {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz"
-    return _figures(found, list(chosen), weak, data)
+    return _estimates(found, list(chosen), weak, data)
 
 
 def _power(block: Block) -> tuple[float, float]:
@@ -194,8 +194,8 @@ def _power(block: Block) -> tuple[float, float]:
     return block.moved(1), block.strength(1)
 
 
-def _figures(found: JointFit, axes: list[str], weak: dict[str, str], data: str) -> list[Figure]:
-    result: dict[str, Figure] = {}
+def _estimates(found: JointFit, axes: list[str], weak: dict[str, str], data: str) -> list[Estimate]:
+    result: dict[str, Estimate] = {}
     for axis, *_ in AXES:
         sought, damping = _effectiveness(axis), _damping(axis)
         if axis in weak:

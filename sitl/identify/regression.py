@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import optimize
 
-from .figure import NORMAL_95
+from .estimate import NORMAL_95
 
 Array = np.ndarray[Any, Any]
 
@@ -89,12 +89,12 @@ def least_squares(
         limits: least and greatest that each parameter may be.
         slopes: of the residuals by the parameters (n, k), where not all need be worked out one by one.
     """
-    ways: Any = {"x_scale": scale if scale is not None else 1.0, "bounds": limits, "jac": slopes or "2-point"}
+    options: Any = {"x_scale": scale if scale is not None else 1.0, "bounds": limits, "jac": slopes or "2-point"}
     if slopes is not None:  # each evaluation is long
-        ways["ftol"] = 1e-6
-    first = optimize.least_squares(residuals, start, **ways)
+        options["ftol"] = 1e-6
+    first = optimize.least_squares(residuals, start, **options)
     spread = 1.4826 * float(np.median(np.abs(first.fun - np.median(first.fun)))) or 1.0
-    found = optimize.least_squares(residuals, first.x, loss="huber", f_scale=3.0 * spread, **ways)
+    found = optimize.least_squares(residuals, first.x, loss="huber", f_scale=3.0 * spread, **options)
     error = residuals(found.x)
     by = slopes(found.x) if slopes is not None else _slopes(residuals, found.x, scale)
     weight = np.minimum(1.0, 3.0 * spread / np.maximum(np.abs(error), 1e-300))

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .figure import NORMAL_95, Figure, Sought
+from .estimate import NORMAL_95, Estimate, Sought
 from .flight import FlightLog
 from .signals import within
 
@@ -26,7 +26,7 @@ BIAS = Sought("gyro_bias", "rad/s", "what the gyro shows at rest, the greatest a
 BARO = Sought("baro_noise", "Pa", "noise of a sample of the barometer")
 MAG = Sought("mag_noise", "gauss", "noise of a sample of the compass, each axis")
 SPEED = Sought("gps_velocity_noise_vertical", "m/s", "noise of the receiver's vertical velocity")
-PLACE = Sought("gps_noise_horizontal", "m", "noise of a fix, without what drifts, each axis")
+POSITION = Sought("gps_noise_horizontal", "m", "noise of a fix, without what drifts, each axis")
 HEIGHT = Sought("gps_noise_vertical", "m", "the same, vertical")
 
 _LEAST = 60
@@ -39,7 +39,7 @@ _CORRELATED = 0.2
 """Of neighbours' changes: white noise has -0.5, and a filter between changes that."""
 
 
-def sensors(logs: Sequence[FlightLog]) -> list[Figure]:
+def sensors(logs: Sequence[FlightLog]) -> list[Estimate]:
     """Noise of all sensors that the logs have at rest."""
     ours = all("gym-sitl" in log.columns.firmware for log in logs)
     gyro, acc = _band(logs, "INS_GYRO_FILTER", ours), _band(logs, "INS_ACCEL_FILTER", ours)
@@ -49,7 +49,7 @@ def sensors(logs: Sequence[FlightLog]) -> list[Figure]:
         _bias(logs),
         _noise(logs, BARO, "BARO", lambda t: t["Press"][:, None], 1.0),
         _noise(logs, MAG, "MAG", lambda t: 1e-3 * _axes(t, "Mag"), 1.0, 1e-3),
-        _noise(logs, PLACE, "GPS", _places, 1.0, 0.011),
+        _noise(logs, POSITION, "GPS", _positions, 1.0, 0.011),
         _noise(logs, HEIGHT, "GPS", lambda t: t["Alt"][:, None], 1.0, 0.01),
         _noise(logs, SPEED, "GPS", lambda t: t["VZ"][:, None], 1.0),
     ]
@@ -59,7 +59,7 @@ def _axes(table: Any, name: str) -> Array:
     return np.stack([table[f"{name}{axis}"] for axis in "XYZ"], -1)
 
 
-def _places(table: Any) -> Array:
+def _positions(table: Any) -> Array:
     north, east = table["Lat"], table["Lng"]
     return _M * np.stack([north, east * np.cos(np.radians(north.mean()))], -1)
 
@@ -90,7 +90,7 @@ def _at_rest(logs: Sequence[FlightLog], name: str, values: Callable[[Any], Array
 
 def _noise(
     logs: Sequence[FlightLog], sought: Sought, name: str, values: Callable[[Any], Array], root: float, step: float = 0.0
-) -> Figure:
+) -> Estimate:
     parts = _at_rest(logs, name, values)
     if not parts:
         return sought.hidden(f"{_LEAST} samples of {name} at rest, disarmed, are needed (LOG_DISARMED 1)")
@@ -110,7 +110,7 @@ def _noise(
     return sought.between(value, value - half, value + half, f"{rows} rows of {name} at rest")
 
 
-def _bias(logs: Sequence[FlightLog]) -> Figure:
+def _bias(logs: Sequence[FlightLog]) -> Estimate:
     parts = _at_rest(logs, "IMU", lambda t: _axes(t, "Gyr"))
     if not parts:
         return BIAS.hidden(f"{_LEAST} samples of IMU at rest, disarmed, are needed (LOG_DISARMED 1)")

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from ..autopilot.params.table import Table
-from .figure import Figure
+from .estimate import Estimate
 from .flight import FlightLog
 
 NOISES = (
@@ -19,14 +19,14 @@ NOISES = (
     "gps_noise_vertical",
     "gps_velocity_noise_vertical",
 )
-"""Figures of logs that are figures of airframes."""
+"""Properties of logs that are properties of airframes."""
 _CELL = 4.2
 """Voltage of a full cell."""
 _OVERCHARGE = 0.02
 """Part of a cell by which a full battery may seem to have one more: chargers and voltmeters err."""
 
 
-def battery(log: FlightLog, voltage: Figure, resistance: Figure, has_current: bool) -> dict[str, float]:
+def battery(log: FlightLog, voltage: Estimate, resistance: Estimate, has_current: bool) -> dict[str, float]:
     """A battery that sags, where the log's did; its capacity is BATT_CAPACITY.
 
     Args:
@@ -51,5 +51,5 @@ def kept(parameters: Mapping[str, float], beginnings: tuple[str, ...], table: Ta
     return {name: v for name, v in known.items() if v != table[name].default and table[name].refusal(v) is None}
 
 
-Found = Callable[[str], Figure]
-"""A figure of a log by its name."""
+Found = Callable[[str], Estimate]
+"""A property of a log by its name."""

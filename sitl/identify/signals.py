@@ -34,14 +34,14 @@ def means(time: Array, values: Array, edges: Array) -> Array:
     values = np.asarray(values, float)
     columns = values.reshape(len(values), -1)
     steps, widths = np.diff(time), np.diff(edges)
-    place = np.clip(np.searchsorted(time, edges, "right") - 1, 0, len(time) - 2)
-    into, step = edges - time[place], np.maximum(time[place + 1] - time[place], 1e-9)
+    index = np.clip(np.searchsorted(time, edges, "right") - 1, 0, len(time) - 2)
+    into, step = edges - time[index], np.maximum(time[index + 1] - time[index], 1e-9)
     found = np.empty((len(widths), columns.shape[1]))
     for k, column in enumerate(columns.T):  # one at a time: logs are long
         area = np.zeros(len(column))
         np.cumsum(0.5 * steps * (column[1:] + column[:-1]), out=area[1:])
-        slope = (column[place + 1] - column[place]) / step
-        found[:, k] = np.diff(area[place] + into * column[place] + 0.5 * into * into * slope) / widths
+        slope = (column[index + 1] - column[index]) / step
+        found[:, k] = np.diff(area[index] + into * column[index] + 0.5 * into * into * slope) / widths
     return found.reshape(-1, *values.shape[1:])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which messages a figure needs: what a log lacks is named, and telemetry has to come often enough.
+"""Which messages a property needs: what a log lacks is named, and telemetry has to come often enough.
 
 Rates are those with which intervals held the truth in telemetry of our own copters (docs/identify.md).
 """
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ..logs.telemetry import SOURCES
-from .figure import Figure
+from .estimate import Estimate
 from .flight import FlightLog
 
 _HOVER = {"RCOU": 2.0, "IMU": 2.0, "ATT": 2.0, "XKF1": 2.0}
@@ -36,7 +36,7 @@ NEEDS: dict[str, dict[str, float]] = {
     "gps_noise_horizontal": {"GPS": 1.0},
     "gps_noise_vertical": {"GPS": 1.0},
 }
-"""Figure -> table -> least rate [Hz]."""
+"""Property -> table -> least rate [Hz]."""
 _FILTERED = "telemetry does not say at which rate, and behind which filter, RAW_IMU was sampled"
 _NEVER = {
     "gyro_noise_density": _FILTERED,
@@ -44,7 +44,7 @@ _NEVER = {
     "gps_velocity_noise_vertical": "telemetry has no vertical velocity of the receiver",
     "battery_capacity": "",
 }
-"""What telemetry never tells; "": the figure's own reason."""
+"""What telemetry never tells; "": the property's own reason."""
 _RATES_HZ = 20.0
 HOW = (
     "A .bin tells more: the vehicle writes it to its card (LOG_BACKEND_TYPE 1); add 1 to LOG_BITMASK (fast attitude), "
@@ -52,32 +52,32 @@ HOW = (
 )
 
 
-def judged(figures: Sequence[Figure], logs: Sequence[FlightLog]) -> list[Figure]:
-    """Figures with the messages that the logs lack as the reason; of telemetry, also those that came too seldom."""
+def judged(estimates: Sequence[Estimate], logs: Sequence[FlightLog]) -> list[Estimate]:
+    """Properties with the messages that the logs lack as the reason; of telemetry, also those that came too seldom."""
     judge = _of_telemetry if any(log.is_telemetry for log in logs) else _of_onboard
-    return [judge(figure, logs) for figure in figures]
+    return [judge(estimate, logs) for estimate in estimates]
 
 
-def _of_onboard(figure: Figure, logs: Sequence[FlightLog]) -> Figure:
-    lacks = [name for name in NEEDS.get(figure.name, {}) if not any(log.has(name) for log in logs)]
-    if figure.is_observed or not lacks:
-        return figure
-    return replace(figure, reason=f"the log has no {', no '.join(lacks)} (LOG_BITMASK chooses what is logged)")
+def _of_onboard(estimate: Estimate, logs: Sequence[FlightLog]) -> Estimate:
+    lacks = [name for name in NEEDS.get(estimate.name, {}) if not any(log.has(name) for log in logs)]
+    if estimate.is_observed or not lacks:
+        return estimate
+    return replace(estimate, reason=f"the log has no {', no '.join(lacks)} (LOG_BITMASK chooses what is logged)")
 
 
-def _of_telemetry(figure: Figure, logs: Sequence[FlightLog]) -> Figure:
-    if figure.name in NEEDS:
-        reason = "; ".join(filter(None, (_lack(logs, *need) for need in NEEDS[figure.name].items())))
-    elif figure.name in _NEVER:
-        reason = _NEVER[figure.name]
+def _of_telemetry(estimate: Estimate, logs: Sequence[FlightLog]) -> Estimate:
+    if estimate.name in NEEDS:
+        reason = "; ".join(filter(None, (_lack(logs, *need) for need in NEEDS[estimate.name].items())))
+    elif estimate.name in _NEVER:
+        reason = _NEVER[estimate.name]
     else:
         reason = (
             "telemetry has no output of the rate controllers (RATE), and attitudes are needed at "
             f"{_RATES_HZ:.0f} Hz: {_rate(logs, 'ATT')}"
         )
     if not reason:
-        return replace(figure, data=_words(figure.data), reason=_words(figure.reason))
-    return Figure(figure.name, figure.unit, figure.meaning, reason=reason)
+        return replace(estimate, data=_words(estimate.data), reason=_words(estimate.reason))
+    return Estimate(estimate.name, estimate.unit, estimate.meaning, reason=reason)
 
 
 def _lack(logs: Sequence[FlightLog], name: str, least: float) -> str:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Curve of thrust over the motors' command, from how thrust follows the throttle that the firmware demands.
 
-The firmware makes commands of demanded thrust by MOT_THST_EXPO, battery voltage and air density: with the right figures
-thrust is proportional to the demand. How much more or less it changes, at a hover, tells the right exponent. Flow
-through the rotors takes thrust away, and is a term besides. Gusts make the controllers answer, so that the demand
-itself says nothing sure: instruments are the height that the navigation wanted, and the wanted lean, which takes
-thrust.
+The firmware makes commands of demanded thrust by MOT_THST_EXPO, battery voltage and air density: with the right
+properties thrust is proportional to the demand. How much more or less it changes, at a hover, tells the right
+exponent. Flow through the rotors takes thrust away, and is a term besides. Gusts make the controllers answer, so that
+the demand itself says nothing sure: instruments are the height that the navigation wanted, and the wanted lean, which
+takes thrust.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from ..core.constants import GRAVITY
+from .estimate import NORMAL_95, Estimate, Sought
 from .expected import exponent, slope_of
-from .figure import NORMAL_95, Figure, Sought
 from .flight import FlightLog
 from .moments import WEAK, Block, fit
 from .motion import motion
@@ -43,7 +43,7 @@ SYSTEMATIC = 0.03
 """Half of the interval of the slope for what the model leaves out."""
 
 
-def thrust_expo(logs: Sequence[FlightLog], hover: Figure) -> Figure:
+def thrust_expo(logs: Sequence[FlightLog], hover: Estimate) -> Estimate:
     """The exponent, where the hover output was found."""
     if not hover.is_observed:
         return EXPO.hidden(f"it needs {hover.name}: {hover.reason}")

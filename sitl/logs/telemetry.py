@@ -65,7 +65,7 @@ class Telemetry(Tables):
 
     Args:
         path: of the .tlog.
-        progress: is told how many bytes are read, and how many there are.
+        progress: called with how many bytes are read, and how many there are.
 
     Raises:
         LogError: it cannot be read, or is of no ArduPilot vehicle that the simulator has.

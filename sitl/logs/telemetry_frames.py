@@ -72,7 +72,7 @@ def read(
     Args:
         path: of the .tlog.
         names: messages that are wanted.
-        progress: is told how many bytes are read, and how many there are.
+        progress: called with how many bytes are read, and how many there are.
 
     Raises:
         LogError, OSError: it cannot be read.

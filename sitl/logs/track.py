@@ -24,8 +24,8 @@ class Track:
     data: Array
     """(n, 11): ``COLUMNS``."""
     home: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Latitude, longitude [deg], altitude above mean sea level [m] of the place that positions are counted from: home
-    as of the first arming."""
+    """Latitude, longitude [deg], altitude above mean sea level [m] of the location that positions are counted from:
+    home as of the first arming."""
     modes: list[tuple[float, str]] = field(default_factory=list)
     """(time, mode) whenever it changed; the first is the mode at the start."""
     items: list[tuple[float, int]] = field(default_factory=list)
@@ -108,7 +108,7 @@ def sample_times(first: float, last: float, title: str) -> Array:
     """
     if not last - first <= LONGEST_S:
         raise TrackError(
-            f"{title} tells of places from {first:.1f} s to {last:.1f} s: at most "
+            f"{title} tells of positions from {first:.1f} s to {last:.1f} s: at most "
             f"{LONGEST_S / 3600.0:.0f} hours are read"
         )
     step = STEP_US * 1e-6

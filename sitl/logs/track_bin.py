@@ -21,14 +21,14 @@ from .track import Track
 from .track_columns import Array, TrackError
 from .track_rows import MOST_DEG, complete, integrated
 
-_PLACES = ("POS", "AHR2", "GPS")
-"""Messages with places, the best first: the estimate that is flown by, the backup's, the first receiver's."""
+_POSITIONS = ("POS", "AHR2", "GPS")
+"""Messages with locations, the best first: the estimate that is flown by, the backup's, the first receiver's."""
 _FIELDS = {
     "ATT": ("Roll", "Pitch", "Yaw", "AEKF"), "BAT": ("Inst", "Instance", "Volt", "Curr", "EnrgTot"),
     "CURR": ("Volt", "Curr"), "XKF1": ("C", "VN", "VE", "VD"), "NKF1": ("C", "VN", "VE", "VD"),
     "EKF1": ("VN", "VE", "VD"), "XKF4": ("C", "PI"), "NKF4": ("C", "PI"),
 }  # fmt: skip
-_NAMES = dict.fromkeys((*_PLACES, "MODE", "ARM", "EV", "ORGN")) | _FIELDS
+_NAMES = dict.fromkeys((*_POSITIONS, "MODE", "ARM", "EV", "ORGN")) | _FIELDS
 _HOME = 1
 _FIX_3D = 3
 _REACHED = re.compile(r"Reached (?:command|waypoint) #(\d+)")
@@ -43,20 +43,20 @@ def read(path: str | Path) -> Track:
     Mission items are known by what is said of them (DataFlash has no message for it), texts are of severity INFO.
 
     Raises:
-        LogError: the file cannot be read, or it tells of no copter and no rover that moves.
+        LogError: the file cannot be read, or it shows no copter and no rover that moves.
     """
     log, title = Columns(path, _NAMES), f"log {str(path)!r}"
     track = Track(log.kind, np.zeros((0, 11)))
-    places = {name: _places(log, name) for name in _PLACES}
-    best = next((name for name in _PLACES if len(places[name]) > 1), "")
+    positions = {name: _positions(log, name) for name in _POSITIONS}
+    best = next((name for name in _POSITIONS if len(positions[name]) > 1), "")
     if not best:
-        there = ", ".join(name for name in _PLACES if name in log.formats) or "none of them has a format"
+        there = ", ".join(name for name in _POSITIONS if name in log.formats) or "none of them has a format"
         raise TrackError(
-            f"{title} tells no way: it has no two places in POS, AHR2 or GPS (formats: {there}); a vehicle without GPS "
-            "logs none"
+            f"{title} tells no path: it has no two positions in POS, AHR2 or GPS (formats: {there}); a vehicle without "
+            "GPS logs none"
         )
     if best != "POS":
-        track.notes.append(f"places are those of {best}: it has no POS")
+        track.notes.append(f"positions are those of {best}: it has no POS")
     if log.skipped:
         track.notes.append(f"{log.skipped} bytes of it are no messages, and left out")
     if log.left_out:
@@ -72,7 +72,9 @@ def read(path: str | Path) -> Track:
     energies = _energies(log, track)
     attitude = _numbers(log, "ATT", "Roll", "Pitch", "Yaw")
     attitude[:, 1:] = np.radians(attitude[:, 1:])
-    return complete(track, title, places[best], _places(log, "ORGN").tolist(), _velocities(log), attitude, energies)
+    return complete(
+        track, title, positions[best], _positions(log, "ORGN").tolist(), _velocities(log), attitude, energies
+    )
 
 
 def armings(log: Columns) -> list[tuple[float, bool]]:
@@ -103,7 +105,7 @@ def _rows(table: Table, *fields: str) -> Array:
     return np.column_stack([table.time, *(table[field] for field in fields)])
 
 
-def _places(log: Columns, name: str) -> Array:
+def _positions(log: Columns, name: str) -> Array:
     """Time [s], latitude, longitude [deg], altitude above sea level [m]: of a filter, of the first receiver with a fix,
     or of home. Before it knows where it is, an autopilot is at 0, 0."""
     found = _numbers(log, name, "Lat", "Lng", "Alt")

@@ -28,7 +28,7 @@ MOST_SAMPLES = int(LONGEST_S * 1e6) // STEP_US + 1
 MOST_EVENTS = 1_000_000
 """Of each kind."""
 _FAR = 1e12
-"""No time, place or height is as far."""
+"""No time, location or height is as far."""
 _HEADER = ("kind", "home", "modes", "items", "texts", "armed", "samples")
 
 
@@ -110,8 +110,8 @@ def _of_header(header: Any) -> tuple[Content, int]:
                 raise ValueError(f"one of its {name} is {row!r}")
         found.append([tuple(row) for row in rows])
     modes, items, texts, armed = found
-    place = (home[0], home[1], home[2])
-    return Content(kind, place, modes, items, texts, armed, np.zeros((0, len(COLUMNS)))), count
+    location = (home[0], home[1], home[2])
+    return Content(kind, location, modes, items, texts, armed, np.zeros((0, len(COLUMNS)))), count
 
 
 def _is_number(value: Any) -> bool:
@@ -154,9 +154,9 @@ def _columns(raw: memoryview, count: int) -> Array:
 
 
 def _varints(data: Array, ends: Array) -> Array:
-    """Numbers of seven bits a byte that end before these places."""
+    """Numbers of seven bits a byte that end before these offsets."""
     lengths = np.diff(ends, prepend=0)
     if int(lengths.max()) > _LONGEST_NUMBER:
         raise ValueError(f"a number of more than {_LONGEST_NUMBER} bytes")
-    place = np.arange(len(data)) - np.repeat(ends - lengths, lengths)
-    return np.asarray(np.add.reduceat((data & np.uint8(0x7F)).astype(np.int64) << (7 * place), ends - lengths))
+    digit = np.arange(len(data)) - np.repeat(ends - lengths, lengths)
+    return np.asarray(np.add.reduceat((data & np.uint8(0x7F)).astype(np.int64) << (7 * digit), ends - lengths))

@@ -39,8 +39,8 @@ COLUMNS = (
     Column("yaw", "rad", np.radians(0.1)),
     Column("energy", "Wh", 0.01),
 )
-"""``t`` since the start of the simulation (a log of others: since its vehicle's boot), place from ``Track.home``, all
-NED; yaw within +-pi; energy taken from the battery."""
+"""``t`` since the start of the simulation (a log of others: since its vehicle's boot), position from ``Track.home``,
+all NED; yaw within +-pi; energy taken from the battery."""
 NAMES = tuple(column.name for column in COLUMNS)
 QUANTA = np.array([column.quantum for column in COLUMNS])
 

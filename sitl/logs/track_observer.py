@@ -74,7 +74,7 @@ class TrackObserver:
         self._armed: list[tuple[float, bool]] = []
         self._seen = 0
         self._boot_us = simulation.before_boot_us
-        self._place: tuple[int, int, float] | None = None
+        self._location: tuple[int, int, float] | None = None
         """Origin that rows are counted from [degE7, degE7, m]."""
         self._shift = (0.0, 0.0, 0.0)
         """Vector from the home to the origin since the last boot [m]."""
@@ -102,9 +102,9 @@ class TrackObserver:
             return
         if self._is_new:
             self._find_origin()
-        place = [x + shift for x, shift in zip(self._pos(), self._shift)]
+        position = [x + shift for x, shift in zip(self._pos(), self._shift)]
         euler = self._vehicle.v.autopilot.estimate.euler
-        row = array("d", (now * 1e-6, *place, *self._vel(), *euler, *self._energy()))
+        row = array("d", (now * 1e-6, *position, *self._vel(), *euler, *self._energy()))
         self._rows.extend(row)
         while now >= self._bits_us:
             self._bits += self._hash.digest()
@@ -118,9 +118,9 @@ class TrackObserver:
     def _find_origin(self) -> None:
         estimate = self._vehicle.v.autopilot.estimate
         lat, lon, alt = int(estimate.origin_lat), int(estimate.origin_lon), float(estimate.origin_alt)
-        if self._place is None:
-            self._place = (lat, lon, alt)
-        self._shift = (*offset_ne(self._place[0], self._place[1], lat, lon), self._place[2] - alt)
+        if self._location is None:
+            self._location = (lat, lon, alt)
+        self._shift = (*offset_ne(self._location[0], self._location[1], lat, lon), self._location[2] - alt)
         self._is_new = False
 
     def _follow_events(self) -> None:
@@ -159,7 +159,7 @@ class TrackObserver:
         """The vehicle told its clients something."""
         self._texts.append((self._vehicle.time_us * 1e-6, severity, text))
 
-    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+    def commanded(self, fields: Any, frame: int, is_location: bool, sender: tuple[int, int], result: int) -> None:
         """Not part of a track."""
 
     def parameter_set(self, name: str) -> None:
@@ -176,7 +176,7 @@ class TrackObserver:
         self._follow_events()
         data = np.array(self._rows).reshape(-1, len(COLUMNS))
         data = np.nan_to_num(data, nan=NOWHERE, posinf=NOWHERE, neginf=-NOWHERE)
-        lat, lon, alt = self._place or (0, 0, 0.0)
+        lat, lon, alt = self._location or (0, 0, 0.0)
         origin = (lat * 1e-7, lon * 1e-7, alt)
         home = self._found_home or self._present_home() or origin
         track = Track(

@@ -16,7 +16,7 @@ from .kind import kind_of_mav_type, mode_name
 from .tlog import LogError, read_steady
 from .track import Track
 from .track_columns import STEP_US, TrackError
-from .track_rows import Rows, complete, integrated, place_row
+from .track_rows import Rows, complete, integrated, location_row
 
 _STEP = STEP_US * 1e-6
 _PIECE = 50
@@ -86,9 +86,9 @@ class _Reader:
             self.rows[what].append(values)
 
     def _global_position_int(self, t: float, m: Any) -> None:
-        place = place_row(t, m.lat * 1e-7, m.lon * 1e-7, m.alt * 1e-3)
-        if place is not None:
-            self.rows["place"].append(place)
+        location = location_row(t, m.lat * 1e-7, m.lon * 1e-7, m.alt * 1e-3)
+        if location is not None:
+            self.rows["location"].append(location)
             self.rows["speed"].append((t, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01))
 
     def _attitude(self, t: float, m: Any) -> None:
@@ -103,8 +103,8 @@ class _Reader:
             self._add("power", t, m.voltage_battery * 1e-3 * m.current_battery * 1e-2)
 
     def _home_position(self, t: float, m: Any) -> None:
-        place = place_row(t, m.latitude * 1e-7, m.longitude * 1e-7, m.altitude * 1e-3)
-        self.rows["home"] += [place] if place is not None else []
+        location = location_row(t, m.latitude * 1e-7, m.longitude * 1e-7, m.altitude * 1e-3)
+        self.rows["home"] += [location] if location is not None else []
 
     def _heartbeat(self, t: float, m: Any) -> None:
         armed, mode = bool(m.base_mode & MavModeFlag.SAFETY_ARMED), mode_name(self.kind, m.custom_mode)
@@ -136,7 +136,7 @@ def read(path: str | Path, system: int | None = None) -> Track:
     Times are the vehicle's own since boot; energy is that of BATTERY_STATUS, or summed up from SYS_STATUS.
 
     Raises:
-        LogError: the file cannot be read, or it tells of no such vehicle.
+        LogError: the file cannot be read, or it shows no such vehicle.
     """
     reader = _Reader(Path(path), system)
     title = f"log {str(path)!r}"
@@ -150,8 +150,8 @@ def read(path: str | Path, system: int | None = None) -> Track:
         which = "no copter and no rover" if system is None else f"no copter or rover with system id {system}"
         there = ", ".join(f"system {number} is {_words(type_)}" for number, type_ in sorted(reader.others.items()))
         raise TrackError(f"{title} tells of {which}" + (f": {there}" if there else ": it has no HEARTBEAT of one"))
-    if len(reader.rows["place"]) < 2:
-        raise TrackError(f"{title} tells no way: it has no GLOBAL_POSITION_INT")
+    if len(reader.rows["location"]) < 2:
+        raise TrackError(f"{title} tells no path: it has no GLOBAL_POSITION_INT")
     track, rows = reader.track, reader.rows
     track.kind = reader.kind
     if reader.bad:
@@ -160,7 +160,7 @@ def read(path: str | Path, system: int | None = None) -> Track:
     if not rows["energy"] and rows["power"]:
         energies = integrated(rows["power"])
         track.notes.append("energy is summed up from SYS_STATUS: it has no BATTERY_STATUS")
-    return complete(track, title, rows["place"], rows["home"], rows["speed"], rows["attitude"], energies)
+    return complete(track, title, rows["location"], rows["home"], rows["speed"], rows["attitude"], energies)
 
 
 def _words(mav_type: int) -> str:

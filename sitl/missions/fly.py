@@ -79,7 +79,7 @@ def checked(mission: Mission, simulation: Simulation) -> Mission:
     """``mission`` as this vehicle's firmware takes it.
 
     Raises:
-        MissionRefused: there is nothing to fly, an item that the firmware does not take, a place far away.
+        MissionRefused: there is nothing to fly, an item that the firmware does not take, a position far away.
     """
     if not mission.present:
         raise MissionRefused("the mission has no items: nothing to fly")
@@ -97,7 +97,7 @@ def checked(mission: Mission, simulation: Simulation) -> Mission:
         ) from None
     lat, lon, _, _ = simulation.home
     for seq, item in enumerate(mission.items):
-        if seq and COMMANDS[item.command].has_place and not item.no_place and ":" not in simulation.physics:
+        if seq and COMMANDS[item.command].has_location and not item.no_location and ":" not in simulation.physics:
             away = hypot(*offset_ne(lat * 1e7, lon * 1e7, item.x, item.y))
             if away > FARTHEST:
                 raise MissionRefused(
@@ -152,7 +152,7 @@ class _Flight:
     ) -> None:
         self.simulation, self.limit_s, self.on_step = simulation, limit_s, on_step
         lat, lon, alt, _ = simulation.home
-        home = home_item(round(lat * 1e7), round(lon * 1e7), alt) if mission.items[0].no_place else mission.items[0]
+        home = home_item(round(lat * 1e7), round(lon * 1e7), alt) if mission.items[0].no_location else mission.items[0]
         self.items = (home, *mission.items[1:])
         self.fence: Sequence[MissionItem] = ()
         self.rally: Sequence[MissionItem] = ()

@@ -10,7 +10,7 @@ from typing import cast
 
 from sitl.autopilot.copter.navigation import spline
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.mission.place import down, point
+from sitl.autopilot.mission.location import down, point
 from sitl.core.algebra import dot
 from sitl.core.elementary import hypot
 from sitl.core.mavlink import MavCmd
@@ -74,7 +74,7 @@ class PathWatch:
                 self.deviation = Deviation(away, seq, self._simulation.time_us * 1e-6)
 
     def _in_plane(self, p: Vec3) -> Vec3:
-        """The point itself; of a rover its place in the plane."""
+        """The point itself; of a rover its position in the plane."""
         return p.replace(z=0.0) if self._flat else p
 
     def _begin(self, seq: int, here: Vec3) -> None:
@@ -92,7 +92,7 @@ class PathWatch:
             self._legs = [*before, (start, self._end)]
         elif item.command == MavCmd.NAV_SPLINE_WAYPOINT:
             curve = cast("CopterNav", ap.modes.nav).spline
-            marks = [spline.place(curve, k / PIECES) for k in range(PIECES + 1)]
+            marks = [spline.position(curve, k / PIECES) for k in range(PIECES + 1)]
             self._end = marks[-1]
             self._legs = [*before, *pairwise(marks)]
         elif item.command == MavCmd.NAV_TAKEOFF:

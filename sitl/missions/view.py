@@ -20,7 +20,7 @@ from sitl.view.flights import Flight, of_track
 from .comparison import alignment, flight
 
 _CURVES = ("position", "cross_track")
-"""Differences that are drawn of two flights: at the same time, and from the other's way."""
+"""Differences that are drawn of two flights: at the same time, and from the other's path."""
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The truth at the precision of HIL_STATE_QUATERNION (https://mavlink.io/en/messages/common.html#HIL_STATE_QUATERNION).
 
-Everything that MAVLink tells of the truth is made of this, so that it is the same whether the physics runs in the
+Everything that MAVLink reports of the truth is made of this, so that it is the same whether the physics runs in the
 autopilot's process or behind a link.
 """
 

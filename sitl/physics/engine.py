@@ -22,11 +22,11 @@ from ..worlds import World
 
 def offset(dtype: Any, *path: str) -> int:
     """Of a field within a record [bytes]."""
-    place = 0
+    at = 0
     for name in path:
         dtype, more = dtype.fields[name][:2]
-        place += more
-    return place
+        at += more
+    return at
 
 
 Array = np.ndarray[Any, Any]
@@ -52,7 +52,7 @@ class Laws:
 
 @dataclass(frozen=True)
 class EngineVehicle:
-    """What an engine is told of its vehicle: record, airframe, compiled laws and world."""
+    """What an engine gets of its vehicle: record, airframe, compiled laws and world."""
 
     v: Any
     """The record."""
@@ -88,7 +88,7 @@ class Engine(ABC):
 
     @abstractmethod
     def place(self) -> None:
-        """Put the body where the record says (``physics.body``), at rest: power-on. Figures may have changed."""
+        """Put the body where the record says (``physics.body``), at rest: power-on. Properties may have changed."""
 
     @abstractmethod
     def move(self) -> None:

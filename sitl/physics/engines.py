@@ -18,22 +18,22 @@ _registered: dict[str, dict[str, str]] = {}
 """Engines of other packages: name -> kind of vehicle -> "module:FUNCTION"."""
 
 
-def register_engine(name: str, kind: str, place: str) -> None:
+def register_engine(name: str, kind: str, reference: str) -> None:
     """Make an engine of another package known in this process.
 
     Args:
         name: what ``physics=`` takes.
         kind: name of a kind of vehicle that it simulates.
-        place: "module:FUNCTION" of a function that makes an ``Engine`` of a ``EngineVehicle``.
+        reference: "module:FUNCTION" of a function that makes an ``Engine`` of a ``EngineVehicle``.
 
     Raises:
-        EngineError: the name is one of ours, or ``place`` is no such text.
+        EngineError: the name is one of ours, or ``reference`` is no such text.
     """
     if name in BACKENDS:
         raise EngineError(f"physics {name!r} comes with the simulator; choose another name")
-    if not re.fullmatch(r"[\w.]+:\w+", place):
-        raise EngineError(f'physics {name!r}: where it is must be written as "module:FUNCTION", not {place!r}')
-    _registered.setdefault(name, {})[kind] = place
+    if not re.fullmatch(r"[\w.]+:\w+", reference):
+        raise EngineError(f'physics {name!r}: where it is must be written as "module:FUNCTION", not {reference!r}')
+    _registered.setdefault(name, {})[kind] = reference
 
 
 def backends() -> tuple[str, ...]:
@@ -54,7 +54,7 @@ def find(name: str, kind: str, models: Mapping[str, str]) -> Callable[[EngineVeh
             imported.
         MissingExtra: the library that one of ours is made with is not installed; nothing has been compiled for it yet.
     """
-    others = {engine: places[kind] for engine, places in _registered.items() if kind in places}
+    others = {engine: references[kind] for engine, references in _registered.items() if kind in references}
     models = {**models, **others}
     if name not in backends() and name not in models:
         raise EngineError(f"physics {name!r} is not known; there are {', '.join(backends())}")

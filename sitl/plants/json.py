@@ -31,7 +31,7 @@ from .json_link import WAIT_S, JsonLink, parse_address
 from .plant import PhysicsLostError, Plant, SimulatedVehicle
 
 OWN = ("home", "seed", "estimator")
-"""Options of a simulation that are the autopilot's at this kind of link: the physics knows no place on the earth."""
+"""Options of a simulation that are the autopilot's at this kind of link: the physics knows no position on the earth."""
 RESEND_S = 1.0
 """Wall time after which a frame without an answer is sent again, as ArduPilot does [s]."""
 PATIENCE_S = 2.5

@@ -16,9 +16,9 @@ from ..physics.native.ranging import (
     RANGEFINDER,
     Ranging,
     aim_sensor,
-    figures_of,
     finish_scan,
     measure,
+    properties_of,
     scan_due,
     sensor_due,
 )
@@ -50,7 +50,7 @@ class Company(NamedTuple):
 
 
 class Rays(NamedTuple):
-    """A sensor's rays, and room to work in: the arrays of a ``Beams``."""
+    """A sensor's rays, and memory to work in: the arrays of a ``Beams``."""
 
     rays: Array
     directions: Array
@@ -58,7 +58,7 @@ class Rays(NamedTuple):
 
 
 def rays_of(v: Any) -> list[Rays | None]:
-    """The rays of the sensors that a vehicle's figures ask for; None: it has no such sensor."""
+    """The rays of the sensors that a vehicle's properties ask for; None: it has no such sensor."""
     a = v.physics.airframe
     fan = planar.rays(a.lidar_rays, a.lidar_fov) if a.lidar_samples > 0 else None
     down = np.array([[0.0], [0.0], [1.0]]) if a.rangefinder_max > 0.0 else None
@@ -78,7 +78,7 @@ class Rangers:
     """The sensors that one vehicle has, from power-on.
 
     Args:
-        vehicle: with the figures of its airframe in its record.
+        vehicle: with the properties of its airframe in its record.
         scene: what is around it.
         bind: makes a unit a function for this vehicle.
     """
@@ -107,19 +107,19 @@ class Rangers:
         self.find_due()
 
     def with_own_workspace(self) -> tuple[int, Any]:
-        """(Address of a ``Ranging`` of the same world and sensors with other room to work in, what keeps it alive): for
-        vehicles that another thread advances."""
+        """(Address of a ``Ranging`` of the same world and sensors with other memory to work in, what keeps it alive):
+        for vehicles that another thread advances."""
         memory = self._memory.copy()
-        copy, room = Ranging.of(memory, 0), []
+        copy, buffers = Ranging.of(memory, 0), []
         for number, arrays in enumerate(self._rays):
             if arrays is not None:
                 own = Rays(arrays.rays, np.empty_like(arrays.directions), np.empty_like(arrays.ranges))
-                room.append(own)
+                buffers.append(own)
                 copy.beams[number].directions, copy.beams[number].ranges = (
                     own.directions.ctypes.data,
                     own.ranges.ctypes.data,
                 )
-        return memory.ctypes.data, (self, memory, room)
+        return memory.ctypes.data, (self, memory, buffers)
 
     def enter(self, geometry: Geometry, floor: float) -> None:
         """Measure in another world from now on; ``floor``: height of its floor in its frame [m]."""
@@ -152,7 +152,7 @@ class Rangers:
             if arrays is None or sensor_due(v.sensors, v.physics.airframe, beams, number) > v.time_us:
                 continue
             self._aim(number)
-            origin, longest = np.array(beams.origin), figures_of(v.physics.airframe, number).range_max
+            origin, longest = np.array(beams.origin), properties_of(v.physics.airframe, number).range_max
             assert scene.cast is not None
             if not scene.cast(origin, arrays.directions, arrays.ranges, longest):
                 raycast.scan(scene.geometry, origin, arrays.directions, arrays.ranges)

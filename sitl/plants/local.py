@@ -32,7 +32,7 @@ class LocalPlant(Plant):
         vehicle: record, airframe and kind.
         scenario: what is simulated; its physics is an engine (``sitl.physics.engines.BACKENDS``).
         core: the core of this kind of vehicle, if it is loaded already.
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
 
     Raises:
         OptionError, EngineError, WorldError: what cannot be simulated, named.
@@ -59,7 +59,7 @@ class LocalPlant(Plant):
         self.progress = progress
         self.engine: Engine | None = None
         if backend != NATIVE:
-            if vehicle.airframe.figures.get("on_bench"):
+            if vehicle.airframe.properties.get("on_bench"):
                 raise EngineError(
                     f"physics {backend!r} has no bench for airframe {vehicle.airframe.name!r}; {NATIVE!r} has"
                 )
@@ -218,7 +218,7 @@ def stand_alone(
 
     Args:
         frame: airframe, or a whole scenario; of its parameters the SIM_ ones count.
-        progress: told of each unit that is compiled.
+        progress: called for each unit that is compiled.
         options: the other fields of ``sitl.scenario.Scenario``.
 
     Raises:

@@ -96,7 +96,7 @@ class PhysicsServer:
     Args:
         plant: the vehicle's physics, at power-on.
         host, port: where it listens; port 0 takes a free one.
-        say: told what people should know.
+        say: called with what people should know.
 
     Raises:
         LinkAddressError: the port is taken or not allowed.
@@ -228,7 +228,7 @@ class Silence:
     def __init__(self, say: Callable[[str], None], at: Callable[[], str]) -> None:
         self._say, self._at = say, at
         self.waits = 0
-        """Waits in vain since it was last heard."""
+        """Waits in vain since it was last received."""
         self._is_said = False
 
     def goes_on(self) -> None:

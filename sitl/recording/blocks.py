@@ -166,20 +166,20 @@ class BlockReader:
                 return
             kind, packing, length, checksum = _HEAD.unpack_from(data, at)
             packed = data[at + _HEAD.size : at + _HEAD.size + length]
-            place = f"block {number} at byte {at} of {len(data)}"
+            where = f"block {number} at byte {at} of {len(data)}"
             if kind not in b"HESZ" or packing > LZMA or length > LONGEST:
-                self.fault = f"is corrupted: {place} does not begin as a block does"
+                self.fault = f"is corrupted: {where} does not begin as a block does"
                 return
             if len(packed) < length:
-                self._cut(f"ends at byte {len(data)} in the middle of {place}, which has {length} bytes")
+                self._cut(f"ends at byte {len(data)} in the middle of {where}, which has {length} bytes")
                 return
             if _checksum(kind, packing, packed, before) != checksum:
-                self.fault = f"is corrupted: {place} does not match its checksum"
+                self.fault = f"is corrupted: {where} does not match its checksum"
                 return
             try:
                 unpacked = _unpack(packing, packed, min(LONGEST, left_over))
             except (zlib.error, lzma.LZMAError, EOFError) as error:
-                self.fault = f"is corrupted: {place} cannot be unpacked: {error}"
+                self.fault = f"is corrupted: {where} cannot be unpacked: {error}"
                 return
             left_over -= len(unpacked)
             yield Block(kind, unpacked, at)

@@ -105,7 +105,7 @@ def vehicle_differences(then: Mapping[str, Any], now: Mapping[str, Any]) -> list
     if then["airframe"]["name"] != now["airframe"]["name"]:
         found.append(f"airframe {then['airframe']['name']} -> {now['airframe']['name']}")
         then = {**then, "airframe": now["airframe"]}
-    for group, title in (("figures", "figure"), ("parameters", "parameter")):
+    for group, title in (("properties", "property"), ("parameters", "parameter")):
         old, new = then["airframe"][group], now["airframe"][group]
         for name in sorted({*old, *new}):
             if old.get(name) != new.get(name):

@@ -270,7 +270,7 @@ class Recorder:
 
 
 def repack(path: Path) -> None:
-    """Compress a whole recording with LZMA, in place and atomically; where the disk has no room for both, it stays as
+    """Compress a whole recording with LZMA, in place and atomically; where the disk has no space for both, it stays as
     it is."""
     blocks = list(BlockReader(path))
     beside = path.with_name(path.name + ".packing")

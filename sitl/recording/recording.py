@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core import documents
+from ..vehicles.old_names import key_of_properties
 from .blocks import END, ENTRIES, HEADER, SECTION, Block, BlockReader
 from .entries import Entry, RecordingError, decode
 
@@ -114,12 +115,13 @@ def _header(block: Block) -> dict[str, Any]:
         if not isinstance(found[key], types):
             raise ValueError(f"its {key} is {found[key]!r}")
     version, airframe = found["version"], found["airframe"]
+    airframe["properties"] = airframe.pop(key_of_properties(airframe))
     if not {"sources", "compiled core"} <= version.keys() or not isinstance(version["sources"], dict):
         raise ValueError("its version names no sources")
     if not isinstance(airframe["name"], str) or not all(
-        isinstance(airframe[group], dict) for group in ("figures", "parameters")
+        isinstance(airframe[group], dict) for group in ("properties", "parameters")
     ):
-        raise ValueError("its airframe has no name, figures or parameters")
+        raise ValueError("its airframe has no name, properties or parameters")
     return found
 
 

@@ -57,7 +57,7 @@ class Listener(Protocol):
     """What hears clients; a bridge does."""
 
     @property
-    def heard(self) -> int:
+    def received(self) -> int:
         """How often clients have said something, so far."""
         ...
 
@@ -75,7 +75,7 @@ class Pacing:
 
     A slice, the simulated time between two looks at clients and clock, lasts up to 2 ms of wall time and 20 ms of
     simulated time. While no client says anything it grows, where simulated time is quick: to a tenth of the simulated
-    time since somebody did, to 1 ms of wall time, and to 10 s. So a client that answers is heard nearly as soon as
+    time since somebody did, to 1 ms of wall time, and to 10 s. So a client that answers is read nearly as soon as
     ever, and one that only reads is sent much at once. Slices are whole ticks, from one tick to ``LONGEST_QUIET_US``.
 
     What counts is the simulated time that went by: the caller may advance by less than a slice.
@@ -108,7 +108,7 @@ class Pacing:
         self._least_us = whole_ticks(min(slice_us, _LONGEST_US))
         self.slice_us = self._least_us
         """Simulated time to advance between two looks at the wall clock [us]."""
-        self._heard, self._quiet_us, self._looked = 0, 0, self._clock()
+        self._received, self._quiet_us, self._looked = 0, 0, self._clock()
 
     def after_slice(self, simulation: Simulation) -> None:
         """Wait until the next slice is due, and answer clients meanwhile: none of them can hurry the clock."""
@@ -118,7 +118,7 @@ class Pacing:
         """The same for what hears clients; ``time_us``: simulated time now."""
         passed_us = self._passed(time_us)
         wait = self.wait_s(passed_us)
-        self._fit_slice(listener.heard, passed_us)
+        self._fit_slice(listener.received, passed_us)
         while wait > 0.0:
             if listener.wait(min(wait, _LONGEST_WAIT_S)):
                 listener.receive()
@@ -130,17 +130,17 @@ class Pacing:
         self._time_us = time_us
         return min(max(time_us - before, 0), self.slice_us + TICK_US)
 
-    def _fit_slice(self, heard: int, passed_us: int) -> None:
+    def _fit_slice(self, received: int, passed_us: int) -> None:
         """Choose the next slice.
 
         Args:
-            heard: how often clients have said something so far.
+            received: how often clients have said something so far.
             passed_us: simulated time since the last slice.
         """
         now = self._clock()
         took, self._looked = now - self._looked, now
-        if heard != self._heard:
-            self._heard, self._quiet_us = heard, 0
+        if received != self._received:
+            self._received, self._quiet_us = received, 0
         else:
             self._quiet_us = min(self._quiet_us + passed_us, _QUIET * LONGEST_QUIET_US)
         if self.speedup is None:

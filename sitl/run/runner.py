@@ -24,7 +24,7 @@ MORE_TCP_PORTS = (5762, 5763)
 OUTPUT_PORTS = (14550, 14551, 14540)
 """Where QGroundControl, MAVProxy and MAVSDK listen by default; scripts listen on 14551 beside a ground station."""
 STREAM_RATE_HZ = 4
-"""Of all stream groups to UDP clients unless told otherwise, as MAVProxy asks for."""
+"""Of all stream groups to UDP clients by default, as MAVProxy asks for."""
 LOG_STREAMS = {
     "EXTRA1": 10,
     "POSITION": 10,

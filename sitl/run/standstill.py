@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""While simulated time stands: clients are heard, and find the vehicle by a HEARTBEAT about once a wall second.
+"""While simulated time stands: bytes of clients are read, and they find the vehicle by a HEARTBEAT about once a wall
+second.
 
 Simulations whose clock clients push (``sitl run --lockstep``): the wall clock decides nothing they see.
 """

@@ -73,8 +73,8 @@ class BulletTurtlebots(Turtlebots):
             self.scan[index], self.commands[index] = scan, command
             raise
 
-    def set_figure(self, index: int, name: str, value: float) -> None:
-        super().set_figure(index, name, value)
+    def set_property(self, index: int, name: str, value: float) -> None:
+        super().set_property(index, name, value)
         self.robots[index].put()
 
     def render(self, index: int, width: int, height: int) -> Any:

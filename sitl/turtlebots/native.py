@@ -37,7 +37,7 @@ class Turtlebots:
     Args:
         world: name, .toml file or World.
         count: of robots.
-        airframe: figures that all start with.
+        airframe: what all start with.
         lidar: rays and readings.
 
     Raises:
@@ -64,7 +64,7 @@ class Turtlebots:
         self.lidar = lidar
         self.count = count
         self.fleet = TurtlebotRecord.fleet(count)
-        self.fleet["figures"] = airframe.record()
+        self.fleet["airframe"] = airframe.record()
         self.scan: npt.NDArray[np.float32] = np.zeros((count, lidar.readings), np.float32)
         """Readings of the lidars [m], from right to left, inf for nothing in range; each call writes into it."""
         self.commands = np.full((count, 2), math.nan)
@@ -83,23 +83,23 @@ class Turtlebots:
         beams = Beams(rays, np.empty_like(rays), np.empty(self.lidar.rays))
         self._arguments = fleet, Orders(self.commands, self.ticks), g.arrays, beams, self.scan
         self._advance = advance.bind(*self._arguments)
-        self._places: npt.NDArray[np.int64] | None = None
+        self._world_addresses: npt.NDArray[np.int64] | None = None
         """See ``advance_in_worlds``; None: all are in the world that they begin in."""
         if any(world is not self.world for world in self.worlds):
-            self._part_ways()
+            self._separate()
 
-    def _part_ways(self) -> None:
-        self._places = np.array([_addresses(world) for world in self.worlds])
+    def _separate(self) -> None:
+        self._world_addresses = np.array([_addresses(world) for world in self.worlds])
         fleet, orders, _, beams, scan = self._arguments
-        self._advance = advance_apart.bind(fleet, orders, self._places, beams, scan)
+        self._advance = advance_apart.bind(fleet, orders, self._world_addresses, beams, scan)
 
     def enter(self, index: int, world: World) -> None:
         """Let one robot be in another world from now on; ``reset`` puts it somewhere there."""
         self.worlds[index] = world
-        if self._places is None:
-            self._part_ways()
+        if self._world_addresses is None:
+            self._separate()
         else:
-            self._places[index] = _addresses(world)
+            self._world_addresses[index] = _addresses(world)
 
     def reset(self, index: int = 0, pose: Pose | None = None, seed: int = 0) -> None:
         """Put one robot at a pose, at rest; its scan is that of the next ``advance`` or ``look``.
@@ -154,14 +154,14 @@ class Turtlebots:
         self.scan[index] = np.frombuffer(scan, np.float32)
         self.commands[index] = math.nan
 
-    def set_figure(self, index: int, name: str, value: float) -> None:
-        """Replace a figure of one robot (``sitl.vehicles.turtlebot.Figures``).
+    def set_property(self, index: int, name: str, value: float) -> None:
+        """Replace a property of one robot (``sitl.vehicles.turtlebot.Properties``).
 
         Raises:
-            AirframeError: no such figure, or a value outside its limits.
+            AirframeError: no such property, or a value outside its limits.
         """
         AIRFRAME.changed(**{name: value})
-        setattr(self.views[index].figures, name, float(value))
+        setattr(self.views[index].airframe, name, float(value))
 
     def pose(self, index: int = 0) -> tuple[float, float, float, float]:
         """x, y, z [m] and yaw [rad] of one robot."""

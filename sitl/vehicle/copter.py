@@ -123,9 +123,9 @@ def obey(v: Copter, order: MoveOrder, ranging: int) -> int:
     p = v.physics
     before, was_calm = p.body.q, is_calm(v)
     d = displace(v, order, move_autopilot)
-    if order.other_figures:
+    if order.other_properties:
         prepare(p.airframe, p.derived)
-    if order.other_figures or order.says_velocity or not (was_calm and is_calm(v)):
+    if order.other_properties or order.says_velocity or not (was_calm and is_calm(v)):
         if not hover_again(v):
             return NO_HOVER
     show_field(p, v.sensors, before)
@@ -154,9 +154,9 @@ def meet(fleet: Sequence[Copter], index: int, mover: int, shows: int) -> None:
 def apply_sim_parameters(v: Copter) -> None:
     """SIM_ parameters of all kinds, those of a copter's motors, and its shove."""
     sim_parameters.apply(v)
-    params, rotors, figures = v.autopilot.params, v.physics.rotors, v.physics.airframe
-    v.physics.wind.time_constant *= figures.wind_lag
-    v.autopilot.control.motors.learns_at_rest = figures.learns_at_rest != 0
+    params, rotors, properties = v.autopilot.params, v.physics.rotors, v.physics.airframe
+    v.physics.wind.time_constant *= properties.wind_lag
+    v.autopilot.control.motors.learns_at_rest = properties.learns_at_rest != 0
     rotors.telemetry = params.SIM.ESC_TELEM != 0
     rotors.rpm_armed, rotors.rpm_max = params.SIM.ESC_ARM_RPM, 60.0 * params.SIM.VIB_MOT_MAX
     _vibrate(v)

@@ -75,7 +75,7 @@ def named(parameter: str, instance: int) -> str:
 EFFECTS: tuple[Effect, ...] = (
     Effect("gps", "off", {"SIM_GPS{n}_ENABLE": 0}, "no receiver any more", instances=2),
     Effect("gps", "wrong", {"SIM_GPS{n}_GLTCH_X": (AMOUNT, _METRE)}, "fixes lie to the north", 50.0, "[m]", 2),
-    Effect("gps", "garbage", {"SIM_GPS{n}_JAM": 1}, "jammed: place, speed and satellites jump", instances=2),
+    Effect("gps", "garbage", {"SIM_GPS{n}_JAM": 1}, "jammed: position, speed and satellites jump", instances=2),
     Effect("gps", "delayed", {"SIM_GPS{n}_LAG_MS": (AMOUNT, 1000.0)}, "fixes come late", 0.5, "[s]", 2),
     Effect("gps", "intermittent", {"SIM_GPS{n}_BYTELOS": (AMOUNT, 100.0)}, "bytes are lost", 0.01, "share", 2),
     Effect("gyro", "wrong", {"SIM_GYR{n}_BIAS_X": AMOUNT}, "the roll rate that it shows is off", 0.5, "[rad/s]", 2),

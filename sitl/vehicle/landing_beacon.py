@@ -24,7 +24,7 @@ LEAST = 0.01
 
 
 @law
-def place_of(p: LandingBeacon, place: Place) -> Vec3:
+def position_of(p: LandingBeacon, place: Place) -> Vec3:
     """The beacon, NED from where the vehicle was powered on [m]."""
     return with_down(offset_ne(place.lat, place.lon, p.LAT * 1e7, p.LON * 1e7), -p.HEIGHT)
 
@@ -60,7 +60,7 @@ def look(v: Vehicle) -> None:
         return
     if v.time_us - t.line_us < 1e6 / max(p.RATE, 1.0):
         return
-    there = v.physics.body.pos - place_of(p, v.physics.place)
+    there = v.physics.body.pos - position_of(p, v.physics.place)
     t.sees = is_seen(p, there)
     if t.sees:
         has_distance = kind == WITH_DISTANCE and (int(p.OPTIONS) & 1) != 0

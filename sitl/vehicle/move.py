@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A prepared vehicle is put elsewhere, at another speed, in another wind, with other figures, within one instant.
+"""A prepared vehicle is put elsewhere, at another speed, in another wind, with other properties, within one instant.
 
 Body, estimator, controllers, home and origin move as one: what the autopilot believes of the vehicle is as true as it
 was. Time, modes, biases and what is learnt of them stay. The laws here put together what each subsystem has for itself
@@ -34,8 +34,8 @@ class MoveOrder(Record):
     """Where one vehicle is put and how it is then; what is not said stays."""
 
     vehicle: int  # number in the fleet
-    says_place: bool
-    place: Vec2  # of the body's origin, from the world's origin or home, NE [m]
+    says_position: bool
+    position: Vec2  # of the body's origin, from the world's origin or home, NE [m]
     says_height: bool
     height: float  # over the floor [m]
     says_heading: bool
@@ -46,7 +46,7 @@ class MoveOrder(Record):
     wind_speed: float  # [m/s]
     wind_direction: float  # where it comes from [deg]
     wind_turbulence: float  # standard deviation [m/s]
-    other_figures: bool  # the airframe's figures have been changed in its record
+    other_properties: bool  # the airframe's properties have been changed in its record
     other_world: bool  # what the record says of solids and lidar readings is of another world
     result: int  # DONE, IN_SOLID or NO_HOVER: then the record is of no use
 
@@ -62,15 +62,15 @@ class Local(NamedTuple):
     """Of its origin [degE7]."""
     lon: int
     displacement: Displacement
-    """Of places in it."""
+    """Of positions in it."""
 
 
 @law
 def ordered(v: Vehicle, order: MoveOrder) -> Displacement:
-    """The displacement of places in the world that an order asks for."""
+    """The displacement of positions in the world that an order asks for."""
     body = v.physics.body
     angle = wrap_pi(order.heading - euler_of(body.q).yaw) if order.says_heading else 0.0
-    there = order.place if order.says_place else horizontal(body.pos)
+    there = order.position if order.says_position else horizontal(body.pos)
     down = -order.height if order.says_height else body.pos.z
     still = Vec3(0.0, 0.0, 0.0)
     turn = displacement(angle, still, still)
@@ -99,7 +99,7 @@ def of_estimate(place: Place, e: Estimate, d: Displacement) -> Local:
 
 @law
 def move_frame(v: Vehicle, d: Displacement) -> Displacement:
-    """Move the origin of the estimate, if it has one; the displacement of places in its frame."""
+    """Move the origin of the estimate, if it has one; the displacement of positions in its frame."""
     ap = v.autopilot
     e = ap.estimate
     if ap.ekf.use_external:
@@ -146,7 +146,7 @@ def look_around(v: Vehicle, ranging: int, order: MoveOrder, d: Displacement) -> 
 
 @law
 def displace(v: V, order: MoveOrder, move_firmware: Callable[[V, Displacement], None]) -> Displacement:
-    """Move physics and autopilot; says how places in the world moved."""
+    """Move physics and autopilot; says how positions in the world moved."""
     d = ordered(v, order)
     local = move_frame(v, d)
     move_physics(v.physics, v.sensors, d, Clock(v.tick, v.time_us))

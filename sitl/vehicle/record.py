@@ -16,7 +16,7 @@ class Vehicle(Record):
     time_us: int  # since boot; only physics advances it
     tick: int  # ticks since boot
     rng: Rng
-    physics: Physics  # airframe figures and truth
+    physics: Physics  # airframe properties and truth
     sensors: Sensors  # border: written by physics, read by the autopilot
     actuators: Actuators  # border: written by the autopilot, read by physics
     autopilot: Autopilot

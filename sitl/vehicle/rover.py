@@ -31,7 +31,7 @@ from ..physics.native.rover.state import Physics, SteeringServo
 from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
 from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
-from ..vehicles.figures.rover import STEERING_SKID
+from ..vehicles.properties.rover import STEERING_SKID
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
@@ -87,7 +87,7 @@ def obey(v: Rover, order: MoveOrder, ranging: int) -> int:
     p = v.physics
     before = p.body.q
     d = displace(v, order, move_autopilot)
-    if order.other_figures:
+    if order.other_properties:
         prepare(p.airframe, p.derived)
     show_field(p, v.sensors, before)
     return DONE if look_around(v, ranging, order, d) else IN_SOLID

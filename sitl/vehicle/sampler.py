@@ -19,11 +19,11 @@ class Sampler(Record):
     due_us: int  # when the next row is taken [since boot]
     row_us: int  # when the last one was [since boot]
     row: int  # number of the last one; row 0 is there from the start
-    rows: int  # number of the last one that there is room for
+    rows: int  # number of the last one that there is space for
     period_count: int
     period_us: Ints = array(PERIODS, stored="i8")  # a row is taken at each multiple of each
     count: int  # words of 8 bytes in a row
-    words: int  # address of their places in the vehicle's record, in words
+    words: int  # address of their offsets in the vehicle's record, in words
     source: int  # address of the vehicle's record
     source_words: int
     to: int  # address of row 0
@@ -47,7 +47,7 @@ def row_due(address: int) -> int:
 
 @law
 def take_row(address: int, now_us: int) -> bool:
-    """Take a row at ``now_us``; False: there is no room for another one after it."""
+    """Take a row at ``now_us``; False: there is no space for another one after it."""
     sampler = record_at(Sampler, address)
     count = sampler.count
     words, source = ints_at(sampler.words, count), ints_at(sampler.source, sampler.source_words)

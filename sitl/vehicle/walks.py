@@ -37,9 +37,9 @@ def walk(v: Any, walks: tuple[float, float]) -> None:
         v: record of a vehicle.
         walks: north, east, in standard deviations.
     """
-    figures, receiver, here = v.physics.airframe, v.physics.sensors.gps[0], v.physics.body.pos
+    properties, receiver, here = v.physics.airframe, v.physics.sensors.gps[0], v.physics.body.pos
     north, east = walks
     before = receiver.drift
     receiver.drift = Vec3(north, east, before.z)
-    size = share(v) * figures.noise_scale * figures.gps_drift_horizontal
+    size = share(v) * properties.noise_scale * properties.gps_drift_horizontal
     v.physics.body.pos = Vec3(here.x - size * (north - before.x), here.y - size * (east - before.y), here.z)

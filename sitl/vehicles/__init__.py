@@ -20,6 +20,7 @@ import numpy as np
 from . import airframe_file
 from .airframe import Airframe, AirframeError, apply
 from .copter_airframe import CopterAirframe, Rotor
+from .old_names import key_of_properties
 from .rover_airframe import RoverAirframe
 
 __all__ = [
@@ -57,7 +58,7 @@ def names(kind: str | None = None, *, on_bench: bool = True) -> tuple[str, ...]:
     known = tuple(dict.fromkeys((*_MODULES, *_installed())))
     if kind is not None:
         known = tuple(name for name in known if load(name).kind == kind)
-    return known if on_bench else tuple(name for name in known if not load(name).figures.get("on_bench"))
+    return known if on_bench else tuple(name for name in known if not load(name).properties.get("on_bench"))
 
 
 def load(name: str | Airframe) -> Airframe:
@@ -112,7 +113,7 @@ def to_toml(airframe: Airframe, *, head: Sequence[str] = (), notes: Mapping[str,
     Args:
         airframe: of a kind that comes with the simulator.
         head: lines that the file begins with, as comments.
-        notes: name of a figure or parameter -> what stands behind its value, as a comment.
+        notes: name of a property or parameter -> what stands behind its value, as a comment.
     """
     return airframe_file.written(airframe, head=head, notes=notes)
 
@@ -133,10 +134,10 @@ def _installed() -> dict[str, EntryPoint]:
 
 
 def to_data(airframe: Airframe) -> dict[str, Any]:
-    """An airframe as JSON has it: "name", "figures", "parameters"."""
+    """An airframe as JSON has it: "name", "properties", "parameters"."""
     record = airframe.record()
-    figures = {name: _plain(record[name]) for name in record.dtype.names or ()}
-    return {"name": airframe.name, "figures": figures, "parameters": dict(airframe.parameters)}
+    properties = {name: _plain(record[name]) for name in record.dtype.names or ()}
+    return {"name": airframe.name, "properties": properties, "parameters": dict(airframe.parameters)}
 
 
 def _plain(value: Any) -> Any:
@@ -147,7 +148,8 @@ def _plain(value: Any) -> Any:
 
 
 def of_data(kind: type[Airframe], data: Mapping[str, Any]) -> Airframe:
-    """An airframe from a data file: "name", "figures", "parameters", as ``to_data`` has them.
+    """An airframe from a data file: "name", "properties", "parameters", as ``to_data`` has them; "figures" in a file
+    of version 0.1.
 
     Nothing that the data names is loaded or run.
 
@@ -159,7 +161,7 @@ def of_data(kind: type[Airframe], data: Mapping[str, Any]) -> Airframe:
         AirframeError: the data make no airframe.
     """
     try:
-        return kind.of_record(str(data["name"]), data["figures"], data["parameters"])
+        return kind.of_record(str(data["name"]), data[key_of_properties(data)], data["parameters"])
     except AirframeError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError) as error:

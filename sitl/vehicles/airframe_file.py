@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """An airframe's file (TOML): data only, read and written. What is wrong is said with file, key, value, what is allowed.
 
-The file has ``name``, ``kind`` and ``description``, a table ``figures`` in SI units, a table ``rotor`` for each rotor
-of a copter, a table ``parameters`` under ArduPilot's names, and ``intervals`` of figures that were measured::
+The file has ``name``, ``kind`` and ``description``, a table ``properties`` in SI units, a table ``rotor`` for each
+rotor of a copter, a table ``parameters`` under ArduPilot's names, and ``intervals`` of properties that were measured::
 
     kind = "copter"
 
-    [figures]
+    [properties]
     mass = 1.14  # [kg] everything included
 
     [[rotor]]
@@ -33,14 +33,15 @@ from ..core import documents
 from ..errors import did_you_mean
 from .airframe import Airframe, AirframeError
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
-from .figures.figure import Figure
+from .old_names import NEW, OLD, key_of_properties
+from .properties.property import Property
 
 ENDING = ".toml"
 _KEYS: dict[str, tuple[type, str]] = {
     "name": (str, "a text"),
     "kind": (str, "a text"),
     "description": (str, "a text"),
-    "figures": (dict, "a table: [figures]"),
+    "properties": (dict, "a table: [properties]"),
     "parameters": (dict, "a table: [parameters]"),
     "intervals": (dict, "a table: [intervals]"),
     "rotor": (list, "a table for each rotor: [[rotor]]"),
@@ -79,12 +80,12 @@ def read(path: str | Path, kinds: Mapping[str, type[Airframe]]) -> Airframe:
 def written(airframe: Airframe, *, head: Sequence[str] = (), notes: Mapping[str, str] | None = None) -> str:
     """An airframe as the text of such a file; ``read`` makes the same airframe of it, bit for bit.
 
-    Figures that are at their default, and that its model can use, are there as comments.
+    Properties that are at their default, and that its model can use, are there as comments.
 
     Args:
         airframe: of a kind that comes with the simulator.
         head: lines that the file begins with, as comments.
-        notes: name of a figure or parameter -> what stands behind its value.
+        notes: name of a property or parameter -> what stands behind its value.
     """
     notes = notes or {}
     lines = [f"# {line}".rstrip() for line in head]
@@ -93,16 +94,16 @@ def written(airframe: Airframe, *, head: Sequence[str] = (), notes: Mapping[str,
         f"kind = {_text(airframe.kind)}",
         f"description = {_text(airframe.description)}",
         "",
-        "[figures] # SI units, angles in radians; body axes are forward, right, down",
+        "[properties] # SI units, angles in radians; body axes are forward, right, down",
     ]
-    lines += [_figure_line(airframe, figure, notes.get(figure.name, "")) for figure in _used(airframe)]
+    lines += [_property_line(airframe, prop, notes.get(prop.name, "")) for prop in _used(airframe)]
     for number, rotor in enumerate(getattr(airframe, "rotors", ()), 1):
         lines += ["", f"[[rotor]] # of output {number}"]
         lines += [f"{axis} = {_value(getattr(rotor, axis))}  # {meaning}" for axis, meaning in _ROTOR.items()]
         turns = next(word for word, value in _DIRECTIONS.items() if value == rotor.direction)
         lines += [f'direction = "{turns}"  # seen from above']
     if airframe.intervals:
-        lines += ["", "[intervals] # low and high of 95 %, of figures that were measured"]
+        lines += ["", "[intervals] # low and high of 95 %, of properties that were measured"]
         lines += [f"{name} = {_value(interval)}" for name, interval in airframe.intervals.items()]
     lines += ["", "[parameters] # that differ from the firmware's defaults, in ArduPilot's units"]
     for name, value in airframe.parameters.items():
@@ -110,17 +111,17 @@ def written(airframe: Airframe, *, head: Sequence[str] = (), notes: Mapping[str,
     return "\n".join(lines) + "\n"
 
 
-def _used(airframe: Airframe) -> Iterator[Figure]:
-    """Figures that its model can use, or that it has."""
-    model = airframe.figures.get(airframe.model)
-    return (f for f in airframe.known if not f.models or model in f.models or f.name in airframe.figures)
+def _used(airframe: Airframe) -> Iterator[Property]:
+    """Properties that its model can use, or that it has."""
+    model = airframe.properties.get(airframe.model)
+    return (f for f in airframe.known if not f.models or model in f.models or f.name in airframe.properties)
 
 
-def _figure_line(airframe: Airframe, figure: Figure, note: str) -> str:
-    off = "" if figure.name in airframe.figures else "# "
-    unit = f"[{figure.unit}] " if figure.unit else ""
-    meaning = f"{unit}{figure.meaning}" + (f"; {note}" if note else "")
-    return f"{off}{figure.name} = {_value(airframe.value(figure.name))}  # {meaning}"
+def _property_line(airframe: Airframe, prop: Property, note: str) -> str:
+    off = "" if prop.name in airframe.properties else "# "
+    unit = f"[{prop.unit}] " if prop.unit else ""
+    meaning = f"{unit}{prop.meaning}" + (f"; {note}" if note else "")
+    return f"{off}{prop.name} = {_value(airframe.value(prop.name))}  # {meaning}"
 
 
 def _text(value: str) -> str:
@@ -141,9 +142,9 @@ def _value(value: Any) -> str:
 
 def _airframe(document: Mapping[str, Any], stem: str, kinds: Mapping[str, type[Airframe]]) -> Airframe:
     for key, value in document.items():
-        if key not in _KEYS:
+        if key not in _KEYS and key != OLD:
             raise AirframeError(f"{key!r} is not known{did_you_mean(key, _KEYS)}; there are {', '.join(_KEYS)}")
-        kind_of_value, words = _KEYS[key]
+        kind_of_value, words = _KEYS[NEW if key == OLD else key]
         if not isinstance(value, kind_of_value):
             raise AirframeError(f"{key} = {value!r} is not {words}")
     if "kind" not in document:
@@ -156,10 +157,11 @@ def _airframe(document: Mapping[str, Any], stem: str, kinds: Mapping[str, type[A
         extra["rotors"] = tuple(_rotor(n, row) for n, row in enumerate(document.get("rotor", ()), 1))
     elif "rotor" in document:
         raise AirframeError(f"a {kind.kind} has no rotors: [[rotor]] is only for copters")
+    table = key_of_properties(document)
     return kind(
         name=document.get("name", stem),
         description=document.get("description", ""),
-        figures={name: _number("figures", name, value) for name, value in document.get("figures", {}).items()},
+        properties={name: _number(table, name, value) for name, value in document.get(table, {}).items()},
         parameters={name: _parameter(name, value) for name, value in document.get("parameters", {}).items()},
         intervals={name: _number("intervals", name, value) for name, value in document.get("intervals", {}).items()},
         **extra,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ArduPilot's other SITL multicopters (``ardupilot_quad`` tells of their model), and vehicles on a bench."""
+"""ArduPilot's other SITL multicopters (``ardupilot_quad`` describes their model), and vehicles on a bench."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .copter_airframe import CCW, CW
 def _on_bench(airframe: Airframe, name: str) -> Airframe:
     """A vehicle that a bench turns, for calibrations (``sitl.physics.native.bench``)."""
     description = f"{airframe.description}, on a bench that turns it"
-    return replace(airframe, name=name, description=description, figures={**airframe.figures, "on_bench": 1})
+    return replace(airframe, name=name, description=description, properties={**airframe.properties, "on_bench": 1})
 
 
 FRAMES: dict[str, Airframe] = {
@@ -60,4 +60,4 @@ FRAMES: dict[str, Airframe] = {
         ),
     )
 }
-"""By name. See ``multicopter`` for the figures."""
+"""By name. See ``multicopter`` for the properties."""

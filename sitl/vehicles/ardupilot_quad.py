@@ -13,7 +13,7 @@ from ..core.constants import GRAVITY
 from ..core.elementary import cos, sin, tan
 from . import sensor_sets
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
-from .figures.copter import THRUST_MOMENTUM
+from .properties.copter import THRUST_MOMENTUM
 
 MASS = 3.0  # [kg]
 ARM = 0.35  # [m] rotors from the centre
@@ -60,7 +60,7 @@ def multicopter(
         name=name,
         description=f"ArduPilot's {description}, 3.0 kg",
         rotors=tuple(_rotor(angle, direction) for angle, direction in rotors),
-        figures={
+        properties={
             "mass": MASS,
             "inertia": (  # [kg m^2] discs of half the arm
                 0.25 * MASS * (0.5 * ARM) * (0.5 * ARM),

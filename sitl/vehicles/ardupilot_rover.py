@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from . import sensor_sets
-from .figures.rover import STEERING_TURNING_CIRCLE
+from .properties.rover import STEERING_TURNING_CIRCLE
 from .rover_airframe import RoverAirframe
 
 SPEED = 20.0  # [m/s]
@@ -21,7 +21,7 @@ BATTERY_SAG = 0.7  # [V] at full throttle
 AIRFRAME = RoverAirframe(
     name="ardupilot_rover",
     description="ArduPilot's default SITL rover",
-    figures={
+    properties={
         "mass": 1.0,  # [kg] of no effect
         "inertia": (0.01, 0.01, 0.01),  # [kg m^2] of no effect
         "control_full": 1.0,  # 1000 and 2000 us are the ends

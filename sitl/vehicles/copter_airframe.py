@@ -10,9 +10,10 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ..deprecation import renamed
 from .airframe import Airframe, AirframeError
-from .figures.copter import MODEL, ROTORS_MAX, Figures, Hubs
-from .figures.figure import figures
+from .properties.copter import MODEL, ROTORS_MAX, Hubs, Properties
+from .properties.property import properties
 
 CCW, CW = 1.0, -1.0
 """Sense of rotation seen from above."""
@@ -31,13 +32,14 @@ class Rotor(NamedTuple):
     """CCW or CW."""
 
 
+@renamed("figures", "properties", since="0.2", removed_in="0.4")
 @dataclass(frozen=True, kw_only=True)
 class CopterAirframe(Airframe):
-    """A multicopter: ``figures.copter``, and rotors in the order of the motor outputs."""
+    """A multicopter: ``properties.copter``, and rotors in the order of the motor outputs."""
 
     kind: ClassVar[str] = "copter"
-    known = tuple(figure for figure in figures(Figures) if figure.name not in Hubs.fields)
-    dtype = Figures.dtype
+    known = tuple(prop for prop in properties(Properties) if prop.name not in Hubs.fields)
+    dtype = Properties.dtype
     model = MODEL
 
     rotors: tuple[Rotor, ...]
@@ -64,7 +66,7 @@ class CopterAirframe(Airframe):
         return {"rotors": tuple(Rotor(*hub) for hub in zip(*hubs, strict=True))[: int(record["rotor_count"])]}
 
     def record(self) -> np.ndarray[Any, Any]:
-        """All figures and the rotors, in their units, as one record."""
+        """All properties and the rotors, in their units, as one record."""
         out = super().record()
         out["rotor_count"] = len(self.rotors)
         for k, rotor in enumerate(self.rotors):

@@ -11,7 +11,7 @@ import math
 
 from . import sensor_sets
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
-from .figures.copter import THRUST_SPEED_SQUARED
+from .properties.copter import THRUST_SPEED_SQUARED
 
 REACH = 0.141  # [m] rotors from the centre along x and y [model]
 ABOVE = -0.030  # [m] rotors 3 cm above the centre [model]
@@ -25,7 +25,7 @@ AIRFRAME = CopterAirframe(
         Rotor(REACH, -REACH, ABOVE, CW),  # motor 3, front left [model]
         Rotor(-REACH, REACH, ABOVE, CW),  # motor 4, back right [model]
     ),
-    figures={
+    properties={
         "mass": 1.14,  # [kg] 1.1 body, 4 x 0.005 rotors, 0.02 lidar and sonar [model, derived]
         "inertia": (0.0347563, 0.0458929, 0.0977),  # [kg m^2] [model]
         "drag_area": (0.015, 0.018, 0.030),  # [m^2] the 0.18 x 0.12 x 0.10 m box and the arms [estimate]

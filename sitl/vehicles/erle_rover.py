@@ -11,7 +11,7 @@ import math
 
 from ..core.constants import GRAVITY
 from . import sensor_sets
-from .figures.rover import STEERING_FRONT_WHEELS
+from .properties.rover import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
 
 MASS = 882.0  # [kg] chassis 800, wheels 4 x 20, steering blocks 2 x 1 [model]
@@ -25,7 +25,7 @@ ROLLING = 0.015  # tyres on hard ground [estimate]
 AIRFRAME = RoverAirframe(
     name="erle_rover",
     description="Erle-Rover at five times its size, as the paper's environments have it, 882 kg",
-    figures={
+    properties={
         "mass": MASS,
         # [kg m^2] chassis 140, 550, 550; about z also wheels and blocks at their axles [model, derived]
         "inertia": (200.0, 610.0, 677.0),

@@ -11,7 +11,7 @@ import math
 
 from ..core.constants import GRAVITY
 from . import sensor_sets
-from .figures.rover import STEERING_FRONT_WHEELS
+from .properties.rover import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
 
 MASS = 3.0  # [kg] a 1:10 car with Erle-Brain and lidar; the model's 882 kg cannot be meant [estimate]
@@ -25,7 +25,7 @@ ROLLING = 0.015  # [estimate]
 AIRFRAME = RoverAirframe(
     name="erle_rover_small",
     description="Erle-Rover in its real size, 3 kg",
-    figures={
+    properties={
         "mass": MASS,
         "inertia": (0.019, 0.083, 0.092),  # [kg m^2] the large one's by mass and size squared [derived]
         "control_full": 0.8,  # 1100 and 1900 us are the ends [model]

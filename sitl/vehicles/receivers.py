@@ -17,10 +17,10 @@ AS_IT_IS = "gps"
 
 @dataclass(frozen=True)
 class SensorSet:
-    """Figures and parameters that stand over an airframe's."""
+    """Properties and parameters that stand over an airframe's."""
 
     description: str
-    figures: Mapping[str, float | tuple[float, float, float]] = field(default_factory=dict)
+    properties: Mapping[str, float | tuple[float, float, float]] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -56,12 +56,12 @@ MOCAP: dict[str, float] = {
     "gps_vdop": 0.9,
 }
 UWB: dict[str, float] = {
-    # Ultra-wideband beacons around the arena, as kits with two-way ranging give it in the line of sight. All figures
+    # Ultra-wideband beacons around the arena, as kits with two-way ranging give it in the line of sight. All properties
     # are this project's estimates. They reach the autopilot as a receiver's fixes; height stays the barometer's.
     "gps_rate": 10.0,  # [Hz]
     "gps_delay": 0.1,  # [s] ranging and solution (estimate)
     "gps_noise_horizontal": 0.05,  # [m] with the next: 0.10 m in the plane
-    "gps_drift_horizontal": 0.05,  # [m] bias of ranges by place (estimate)
+    "gps_drift_horizontal": 0.05,  # [m] bias of ranges by position (estimate)
     "gps_drift_time": 30.0,  # [s] (estimate)
     "gps_velocity_noise_horizontal": 0.1,  # [m/s] of differences (estimate)
     "gps_velocity_noise_vertical": 0.1,  # [m/s] (estimate)
@@ -106,6 +106,6 @@ def equipped(airframe: A, name: str) -> A:
     chosen = SETS[name]
     return replace(
         airframe,
-        figures={**airframe.figures, **chosen.figures},
+        properties={**airframe.properties, **chosen.properties},
         parameters={**airframe.parameters, **chosen.parameters},
     )

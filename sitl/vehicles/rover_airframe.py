@@ -6,16 +6,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ..deprecation import renamed
 from .airframe import Airframe
-from .figures.figure import figures
-from .figures.rover import MODEL, Figures
+from .properties.property import properties
+from .properties.rover import MODEL, Properties
 
 
+@renamed("figures", "properties", since="0.2", removed_in="0.4")
 @dataclass(frozen=True, kw_only=True)
 class RoverAirframe(Airframe):
-    """A rover: ``figures.rover``."""
+    """A rover: ``properties.rover``."""
 
     kind: ClassVar[str] = "rover"
-    known = figures(Figures)
-    dtype = Figures.dtype
+    known = properties(Properties)
+    dtype = Properties.dtype
     model = MODEL

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of sensors that airframes carry, unit and source on each line."""
+"""Properties of sensors that airframes carry, unit and source on each line."""
 
 from __future__ import annotations
 
 ADIS16448: dict[str, float] = {
-    # Noise of Analog Devices' ADIS16448 as in the Erle-Copter's simulation model (RotorS' figures).
+    # Noise of Analog Devices' ADIS16448 as in the Erle-Copter's simulation model (RotorS' values).
     "acc_noise_density": 0.004,  # [m/s^2/sqrt(Hz)] model
     "acc_random_walk": 0.006,  # [m/s^3/sqrt(Hz)] model
     "acc_bias_time": 300.0,  # [s] model
@@ -37,9 +37,9 @@ SITL_IMU: dict[str, float] = {
 }
 
 UBLOX_M8: dict[str, float] = {
-    # A single-frequency receiver in the open. Figures are this project's estimates where no source is given.
+    # A single-frequency receiver in the open. Values are this project's estimates where no source is given.
     "gps_rate": 5.0,  # [Hz] usual setting with ArduPilot (GPS1_RATE_MS 200)
-    "gps_delay": 0.12,  # [s] ArduPilot's figure for u-blox M8 receivers
+    "gps_delay": 0.12,  # [s] ArduPilot's value for u-blox M8 receivers
     "gps_start": 2.0,  # [s] first message
     "gps_fix_time": 9.8,  # [s] ArduPilot SITL's recording: receiver detected 9.8 s after boot
     "gps_noise_horizontal": 0.10,  # [m] white, each axis

@@ -2,19 +2,19 @@
 """A skid-steered rover: four wheels, each side driven as one, 17 kg. Of no maker; the size is that of a field robot
 such as Clearpath's Jackal.
 
-All figures are this project's estimates; [like] from what is published of such robots.
+All values are this project's estimates; [like] from what is published of such robots.
 """
 
 from __future__ import annotations
 
 from . import sensor_sets
-from .figures.rover import STEERING_SKID
+from .properties.rover import STEERING_SKID
 from .rover_airframe import RoverAirframe
 
 AIRFRAME = RoverAirframe(
     name="skid_rover",
     description="Skid-steered rover, 17 kg, 2 m/s",
-    figures={
+    properties={
         "mass": 17.0,  # [kg] [like]
         "inertia": (0.35, 0.45, 0.63),  # [kg m^2] a box of 0.51 x 0.43 x 0.25 m
         "control_full": 0.8,  # 1100 and 1900 us are the ends

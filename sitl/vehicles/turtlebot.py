@@ -12,40 +12,42 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..core.records import Record
+from ..deprecation import renamed
 from .airframe import Airframe
-from .figures.figure import figure, figures
+from .properties.property import described, properties
 
 
-class Figures(Record):
+class Properties(Record):
     """What a Turtlebot is."""
 
-    wheel_radius: float = figure("m", "that the drive turns speeds into wheel rates with", 0.001, 1.0)
-    wheel_radius_left: float = figure("m", "true one", 0.001, 1.0)
-    wheel_radius_right: float = figure("m", "true one", 0.001, 1.0)
-    wheel_separation: float = figure("m", "between the wheels", 0.01, 10.0)
-    wheel_speed_max: float = figure("m/s", "greatest speed of a rim, forward and backward", 0.0, 100.0)
-    command_timeout: float = figure("s", "after which the wheels stand unless another command came", 0.0)
-    radius: float = figure("m", "of the cylinder that touches walls", 0.001, 10.0)
-    bottom: float = figure("m", "height of its underside above the floor", 0.0, 10.0)
-    top: float = figure("m", "height of its top above the floor", 0.0, 10.0)
-    lidar_ahead: float = figure("m", "lidar ahead of the axle", -1.0, 1.0, 0.0)
-    lidar_height: float = figure("m", "lidar above the floor", 0.0, 10.0)
-    range_max: float = figure("m", "greatest reading of the lidar; what is farther is inf", 0.001, 10000.0)
-    range_noise: float = figure("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
+    wheel_radius: float = described("m", "that the drive turns speeds into wheel rates with", 0.001, 1.0)
+    wheel_radius_left: float = described("m", "true one", 0.001, 1.0)
+    wheel_radius_right: float = described("m", "true one", 0.001, 1.0)
+    wheel_separation: float = described("m", "between the wheels", 0.01, 10.0)
+    wheel_speed_max: float = described("m/s", "greatest speed of a rim, forward and backward", 0.0, 100.0)
+    command_timeout: float = described("s", "after which the wheels stand unless another command came", 0.0)
+    radius: float = described("m", "of the cylinder that touches walls", 0.001, 10.0)
+    bottom: float = described("m", "height of its underside above the floor", 0.0, 10.0)
+    top: float = described("m", "height of its top above the floor", 0.0, 10.0)
+    lidar_ahead: float = described("m", "lidar ahead of the axle", -1.0, 1.0, 0.0)
+    lidar_height: float = described("m", "lidar above the floor", 0.0, 10.0)
+    range_max: float = described("m", "greatest reading of the lidar; what is farther is inf", 0.001, 10000.0)
+    range_noise: float = described("m", "standard deviation of a reading", 0.0, 10.0, 0.0)
 
 
+@renamed("figures", "properties", since="0.2", removed_in="0.4")
 @dataclass(frozen=True, kw_only=True)
 class TurtlebotAirframe(Airframe):
     """A robot on two driven wheels with a planar lidar and no autopilot."""
 
     kind: ClassVar[str] = "turtlebot"
-    known = figures(Figures)
-    dtype = Figures.dtype
+    known = properties(Properties)
+    dtype = Properties.dtype
 
 
 @dataclass(frozen=True)
 class Lidar:
-    """What the shape of a planar lidar's scan follows from; its ranges and noise are figures of the airframe."""
+    """What the shape of a planar lidar's scan follows from; its ranges and noise are properties of the airframe."""
 
     rays: int
     """That are cast."""
@@ -61,7 +63,7 @@ LIDAR = Lidar(rays=40, readings=20, field_of_view=math.radians(270.0))
 AIRFRAME = TurtlebotAirframe(
     name="turtlebot",
     description="Turtlebot 2 (Kobuki) with a planar lidar, as the paper's environments have it",
-    figures={
+    properties={
         "wheel_radius": 0.035,  # [model]
         "wheel_radius_left": 0.0352,  # [model] 0.6 % larger: a straight command drifts to the right
         "wheel_radius_right": 0.0350,  # [model]

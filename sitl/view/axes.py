@@ -13,8 +13,8 @@ FLIP = np.array([1.0, -1.0, -1.0])
 """NED to the scene's axes, FRD to a shape's (forward, left, up), and back."""
 
 
-def place(ned: Vec3) -> tuple[float, float, float]:
-    """A place or a velocity in the scene's axes."""
+def to_scene(ned: Vec3) -> tuple[float, float, float]:
+    """A position or a velocity in the scene's axes."""
     return (ned.x, -ned.y, -ned.z)
 
 
@@ -23,8 +23,8 @@ def turn(q: Quat) -> tuple[float, float, float, float]:
     return (q.w, q.x, -q.y, -q.z)
 
 
-def places(ned: Floats) -> Floats:
-    """Many places, shape (n, 3)."""
+def all_to_scene(ned: Floats) -> Floats:
+    """Many positions, shape (n, 3)."""
     return ned * FLIP
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..core.vectors import Vec3
-from .axes import place, turn
+from .axes import to_scene, turn
 from .frame import Frame
 
 FREE, FOLLOW, FIRST_PERSON, TOP = "free", "follow", "first person", "top"
@@ -58,7 +58,7 @@ class Cameras:
         """Look at a moment."""
         if self.view == FREE:
             return
-        self._stage.position = -np.array(place(frame.pos))
+        self._stage.position = -np.array(to_scene(frame.pos))
         for number, client in clients.items():
             if self.view == FIRST_PERSON or number not in self._ready:
                 with contextlib.suppress(AssertionError, ValueError), client.atomic():  # it may not have a camera yet
@@ -77,7 +77,7 @@ class Cameras:
             middle = np.zeros(3)
             if frame.company is not None:  # all of them
                 low, high = frame.company.pos.min(axis=0), frame.company.pos.max(axis=0)
-                middle = np.array(place(Vec3(*(0.5 * (low + high)).tolist()))) - place(frame.pos)
+                middle = np.array(to_scene(Vec3(*(0.5 * (low + high)).tolist()))) - to_scene(frame.pos)
             height = self._height(frame)
             middle = middle - (is_narrow(camera) * _LOWER * height, 0.0, 0.0)
             _put(camera, middle + np.array([-0.02 * height, 0.0, height]), middle, _UP)
@@ -89,7 +89,7 @@ class Cameras:
     def _height(self, frame: Frame) -> float:
         """Of the camera above the vehicle, in the view from above [m]."""
         wide = 0.0 if frame.company is None else float(np.ptp(frame.company.pos, axis=0).max())
-        return max(30.0 * self._size, 1.5 * place(frame.pos)[2], 0.9 * wide)
+        return max(30.0 * self._size, 1.5 * to_scene(frame.pos)[2], 0.9 * wide)
 
 
 def is_narrow(camera: Any) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Frames of several simulations in one world: one is chosen and shown in full; of the others, place and attitude."""
+"""Frames of several simulations in one world: one is chosen and shown in full; of the others, position and attitude."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class CompanySource:
     """Several simulations as the page sees them.
 
     Args:
-        vehicles: at least one; their places are in one frame.
+        vehicles: at least one; their positions are in one frame.
     """
 
     def __init__(self, vehicles: Sequence[Simulation]) -> None:

@@ -38,7 +38,7 @@ class Controls:
 
     Args:
         gui: of the page.
-        scene: of viser, in which clicks mean places.
+        scene: of viser, in which clicks mean positions.
         ask: lets something be done where the vehicle is.
         pilot: gives who does it: the one of the vehicle that is chosen.
         stage: what is shown.
@@ -101,9 +101,9 @@ class Controls:
 
         def go() -> None:
             origin = [at - moved for at, moved in zip(event.ray_origin, shift, strict=True)]
-            place = on_ground(origin, event.ray_direction)
-            if place is not None:
-                self._pilot().go_to(*place)
+            position = on_ground(origin, event.ray_direction)
+            if position is not None:
+                self._pilot().go_to(*position)
 
         if self.clicks.value:
             self._ask(go, event)

@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 from ..core.vectors import Vec3
-from ..vehicles.figures.copter import THRUST_MOMENTUM
+from ..vehicles.properties.copter import THRUST_MOMENTUM
 from .kind import KindView, Motion
 from .shape import BLADE, DARK, FRONT, GREY, REAR, ROTOR, Piece, Shape, box, cylinder, joined, moved
 
@@ -15,9 +15,9 @@ _SHOWN_SPEED = 600.0
 """Speed at full command of rotors whose model has none [rad/s]."""
 
 
-def shape(figures: Any) -> Shape:
+def shape(airframe: Any) -> Shape:
     """Body, legs, an arm and a rotor for each hub; what is in front is red."""
-    hubs = [(figures.rotor_x[k], -figures.rotor_y[k], -figures.rotor_z[k]) for k in range(int(figures.rotor_count))]
+    hubs = [(airframe.rotor_x[k], -airframe.rotor_y[k], -airframe.rotor_z[k]) for k in range(int(airframe.rotor_count))]
     reach = max([math.hypot(x, y) for x, y, _ in hubs] + [0.1])
     gaps = [math.dist(a[:2], b[:2]) for k, a in enumerate(hubs) for b in hubs[:k] if math.dist(a[:2], b[:2]) > 0.01]
     blade = min([0.45 * gap for gap in gaps] + [0.75 * reach])
@@ -54,10 +54,10 @@ def shape(figures: Any) -> Shape:
 
 def motion(v: Any) -> Motion:
     """Speeds of the rotors, and how it has landed."""
-    figures, rotors, ground = v.physics.airframe, v.physics.rotors, v.physics.ground
-    scale = _SHOWN_SPEED if figures.thrust_model == THRUST_MOMENTUM else 1.0
-    count = int(figures.rotor_count)
-    speeds = tuple(scale * float(rotors.speed[k] * figures.rotor_direction[k]) for k in range(count))
+    airframe, rotors, ground = v.physics.airframe, v.physics.rotors, v.physics.ground
+    scale = _SHOWN_SPEED if airframe.thrust_model == THRUST_MOMENTUM else 1.0
+    count = int(airframe.rotor_count)
+    speeds = tuple(scale * float(rotors.speed[k] * airframe.rotor_direction[k]) for k in range(count))
     return Motion(speeds, ground_hits=(int(ground.hit_count), float(ground.hit_speed), int(ground.hit_time_us)))
 
 

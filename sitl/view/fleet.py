@@ -14,8 +14,8 @@ from .layout import BETWEEN, GRID, LAYOUTS, side_by_side
 from .live import AutopilotSource, Captured
 from .page import Page
 
-_ROOM = 2.5
-"""Room of a vehicle on a plain, where worlds have no bounds, by its size."""
+_SPACING = 2.5
+"""Spacing of a vehicle on a plain, where worlds have no bounds, by its size."""
 
 
 class CapturedFleet(NamedTuple):
@@ -39,7 +39,7 @@ class FleetSource(AutopilotSource):
         body = fleet.records["physics"]["body"]
         self._pos, self._q = body["pos"], body["q"]
         size, world, count = self.stage.shape.size, self.stage.world, len(fleet)
-        half = 0.5 * (_ROOM * size - BETWEEN)
+        half = 0.5 * (_SPACING * size - BETWEEN)
         x0, y0, x1, y1 = (-half, -half, half, half) if world is None else world.bounds
         self._offsets = side_by_side(count, (x0, y0), (x1, y1))
         shapes = (self.stage.shape,) * count
@@ -63,8 +63,8 @@ class FleetSource(AutopilotSource):
             self._frame_of, self._scan = k, (-1, None)
         self._stands = CALM
         if self.layout == GRID:
-            places = self._offsets * FLIP
-            self._stands, pos = Vec3(*places[k].tolist()), pos + places
+            positions = self._offsets * FLIP
+            self._stands, pos = Vec3(*positions[k].tolist()), pos + positions
         return replace(super().frame(captured.of), company=Company(pos, captured.q, k))
 
 

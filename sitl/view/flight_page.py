@@ -39,7 +39,7 @@ Series = Mapping[str, tuple[Floats, Floats]]
 
 
 class FlightScene:
-    """Flights in the scene: the whole way of each, and where it is at a moment."""
+    """Flights in the scene: the whole path of each, and where it is at a moment."""
 
     def __init__(self, server: Any, flights: Sequence[Flight]) -> None:
         scene = server.scene
@@ -48,23 +48,23 @@ class FlightScene:
         """All of it (``cameras``)."""
         scene.configure_default_lights(cast_shadow=True)
         surroundings.draw(scene, None)
-        self._show_bearings(Bearings(scene), flights[0].places())
+        self._show_bearings(Bearings(scene), flights[0].positions())
         self.vehicles, self._labels = [], []
         size = flights[0].shape.size
         for k, flight in enumerate(flights):
-            name, places = f"/stage/flights/{k}", flight.places().astype(np.float32)
+            name, positions = f"/stage/flights/{k}", flight.positions().astype(np.float32)
             self.vehicles.append(VehicleNodes(scene, f"{name}/vehicle", flight.shape))
             colours: Any = COLOURS[k % len(COLOURS)]
             if len(flights) == 1:
                 each = of_ends([of_mode(flight.mode(t)) for t in flight.track.t])
                 colours = np.stack([each[:-1], each[:-1]], axis=1)
-            lines = np.stack([places[:-1], places[1:]], axis=1)
-            scene.add_line_segments(f"{name}/way", lines, colours, thickness=2.5, thickness_units="screen")
+            lines = np.stack([positions[:-1], positions[1:]], axis=1)
+            scene.add_line_segments(f"{name}/path", lines, colours, thickness=2.5, thickness_units="screen")
             anchor = "bottom-center" if k % 2 == 0 else "top-center"  # two that fly together can both be read
             label = scene.add_label(f"{name}/label", flight.name, anchor=anchor, font_screen_scale=0.8)
             self._labels.append(label)
             for at, seq in flight.track.items if k == 0 else ():  # others' are in the same places, or in the list
-                here = [np.interp(at, flight.track.t, places[:, axis]) for axis in range(3)]
+                here = [np.interp(at, flight.track.t, positions[:, axis]) for axis in range(3)]
                 scene.add_icosphere(f"{name}/item{seq}", radius=0.12 * size, color=(240, 150, 20), position=here)
                 scene.add_label(f"{name}/item{seq}/label", f"item {seq}", font_screen_scale=0.7)
         none = np.zeros((0, 2, 3), np.float32)
@@ -74,9 +74,9 @@ class FlightScene:
         self._flights, self._size = flights, size
 
     @staticmethod
-    def _show_bearings(bearings: Bearings, places: Floats) -> None:
-        """Beside the whole way."""
-        low, high = places.min(axis=0), places.max(axis=0)
+    def _show_bearings(bearings: Bearings, positions: Floats) -> None:
+        """Beside the whole path."""
+        low, high = positions.min(axis=0), positions.max(axis=0)
         bearings.show((float(low[0]), float(high[1]), 0.0), 0.4 * float((high - low).max()))
 
     def show(self, time: float) -> list[Any]:
@@ -89,8 +89,8 @@ class FlightScene:
             label.position = (x, y, z + (0.8 if k % 2 == 0 else -0.8) * self._size)
             label.text = f"{flight.name}  {time:.1f} s  {frame.mode}"
         if len(frames) > 1:
-            places = [nodes.body.position for nodes in self.vehicles[:2]]
-            self._gap.points = np.array([places], np.float32)
+            positions = [nodes.body.position for nodes in self.vehicles[:2]]
+            self._gap.points = np.array([positions], np.float32)
         return frames
 
 
@@ -130,9 +130,9 @@ class FlightPage(Guard):
         self.player.go_to(self.begin)
 
     def _look_at_all(self) -> None:
-        """Browsers begin with a view of the whole way."""
-        places = self.flights[0].places()
-        low, high = places.min(axis=0), places.max(axis=0)
+        """Browsers begin with a view of the whole path."""
+        positions = self.flights[0].positions()
+        low, high = positions.min(axis=0), positions.max(axis=0)
         middle, far = 0.5 * (low + high), float((high - low).max()) + 4.0 * self.flights[0].shape.size
         camera = self.server.initial_camera
         camera.position = tuple(middle + far * np.array([-0.7, 0.5, 0.5]))

@@ -17,7 +17,7 @@ from ..core.vectors import Euler, Vec3
 from ..logs.track import Track
 from ..vehicle.kinds import KINDS
 from . import kind
-from .frame import LOG, Frame, Told
+from .frame import LOG, Frame, Reported
 from .shape import ROTOR, Shape
 
 _TURNING = 120.0
@@ -42,15 +42,15 @@ class Flight:
     """Its clock is common to all flights that are shown together."""
     shape: Shape
     rolled: Floats
-    """Way over the ground until each sample, for wheels [m], shape (n,)."""
+    """Distance over the ground until each sample, for wheels [m], shape (n,)."""
 
     @property
     def length(self) -> float:
         """When it ends [s]."""
         return float(self.track.t[-1])
 
-    def places(self) -> Floats:
-        """All places in the scene's axes, shape (n, 3) [m]."""
+    def positions(self) -> Floats:
+        """All positions in the scene's axes, shape (n, 3) [m]."""
         return np.column_stack([self.track["north"], -self.track["east"], -self.track["down"]])
 
     def mode(self, time: float) -> str:
@@ -72,19 +72,19 @@ class Flight:
 
         yaw = float(np.interp(time, track.t, np.unwrap(track["yaw"])))
         armed, rotors = self.is_armed(time), [piece for piece in self.shape.pieces if piece.turns == ROTOR]
-        way = float(np.interp(time, track.t, self.rolled))
+        rolled = float(np.interp(time, track.t, self.rolled))
         return Frame(
             time_us=round(time * 1e6),
             pos=Vec3(of("north"), of("east"), of("down")),
             q=quat_from_euler(Euler(of("roll"), of("pitch"), yaw)),
             vel=Vec3(of("vn"), of("ve"), of("vd")),
-            told=Told(
-                by=LOG, height=-of("down"), place=(of("north"), of("east")), speed=math.hypot(of("vn"), of("ve")),
+            reported=Reported(
+                by=LOG, height=-of("down"), position=(of("north"), of("east")), speed=math.hypot(of("vn"), of("ve")),
                 climb=-of("vd"), heading=math.degrees(yaw) % 360.0, roll=of("roll"), pitch=of("pitch"),
             ),
             home=Vec3(0.0, 0.0, 0.0), mode=self.mode(time), armed=armed, ready=True,
             rotors=tuple((_TURNING if k % 4 < 2 else -_TURNING) * armed for k in range(len(rotors))),
-            rolled=(way, way),
+            rolled=(rolled, rolled),
         )  # fmt: skip
 
     def events(self) -> list[Event]:

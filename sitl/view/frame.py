@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a page shows of one vehicle: a stage that stays, and a frame for each moment.
 
-Places are NED metres from the scene's origin, which is the physics': the home ground point, or the origin of the world.
-Quaternions turn the body (FRD) to NED. The page turns both into its own axes (``axes``).
+Positions are NED metres from the scene's origin, which is the physics': the home ground point, or the origin of the
+world. Quaternions turn the body (FRD) to NED. The page turns both into its own axes (``axes``).
 """
 
 from __future__ import annotations
@@ -37,15 +37,15 @@ class Stage:
     company: tuple[Shape, ...] = ()
     """Shape of each vehicle, where there are several; the first frame's chosen one is ``shape``."""
     copies: Points | None = None
-    """Places at which the world stands, in the scene's axes [m], shape (n, 3); None: once, at the origin."""
+    """Positions at which the world stands, in the scene's axes [m], shape (n, 3); None: once, at the origin."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """A place with a name."""
+    """A position with a name."""
 
     name: str
-    place: Vec3
+    position: Vec3
     """NED [m]."""
     number: int = 0
     """Of the mission's item."""
@@ -56,7 +56,7 @@ class Plan:
     """Where the vehicle is to go, and where it must not."""
 
     items: tuple[Mark, ...] = ()
-    """The mission's items that have a place, in their order."""
+    """The mission's items that have a position, in their order."""
     fences: tuple[Points, ...] = ()
     """Closed outlines, each of shape (n, 2): north, east [m]."""
     fence_top: float = 0.0
@@ -89,18 +89,18 @@ class Company:
 
 
 VEHICLE, LOG = "vehicle", "log"
-"""Whose numbers ``Told`` has: what the vehicle says now, or what a log kept of it."""
+"""Whose numbers ``Reported`` has: what the vehicle says now, or what a log kept of it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Told:
-    """A vehicle's own numbers, as a ground station shows them. Fields that it does not tell (yet) are None."""
+class Reported:
+    """A vehicle's own numbers, as a ground station shows them. Fields that it does not report (yet) are None."""
 
     by: str = VEHICLE
     """VEHICLE or LOG."""
     height: float | None = None
     """Above home (GLOBAL_POSITION_INT.relative_alt) [m]."""
-    place: tuple[float, float] | None = None
+    position: tuple[float, float] | None = None
     """North, east of its origin (LOCAL_POSITION_NED), in a log of home [m]."""
     speed: float | None = None
     """Over the ground (VFR_HUD.groundspeed) [m/s]."""
@@ -116,7 +116,7 @@ class Told:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frame:
-    """A vehicle at one moment. Place, attitude and motion are the truth, but for flights of logs."""
+    """A vehicle at one moment. Position, attitude and motion are the truth, but for flights of logs."""
 
     time_us: int
     """Simulated time since the start of the simulation [us]."""
@@ -132,7 +132,7 @@ class Frame:
     """Where its estimator believes it to be; None: nowhere yet."""
     estimate_q: Quat | None = None
     set_point: Vec3 | None = None
-    """Place that the controllers follow now."""
+    """Position that the controllers follow now."""
     leg: tuple[Vec3, Vec3] | None = None
     """Both ends of the leg under way."""
     home: Vec3 | None = None
@@ -142,7 +142,7 @@ class Frame:
     """The arming checks find nothing."""
     unready: tuple[str, ...] = ()
     """What they find, as the texts after "PreArm: " say it."""
-    told: Told | None = None
+    reported: Reported | None = None
     """What the vehicle says of itself; None: there is no autopilot that says anything."""
     voltage: float = 0.0
     """[V]"""
@@ -152,7 +152,7 @@ class Frame:
     """[%]"""
     satellites: int = 0
     fix: int = 0
-    """GPS_FIX_TYPE: 3 and more is a place."""
+    """GPS_FIX_TYPE: 3 and more is a position."""
     failsafes: tuple[str, ...] = ()
     """Those that are on, and fences that are breached."""
     mission_current: int = 0

@@ -36,12 +36,12 @@ TRUTH = "truth"
 
 def read(frame: Frame) -> Reading:
     """The numbers of a moment."""
-    told = frame.told
-    if told is None:
+    reported = frame.reported
+    if reported is None:
         roll, pitch, yaw = (math.degrees(angle) for angle in euler_of(frame.q))
         return Reading(TRUTH, roll, pitch, yaw % 360.0, math.hypot(frame.vel.x, frame.vel.y), true_height(frame))
-    roll, pitch = math.degrees(told.roll), math.degrees(told.pitch)
-    return Reading(WHOSE[told.by], roll, pitch, told.heading, told.speed, told.height)
+    roll, pitch = math.degrees(reported.roll), math.degrees(reported.pitch)
+    return Reading(WHOSE[reported.by], roll, pitch, reported.heading, reported.speed, reported.height)
 
 
 def true_height(frame: Frame) -> float:

@@ -138,10 +138,10 @@ def _check_click(message: Mapping[Any, Any]) -> None:
         raise RefusedMessage("click: only clicks on the scene mean something here")
     for name in ("ray_origin", "ray_direction"):
         _vector(f"click's {name}", message[name], 3)
-    places, modifier = message["screen_pos"], message["modifier"]
-    if not isinstance(places, Sequence) or isinstance(places, str | bytes) or len(places) > 2:
-        raise RefusedMessage(f"click's screen_pos: {shown(places)} is not a place on the screen")
-    for each in places:
+    positions, modifier = message["screen_pos"], message["modifier"]
+    if not isinstance(positions, Sequence) or isinstance(positions, str | bytes) or len(positions) > 2:
+        raise RefusedMessage(f"click's screen_pos: {shown(positions)} is not a position on the screen")
+    for each in positions:
         _vector("click's screen_pos", each, 2)
     if modifier is not None and not (isinstance(modifier, str) and len(modifier) < _SHOWN):
         raise RefusedMessage(f"click's modifier: {shown(modifier)} is not the name of one")
@@ -160,14 +160,14 @@ class Visit:
         connection: of websockets.
         decode: bytes to a message; ValueError or what is derived from it when they are none.
         widget: finds widgets.
-        tell: is given this and what was refused.
+        report: is given this and what was refused.
     """
 
     def __init__(
-        self, connection: Any, decode: Callable[[bytes], Any], widget: Find, tell: Callable[[Any, str], None]
+        self, connection: Any, decode: Callable[[bytes], Any], widget: Find, report: Callable[[Any, str], None]
     ) -> None:
-        self._connection, self._decode, self._widget, self._tell = connection, decode, widget, tell
-        self._told, self._told_at = "", -math.inf
+        self._connection, self._decode, self._widget, self._report = connection, decode, widget, report
+        self._last_text, self._last_time = "", -math.inf
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._connection, name)
@@ -191,6 +191,6 @@ class Visit:
 
     def _say(self, text: str) -> None:
         now = time.monotonic()
-        if text != self._told or now - self._told_at > _AGAIN_S:  # a browser that repeats itself hears it once
-            self._told, self._told_at = text, now
-            self._tell(self, text)
+        if text != self._last_text or now - self._last_time > _AGAIN_S:  # a browser that repeats itself hears it once
+            self._last_text, self._last_time = text, now
+            self._report(self, text)

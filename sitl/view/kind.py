@@ -31,16 +31,16 @@ class KindView:
     """A kind of vehicle as it is shown."""
 
     shape: Callable[[Any], Shape]
-    """Of a record of figures (``v.physics.airframe``)."""
+    """Of a record of properties (``v.physics.airframe``)."""
     motion: Callable[[Any], Motion]
     """What moves on a vehicle ``v``."""
     set_point: Callable[[Any], Vec3 | None]
-    """Place that the controllers of ``v`` follow, NED from the estimator's origin [m]; None: none at present."""
+    """Position that the controllers of ``v`` follow, NED from the estimator's origin [m]; None: none at present."""
 
 
-def _outline(figures: Any) -> Shape:
-    radius = max(figures.contact_radius, 0.2)
-    return plain(2.0 * radius, 1.4 * radius, max(figures.contact_top + figures.contact_bottom, 0.5 * radius))
+def _outline(airframe: Any) -> Shape:
+    radius = max(airframe.contact_radius, 0.2)
+    return plain(2.0 * radius, 1.4 * radius, max(airframe.contact_top + airframe.contact_bottom, 0.5 * radius))
 
 
 PLAIN = KindView(_outline, lambda v: Motion(), lambda v: None)

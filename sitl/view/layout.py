@@ -17,7 +17,7 @@ BETWEEN = 1.0
 
 
 def side_by_side(count: int, low: Sequence[float], high: Sequence[float]) -> Points:
-    """Places of the worlds' origins, in the scene's axes [m], shape (count, 3).
+    """Positions of the worlds' origins, in the scene's axes [m], shape (count, 3).
 
     Args:
         count: of worlds.

@@ -48,7 +48,7 @@ def viser() -> Any:
 
 def serve(host: str, port: int, title: str) -> Any:
     """A server of viser that turns away other sites' pages (``origins``), and of its own pages' messages takes those
-    that pass (``incoming``). It prints its addresses, whatever it is told: not here.
+    that pass (``incoming``). It prints its addresses, whatever its options say: not here.
 
     Raises:
         MissingExtra: it is not installed.
@@ -78,7 +78,7 @@ class _Door:
         """A widget by its identifier; None: there is none."""
         return None if self.server is None else getattr(self.server.gui, _WIDGETS).get(uuid)
 
-    def tell(self, visit: Any, text: str) -> None:
+    def report(self, visit: Any, text: str) -> None:
         """Show a browser what was refused."""
         visits = getattr(getattr(self.server, "_websock_server", None), "_live_connections", {})
         clients = self.server.get_clients() if self.server is not None else {}
@@ -113,7 +113,7 @@ def _guarded() -> Iterator[list[_Door]]:
                 doors.append(door)
 
                 async def handler(connection: Any) -> None:
-                    await inner(Visit(connection, msgspec.msgpack.decode, door.widget, door.tell))
+                    await inner(Visit(connection, msgspec.msgpack.decode, door.widget, door.report))
 
             super().__init__(handler, *args, **options)
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..autopilot import rally
 from ..autopilot.fence.state import CIRCLE, CIRCLE_IN, CIRCLE_OUT
+from ..autopilot.mission.location import point
 from ..autopilot.mission.mission import Mission
-from ..autopilot.mission.place import point
 from ..autopilot.modes import shown
 from ..bridge.base_autopilot import BaseAutopilot
 from ..client.commands import command_name
@@ -23,7 +23,7 @@ from ..core.geodesy import offset_ne
 from ..core.mavlink import MavCmd
 from ..core.vectors import Vec3
 from ..simulation import Simulation
-from .frame import Frame, Mark, Plan, Points, Text, Told
+from .frame import Frame, Mark, Plan, Points, Reported, Text
 from .record import Array, RecordSource
 
 _CORNERS = 48
@@ -32,7 +32,7 @@ _FENCES = ("greatest height", "circle", "areas", "least height")
 _GLITCH = "GPS glitch"
 
 
-_TOLD = (
+_REPORTED = (
     "GLOBAL_POSITION_INT.relative_alt", "LOCAL_POSITION_NED.x", "LOCAL_POSITION_NED.y", "VFR_HUD.groundspeed",
     "VFR_HUD.climb", "VFR_HUD.heading", "ATTITUDE.roll", "ATTITUDE.pitch",
 )  # fmt: skip
@@ -62,7 +62,7 @@ class AutopilotSource(RecordSource):
         super().__init__(simulation.kind, fleet, index, simulation.airframe.name, simulation.world, modes)
         self._plan: tuple[object, Plan] = (None, Plan())
         self._autopilot = simulation.bridge.autopilot
-        self._tells: Callable[[], dict[str, float]] | None = None
+        self._read_reported: Callable[[], dict[str, float]] | None = None
 
     def frame(self, captured: Captured) -> Frame:
         """What the page shows of a moment."""
@@ -70,34 +70,35 @@ class AutopilotSource(RecordSource):
         ap, gps = v.autopilot, v.sensors
         estimate, modes, battery = ap.estimate, ap.modes, ap.battery
         offset = self._origin()
-        is_placed = estimate.position_ok or estimate.origin_set
+        is_known = estimate.position_ok or estimate.origin_set
         target = self._view.set_point(v) if ap.arming.armed else None
         leg = modes.nav.current
         is_on_leg = ap.arming.armed and leg.segments > 0 and v.time_us - modes.nav.active_us < 100_000
         return Frame(
             time_us=captured.time_us,
-            estimate_pos=estimate.pos + offset if is_placed else None,
+            estimate_pos=estimate.pos + offset if is_known else None,
             estimate_q=estimate.q if estimate.attitude_ok else None,
             set_point=None if target is None else target + offset,
             leg=(leg.origin + offset, leg.origin + leg.unit * leg.length + offset) if is_on_leg else None,
             home=ap.home.pos + offset if ap.home.is_set else None,
             mode=self._names.get(int(shown(modes)), "?"), armed=bool(ap.arming.armed), ready=bool(ap.arming.prearm_ok),
-            unready=self._unready(), told=self._told(),
+            unready=self._unready(), reported=self._reported(),
             voltage=battery.voltage, current=battery.current, charge_left=battery.remaining_pct,
             satellites=int(gps.gps_satellites), fix=int(gps.gps_fix),
             failsafes=self._failsafes(), mission_current=int(modes.nav.mission_current),
             plan=self._planned(captured.mission, offset), texts=captured.texts, **self._moment(),
         )  # fmt: skip
 
-    def _told(self) -> Told:
+    def _reported(self) -> Reported:
         """What its telemetry says."""
-        if self._tells is None:
+        if self._read_reported is None:
             found = self._find_signals()
-            self._tells = found.reader(tuple(name for name in _TOLD if name in found.names))
-        height, north, east, speed, climb, heading, roll, pitch = map(self._tells().get, _TOLD)
-        place = None if north is None or east is None else (north, east)
-        return Told(
-            height=None if height is None else height * 1e-3, place=place, speed=speed, climb=climb, heading=heading,
+            self._read_reported = found.reader(tuple(name for name in _REPORTED if name in found.names))
+        height, north, east, speed, climb, heading, roll, pitch = map(self._read_reported().get, _REPORTED)
+        position = None if north is None or east is None else (north, east)
+        return Reported(
+            height=None if height is None else height * 1e-3, position=position, speed=speed, climb=climb,
+            heading=heading,
             roll=roll or 0.0, pitch=pitch or 0.0,
         )  # fmt: skip
 
@@ -109,11 +110,11 @@ class AutopilotSource(RecordSource):
 
     def _origin(self) -> Vec3:
         """The estimator's origin in the scene [m]."""
-        estimate, place = self._v.autopilot.estimate, self._v.physics.place
+        estimate, ground = self._v.autopilot.estimate, self._v.physics.place
         if not estimate.origin_set:
             return self._stands
-        flat = offset_ne(place.lat, place.lon, estimate.origin_lat, estimate.origin_lon)
-        return self._stands + Vec3(flat.x, flat.y, place.alt - estimate.origin_alt)
+        flat = offset_ne(ground.lat, ground.lon, estimate.origin_lat, estimate.origin_lon)
+        return self._stands + Vec3(flat.x, flat.y, ground.alt - estimate.origin_alt)
 
     def _failsafes(self) -> tuple[str, ...]:
         ap = self._v.autopilot
@@ -143,7 +144,7 @@ class AutopilotSource(RecordSource):
         if not ap.estimate.origin_set:
             return ()
         for number, item in enumerate(mission.items):
-            if number == 0 or item.command >= MavCmd.NAV_LAST or (item.no_place and item.z == 0.0):
+            if number == 0 or item.command >= MavCmd.NAV_LAST or (item.no_location and item.z == 0.0):
                 continue
             at = point(ap, item, at)
             name = command_name(item.command).removeprefix("NAV_").replace("_", " ").lower()
@@ -175,8 +176,8 @@ class AutopilotSource(RecordSource):
         if not ap.estimate.origin_set:
             return ()
         count = min(int(ap.params.RALLY.TOTAL), len(ap.rally.lat))
-        places = [rally.position(ap.rally, k, ap.estimate, ap.home) + offset for k in range(count)]
-        return tuple(Mark(f"rally {k}", place, k) for k, place in enumerate(places))
+        positions = [rally.position(ap.rally, k, ap.estimate, ap.home) + offset for k in range(count)]
+        return tuple(Mark(f"rally {k}", position, k) for k, position in enumerate(positions))
 
 
 class LiveSource(AutopilotSource):
@@ -195,7 +196,7 @@ class LiveSource(AutopilotSource):
     def reached(self, seq: int) -> None:
         """A mission's item is reached: frames show it."""
 
-    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+    def commanded(self, fields: Any, frame: int, is_location: bool, sender: tuple[int, int], result: int) -> None:
         """Frames show what comes of it."""
 
     def parameter_set(self, name: str) -> None:

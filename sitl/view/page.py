@@ -2,7 +2,7 @@
 """The page: a server on this machine, and a thread that draws what it is given. Whoever opens the address sees
 the same.
 
-Frames come to it through a room for one: while it draws, the vehicle goes on, and what is drawn next is the newest.
+Frames come to it through a slot for one: while it draws, the vehicle goes on, and what is drawn next is the newest.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Page(Guard):
         self.address = f"http://{LOCAL}:{self.port}"
         self.frame: Frame | None = None
         """The last one that was drawn."""
-        self._room: Any = None
+        self._slot: Any = None
         self._factor = 0.0
         self._filled = threading.Condition()
         self._drawn = 0
@@ -114,7 +114,7 @@ class Page(Guard):
     @property
     def is_free(self) -> bool:
         """All that it was given is drawn."""
-        return self._room is None
+        return self._slot is None
 
     def attend(self) -> None:
         """Do what users have asked for (``sitl.run.watched.Viewer``): of this page, nothing."""
@@ -123,7 +123,7 @@ class Page(Guard):
         """Take what the source has now; ``factor``: simulated time by wall time."""
         captured = self.source.capture()
         with self._filled:
-            self._room, self._factor = captured, factor
+            self._slot, self._factor = captured, factor
             self._filled.notify()
 
     # ------------------------------------------------------------------ in its own
@@ -131,15 +131,15 @@ class Page(Guard):
     def _draw_all(self) -> None:
         while True:
             with self._filled:
-                self._filled.wait_for(lambda: self._closed or self._room is not None)
+                self._filled.wait_for(lambda: self._closed or self._slot is not None)
                 if self._closed:
                     return
-                captured, factor = self._room, self._factor
+                captured, factor = self._slot, self._factor
             spent = self.show_safely(captured, factor)
             with self._filled:
                 self._filled.wait_for(lambda: self._closed, timeout=spent * (1.0 / SHARE - 1.0))
-                if self._room is captured:  # else there is something newer already
-                    self._room = None
+                if self._slot is captured:  # else there is something newer already
+                    self._slot = None
                 self._filled.notify_all()
 
     def show_safely(self, captured: Any, factor: float) -> float:
@@ -167,7 +167,7 @@ class Page(Guard):
     def wait_drawn(self) -> None:
         """Wait until all that it was given is drawn."""
         with self._filled:
-            self._filled.wait_for(lambda: self._room is None or self._closed)
+            self._filled.wait_for(lambda: self._slot is None or self._closed)
 
     def close(self) -> None:
         """Close the page; browsers say that the connection is lost."""

@@ -12,7 +12,7 @@ from typing import Any
 from ..core.algebra import euler_of
 from . import horizon
 from .colours import css, of_mode, of_severity, of_vehicle
-from .frame import Company, Frame, Text, Told
+from .frame import Company, Frame, Reported, Text
 from .horizon import degrees, number, true_height
 
 _KEPT_TEXTS = 40
@@ -82,7 +82,7 @@ def company(vehicles: Company) -> str:
         north, east, down = vehicles.pos[k].tolist()
         weight = "bold" if k == vehicles.chosen else "normal"
         note = (
-            f"{vehicles.notes[k]}; truth: {number(-down, 1, 'm')} high, {_place((north, east))}"
+            f"{vehicles.notes[k]}; truth: {number(-down, 1, 'm')} high, {_position((north, east))}"
             if vehicles.notes
             else ""
         )
@@ -99,7 +99,7 @@ def state(frame: Frame, speed: str) -> str:
     if frame.facts:
         return f'<div style="padding:0.4em 0.6em 0.2em">{_badge(frame.mode, "#2e86de")}{_grid(frame.facts)}</div>'
     mode = _badge(frame.mode or "-", css(of_mode(frame.mode)))
-    ready = "" if frame.armed or frame.ready or frame.told is None else _unready(frame)
+    ready = "" if frame.armed or frame.ready or frame.reported is None else _unready(frame)
     fix = _FIXES[min(frame.fix, len(_FIXES) - 1)]
     error = "-"
     if frame.estimate_pos is not None:
@@ -128,15 +128,15 @@ def _unready(frame: Frame) -> str:
 
 
 def motion(frame: Frame) -> str:
-    """Height, place, speeds and heading as HTML: what the vehicle says, and the truth beside it."""
-    told = frame.told or Told()
+    """Height, position, speeds and heading as HTML: what the vehicle says, and the truth beside it."""
+    reported = frame.reported or Reported()
     north, east, _ = frame.pos - frame.stands
     rows = [
-        ("height", number(told.height, 2, "m"), number(true_height(frame), 2, "m")),
-        ("place", _place(told.place), _place((north, east))),
-        ("ground speed", number(told.speed, 1, "m/s"), number(math.hypot(frame.vel.x, frame.vel.y), 1, "m/s")),
-        ("climb", number(told.climb, 1, "m/s"), number(-frame.vel.z, 1, "m/s")),
-        ("heading", degrees(told.heading), degrees(math.degrees(euler_of(frame.q).yaw) % 360.0)),
+        ("height", number(reported.height, 2, "m"), number(true_height(frame), 2, "m")),
+        ("position", _position(reported.position), _position((north, east))),
+        ("ground speed", number(reported.speed, 1, "m/s"), number(math.hypot(frame.vel.x, frame.vel.y), 1, "m/s")),
+        ("climb", number(reported.climb, 1, "m/s"), number(-frame.vel.z, 1, "m/s")),
+        ("heading", degrees(reported.heading), degrees(math.degrees(euler_of(frame.q).yaw) % 360.0)),
     ]  # fmt: skip
     cells = "".join(
         f'<div style="color:#888">{name}</div><div>{escape(vehicle)}</div><div>{escape(true)}</div>'
@@ -151,12 +151,12 @@ def motion(frame: Frame) -> str:
 
 _COLUMNS = (
     ("", ""), ("vehicle says", "as a ground station shows it: above home, from its origin"),
-    ("truth", "of the simulation: above and from the place where its world begins"),
+    ("truth", "of the simulation: above and from the position where its world begins"),
 )  # fmt: skip
 
 
-def _place(place: tuple[float, float] | None) -> str:
-    return "-" if place is None else f"{number(place[0], 1, 'N')}, {number(place[1], 1, 'E')}"
+def _position(position: tuple[float, float] | None) -> str:
+    return "-" if position is None else f"{number(position[0], 1, 'N')}, {number(position[1], 1, 'E')}"
 
 
 def _grid(cells: Sequence[tuple[str, str]]) -> str:

@@ -36,11 +36,11 @@ class Pilot:
 
     Args:
         simulation: the vehicle.
-        tell: is told of what the vehicle refuses.
+        report: called with what the vehicle refuses.
     """
 
-    def __init__(self, simulation: Simulation, tell: Callable[[str], None]) -> None:
-        self._simulation, self._tell = simulation, tell
+    def __init__(self, simulation: Simulation, report: Callable[[str], None]) -> None:
+        self._simulation, self._report = simulation, report
         self._endpoint: Endpoint | None = None
         self._driver: Endpoint | None = None
         """Holds the sticks: the vehicle takes them from its pilot's ground station alone (MAV_GCS_SYSID)."""
@@ -90,13 +90,13 @@ class Pilot:
             self._driver.send("MANUAL_CONTROL", target=self._simulation.bridge.system, **self._axes._asdict())
 
     def listen(self) -> None:
-        """Tell of commands that were refused since the last call."""
+        """Report commands that were refused since the last call."""
         if self._endpoint is None:
             return
         for name, fields in self._endpoint.receive():
             if name == "COMMAND_ACK" and fields.result not in (0, MavResult.IN_PROGRESS):
                 result = entry_name("MAV_RESULT", int(fields.result))
-                self._tell(f"{command_name(int(fields.command))}: {result}")
+                self._report(f"{command_name(int(fields.command))}: {result}")
 
     @property
     def _mode(self) -> str:
@@ -135,10 +135,10 @@ class Pilot:
         self._command("NAV_TAKEOFF", 0, 0, 0, 0, 0, 0, height)
 
     def go_to(self, north: float, east: float) -> None:
-        """GUIDED, to a place of the scene [m], at the present height.
+        """GUIDED, to a position of the scene [m], at the present height.
 
         Raises:
-            OptionError: it is not armed, or the place is farther than FARTHEST.
+            OptionError: it is not armed, or the position is farther than FARTHEST.
         """
         north, east = finite("north", north, FARTHEST), finite("east", east, FARTHEST)
         v = self._simulation.v

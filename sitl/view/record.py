@@ -22,7 +22,7 @@ class RecordSource:
     Args:
         kind: of vehicle.
         fleet: the array with its record; the copy is of this memory.
-        index: its place there.
+        index: of it there.
         title: name of the airframe.
         world: solids around it; None: a plain.
         modes: names of all modes that can be asked for.
@@ -41,8 +41,8 @@ class RecordSource:
         self._scan: tuple[int, Points | None] = (-1, None)
         self._signals: Signals | None = None
         self._read = dict[str, float]
-        figures = kind.record.of(fleet, index).physics.airframe
-        self.stage = Stage(title, self._view.shape(figures), world, modes, kind.flies)
+        airframe = kind.record.of(fleet, index).physics.airframe
+        self.stage = Stage(title, self._view.shape(airframe), world, modes, kind.flies)
 
     def _copy(self) -> bytes:
         """The record as it is now; called where the vehicle is."""
@@ -86,7 +86,7 @@ class RecordSource:
 
     def _scanned(self) -> Points | None:
         """What the lidar met, on the body [m]."""
-        sensors, figures = self._v.sensors, self._v.physics.airframe
+        sensors, airframe = self._v.sensors, self._v.physics.airframe
         count = int(sensors.lidar_samples)
         if count == 0 or sensors.lidar_count == 0:
             return None
@@ -95,7 +95,7 @@ class RecordSource:
             half = 0.5 * sensors.lidar_fov
             angles = np.linspace(-half, half, count)  # counter-clockwise from the right
             met = np.isfinite(ranges) & (ranges < sensors.lidar_max)
-            self._scan = (int(sensors.lidar_count), hits(ranges[met], angles[met]) + np.array(figures.lidar_at))
+            self._scan = (int(sensors.lidar_count), hits(ranges[met], angles[met]) + np.array(airframe.lidar_at))
         return self._scan[1]
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.vectors import Vec3
-from ..vehicles.figures.rover import STEERING_SKID
+from ..vehicles.properties.rover import STEERING_SKID
 from .kind import KindView, Motion
 from .shape import BLADE, DARK, FRONT, GREY, REAR, WHEEL, Piece, Shape, box, cylinder, joined
 
@@ -14,25 +14,25 @@ _RECENT = 2
 """Periods of the controllers."""
 
 
-def shape(figures: Any) -> Shape:
+def shape(airframe: Any) -> Shape:
     """Chassis, mast and four wheels; what is in front is red. The origin is on
     the floor, ``rear_axle`` ahead of the rear axle."""
-    track = float(figures.track)
-    base = float(figures.wheelbase) or 1.2 * track
-    radius = float(figures.wheel_radius) or base / 6.0
-    rear = -float(figures.rear_axle) if figures.rear_axle != 0.0 else -0.5 * base
+    track = float(airframe.track)
+    base = float(airframe.wheelbase) or 1.2 * track
+    radius = float(airframe.wheel_radius) or base / 6.0
+    rear = -float(airframe.rear_axle) if airframe.rear_axle != 0.0 else -0.5 * base
     front, middle, width = rear + base, rear + 0.5 * base, 0.45 * radius
     deck = 1.7 * radius
     body = box((1.25 * base, 0.7 * track, 0.7 * radius), (middle, 0.0, deck))
     cabin = box((0.5 * base, 0.55 * track, 0.8 * radius), (middle - 0.15 * base, 0.0, deck + 0.7 * radius))
     nose = box((0.12 * base, 0.7 * track, 0.6 * radius), (middle + 0.68 * base, 0.0, deck))
     pieces = [Piece("chassis", body, REAR), Piece("cabin", cabin, DARK), Piece("nose", nose, FRONT)]
-    if figures.lidar_samples > 0:
-        at = figures.lidar_at
+    if airframe.lidar_samples > 0:
+        at = airframe.lidar_at
         lidar = (float(at.x), -float(at.y), -float(at.z))
         pieces.append(Piece("lidar", cylinder(0.35 * radius, 0.4 * radius), BLADE, lidar))
     wheel = joined(cylinder(radius, width, axis=1, corners=24), box((1.5 * radius, 1.1 * width, 0.2 * radius)))
-    steers = figures.steering_model != STEERING_SKID
+    steers = airframe.steering_model != STEERING_SKID
     for name, x, is_front in (("front", front, True), ("rear", rear, False)):
         for side, word in ((0, "left"), (1, "right")):
             at_wheel = (x, (0.5 - side) * track, radius)

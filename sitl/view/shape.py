@@ -39,7 +39,7 @@ class Piece(NamedTuple):
     mesh: Mesh
     colour: Colour
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Its place on the body [m]; it turns about that."""
+    """Its position on the body [m]; it turns about that."""
     turns: str = ""
     """ROTOR: about its vertical with rotor ``number``; WHEEL: rolls; "": it is fixed."""
     number: int = 0

@@ -33,7 +33,7 @@ class Pacer:
 
     With `busy_speedup`, simulated time goes no faster than that while any thread of a script is at work,
     and at `speedup` while all of them wait. At 1 a script's own computing takes as much simulated time as
-    it would at 1x, so that it cannot tell the difference, and only its waits are short.
+    it would at 1x, so that it cannot notice the difference, and only its waits are short.
     """
 
     def __init__(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures of a world by a pinhole camera: depth, and colour, of the same solids that rays and contacts meet.
 
-A pixel is one ray through its middle, so there is no blur and no anti-aliasing, and the same place gives the same bits.
-A solid is tested only for the pixels of the rectangle that its corners span in the picture.
+A pixel is one ray through its middle, so there is no blur and no anti-aliasing, and the same position gives the same
+bits. A solid is tested only for the pixels of the rectangle that its corners span in the picture.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .geometry import (
     NORTH,
     RADIUS,
     SIN,
-    SOLID_FIGURES,
+    SOLID_COLUMNS,
     TOP,
     Floats,
     Solids,
@@ -55,7 +55,7 @@ TILE, TILE_CONTRAST = 1.0, 0.12
 """The floor is chequered: side of a square [m], and how much darker every other one is."""
 # Columns of a marking's row.
 MARK_NORTH, MARK_EAST, MARK_COS, MARK_SIN, MARK_LENGTH, MARK_WIDTH, MARK_RADIUS, MARK_RED = range(8)
-MARK_FIGURES = 10
+MARK_COLUMNS = 10
 
 
 class Camera(NamedTuple):
@@ -88,7 +88,7 @@ class Paint(NamedTuple):
     solids: Table
     """Shape (solids, 3)."""
     markings: Table
-    """Place and shape (NED [m]) and colour, shape (markings, MARK_FIGURES)."""
+    """Position and shape (NED [m]) and colour, shape (markings, MARK_COLUMNS)."""
 
 
 class Window(NamedTuple):
@@ -189,7 +189,7 @@ def normal_at(rows: Table, j: int, at: Vec3) -> Vec3:
 
 @law
 def on_marking(marks: Table, j: int, at: Vec3) -> bool:
-    """Whether a place of the floor is on the marking of row ``j``."""
+    """Whether a position of the floor is on the marking of row ``j``."""
     dn, de = at.x - marks[j, MARK_NORTH], at.y - marks[j, MARK_EAST]
     if marks[j, MARK_RADIUS] > 0.0:
         return dn * dn + de * de <= marks[j, MARK_RADIUS] * marks[j, MARK_RADIUS]
@@ -199,7 +199,7 @@ def on_marking(marks: Table, j: int, at: Vec3) -> bool:
 
 @law
 def floor_colour(marks: Table, at: Vec3) -> Vec3:
-    """Of a place of the floor: the last marking there, else chequered grey."""
+    """Of a position of the floor: the last marking there, else chequered grey."""
     square = math.floor(at.x / TILE) + math.floor(at.y / TILE)
     grey = 0.62 - (TILE_CONTRAST if square % 2 != 0 else 0.0)
     found = Vec3(grey, grey, grey)
@@ -232,45 +232,45 @@ def colour_of(solids: Solids, paint: Paint, eye: Vec3, direction: Vec3, depth: f
 
 
 @law
-def eye_of(places: Table, i: int) -> Vec3:
-    """Place of camera ``i``."""
-    return Vec3(places[i, 0], places[i, 1], places[i, 2])
+def eye_of(poses: Table, i: int) -> Vec3:
+    """Position of camera ``i``."""
+    return Vec3(poses[i, 0], poses[i, 1], poses[i, 2])
 
 
 @law
-def attitude_of(places: Table, i: int) -> Quat:
+def attitude_of(poses: Table, i: int) -> Quat:
     """Attitude of camera ``i``."""
-    return Quat(places[i, 3], places[i, 4], places[i, 5], places[i, 6])
+    return Quat(poses[i, 3], poses[i, 4], poses[i, 5], poses[i, 6])
 
 
 @law
-def write_depths(solids: Solids, places: Table, camera: Camera, workspace: Workspace, out: NarrowLine) -> None:
+def write_depths(solids: Solids, poses: Table, camera: Camera, workspace: Workspace, out: NarrowLine) -> None:
     """Depths [m] of many cameras, one picture after another.
 
     Args:
         solids: of the world.
-        places: of the cameras, NED [m], and attitudes (w, x, y, z), shape (m, 7).
+        poses: of the cameras, NED [m], and attitudes (w, x, y, z), shape (m, 7).
         camera: of all.
         room: to work in.
         out: shape (m * height * width,).
     """
     n = workspace.depths.shape[0]
-    for i in range(places.shape[0]):
-        see(solids, eye_of(places, i), attitude_of(places, i), camera, workspace)
+    for i in range(poses.shape[0]):
+        see(solids, eye_of(poses, i), attitude_of(poses, i), camera, workspace)
         for k in range(n):
             out[i * n + k] = min(workspace.depths[k], camera.reach)
 
 
 @law
 def write_colours(
-    solids: Solids, paint: Paint, places: Table, camera: Camera, workspace: Workspace, out: ByteLine
+    solids: Solids, paint: Paint, poses: Table, camera: Camera, workspace: Workspace, out: ByteLine
 ) -> None:
     """Colours of many cameras, 0 to 255, one picture after another; arguments as of ``write_depths``, ``out`` of shape
     (m * height * width * 3,): red, green, blue."""
     n = workspace.depths.shape[0]
-    for i in range(places.shape[0]):
-        eye = eye_of(places, i)
-        see(solids, eye, attitude_of(places, i), camera, workspace)
+    for i in range(poses.shape[0]):
+        eye = eye_of(poses, i)
+        see(solids, eye, attitude_of(poses, i), camera, workspace)
         for k in range(n):
             seen = colour_of(solids, paint, eye, ray(workspace.directions, k), workspace.depths[k], workspace.met[k])
             first = 3 * (i * n + k)
@@ -308,23 +308,23 @@ class Photographer:
         self._workspace = Workspace(rays, np.empty_like(rays), np.zeros(u.size), np.zeros(u.size, np.int64))
 
     def in_world(self, world: World) -> Photographer:
-        """The same cameras in another world. They share room to work in: one takes pictures after the other."""
+        """The same cameras in another world. They share memory to work in: one takes pictures after the other."""
         made = copy(self)
         made._solids, made._paint = world.geometry.arrays, paint_of(world)
         return made
 
-    def depths(self, places: Floats, discs: Floats | None = None) -> npt.NDArray[np.float32]:
-        """Depths along the camera's axis [m], shape (m, height, width), of cameras at ``places`` (``write_depths``)."""
-        out = np.empty((len(places), self.camera.height, self.camera.width), np.float32)
-        for some, solids, _ in self._looks(len(places), discs):
-            _depths(solids, places[some], self.camera, self._workspace, out[some].reshape(-1))
+    def depths(self, poses: Floats, discs: Floats | None = None) -> npt.NDArray[np.float32]:
+        """Depths along the camera's axis [m], shape (m, height, width), of cameras at ``poses`` (``write_depths``)."""
+        out = np.empty((len(poses), self.camera.height, self.camera.width), np.float32)
+        for some, solids, _ in self._looks(len(poses), discs):
+            _depths(solids, poses[some], self.camera, self._workspace, out[some].reshape(-1))
         return out
 
-    def colours(self, places: Floats, discs: Floats | None = None) -> npt.NDArray[np.uint8]:
+    def colours(self, poses: Floats, discs: Floats | None = None) -> npt.NDArray[np.uint8]:
         """Red, green, blue, shape (m, height, width, 3)."""
-        out = np.empty((len(places), self.camera.height, self.camera.width, 3), np.uint8)
-        for some, solids, paint in self._looks(len(places), discs):
-            _colours(solids, paint, places[some], self.camera, self._workspace, out[some].reshape(-1))
+        out = np.empty((len(poses), self.camera.height, self.camera.width, 3), np.uint8)
+        for some, solids, paint in self._looks(len(poses), discs):
+            _colours(solids, paint, poses[some], self.camera, self._workspace, out[some].reshape(-1))
         return out
 
     def _looks(self, count: int, discs: Floats | None) -> Iterator[tuple[slice, Solids, Paint]]:
@@ -336,7 +336,7 @@ class Photographer:
         fixed, coloured = np.asarray(self._solids.rows), np.asarray(self._paint.solids)
         paint = self._paint._replace(solids=np.concatenate((coloured, colour)))
         for i in range(count):
-            rows = np.zeros((discs.shape[1], SOLID_FIGURES))
+            rows = np.zeros((discs.shape[1], SOLID_COLUMNS))
             rows[:, (NORTH, EAST, RADIUS, TOP, BOTTOM)] = discs[i]
             rows[:, COS] = 1.0
             solids = self._solids._replace(rows=np.concatenate((fixed, rows)))
@@ -346,7 +346,7 @@ class Photographer:
 def paint_of(world: World) -> Paint:
     """The colours of a world."""
     solids = np.array([COLOURS[solid.colour] for solid in world.solids], np.float64).reshape(-1, 3)
-    return Paint(solids, np.array([_mark(m) for m in world.markings], np.float64).reshape(-1, MARK_FIGURES))
+    return Paint(solids, np.array([_mark(m) for m in world.markings], np.float64).reshape(-1, MARK_COLUMNS))
 
 
 def _mark(marking: Marking) -> tuple[float, ...]:

@@ -30,7 +30,7 @@ from .geometry import (
     NORTH,
     RADIUS,
     SIN,
-    SOLID_FIGURES,
+    SOLID_COLUMNS,
     TOP,
     Floats,
     Geometry,
@@ -130,27 +130,27 @@ def nearest_of(solids: Table, count: int, volume: Volume) -> Contact:
 
 
 @law
-def gather(solids: Table, place: Vec2, reach: float, rows: Table) -> Listed:
-    """Copy the rows of the solids near a place, the nearest first, into ``rows``; see ``near``."""
+def gather(solids: Table, position: Vec2, reach: float, rows: Table) -> Listed:
+    """Copy the rows of the solids near a position, the nearest first, into ``rows``; see ``near``."""
     capacity, count, complete = rows.shape[0], 0, INF
     for k in range(solids.shape[0]):
-        distance = beside(solids, k, place).distance
+        distance = beside(solids, k, position).distance
         if distance > reach:
             complete = min(complete, distance)
             continue
         row = count
-        while row > 0 and beside(rows, row - 1, place).distance > distance:
+        while row > 0 and beside(rows, row - 1, position).distance > distance:
             row -= 1
         if count == capacity:  # the last falls out, or the new one does not get in
-            complete = min(complete, beside(rows, capacity - 1, place).distance if row < capacity else distance)
+            complete = min(complete, beside(rows, capacity - 1, position).distance if row < capacity else distance)
         else:
             count += 1
         if row < capacity:
             for below in range(count - 1, row, -1):
-                for figure in range(SOLID_FIGURES):
-                    rows[below, figure] = rows[below - 1, figure]
-            for figure in range(SOLID_FIGURES):
-                rows[row, figure] = solids[k, figure]
+                for column in range(SOLID_COLUMNS):
+                    rows[below, column] = rows[below - 1, column]
+            for column in range(SOLID_COLUMNS):
+                rows[row, column] = solids[k, column]
     return Listed(count, complete)
 
 
@@ -193,22 +193,23 @@ def distance(geometry: Geometry, north: float, east: float, top: float, bottom: 
 
 
 def near(geometry: Geometry, north: float, east: float, reach: float, rows: Floats) -> Listed:
-    """The solids near a place, for a vehicle that tests contacts itself: their rows, the nearest first, into ``rows``.
+    """The solids near a position, for a vehicle that tests contacts itself: their rows, the nearest first, into
+    ``rows``.
 
     Args:
         geometry: of a world.
-        north, east: the place [m].
+        north, east: the position [m].
         reach: distance seen from above up to which solids are listed [m].
-        rows: shape (K, SOLID_FIGURES): at most K solids are listed.
+        rows: shape (K, SOLID_COLUMNS): at most K solids are listed.
 
     Returns:
         How many rows were written, and the distance [m] of the nearest solid that was left out (inf: none was). As
-        long as a robot's volume stays within that distance of the place it can touch only what is listed.
+        long as a robot's volume stays within that distance of the position it can touch only what is listed.
     """
     count, complete = _gather(geometry.solids, Vec2(north, east), reach, rows)
     return Listed(count, float(complete))
 
 
 def rows(count: int) -> Floats:
-    """Room for ``near``: shape (solids, figures)."""
-    return np.zeros((count, SOLID_FIGURES))
+    """Memory for ``near``: shape (solids, SOLID_COLUMNS)."""
+    return np.zeros((count, SOLID_COLUMNS))

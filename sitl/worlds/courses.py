@@ -2,7 +2,7 @@
 """Worlds to drive in that are made from a seed: a race track, a slalom, a car park.
 
 Their markings tell tasks where to drive: "gate 1", "gate 2", ... are passed in their direction
-(``envs.targets.gates``), "bay 1", ... are free places to park in (``envs.targets.parking``).
+(``envs.targets.gates``), "bay 1", ... are free bays to park in (``envs.targets.parking``).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def track(seed: int = 0, difficulty: float = 0.5, size: float = 30.0, scale: flo
 
 
 def slalom(seed: int = 0, difficulty: float = 0.5, size: float = 50.0, scale: float = 1.0) -> World:
-    """Poles in a row ahead of the start; the way leads to the left of the first one, to the right of the next.
+    """Poles in a row ahead of the start; the path leads to the left of the first one, to the right of the next.
 
     Args:
         seed: of how far poles stand from one another, and beside the line.
@@ -110,7 +110,7 @@ def car_park(seed: int = 0, difficulty: float = 0.5, size: float = 30.0, scale: 
         wall(a, b, f"wall {k}") for k, (a, b) in enumerate(zip(corners, corners[1:] + corners[:1]), 1)
     ]
     bays: list[Marking] = []
-    length, broad, high = (scale * figure for figure in CAR)
+    length, broad, high = (scale * side for side in CAR)
     for k, is_taken in enumerate(taken.tolist()):
         side = 1.0 if k < count else -1.0
         x, y, yaw = -half + width * (k % count + 0.5), side * (lane + 0.5 * depth), side * 0.5 * math.pi

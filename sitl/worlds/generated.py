@@ -28,7 +28,7 @@ def forest(seed: int = 0, difficulty: float = 0.5, size: float = 40.0, scale: fl
     """Trees, thicker and closer together the more difficult it is; a clearing of 3 m round the start in the middle.
 
     Args:
-        seed: of the places of the trees.
+        seed: of the positions of the trees.
         difficulty: 0: a tree each 60 m^2; 1: one each 8 m^2. Between two trees are 1.2 m at least.
         size: side of the square [m].
         scale: gaps, doors and corridors are so many times as wide, for robots that need more room.

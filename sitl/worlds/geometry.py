@@ -33,10 +33,10 @@ RADIUS = 6
 """Rounding [m]: above 0 for a cylinder."""
 TOP, BOTTOM = 7, 8
 """Down coordinates [m]: top < bottom."""
-SOLID_FIGURES = 9
+SOLID_COLUMNS = 9
 """Numbers in a row."""
 
-# Figures of the grid.
+# Numbers of the grid.
 GRID_NORTH, GRID_EAST = 0, 1
 """South-west corner [m]."""
 CELL, PER_METRE = 2, 3
@@ -45,7 +45,7 @@ ROWS, COLUMNS = 4, 5
 """Cells northward and eastward (whole numbers)."""
 FLOOR = 6
 """Down coordinate of the floor [m]."""
-GRID_FIGURES = 7
+GRID_NUMBERS = 7
 
 _MARGIN = 1e-6
 """A solid is listed in every cell that comes this near to it [m]: far more than rounding, so that the walk through the
@@ -61,9 +61,9 @@ class Solids(NamedTuple):
     """A world's solids as laws take them."""
 
     rows: Table
-    """Shape (n, SOLID_FIGURES)."""
+    """Shape (n, SOLID_COLUMNS)."""
     grid: Line
-    """Shape (GRID_FIGURES,)."""
+    """Shape (GRID_NUMBERS,)."""
     cells: IntLine
     """See ``Geometry``."""
 
@@ -73,11 +73,11 @@ class Geometry:
     """What ray casting and contacts work on; pickles as it is."""
 
     solids: Floats
-    """Shape (n, SOLID_FIGURES): a row a solid, in the order of the world's solids."""
+    """Shape (n, SOLID_COLUMNS): a row a solid, in the order of the world's solids."""
     grid: Floats
-    """Shape (GRID_FIGURES,)."""
+    """Shape (GRID_NUMBERS,)."""
     cells: Integers
-    """ROWS * COLUMNS + 1 places in this array, where each cell's list begins; then the lists: numbers of solids."""
+    """ROWS * COLUMNS + 1 offsets in this array, where each cell's list begins; then the lists: numbers of solids."""
 
     def __len__(self) -> int:
         return len(self.solids)
@@ -101,7 +101,7 @@ def compile_geometry(solids: Sequence[Solid], floor_z: float, cells_each: int = 
         floor_z: height of the floor [m].
         cells_each: about how many cells the grid has for a solid; 0 makes a single cell that lists all.
     """
-    rows = np.array([_row(solid) for solid in solids], dtype=np.float64).reshape(-1, SOLID_FIGURES)
+    rows = np.array([_row(solid) for solid in solids], dtype=np.float64).reshape(-1, SOLID_COLUMNS)
     grid, cells = _grid(rows, 0.0 - floor_z, cells_each)
     return Geometry(rows, grid, cells)
 

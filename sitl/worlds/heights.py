@@ -17,7 +17,7 @@ from ..errors import OptionError
 FORMS = "flat, FILE.hgt, FILE.npy or FILE.npy:SPACING"
 FLAT = "flat"
 SPACING = 30.0
-"""Of the points of an array unless told otherwise [m]."""
+"""Of the points of an array by default [m]."""
 MOST_BYTES = 1 << 28
 """Of a file."""
 MOST_POINTS = 1 << 25
@@ -42,7 +42,7 @@ class Heights(NamedTuple):
     step_lon: float
 
     def __call__(self, lat: float, lon: float) -> float | None:
-        """Height [m] at a place [deg], between the four points around it; None: not known, or outside."""
+        """Height [m] at a location [deg], between the four points around it; None: not known, or outside."""
         row, column = (lat - self.south) / self.step_lat, (lon - self.west) / self.step_lon
         count_n, count_e = self.rows.shape
         if not (0.0 <= row <= count_n - 1 and 0.0 <= column <= count_e - 1):

@@ -19,7 +19,7 @@ ORIGIN = Start("middle", (0.0, 0.0, 0.0), 0.0)
 
 def made(
     name: str,
-    figures: tuple[int, float, float, float],
+    numbers: tuple[int, float, float, float],
     solids: Sequence[Solid],
     description: str,
     start: Start = ORIGIN,
@@ -30,15 +30,15 @@ def made(
 
     Args:
         name: of the kind of world.
-        figures: seed, difficulty, size [m], scale.
+        numbers: seed, difficulty, size [m], scale.
         solids: in it.
         description: a line for people.
         start: the start pose.
         markings: painted on the ground.
         ground: the ground itself; None: the square of the size about the origin.
     """
-    full = name + ":" + ",".join(f"{key}={_written(value)}" for key, value in zip(KEYS, figures))
-    ground = ground or Marking((0.0, 0.0), size=(figures[2], figures[2]), colour="white", name="ground")
+    full = name + ":" + ",".join(f"{key}={_written(value)}" for key, value in zip(KEYS, numbers))
+    ground = ground or Marking((0.0, 0.0), size=(numbers[2], numbers[2]), colour="white", name="ground")
     return World(full, tuple(solids), (start,), description, plan_height=1.0, markings=(ground, *markings))
 
 

@@ -38,35 +38,35 @@ def outline(world: World, height: float) -> Array:
         meets = ((low <= high[number] + _NEAR) & (high >= low[number] - _NEAR)).all(axis=1)
         others = [(polygons[k], k < number) for k in np.flatnonzero(meets).tolist() if k != number]
         for start, end in zip(polygon, np.roll(polygon, -1, axis=0)):
-            way = end - start
-            shortest = _SEAM / lengths(way)
+            edge = end - start
+            shortest = _SEAM / lengths(edge)
             kept += [
-                (*(start + a * way), *(start + b * way)) for a, b in _outside(start, way, others) if b - a > shortest
+                (*(start + a * edge), *(start + b * edge)) for a, b in _outside(start, edge, others) if b - a > shortest
             ]
     return np.array(kept).reshape(-1, 4)
 
 
-def _outside(start: Array, way: Array, others: list[tuple[Array, bool]]) -> list[tuple[float, float]]:
+def _outside(start: Array, edge: Array, others: list[tuple[Array, bool]]) -> list[tuple[float, float]]:
     """Which parts of an edge, from 0 to 1, lie in none of the polygons; each with whether it owns a common edge."""
     parts = [(0.0, 1.0)]
     for polygon, owner in others:
-        low, high = _inside(start, way, polygon, owner)
+        low, high = _inside(start, edge, polygon, owner)
         if low < high:
             parts = [p for a, b in parts for p in ((a, min(b, low)), (max(a, high), b)) if p[0] < p[1]]
     return parts
 
 
-def _inside(start: Array, way: Array, polygon: Array, owner: bool) -> tuple[float, float]:
+def _inside(start: Array, edge: Array, polygon: Array, owner: bool) -> tuple[float, float]:
     """From where to where an edge lies inside of a convex polygon, from 0 to 1; nowhere when the first is greater."""
     low, high = 0.0, 1.0
     for corner, following in zip(polygon, np.roll(polygon, -1, axis=0)):
         side = (following - corner) / lengths(following - corner)
-        along = products(side, way) / lengths(way)
+        along = products(side, edge) / lengths(edge)
         grown = 0.0
         if abs(along) > _PARALLEL:  # back to back neither is outside; face on face one of them is
             grown = _SEAM if along < 0.0 or owner else -_SEAM
         depth = side[0] * (start - corner)[1] - side[1] * (start - corner)[0] + grown
-        change = side[0] * way[1] - side[1] * way[0]
+        change = side[0] * edge[1] - side[1] * edge[0]
         if change == 0.0:
             if depth <= 0.0:
                 return 1.0, 0.0

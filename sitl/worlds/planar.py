@@ -117,11 +117,11 @@ def publish_readings(ranges: Line, longest: float, out: Line) -> None:
     """The published readings [m] of the ranges [m] that were cast, into ``out``; see ``publish``."""
     cast, published = ranges.shape[0], out.shape[0]
     for i in range(published):
-        place = i * (cast - 1) / (published - 1) if published > 1 else 0.0
-        first = min(int(place), max(cast - 2, 0))
+        index = i * (cast - 1) / (published - 1) if published > 1 else 0.0
+        first = min(int(index), max(cast - 2, 0))
         a = min(ranges[first], longest)
         b = min(ranges[min(first + 1, cast - 1)], longest)
-        reading = a + (place - first) * (b - a)
+        reading = a + (index - first) * (b - a)
         out[i] = INF if reading >= longest else reading
 
 

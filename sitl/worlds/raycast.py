@@ -93,8 +93,8 @@ def walk(solids: Solids, origin: Vec3, direction: Vec3) -> float:
     row_pace = 1.0 / (vn if north_bound else 1.0)
     column_pace = 1.0 / (ve if east_bound else 1.0)
     while True:
-        place = row * columns + column
-        for item in range(cells[place], cells[place + 1]):
+        square = row * columns + column
+        for item in range(cells[square], cells[square + 1]):
             met = to_solid(solids.rows, cells[item], origin, direction)
             nearest = met if met < nearest else nearest
         row_end = (cell * (row + row_edge) - north) * row_pace if north_bound else INF
@@ -308,18 +308,18 @@ def scan_point(rows: Table, grid: Line, cells: IntLine, origin: Line, directions
 
 
 class Scene(NamedTuple):
-    """Bodies with a sensor each, and room to work in."""
+    """Bodies with a sensor each, and memory to work in."""
 
     positions: Table
     """NED [m], shape (m, 3)."""
     attitudes: Table
     """Quaternions (w, x, y, z) from body (FRD) to NED, shape (m, 4)."""
     mount: Line
-    """Place of the sensor on the body, FRD [m], shape (3,)."""
+    """Position of the sensor on the body, FRD [m], shape (3,)."""
     rays: Table
     """Unit vectors on the body, FRD, shape (3, n)."""
     directions: Table
-    """Room, as ``rays``."""
+    """Memory, as ``rays``."""
 
 
 @law
@@ -364,7 +364,7 @@ def scan_from(
         geometry: of a world.
         positions: of the bodies, NED [m], shape (m, 3).
         attitudes: quaternions (w, x, y, z) from body (FRD) to NED, shape (m, 4).
-        mount: place of the sensor on the body, FRD [m], shape (3,).
+        mount: position of the sensor on the body, FRD [m], shape (3,).
         rays: unit vectors on the body, FRD, shape (3, n), as from ``planar.rays``.
         out: shape (m, n). The arrays are contiguous float64.
     """

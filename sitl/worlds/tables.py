@@ -69,7 +69,7 @@ TABLES: dict[str, dict[str, Key]] = {
     "world": {
         "name": text("of the world; the file's name when absent"),
         "description": text("what it is"),
-        "source": text("where its figures come from"),
+        "source": text("where its sizes come from"),
         "plan_height": number("height at which plans are cut (0.5 when absent)"),
     },
     "floor": {

@@ -159,7 +159,7 @@ def test_workers_with_other_versions_are_refused(ray, monkeypatch):
         on_ray(train_one, ["never"])
     pool = module._Pool(ray, train_one, [], lambda *words: None, {})
     with pytest.raises(AgentError, match=r"worker at far cannot load gym-sitl: No module"):
-        pool._check({"place": "far", "error": "No module named 'agents'"})
+        pool._check({"host": "far", "error": "No module named 'agents'"})
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from sitl.agents.deep import library
 from sitl.agents.errors import AgentError
 from sitl.agents.evaluate import Evaluation, Played
 from sitl.agents.recipes.recipe import Recipe, check_all, runs_of
-from sitl.agents.report.driven import Driven, Trails, Whereabouts, facts, place_of, whereabouts
+from sitl.agents.report.driven import Driven, Trails, Whereabouts, facts, position_of, whereabouts
 from sitl.agents.report.environments import drive_one, with_range
 from sitl.agents.runs.evaluation_plan import EvaluationPlan
 from sitl.agents.runs.training import train_one
@@ -145,7 +145,7 @@ def test_who_shuttles_and_who_leaves_is_known():
 def test_a_trail_is_where_a_vehicle_really_is():
     """Its pose is what its autopilot believes, which drifts."""
     env = make("GazeboMazeErleRoverLIDAR-v0")
-    place = place_of(env)
+    place = position_of(env)
     env.reset(seed=1, options={"pose": (3.0, 2.0, 0.5)})
     assert place() == pytest.approx((3.0, 2.0), abs=0.3)
     believed = env.unwrapped.robot.pose[0, :2]

@@ -164,8 +164,8 @@ def test_what_cannot_be_is_refused(tmp_path):
 
 def checks_of(run, begun=0, path=None):
     """Of a run, as it has them."""
-    figures = settings_of(run.config.algorithm, run.config.settings)
-    return Checks(run.config, figures, path or run.path / BEST, begun)
+    settings = settings_of(run.config.algorithm, run.config.settings)
+    return Checks(run.config, settings, path or run.path / BEST, begun)
 
 
 @pytest.mark.parametrize("algorithm", ["ppo", "dqn", "sac"])

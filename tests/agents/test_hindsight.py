@@ -22,14 +22,14 @@ from sitl.agents.runs.folder import RunFolder
 from tests.agents.deep_runs import train, weights
 
 REACH = "sitl/RoverReachGoal"
-FIGURES = {
+SMALL = {
     "hindsight": 4, "frames": 1, "robots": 4, "warm_up": 100, "memory": 300, "batch": 32, "width": 8,
     "check_every": 200, "check_episodes": 2,
 }  # fmt: skip
 
 
 def run_of(path, algorithm, env=f"{REACH}-v0", **settings):
-    chosen = training.settings(algorithm, {**FIGURES, **settings})
+    chosen = training.settings(algorithm, {**SMALL, **settings})
     config = RunConfig(env, algorithm, settings=chosen, episodes=None, steps=400, max_steps=20)
     return RunFolder.create(path, config)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rehearsal on an airframe whose figures were measured: the changes that its file makes."""
+"""Rehearsal on an airframe whose properties were measured: the changes that its file makes."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_a_file_without_intervals_is_refused(tmp_path) -> None:
     ("randomise", "says"),
     [
         ("identified", "identified: airframe erle_copter has no intervals: give the frame of a file"),
-        ("idenified", "randomise = 'idenified'; it must map figures .* or be 'identified'"),
+        ("idenified", "randomise = 'idenified'; it must map properties .* or be 'identified'"),
         ({"identified": 3}, "identified = 3; it must be True or False"),
         ({"inertia": (1.0, 2.0)}, r"inertia = \(1.0, 2.0\); it must be \(low, high\), of 3 numbers each,"),
         ({"inertia": ((0.1, 0.2, 0.3), (0.2, 0.1, 0.3))}, r"inertia = .* low <= high within 1e-09 .. 1e\+06 kg m\^2"),

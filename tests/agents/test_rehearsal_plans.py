@@ -51,7 +51,7 @@ def test_shipped_plans_fit_their_robots(name):
     assert "latency" in drawn and any(name.endswith("noise") for name in drawn)
 
 
-def test_figures_are_scaled_and_set(turtlebot):
+def test_properties_are_scaled_and_set(turtlebot):
     one = change(scale={"wheel_radius_left": 1.05}, set={"range_noise": 0.02}, latency=0.2)
     options = one.env_options(turtlebot, {"start": "random"})
     assert options["randomise"] == {"wheel_radius_left": (0.03696, 0.03696), "range_noise": (0.02, 0.02)}
@@ -84,7 +84,7 @@ def test_a_stretched_world_is_larger_and_as_high():
         ({"identified": 1}, "identified = 1; it must be true or false"),
         ({"scale": {"mass": 1.1}, "options": {"frame": "f.toml"}}, "scale is of the robot at home"),
         ({"scale": 1.1}, "scale = 1.1; it must be a table"),
-        ({"scale": {"mass": 1.1}, "set": {"mass": 2.0}}, "figure 'mass' is both scaled and set"),
+        ({"scale": {"mass": 1.1}, "set": {"mass": 2.0}}, "property 'mass' is both scaled and set"),
         ({"stretch": 0}, "stretch = 0; it must be a number from 0.1"),
         ({"mirror": 1}, "mirror = 1; it must be true or false"),
         ({"episodes": 0}, "episodes = 0"),
@@ -97,8 +97,8 @@ def test_wrong_changes_are_refused(values, text):
         change(**values)
 
 
-def test_figures_that_the_robot_lacks_are_refused(turtlebot):
-    with pytest.raises(AgentError, match="no figure 'wheel_radius_lef'; did you mean 'wheel_radius_left'"):
+def test_properties_that_the_robot_lacks_are_refused(turtlebot):
+    with pytest.raises(AgentError, match="no property 'wheel_radius_lef'; did you mean 'wheel_radius_left'"):
         change(scale={"wheel_radius_lef": 1.1}).env_options(turtlebot, {})
 
 

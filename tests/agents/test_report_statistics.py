@@ -64,10 +64,10 @@ def test_interquartile_mean_leaves_out_a_quarter_at_each_end():
 SCORES = np.array([3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0, 5.0, 3.0])
 OTHERS = np.array([2.0, 7.0, 1.0, 8.0])
 IQM, BETTER = (11 / 3, 2.1667, 5.3333), (0.4625, 0.1, 0.8625)
-"""Figure, low and high end."""
+"""Statistic, low and high end."""
 
 
-def test_figures_are_those_of_rliable():
+def test_statistics_are_those_of_rliable():
     """Made by rliable 1.2: aggregate_iqm, probability_of_improvement, get_interval_estimates (50,000 resamples)."""
     value, low, high = iqm_interval(SCORES)
     assert (value, low, high) == (approx(IQM[0]), approx(IQM[1], abs=0.17), approx(IQM[2], abs=0.17))
@@ -149,9 +149,9 @@ def test_the_interval_over_trainings_sees_that_they_differ():
     """A bootstrap that draws other trainings for each episode averages the differences away."""
     rng = np.random.default_rng(0)
     rates = np.array([0.59, 0.25, 0.02, 0.03, 0.82])
-    figures = (rng.uniform(size=(5, 200)) < rates[:, None]).astype(float)
-    value, low, high = trained_interval(figures)
-    assert value == pytest.approx(np.sort(figures.mean(axis=1))[1:4].mean())
+    scores = (rng.uniform(size=(5, 200)) < rates[:, None]).astype(float)
+    value, low, high = trained_interval(scores)
+    assert value == pytest.approx(np.sort(scores.mean(axis=1))[1:4].mean())
     assert low < 0.1 and high > 0.6
     alike = (rng.uniform(size=(5, 200)) < 0.5).astype(float)
     _, low, high = trained_interval(alike)

@@ -23,13 +23,13 @@ def report(tmp_path, *groups, **options):
     return compare(groups, tmp_path / "out", **options).read_text()
 
 
-def test_figures_are_those_of_the_rewards(tmp_path):
+def test_statistics_are_those_of_the_rewards(tmp_path):
     low = group(tmp_path, "low", [[0] * 8 + [k] * 2 for k in range(8)])
     high = group(tmp_path, "high", [[50] * 8 + [k + 4] * 2 for k in range(8)])
     text = report(tmp_path, low, high, block=4)
     assert "| 8 to 10 | 4 ± 2 | 8 ± 2 |" in text and "| low | 8 | 2 (" in text  # 4 to 8 are half zeros
     rows = list(csv.DictReader((tmp_path / "out" / "aggregates.csv").open()))
-    found = {(row["of"], row["figure"], row["over"]): float(row["value"]) for row in rows}
+    found = {(row["of"], row["statistic"], row["over"]): float(row["value"]) for row in rows}
     assert found["low", "interquartile mean", "episodes 6 to 10"] == 1.75
     assert found["low > high", "probability of improvement", "episodes 6 to 10"] == 0.0
 
@@ -37,8 +37,8 @@ def test_figures_are_those_of_the_rewards(tmp_path):
 def test_a_single_seed_is_not_given_certainty(tmp_path):
     one, other = (group(tmp_path, name, [[level] * 10]) for name, level in (("one", 1), ("other", 2)))
     text = report(tmp_path, one, other)
-    figures = text.partition("a single seed has no interval.")[2]
-    assert figures and "(1 .. 1)" not in figures and "above other" not in figures and "±" not in figures
+    shown = text.partition("a single seed has no interval.")[2]
+    assert shown and "(1 .. 1)" not in shown and "above other" not in shown and "±" not in shown
     assert "single seed: nothing here says" in text
     many = group(tmp_path, "many", [[k] * 10 for k in range(3)])
     text = report(tmp_path, one, many)

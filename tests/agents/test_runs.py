@@ -87,10 +87,10 @@ def test_checks_keep_the_best_table_and_change_nothing_else(tmp_path):
     kept = training.load_table(run.path)
     assert kept.visits.sum() < last.visits.sum()
     assert training.load_table(without.path).visits.sum() == last.visits.sum()
-    figures = read_arrays(run.path / training.BEST)
+    best = read_arrays(run.path / training.BEST)
     player = Learner("qlearn", Settings.of(run.config.settings), kept)
     again = Checks(environments.make(run.config), player, run.path / "other.npz").score()
-    assert again == figures["score"] and figures["episodes"] % 8 == 0
+    assert again == best["score"] and best["episodes"] % 8 == 0
 
 
 def test_a_longer_run_begins_like_a_shorter_one(tmp_path):

@@ -20,12 +20,12 @@ from tests.agents.small_runs import learner_for, make
 GREEDY = {"epsilon": 0.0, "epsilon_floor": 0.0}
 
 
-def learner(algorithm="qlearn", seed=3, **figures):
+def learner(algorithm="qlearn", seed=3, **settings):
     table = Table([10], 3)
     for key, values in ((1, (1.0, 2.0, 3.0)), (2, (10.0, 20.0, -5.0))):
         slot = slot_of(table.keys, key)
         table.keys[slot], table.values[slot], table.visits[slot] = key, values, 1
-    made = Learner(algorithm, Settings(**{**GREEDY, **figures}), table, seed)
+    made = Learner(algorithm, Settings(**{**GREEDY, **settings}), table, seed)
     made.begin(0)
     return made
 
@@ -117,8 +117,8 @@ def test_on_the_cliff_qlearning_takes_the_edge_and_sarsa_keeps_away():
     lengths = {}
     for algorithm in ("qlearn", "sarsa"):
         env = gym.make("CliffWalking-v1", max_episode_steps=500)
-        figures = Settings(alpha=0.5, gamma=1.0, epsilon=0.1, epsilon_decay=1.0)
-        one = learner_for(env, algorithm, figures)
+        settings = Settings(alpha=0.5, gamma=1.0, epsilon=0.1, epsilon_decay=1.0)
+        one = learner_for(env, algorithm, settings)
         for episode in range(500):
             one.begin(episode)
             learn_episode(env, one, episode)

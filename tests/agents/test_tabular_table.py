@@ -24,7 +24,7 @@ from tests.agents.small_runs import CIRCUIT2, learner_for, make
 
 def fill(table, keys):
     for taken, key in enumerate(keys):
-        table.make_room(taken, 1)
+        table.reserve(taken, 1)
         slot = slot_of(table.keys, key)
         assert table.keys[slot] == EMPTY
         table.keys[slot], table.values[slot], table.visits[slot] = key, [key, -key, 0.5], [1, 2, 3]
@@ -157,7 +157,7 @@ def test_in_the_other_worlds_too(world):
     same(f"Gazebo{world}TurtlebotLIDAR-v0", "sarsa", Settings())
 
 
-def test_with_random_starts_noise_and_figures():
+def test_with_random_starts_noise_and_properties():
     noise = {"range_noise": (0.0, 0.05), "wheel_radius_left": (0.0345, 0.0355)}
     outcomes = same(CIRCUIT2, "qlearn", Settings(), start="random", randomise=noise, step_time=0.3)
     assert not all(o.terminated for o in outcomes)

@@ -21,9 +21,9 @@ from sitl.autopilot.notes import EventNote, Text
 from sitl.autopilot.rover.events import EVENTS as ROVER
 from sitl.bridge import profile
 from sitl.bridge.dialect import message_by_id
+from sitl.core.extensions import ExtensionError
 from sitl.core.fingerprint import _referenced
 from sitl.core.mavlink import MavSeverity
-from sitl.core.places import ExtensionError
 from sitl.logs.dataflash import formats
 from sitl.logs.dataflash.common import EVENT_MESSAGES
 from sitl.logs.dataflash.events import EventEncoder
@@ -161,7 +161,7 @@ TAKEN, FREE, NO_EVENT = Event(2), Event(200), 7
 def test_events_of_other_packages(name: str, error: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "MODULE", sys.modules[__name__])
     monkeypatch.setenv("SITL_EVENTS", "")
-    monkeypatch.setattr(own._PLACES, "_read", set())
+    monkeypatch.setattr(own._EXTENSIONS, "_read", set())
     register_event("toy", f"MODULE:{name}")
     if error is None:
         assert with_registered("toy", [Event(2)]) == {2: 2, 200: FREE}

@@ -26,11 +26,11 @@ from sitl.autopilot.state import BatteryState, Estimate, Failsafe, Sensors
 from sitl.core.vectors import Vec3
 
 
-def monitored(**figures: float) -> Battery:
+def monitored(**values: float) -> Battery:
     """Parameters of a battery with voltage and current sensors; all limits that are not given are off."""
     params = Battery()
     params.MONITOR, params.CAPACITY, params.VOLT_PIN = 4.0, 3000.0, 13.0
-    for name, value in figures.items():
+    for name, value in values.items():
         params[name] = value
     return params
 

@@ -31,7 +31,7 @@ def driven(way: Way, accuracy: float = ACCURACY) -> PathState:
     params.ACCURACY, params.POINTS = accuracy, 300.0
     for place in way:
         assert srtl.add(path, Vec3(*place, 0.0), params)
-        srtl.keep_room(path, params)
+        srtl.keep_space(path, params)
     return path
 
 

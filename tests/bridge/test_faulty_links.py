@@ -106,7 +106,7 @@ def test_repaired_links_are_as_they_were(simulation: Simulation) -> None:
     assert board.is_watched() and board.faults.due_us(board.channels) != NEVER
     simulation.set_link_faults(None)
     client.advance(600_000)
-    assert not board.is_watched() and board.channels[0].peer.ways is None
+    assert not board.is_watched() and board.channels[0].peer.directions is None
     assert client.heard[-1][0] >= 1_500_000  # what was under way has come
 
 
@@ -159,7 +159,7 @@ def test_a_reboot_keeps_the_faults(core: Core) -> None:
     client.reboot()
     client.delay(2.0)
     assert client.simulation.before_boot_us > 0 and client.telemetry.mode
-    assert client.simulation.bridge.channels[0].peer.ways is not None
+    assert client.simulation.bridge.channels[0].peer.directions is not None
 
 
 def test_a_recording_holds_what_the_vehicle_heard(core: Core, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from sitl.bridge.faulty_links import FaultyLinks
 from sitl.bridge.links import InProcessLink, LinkFaults
-from sitl.bridge.links.faulty_way import FaultyWay, cut, is_of_clock
+from sitl.bridge.links.faulty_direction import FaultyDirection, cut, is_of_clock
 from sitl.client.endpoint import Endpoint
 from sitl.core.constants import NEVER
 from sitl.errors import OptionError
@@ -29,7 +29,7 @@ def test_a_log_has_no_faults() -> None:
 
 def carried(faults: LinkFaults, frames: list[bytes] = FRAMES, stream: int = 0) -> list[tuple[int, bytes]]:
     """Frames sent every 10 ms: (time of arrival [us], frame)."""
-    way, out = FaultyWay(faults, stream), []
+    way, out = FaultyDirection(faults, stream), []
     for k, frame in enumerate(frames):
         now = k * EVERY_US
         while way.due_us <= now:
@@ -96,7 +96,7 @@ def test_bandwidth_makes_frames_wait_and_loses_what_waits_too_long() -> None:
     times = [due for due, _ in out]
     assert {b - a for a, b in pairwise(times)} == {100_000}
     assert len(out) == pytest.approx(140, abs=3)  # those of 10 s, and 4 s of them in wait
-    way = FaultyWay(LinkFaults(bandwidth=size * 10.0))
+    way = FaultyDirection(LinkFaults(bandwidth=size * 10.0))
     assert way.carry(FRAMES[:2], 0) == [] and not way.is_full
     way.carry(FRAMES[:2], 0)
     assert way.is_full
@@ -111,10 +111,10 @@ def test_cuts() -> None:
 
 def test_a_way_goes_on_from_its_state() -> None:
     faults = LinkFaults(loss=0.2, delay=(0.1, 0.3), duplicates=0.1, reordering=0.1, corruption=1e-3, bandwidth=5000.0)
-    way = FaultyWay(faults)
+    way = FaultyDirection(faults)
     for k, frame in enumerate(FRAMES[:500]):
         way.carry([frame], k * EVERY_US)
-    copies = [FaultyWay.restored(way.snapshot()) for _ in range(2)]
+    copies = [FaultyDirection.restored(way.snapshot()) for _ in range(2)]
     heard = [[copy.carry([frame], k * EVERY_US) for k, frame in enumerate(FRAMES[500:], 500)] for copy in copies]
     assert heard[0] == heard[1] == [way.carry([frame], k * EVERY_US) for k, frame in enumerate(FRAMES[500:], 500)]
 
@@ -144,7 +144,7 @@ def test_the_push_of_a_clock_passes_unharmed() -> None:
     endpoint.send("COMMAND_INT", command=400, x=31010)
     endpoint.send("COMMAND_ACK", command=400)
     assert [is_of_clock(frame) for frame in sent] == [True, True, False, False]
-    assert FaultyWay(LinkFaults(loss=1.0)).carry(sent, 0) == sent[:2]
+    assert FaultyDirection(LinkFaults(loss=1.0)).carry(sent, 0) == sent[:2]
     assert not any(is_of_clock(bytes([mark])[:1]) for mark in range(256))
 
 

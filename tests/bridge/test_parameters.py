@@ -18,7 +18,7 @@ from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.params.parameter import stored
 from sitl.bridge.frame import Splitter
 from sitl.bridge.metadata import file_crc
-from sitl.bridge.services.parameters import TOLD
+from sitl.bridge.services.parameters import MOST_REPORTED
 from tests.bridge.fakes import Bench, Client
 
 
@@ -113,9 +113,9 @@ def test_what_has_no_effect_is_kept_and_told_once(bench: Bench) -> None:
 
 def test_a_client_that_sets_many_without_effect_is_not_flooded(bench: Bench) -> None:
     said = []
-    for name in [p.name for p in TABLE if not (p.has_effect or p.doc)][: TOLD + 5]:
+    for name in [p.name for p in TABLE if not (p.has_effect or p.doc)][: MOST_REPORTED + 5]:
         said += [m.text for m in write(bench, name, 1.0) if m.get_type() == "STATUSTEXT"]
-    assert len(said) == TOLD + 1 and said[-1] == "Others that are set have no effect either"
+    assert len(said) == MOST_REPORTED + 1 and said[-1] == "Others that are set have no effect either"
 
 
 def test_a_group_is_in_the_list_while_it_is_switched_on(bench: Bench) -> None:

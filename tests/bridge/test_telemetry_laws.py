@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.copter.modes.guided import ANGLE, GUIDED, POS_VEL_ACCEL
 from sitl.bridge.copter import targets as copter_targets
@@ -59,7 +60,8 @@ def v() -> Copter:
     [
         (int16, -1.9, -1), (int16, 1e30, 32767), (int16, -math.inf, -32768), (int16, math.nan, -32768),
         (uint16, 65534.9, 65534), (uint16, math.inf, 65535), (uint16, -0.1, 0), (uint16, math.nan, 0),
-        (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647), (int32, math.nan, -2147483648),
+        (int32, 0.5, 1), (int32, -0.5, 0), (int32, 1e30, 2147483647),
+        (int32, 3e9, 2147483647), (int32, -3e9, -2147483648), (int32, math.nan, -2147483648),
         (percent, 99.9, 99), (percent, 1e30, 100), (percent, -0.1, -1), (percent, math.nan, -1),
         (heading_cdeg, -math.pi / 2, 27000), (heading_cdeg, -1e-300, 0),
         (heading_cdeg, math.inf, 0), (heading_cdeg, math.nan, 0),
@@ -307,3 +309,15 @@ def test_distance_beside_the_track_of_a_copter(
     path.pos_desired, path.vel_desired = Vec2(13.0, 24.0), Vec2(*velocity)
     v.autopilot.estimate.pos = Vec3(10.0, 20.0, -5.0)
     assert says(copter_targets.nav_controller_output, v).xtrack_error == pytest.approx(expected)
+
+
+def test_where_guided_flies_to_on_the_globe_is_a_position_alone_with_ardupilots_last_bits(v: Copter) -> None:
+    v.autopilot.estimate.origin_set = True
+    assert says(copter_targets.position_target_global, v) is None
+    v.autopilot.modes.number, v.autopilot.modes.guided.pos = GUIDED, Vec3(100.0, 0.0, -30.0)
+    told = says(copter_targets.position_target_global, v)
+    assert told.lat_int == pytest.approx(HOME[0] + 100.0 / METRES_PER_DEGE7, abs=1) and told.lon_int == HOME[1]
+    assert told.alt == pytest.approx(HOME[2] + 30.0)
+    ignored = mavlink.POSITION_TARGET_TYPEMASK_FORCE_SET - 1 - 7  # velocities and accelerations
+    ignored |= mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE | mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
+    assert told.type_mask == 0xF000 | ignored

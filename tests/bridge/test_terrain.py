@@ -157,4 +157,4 @@ def test_a_home_above_the_ground_needs_the_ground_there() -> None:
     lat, lon, alt = next(call for call in bench.autopilot.calls if call[0] == "set_home")[1:]
     ground = bench.bridge.get(TerrainService).rise(lat, lon)
     assert ground == 50.0
-    assert alt == bench.bridge.places.home_alt() + ground + 5.0
+    assert alt == bench.bridge.locations.home_alt() + ground + 5.0

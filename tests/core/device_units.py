@@ -36,7 +36,7 @@ def roll(fleet: Sequence[Turtlebot], index: int, ticks: int) -> None:
     """Wheels turn, time goes on; sums of products, a square root, a vector that is a constant."""
     v = fleet[index]
     for _ in range(ticks):
-        speeds = commanded(v.figures, v.command, v.time_us)
+        speeds = commanded(v.airframe, v.command, v.time_us)
         v.command.forward = 0.999 * v.command.forward + 0.01 * speeds.left
         v.command.turn = math.sqrt(v.command.turn * v.command.turn + 0.1 * speeds.right) + (WAY * 2.0).y
         v.time_us += TICK_US
@@ -62,7 +62,7 @@ def fleet_of(count: int):
     from sitl.vehicles.turtlebot import AIRFRAME
 
     fleet = Turtlebot.fleet(count)
-    fleet["figures"] = AIRFRAME.record()
+    fleet["airframe"] = AIRFRAME.record()
     for k in range(count):
         fleet["command"]["forward"][k], fleet["command"]["turn"][k] = 0.1 + 0.01 * k, 0.3 - 0.02 * k
     return fleet

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A test pilot of rovers, and how well an airframe drives: the figures of docs/vehicles.md."""
+"""A test pilot of rovers, and how well an airframe drives: the metrics of docs/vehicles.md."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def outside(rows: np.ndarray, side: float) -> float:
     return float(np.maximum(-rows[:, 1:3], rows[:, 1:3] - side).max())
 
 
-def figures(core: Core, frame: str) -> dict[str, float]:
+def metrics(core: Core, frame: str) -> dict[str, float]:
     """All of them, by the column of the table."""
     side = SIDE[frame]
     corners = square(side)

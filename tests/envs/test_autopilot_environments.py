@@ -206,7 +206,7 @@ def test_a_view_follows_the_vehicle_and_a_simulation_is_a_copy():
     assert view.time_us == began_us + 100_000 and robot.view(0) is view
 
 
-def test_figures_are_drawn_anew():
+def test_properties_are_drawn_anew():
     env = gym.make(ROVER, randomise={"mass": (700.0, 900.0)})
     masses = []
     for seed in (1, 2, 1):

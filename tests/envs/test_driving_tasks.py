@@ -133,7 +133,7 @@ def test_a_rover_is_judged_in_x_and_y(name):
         _, _, terminated, _, info = env.step(np.zeros(2, np.float32))
         assert not terminated and not info["outside"]
     assert abs(robot.pose[0, 2]) > 6.0
-    task.places[0, 0, :2] = robot.pose[0, :2]
+    task.positions[0, 0, :2] = robot.pose[0, :2]
     for _ in range(30):
         observation, reward, terminated, _, info = env.step(np.zeros(2, np.float32))
         if terminated:

@@ -79,7 +79,7 @@ def test_places_and_gates_are_drawn_and_the_arena_is_in_the_picture(name):
     env.reset(seed=3)
     picture = env.render()
     assert (picture == (60, 150, 80)).all(axis=2).sum() > 30
-    places = env.unwrapped.task.places[0, :, :2]
+    places = env.unwrapped.task.positions[0, :, :2]
     box = env.unwrapped.task.arena
     assert (places >= box.low[:2]).all() and (places <= box.high[:2]).all() and max(picture.shape) == 640
     env.close()

@@ -69,7 +69,7 @@ def drawn_places(count: int, **options: Any) -> list[list[float]]:
         if episode:
             env.reset()
         task: Any = env.unwrapped.task  # type: ignore[attr-defined]
-        found.append([*task.places.ravel(), *env.unwrapped.robot.pose[:, 3]])  # type: ignore[attr-defined]
+        found.append([*task.positions.ravel(), *env.unwrapped.robot.pose[:, 3]])  # type: ignore[attr-defined]
     env.close()
     return found
 
@@ -89,7 +89,7 @@ def test_the_task_is_the_same_with_and_without(options: dict[str, Any]) -> None:
     for given in ({}, options):
         env = gym.make("sitl/RoverCourse-v0", **given)
         env.reset(seed=8)
-        single.append(env.unwrapped.task.places.tolist())  # type: ignore[attr-defined]
+        single.append(env.unwrapped.task.positions.tolist())  # type: ignore[attr-defined]
         env.close()
     assert single[0] == single[1]
 

@@ -213,9 +213,9 @@ def test_gates_are_those_of_the_episodes_world():
         marked = [m for m in worlds.load(info["world"]).markings if m.name.startswith("gate ")]
         task = env.task
         assert len(task.gates) == len(marked)
-        assert task.places[0, 0, :2] == pytest.approx(marked[0].centre)
-        assert task.places[0, len(marked), :2] == pytest.approx(marked[0].centre)  # the second lap
-        assert np.allclose(task.places[0, 2 * len(marked) - 1 :, :2], marked[-1].centre)
+        assert task.positions[0, 0, :2] == pytest.approx(marked[0].centre)
+        assert task.positions[0, len(marked), :2] == pytest.approx(marked[0].centre)  # the second lap
+        assert np.allclose(task.positions[0, 2 * len(marked) - 1 :, :2], marked[-1].centre)
         counts.add(len(marked))
         kept = env.snapshot()
         env.restore(kept)
@@ -236,12 +236,12 @@ def test_bays_and_waypoints_are_those_of_the_episodes_world():
     for seed in range(6):
         _, info = env.reset(seed=seed)
         bays = [m.centre for m in worlds.load(info["world"]).markings if m.name.startswith("bay ")]
-        assert tuple(env.task.places[0, 0, :2].tolist()) in [pytest.approx(bay) for bay in bays]
+        assert tuple(env.task.positions[0, 0, :2].tolist()) in [pytest.approx(bay) for bay in bays]
     env = rover(WIDE, task=Waypoints(3, reachable=True))
     for seed in range(6):
         env.reset(seed=seed)
         cells = ReachableCells(env.robot, env.task.limit, world=env.world)
-        assert all(cells.is_free(*place[:2]) for place in env.task.places[0])
+        assert all(cells.is_free(*place[:2]) for place in env.task.positions[0])
 
 
 def test_ways_around_solids_are_those_of_the_episodes_world():
@@ -250,7 +250,7 @@ def test_ways_around_solids_are_those_of_the_episodes_world():
         _, info = env.reset(seed=seed)
         alone = rover(info["world"], task=Among())
         alone.reset(seed=seed)
-        assert env.task.places[0] == pytest.approx(alone.task.places[0])
+        assert env.task.positions[0] == pytest.approx(alone.task.positions[0])
         assert env.task._left[0] == alone.task._left[0] > 0.0
 
 
@@ -367,7 +367,7 @@ def test_a_world_in_which_the_robot_cannot_start_is_refused(make):
     ],
 )
 def test_places_of_one_world_are_refused_in_several(task):
-    refused("was given places of one world", rover, ["rooms:seed=3", "open"], task=task())
+    refused("was given positions of one world", rover, ["rooms:seed=3", "open"], task=task())
     rover("open", task=task()).reset(seed=1)
 
 

@@ -19,7 +19,7 @@ from sitl.envs import ids
 NAVIGATE = "sitl/Navigate-v0"
 IDS = [*ids.PAPER, *ids.FIRST, *ids.NEW, NAVIGATE, "sitl/Navigate-v1"]
 OTHERS = [name for name in IDS if name not in ids.NEW]
-"""``test_places_tasks.py`` plays those of ``NEW`` again, alone and in vectors, for longer."""
+"""``test_target_tasks.py`` plays those of ``NEW`` again, alone and in vectors, for longer."""
 STEPS = 4
 pytestmark = pytest.mark.filterwarnings("ignore:.*Box.*(infinity|bound|symmetric|normalized)", "ignore:.*render")
 
@@ -89,9 +89,9 @@ def test_a_vector_gives_what_single_ones_give(env):
     for index, actions in enumerate(rows):
         alone = played(env, 3 + index, actions)
         assert same(alone[0][0], row_of(several[0], index))
-        for (observation, *figures, _), step in zip(alone[1:], several[1:]):
+        for (observation, *numbers, _), step in zip(alone[1:], several[1:]):
             assert same(observation, row_of(step[0], index))
-            assert figures == [column[index] for column in step[1:]]
+            assert numbers == [column[index] for column in step[1:]]
 
 
 def row_of(observations, index):

@@ -77,7 +77,7 @@ class FromTheTruth(Path):
     """A part of one's own on one of ours."""
 
     def write(self, out):
-        out[:] = self._task.ways_from(self.robot.true_state(), 1).reshape(out.shape)
+        out[:] = self._task.offsets_from(self.robot.true_state(), 1).reshape(out.shape)
 
     def prepare(self, session):
         super().prepare(session)
@@ -94,8 +94,8 @@ def test_a_part_with_a_write_of_its_own_is_written_by_it():
 
 
 class HigherGoals(Hold):
-    def ways_from(self, pose, count):
-        return super().ways_from(pose, count) + (0.0, 0.0, 100.0)
+    def offsets_from(self, pose, count):
+        return super().offsets_from(pose, count) + (0.0, 0.0, 100.0)
 
 
 class Standing(Follow):

@@ -226,9 +226,9 @@ def test_set_points_without_limits_are_for_simulators():
     assert "RC_CHANNELS_OVERRIDE" not in {name for name, _ in vehicle.received}
 
 
-def watch(**figures):
+def watch(**settings):
     clock = [0.0]
-    made = Watch(Guard(**figures), True, lambda: clock[0])
+    made = Watch(Guard(**settings), True, lambda: clock[0])
     made.take_over(0.0, (0.0, 0.0, 5.0))
     return made, clock
 

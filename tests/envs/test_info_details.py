@@ -51,7 +51,7 @@ def test_terms_of_parking_add_up_to_the_end():
     env = gym.make("sitl/RoverParking-v0")
     env.reset(seed=3)
     task, place = env.unwrapped.task, env.unwrapped.robot.pose[0]
-    task.places[0, 0], task.headings[0] = place[:3], place[3]
+    task.positions[0, 0], task.headings[0] = place[:3], place[3]
     _, reward, terminated, _, info = env.step(np.zeros(2, np.float32))
     assert terminated and info["reward_parked"] == 20.0
     assert add_up(info) == pytest.approx(reward, abs=1e-9)

@@ -13,7 +13,7 @@ import pytest
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, ids
 from sitl.envs.judge import ESTIMATE, TRUTH, Judge
-from sitl.envs.targets.places import nearness
+from sitl.envs.targets.target_task import nearness
 from sitl.envs.tasks_v1 import HOVER_HALF, worst_of
 
 CONTINUOUS = [name for name in ids.NEW if "Discrete" not in name]

@@ -212,7 +212,7 @@ def test_draws_come_from_a_few_sets_whose_vehicles_stay_prepared(monkeypatch):
     assert float(other.robot.view(0).physics.airframe.mass) in {mass for mass, _ in found}
 
 
-def test_the_noise_of_a_vehicles_lidar_is_a_figure_too():
+def test_the_noise_of_a_vehicles_lidar_is_a_property_too():
     scans = {}
     for noise in (0.0, 0.3):
         env = gym.make(ROVER, observation="scan", randomise={"lidar_noise": (noise, noise)}).unwrapped

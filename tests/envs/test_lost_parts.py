@@ -140,7 +140,7 @@ def test_numbers_without_state_are_uniform_and_independent():
 
 
 @pytest.mark.parametrize(
-    ("figures", "needed"),
+    ("settings", "needed"),
     [
         ({"dropout": 1.0}, "dropout = 1.0; it must be 0 .. 0.999"),
         ({"dropout": "often"}, "dropout = 'often'"),
@@ -155,6 +155,6 @@ def test_numbers_without_state_are_uniform_and_independent():
         ({"part": [Sensed("pose", 0.1)]}, "has errors of its own"),
     ],
 )
-def test_what_cannot_be_is_refused(figures, needed):
+def test_what_cannot_be_is_refused(settings, needed):
     with pytest.raises(EnvOptionError, match=needed):
-        gym.make("sitl/Navigate-v1", observation=[{"part": "pose", **figures}], **OPEN)
+        gym.make("sitl/Navigate-v1", observation=[{"part": "pose", **settings}], **OPEN)

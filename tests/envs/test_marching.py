@@ -9,8 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from sitl.envs.free_ways import BESIDE
 from sitl.envs.marching import COST_MOST, LISTS, march, reach
+from sitl.envs.shortest_paths import BESIDE
 
 SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 

@@ -16,7 +16,7 @@ from sitl.envs.robots import in_process
 from sitl.envs.robots.starts import Starts
 
 COPTER, ROVER = "GazeboOfficeErleCopterLIDAR-v0", "GazeboMazeErleRoverLIDAR-v0"
-FIGURES = {
+PROPERTIES = {
     COPTER: {
         "mass": (1.0, 1.3),
         "wind_speed": (0.0, 3.0),
@@ -65,7 +65,7 @@ def test_a_start_pose_that_is_given_is_where_the_vehicle_is_prepared(name):
 
 @pytest.mark.parametrize("name", (COPTER, ROVER))
 def test_many_robots_are_as_one_each_and_repeat(name, starts):
-    options = {"start": "random", "randomise": FIGURES[name]}
+    options = {"start": "random", "randomise": PROPERTIES[name]}
     many = gym.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", observation="scan", **options)
     singles = [make(name, **options) for _ in range(3)]
     kept = []
@@ -119,7 +119,7 @@ def test_another_pose_costs_no_other_preparation_and_boot_does(starts):
 
 
 def test_snapshots_go_on_from_a_moved_start():
-    env = make(COPTER, start="random", randomise=FIGURES[COPTER])
+    env = make(COPTER, start="random", randomise=PROPERTIES[COPTER])
     env.reset(seed=8)
     for steps in (0, 2):
         for _ in range(steps):
@@ -154,5 +154,5 @@ def test_what_cannot_be_is_refused():
         with pytest.raises(EnvOptionError, match=complaint):
             env.reset(options={"pose": pose})
     heavy = make(COPTER, randomise={"mass": lambda rng: 25.0})
-    with pytest.raises(EnvOptionError, match="does not hover with figures"):
+    with pytest.raises(EnvOptionError, match="does not hover with properties"):
         heavy.reset(seed=0)

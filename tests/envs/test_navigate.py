@@ -117,7 +117,7 @@ def test_start_can_be_a_pose_a_function_or_an_option_of_reset():
     assert 0.0 < first < 1.0 and env.robot.pose[0, 0] != first
 
 
-def test_figures_are_drawn_for_each_episode():
+def test_properties_are_drawn_for_each_episode():
     env = make(randomise={"wheel_radius_left": (0.036, 0.037), "range_noise": lambda rng: 0.01})
     drifts = []
     for seed in (1, 1, 2):

@@ -69,7 +69,7 @@ def test_actions_outside_of_a_box_are_refused(action):
         ({"step_time": "fast"}, r"step_time = 'fast'"),
         ({"start": "pole"}, r"start 'pole': .*original.* and \"random\""),
         ({"start": (1.0,)}, r"start: pose \(1.0,\)"),
-        ({"randomise": {"range_nois": (0, 1)}}, r"figure 'range_nois' .* did you mean 'range_noise'"),
+        ({"randomise": {"range_nois": (0, 1)}}, r"property 'range_nois' .* did you mean 'range_noise'"),
         ({"randomise": {"range_noise": (0.2, 0.1)}}, r"range_noise = \(0.2, 0.1\); it must be low <= high within 0"),
         ({"randomise": {"range_noise": 0.1}}, r"range_noise = 0.1; it must be \(low, high\) or a function"),
         ({"lidr": None}, r"option 'lidr' is not known; it is one of airframe, lidar, physics, .*did you mean 'lidar'"),
@@ -110,7 +110,7 @@ def test_the_options_that_messages_list_are_those_that_there_are():
         (lambda: Continuous(DRIVE, (0.0, 1.0), (1.0, 1.0)), r"less than"),
     ],
 )
-def test_wrong_figures_of_pieces_are_named(call, message):
+def test_wrong_properties_of_pieces_are_named(call, message):
     with pytest.raises(EnvOptionError, match=message):
         call()
 
@@ -135,7 +135,11 @@ def test_step_time_that_is_no_whole_number_of_ticks_is_refused(step_time):
 @pytest.mark.parametrize(
     ("option", "value", "message"),
     [
-        ("randomise", "none", r"randomise = 'none'; it must map figures to \(low, high\), or be 'identified' or None"),
+        (
+            "randomise",
+            "none",
+            r"randomise = 'none'; it must map properties to \(low, high\), or be 'identified' or None",
+        ),
         ("randomise", 1.5, r"randomise = 1.5; it must map"),
         ("setpoint", ["rc"], r"setpoint \['rc'\] is not known; it is one of"),
         ("action", {"ahead": 1}, r"action 'ahead' = 1; it must be 2 finite numbers"),
@@ -248,14 +252,14 @@ def test_a_vehicle_at_a_connection_starts_where_it_is(start):
 def test_a_vehicle_at_a_connection_keeps_its_own_wind():
     env = gym.make("sitl/CopterHover-v0", connection="udpout:127.0.0.1:9")
     assert not env.unwrapped.session.randomisation.ranges
-    with pytest.raises(EnvOptionError, match="randomise: figure 'wind_speed' is not known"):
+    with pytest.raises(EnvOptionError, match="randomise: property 'wind_speed' is not known"):
         gym.make("sitl/CopterHover-v0", connection="udpout:127.0.0.1:9", randomise={"wind_speed": (0.0, 5.0)})
 
 
 def test_a_misspelt_name_of_many_is_answered_with_the_one_that_is_meant() -> None:
     with pytest.raises(EnvOptionError) as error:
         gym.make("GazeboOfficeErleCopterLIDAR-v0", randomise={"wind_sped": (0.0, 5.0)})
-    assert str(error.value) == "randomise: figure 'wind_sped' is not known; did you mean 'wind_speed'?"
+    assert str(error.value) == "randomise: property 'wind_sped' is not known; did you mean 'wind_speed'?"
     with pytest.raises(EnvOptionError, match=r"'zzz' is not known; it is one of .*wind_speed"):
         gym.make("GazeboOfficeErleCopterLIDAR-v0", randomise={"zzz": (0.0, 5.0)})
 

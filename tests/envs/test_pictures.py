@@ -133,7 +133,7 @@ def test_what_cannot_be_is_refused(observation, says):
         ({"at": (1.0, 2.0)}, "three finite numbers"),
     ],
 )
-def test_figures_that_cannot_be_are_refused(arguments, says):
+def test_settings_that_cannot_be_are_refused(arguments, says):
     with pytest.raises(EnvOptionError, match=says):
         make(Depth(**arguments))
 

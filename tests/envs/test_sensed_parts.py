@@ -31,8 +31,8 @@ def flown(observation, steps=12, seed=1, **options):
 @pytest.mark.parametrize("part", ["pose", "scan", "last_action", "goal", "range_finder", "acceleration"])
 def test_rate_and_latency_show_earlier_readings(part):
     now, late, slow, both = (
-        flown([Sensed(part, **figures)])
-        for figures in ({}, {"latency": 0.2}, {"rate": 10 / 3}, {"latency": 0.2, "rate": 10 / 3})
+        flown([Sensed(part, **settings)])
+        for settings in ({}, {"latency": 0.2}, {"rate": 10 / 3}, {"latency": 0.2, "rate": 10 / 3})
     )
     assert np.array_equal(now, flown([part])), "without errors it is the part itself"
     assert not np.array_equal(now[0], now[9])

@@ -95,9 +95,9 @@ def test_who_flies_to_the_goals_succeeds(task: type[Formation] | type[Escort]) -
 
 
 def test_a_hit_costs_and_ends_the_episode_of_both() -> None:
-    """Two copters that change places meet in the middle."""
+    """Two copters that change positions meet in the middle."""
     env = SwarmEnv(Crossing(2), steps=60, estimator="truth")
-    env.task.begin = lambda places, rng: setattr(env.task, "_goals", places[::-1].copy())  # type: ignore[method-assign]
+    env.task.begin = lambda positions, rng: setattr(env.task, "_goals", positions[::-1].copy())  # type: ignore[method-assign]
     observations, _ = env.reset(seed=0)
     rewards: dict[str, float] = {}
     terminations: dict[str, bool] = {}
@@ -110,11 +110,11 @@ def test_a_hit_costs_and_ends_the_episode_of_both() -> None:
 
 def test_rewards_are_what_is_gained() -> None:
     task = Formation(3)
-    before, places, goals = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
-    goals[:, 0], places[:, 0] = 5.0, (1.0, 0.0, 4.5)
-    assert task.rewards(Scene(places, before, goals, goals)) == pytest.approx([1.0, 0.0, 4.6])
+    before, positions, goals = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+    goals[:, 0], positions[:, 0] = 5.0, (1.0, 0.0, 4.5)
+    assert task.rewards(Scene(positions, before, goals, goals)) == pytest.approx([1.0, 0.0, 4.6])
     moved = goals + (2.0, 0.0, 0.0)
-    assert task.rewards(Scene(places, before, moved, goals)) == pytest.approx([-1.0, -2.0, 2.5])
+    assert task.rewards(Scene(positions, before, moved, goals)) == pytest.approx([-1.0, -2.0, 2.5])
 
 
 @pytest.mark.parametrize("task", ["formation", "crossing", "escort"])
@@ -124,8 +124,8 @@ def test_an_episode_pays_its_first_distance_minus_its_last(task: str) -> None:
     observations, _ = env.reset(seed=3)
 
     def far() -> Any:
-        places = env._true_places()
-        return np.linalg.norm(places - env.task.goals(places, 0.2 * env._count), axis=1)
+        positions = env._true_positions()
+        return np.linalg.norm(positions - env.task.goals(positions, 0.2 * env._count), axis=1)
 
     first, paid = far(), np.zeros(len(env.agents))
     while env.agents:
@@ -209,9 +209,9 @@ def test_the_examples_of_the_page_run() -> None:
 
 
 def start_errors(env: SwarmEnv, seed: int) -> Any:
-    """What vehicles say of their places minus true places, north and east [m], one after another."""
+    """What vehicles say of their positions minus true positions, north and east [m], one after another."""
     env.reset(seed=seed)
-    return (env._told - np.hstack((env._true_places(), np.zeros((len(env.swarm), 3)))))[:, :2].ravel()
+    return (env._reported - np.hstack((env._true_positions(), np.zeros((len(env.swarm), 3)))))[:, :2].ravel()
 
 
 def test_episodes_begin_with_boots_of_their_own() -> None:

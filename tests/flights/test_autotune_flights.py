@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AUTOTUNE: what it finds, tells, keeps and logs. Figures are a real ArduPilot's."""
+"""AUTOTUNE: what it finds, tells, keeps and logs. Values are a real ArduPilot's."""
 
 from __future__ import annotations
 

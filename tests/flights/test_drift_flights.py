@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DRIFT flown with a ground station's sticks. Figures are those of a real ArduPilot's default quadrotor."""
+"""DRIFT flown with a ground station's sticks. Values are those of a real ArduPilot's default quadrotor."""
 
 from __future__ import annotations
 

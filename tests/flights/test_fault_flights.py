@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Faults in the air, beside those of a real ArduPilot.
 
-The figures "of ArduPilot" were flown with its unmodified 4.7-dev executable, frame +, hovering at 10 m in calm air.
+The values "of ArduPilot" were flown with its unmodified 4.7-dev executable, frame +, hovering at 10 m in calm air.
 """
 
 from __future__ import annotations
@@ -481,7 +481,7 @@ def test_stuck_motors(fly: Fly) -> None:
 
 
 def test_slow_motors(fly: Fly) -> None:
-    """Rotors follow late: with 0.3 s it wobbles, 0.5 s is too much. A change of figures does not end that."""
+    """Rotors follow late: with 0.3 s it wobbles, 0.5 s is too much. A change of properties does not end that."""
     copter = fly()
     derived = copter.simulation.v.physics.derived
     before, airframe = bytes(derived._bytes), copter.simulation.v.physics.airframe

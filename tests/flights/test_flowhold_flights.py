@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""FLOWHOLD, flown; figures of a real ArduPilot with its own simulator, at 10 m, are named."""
+"""FLOWHOLD, flown; values of a real ArduPilot with its own simulator, at 10 m, are named."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Flights by another system's position, without GPS; figures of a real ArduPilot with its own simulator are named."""
+"""Flights by another system's position, without GPS; values of a real ArduPilot with its own simulator are named."""
 
 from __future__ import annotations
 

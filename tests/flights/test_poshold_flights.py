@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""POSHOLD flown with a ground station's sticks. Figures of a real ArduPilot are of its default quadrotor."""
+"""POSHOLD flown with a ground station's sticks. Values of a real ArduPilot are of its default quadrotor."""
 
 from __future__ import annotations
 

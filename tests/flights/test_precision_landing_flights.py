@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Landings on a target: a simulated beacon, and LANDING_TARGET of a companion computer.
 
-Figures in comments: the same flight of ArduCopter 4.7.
+Values in comments: the same flight of ArduCopter 4.7.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sitl.core.algebra import rotate_inverse
 from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3
 from sitl.simulation import Core
-from sitl.vehicle.landing_beacon import place_of
+from sitl.vehicle.landing_beacon import position_of
 from tests.flights.aviator import AUTO, LAND, LOITER, RTL, Aviator, Item
 
 EVERYWHERE = {"PLND_ALT_MIN": 0.0, "PLND_ALT_MAX": 0.0}
@@ -31,7 +31,7 @@ def beacon(p: Aviator, north: float, east: float) -> np.ndarray:
     p.set_parameter("SIM_PLD_LON", lon * 1e-7)
     p.set_parameter("SIM_PLD_ENABLE", 1)
     v = p.simulation.v
-    return np.array(place_of(v.autopilot.params.SIM.PLD, v.physics.place))[:2]
+    return np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.place))[:2]
 
 
 def pilot(core: Core, **params: float) -> Aviator:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SYSTEMID: the chirp, what answers it, what it tells and logs. Figures are a real ArduPilot's."""
+"""SYSTEMID: the chirp, what answers it, what it tells and logs. Values are a real ArduPilot's."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Flights over a ridge whose heights a client tells. Figures in comments: the same flights of ArduCopter 4.7."""
+"""Flights over a ridge whose heights a client tells. Values in comments: the same flights of ArduCopter 4.7."""
 
 from __future__ import annotations
 

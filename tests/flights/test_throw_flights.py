@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""THROW: thrown by a shove of the simulated world. Figures are a real ArduPilot's, thrown in the same way."""
+"""THROW: thrown by a shove of the simulated world. Values are a real ArduPilot's, thrown in the same way."""
 
 from __future__ import annotations
 

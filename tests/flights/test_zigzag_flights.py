@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ZIGZAG: points stored with a switch, ways between their lines, sweeps. Figures are a real ArduPilot's."""
+"""ZIGZAG: points stored with a switch, ways between their lines, sweeps. Values are a real ArduPilot's."""
 
 from __future__ import annotations
 

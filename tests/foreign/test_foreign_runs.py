@@ -286,20 +286,20 @@ def test_options_that_a_foreign_autopilot_cannot_have_are_refused(tmp_path, caps
 
 @pytest.mark.slow
 def test_the_rovers_drive_is_repeated_by_a_program(ardurover):
-    figures = {figure.name: figure for figure in compare.figures("rover", autopilot=f"ardupilot:{ardurover}")}
-    compared = [f for name, f in figures.items() if f.theirs and "reached" in name]
+    metrics = {metric.name: metric for metric in compare.metrics("rover", autopilot=f"ardupilot:{ardurover}")}
+    compared = [f for name, f in metrics.items() if f.theirs and "reached" in name]
     assert compared
-    for figure in compared:
-        assert abs(figure.percent) < 20.0, figure
+    for metric in compared:
+        assert abs(metric.percent) < 20.0, metric
 
 
 @pytest.mark.slow
 def test_the_copters_mission_is_repeated_by_a_program(arducopter):
-    figures = compare.figures("copter", autopilot=f"ardupilot:{arducopter}")
-    compared = [f for f in figures if f.theirs and f.name.startswith("AUTO") and "reached" in f.name]
+    metrics = compare.metrics("copter", autopilot=f"ardupilot:{arducopter}")
+    compared = [f for f in metrics if f.theirs and f.name.startswith("AUTO") and "reached" in f.name]
     assert compared
-    for figure in compared:
-        assert abs(figure.percent) < 20.0, figure
+    for metric in compared:
+        assert abs(metric.percent) < 20.0, metric
 
 
 def test_an_estimator_of_ours_is_refused_where_another_autopilot_flies(tmp_path):
@@ -307,9 +307,9 @@ def test_an_estimator_of_ours_is_refused_where_another_autopilot_flies(tmp_path)
     with pytest.raises(OptionError, match=r"^estimator 'truth': autopilot ardupilot:.* has estimators of its own"):
         Setup("erle_copter", estimator="truth", autopilot=other).build()
     with pytest.raises(OptionError, match=r"^estimator 'truth'"):
-        compare.figures("copter", estimator="truth", autopilot=other)
+        compare.metrics("copter", estimator="truth", autopilot=other)
 
 
 def test_px4_does_not_speak_the_scripts_commands(px4):
     with pytest.raises(OptionError, match="for ArduPilot"):
-        compare.figures("copter", autopilot=f"px4:{px4}")
+        compare.metrics("copter", autopilot=f"px4:{px4}")

@@ -138,11 +138,11 @@ def test_wind_that_is_set_in_flight_is_our_physics(client):
 
 @pytest.mark.parametrize("kind", ["copter", "rover"])
 def test_it_repeats_its_recorded_flights(kind):
-    figures = [f for f in compare.figures(kind, autopilot=program(kind)) if f.theirs]
-    reached = [f for f in figures if "reached" in f.name]
+    metrics = [f for f in compare.metrics(kind, autopilot=program(kind)) if f.theirs]
+    reached = [f for f in metrics if "reached" in f.name]
     assert len(reached) >= 4
-    for figure in reached:
-        assert abs(figure.percent) < 3.0, figure
+    for metric in reached:
+        assert abs(metric.percent) < 3.0, metric
 
 
 @pytest.mark.parametrize(("kind", "mission"), [("copter", "copter/square"), ("rover", "rover/square")])

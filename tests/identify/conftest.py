@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One flight of a copter whose figures are known, flown once."""
+"""One flight of a copter whose properties are known, flown once."""
 
 from __future__ import annotations
 

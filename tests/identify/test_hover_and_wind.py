@@ -38,11 +38,11 @@ def test_what_the_vehicle_gains_upward_is_no_bias() -> None:
 
 
 def test_the_wind_has_an_interval_by_what_the_bias_may_be(log, monkeypatch) -> None:
-    usual = {figure.name: figure for figure in drag.drag([log])}["wind_speed"]
+    usual = {estimate.name: estimate for estimate in drag.drag([log])}["wind_speed"]
     monkeypatch.setattr(drag, "_WIND", 0.0)
-    knows = {figure.name: figure for figure in drag.drag([log])}["wind_speed"]
+    knows = {estimate.name: estimate for estimate in drag.drag([log])}["wind_speed"]
     fitted = drag._fitted
     monkeypatch.setattr(drag, "_fit", lambda rows: fitted(rows, np.zeros(2), np.zeros(2)))
-    without = {figure.name: figure for figure in drag.drag([log])}["wind_speed"]
+    without = {estimate.name: estimate for estimate in drag.drag([log])}["wind_speed"]
     assert without.value == knows.value == usual.value
     assert without.high < knows.high < usual.high

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An airframe from a log of a copter whose figures are known; what a log cannot tell is said."""
+"""An airframe from a log of a copter whose properties are known; what a log cannot tell is said."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ def found(flown):
     return identify(flown)
 
 
-def test_figures_contain_the_truth_and_others_say_why_not(found) -> None:
+def test_estimates_contain_the_truth_and_others_say_why_not(found) -> None:
     log, airframe = found.logs[0], vehicles.load("erle_copter")
-    known = Copter(airframe, log.parameters, log.conditions).figures()
+    known = Copter(airframe, log.parameters, log.conditions).properties()
     known |= {name: float(airframe.value(name)) for name in ("baro_noise", "gyro_noise_density")}
     for name in ("hover_output", "yaw_effectiveness", "drag_mcoef", "gyro_noise_density", "baro_noise"):
-        figure = found[name]
-        assert figure.low < known[name] < figure.high, f"{figure}, truth {known[name]}"
+        estimate = found[name]
+        assert estimate.low < known[name] < estimate.high, f"{estimate}, truth {known[name]}"
     for name in ("roll_effectiveness", "pitch_effectiveness"):
         assert found[name].value == pytest.approx(known[name], rel=0.05) and found[name].relative < 0.05, str(
             found[name]
         )
     assert found["motor_lag"].low < known["motor_lag"] < found["motor_lag"].high
     assert found["motor_lag"].low > 0.0
-    assert all(figure.is_observed or figure.reason for figure in found.figures)
+    assert all(estimate.is_observed or estimate.reason for estimate in found.estimates)
     assert "battery_capacity: not observable in this log: " in found.table()
 
 
@@ -51,7 +51,7 @@ def test_the_airframe_answers_as_the_vehicle_did(found, tmp_path, flown, capsys)
     assert "hover_output: 0.57" in capsys.readouterr().out
     mine, log = vehicles.load(str(out)), found.logs[0]
     assert mine.value("mass") == 2.0
-    answers = Copter(mine, log.parameters, log.conditions).figures()
+    answers = Copter(mine, log.parameters, log.conditions).properties()
     for name in ("hover_output", "roll_effectiveness", "pitch_effectiveness", "yaw_effectiveness", "drag_mcoef"):
         assert answers[name] == pytest.approx(found[name].value, rel=0.01), name
     assert mine.value("time_constant_up") == pytest.approx(found["motor_lag"].value)
@@ -82,8 +82,8 @@ def test_pulses_that_hardly_move_are_said(flown, monkeypatch) -> None:
 
 def test_a_log_of_no_rest_tells_no_noise(flown, monkeypatch) -> None:
     monkeypatch.setattr("sitl.identify.flight.FlightLog.at_rest", property(lambda log: []))
-    figure = identify(flown)["gyro_noise_density"]
-    assert math.isnan(figure.value) and "LOG_DISARMED 1" in figure.reason
+    estimate = identify(flown)["gyro_noise_density"]
+    assert math.isnan(estimate.value) and "LOG_DISARMED 1" in estimate.reason
 
 
 def test_rates_that_are_too_low_are_said(flown, monkeypatch) -> None:
@@ -149,12 +149,12 @@ def test_effectiveness_that_a_log_does_not_tell_goes_with_the_gains(flown, found
         path.write_bytes(data)
         made = identify(path)
         log = made.logs[0]
-        figures = Copter(made.airframe(), log.parameters, log.conditions).figures()
-        known = Copter(shipped, own | {"FRAME_CLASS": 1.0, "FRAME_TYPE": 1.0}, FULL).figures()
+        estimates = Copter(made.airframe(), log.parameters, log.conditions).properties()
+        known = Copter(shipped, own | {"FRAME_CLASS": 1.0, "FRAME_TYPE": 1.0}, FULL).properties()
         for axis in ("roll", "pitch", "yaw"):
             assert not made[f"{axis}_effectiveness"].is_observed
             name = f"{axis}_effectiveness"
-            assert figures[name] == pytest.approx(known[name] / share, rel=0.01), name
+            assert estimates[name] == pytest.approx(known[name] / share, rel=0.01), name
         assert "assumed, by ATC_RAT_RLL_P and _PIT_P" in made.to_toml()
         low, high = made.airframe().intervals["inertia"]
         assert high == pytest.approx([4.0 * x for x in low]), "half to twice of what is assumed"
@@ -183,10 +183,10 @@ def test_a_weight_that_changes_within_a_log_is_said(found) -> None:
 
 def test_where_the_current_hardly_changes_the_resistance_is_the_firmwares(found, flown, monkeypatch) -> None:
     monkeypatch.setattr("sitl.identify.board._MOST_RELATIVE", 0.0)
-    figure = identify(flown)["battery_resistance"]
+    estimate = identify(flown)["battery_resistance"]
     truth = float(vehicles.load("erle_copter").value("battery_resistance"))
-    assert figure.low < truth < figure.high and figure.data == "BAT.Res, the firmware's estimate"
-    assert figure.value == pytest.approx(found["battery_resistance"].value, rel=0.1)
+    assert estimate.low < truth < estimate.high and estimate.data == "BAT.Res, the firmware's estimate"
+    assert estimate.value == pytest.approx(found["battery_resistance"].value, rel=0.1)
 
 
 def _of_version(data: bytes, version: bytes) -> bytes:
@@ -201,13 +201,13 @@ def _with_parameter(data: bytes, name: bytes, value: float) -> bytes:
 
 
 def test_messages_that_a_log_lacks_are_named(flown, tmp_path) -> None:
-    for name, figures in (
+    for name, estimates in (
         (b"IMU", ("hover_output", "drag_along")), (b"RCOU", ("hover_output", "balance_right")),
         (b"XKF1", ("hover_output", "wind_speed")), (b"BAT", ("hover_current", "battery_resistance")),
     ):  # fmt: skip
         found = identify(without_messages(flown, tmp_path / "lacks.bin", name))
-        for figure in figures:
-            assert f"the log has no {name.decode()} (LOG_BITMASK" in found[figure].reason, figure
+        for estimate in estimates:
+            assert f"the log has no {name.decode()} (LOG_BITMASK" in found[estimate].reason, estimate
 
 
 def test_the_plan_is_a_mission(tmp_path, capsys) -> None:
@@ -219,12 +219,14 @@ def test_the_plan_is_a_mission(tmp_path, capsys) -> None:
     assert "--home None is not LAT,LON" in capsys.readouterr().err
 
 
-def test_the_airframe_says_how_far_off_its_figures_may_be(found, tmp_path) -> None:
+def test_the_airframe_says_how_far_off_its_properties_may_be(found, tmp_path) -> None:
     airframe = found.airframe()
     low, high = airframe.intervals["power_by_thrust"]
     watts = [found["hover_voltage"].value * end for end in (found["hover_current"].low, found["hover_current"].high)]
     weight = airframe.value("mass") * GRAVITY
-    assert (low, high) == pytest.approx([watt / weight for watt in watts], rel=1e-9), "it follows from one figure alone"
+    assert (low, high) == pytest.approx([watt / weight for watt in watts], rel=1e-9), (
+        "it follows from one property alone"
+    )
     hover, (slow, fast) = found["hover_output"], airframe.intervals["outflow_speed_max"]
     moved = [found_at(found, "hover_output", end) for end in (hover.high, hover.low)]
     assert slow <= moved[0] < airframe.value("outflow_speed_max") < moved[1] <= fast, "expo adds to it"
@@ -235,6 +237,6 @@ def test_the_airframe_says_how_far_off_its_figures_may_be(found, tmp_path) -> No
 
 
 def found_at(found, name: str, value: float) -> float:
-    """Outflow speed of the airframe where a figure of the log has another value."""
-    figures = tuple(replace(one, value=value) if one.name == name else one for one in found.figures)
-    return float(replace(found, figures=figures).airframe().value("outflow_speed_max"))
+    """Outflow speed of the airframe where a property of the log has another value."""
+    estimates = tuple(replace(one, value=value) if one.name == name else one for one in found.estimates)
+    return float(replace(found, estimates=estimates).airframe().value("outflow_speed_max"))

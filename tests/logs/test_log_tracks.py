@@ -43,8 +43,8 @@ def test_arducopter_3_2_has_milliseconds_hundredths_and_no_pos(tmp_path: Path, f
     assert track["north"][-1] == pytest.approx(9.8, abs=0.02)
     assert track["vn"][5:-5] == pytest.approx(np.full(40, 2.0), abs=0.1)
     assert track["energy"][-1] == pytest.approx(60.0 * 4.9 / 3600.0)
-    assert track.notes[0] == "places are those of AHR2: it has no POS"
-    assert "it has no velocities: they are taken from its places" in track.notes
+    assert track.notes[0] == "positions are those of AHR2: it has no POS"
+    assert "it has no velocities: they are taken from its positions" in track.notes
 
 
 def test_what_is_missing_is_said(tmp_path: Path) -> None:
@@ -53,12 +53,12 @@ def test_what_is_missing_is_said(tmp_path: Path) -> None:
     assert track.notes == [
         "it has no MODE",
         "it tells of no arming (ARM, EV)",
-        "it has no velocities: they are taken from its places",
+        "it has no velocities: they are taken from its positions",
         "it has no attitude",
         "it has no energy of the battery",
     ]
     none = without(V36, "POS")
-    with pytest.raises(TrackError, match="no two places in POS, AHR2 or GPS"):
+    with pytest.raises(TrackError, match="no two positions in POS, AHR2 or GPS"):
         track_bin.read(written(tmp_path / "y.bin", binary(only(flight(), none), none)))
 
 

@@ -17,7 +17,7 @@ from sitl.core.border import LIDAR_SAMPLES as ROOM
 from sitl.core.vectors import Euler
 from sitl.simulation import Core, Simulation
 from sitl.vehicles import AirframeError
-from sitl.vehicles.figures.body import LIDAR_SAMPLES
+from sitl.vehicles.properties.body import LIDAR_SAMPLES
 from sitl.worlds import Box, Start, World
 
 KNOWN: dict[str, Any] = json.loads(
@@ -170,5 +170,5 @@ def test_more_readings_than_rays_are_refused() -> None:
         vehicles.load("erle_copter").changed(lidar_samples=300)
 
 
-def test_there_is_room_for_what_figures_allow() -> None:
+def test_there_is_room_for_what_properties_allow() -> None:
     assert ROOM == LIDAR_SAMPLES

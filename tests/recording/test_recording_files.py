@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -253,7 +254,11 @@ def test_numbers_beyond_64_bits(data: bytes) -> None:
         (HEADER, {"version": {"sources": [], "compiled core": ""}}, "its version names no sources"),
         (HEADER, {"world": "x"}, "its world is 'x'"),
         (HEADER, {"params": [[1], [2]]}, "its params is"),
-        (HEADER, {"airframe": {"name": "x", "figures": {}, "parameters": 3}}, "its airframe has no name, figures or"),
+        (
+            HEADER,
+            {"airframe": {"name": "x", "properties": {}, "parameters": 3}},
+            "its airframe has no name, prop",
+        ),
         (END, {"time_us": None}, "it ends at None us"),
         (END, {"time_us": 1e308}, "it ends at 1e.308 us"),
         (END, {"time_us": -1}, "it ends at -1 us"),
@@ -273,6 +278,31 @@ def test_values_of_other_types(
         read(tmp_path / "x.rec")
 
 
+def with_airframe(path: Path, changed: Path, airframe: Callable[[dict[str, Any]], dict[str, Any]]) -> Path:
+    """A recording with another airframe in its header."""
+    writer = BlockWriter(changed)
+    for block in BlockReader(path):
+        data = block.data
+        if block.kind == HEADER:
+            header = json.loads(data)
+            data = json.dumps({**header, "airframe": airframe(header["airframe"])}).encode()
+        writer.write(block.kind, data)
+    writer.close()
+    return changed
+
+
+def test_the_old_name_of_an_airframes_properties_is_read(hopped: Recorded, tmp_path: Path, core: Core) -> None:
+    """Version 0.1 wrote "figures"."""
+    old = with_airframe(
+        hopped.path, tmp_path / "old.rec", lambda a: {"figures" if k == "properties" else k: v for k, v in a.items()}
+    )
+    replay = Replay(read(old), core=core)
+    assert replay.run() == [] == replay.differences
+    both = with_airframe(hopped.path, tmp_path / "both.rec", lambda a: {**a, "figures": {}})
+    with pytest.raises(RecordingError, match="there are 'figures' and 'properties'"):
+        read(both)
+
+
 @pytest.mark.parametrize("kind", [HEADER, END])
 def test_lists_without_end(hopped: Recorded, tmp_path: Path, kind: int) -> None:
     writer = BlockWriter(tmp_path / "x.rec")
@@ -287,12 +317,12 @@ def test_another_version_is_flown_and_named(hopped: Recorded, core: Core) -> Non
     recording = read(hopped.path)
     recording.header["version"]["sources"]["bridge"] = "0"
     recording.header["version"]["gym-sitl"] = "0.0"
-    recording.header["airframe"]["figures"]["mass"] *= 1.01
+    recording.header["airframe"]["properties"]["mass"] *= 1.01
     replay = Replay(recording, core=core)
     assert replay.run() == []
     assert replay.differences[0] == "sources of bridge"
     assert replay.differences[1].startswith("gym-sitl 0.0 then")
-    assert replay.differences[2].startswith("airframe erle_copter: figure mass 1.15")
+    assert replay.differences[2].startswith("airframe erle_copter: property mass 1.15")
 
 
 def test_what_says_that_it_unpacks_to_much_is_refused(

@@ -138,7 +138,7 @@ def test_a_file_that_a_recording_names_is_not_run(core: Core, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("name", vehicles.names())
-def test_an_airframe_comes_back_from_its_figures(name: str) -> None:
+def test_an_airframe_comes_back_from_its_properties(name: str) -> None:
     """All that a simulation takes from an airframe is the same."""
     airframe = vehicles.load(name)
     again = vehicles.of_data(type(airframe), vehicles.to_data(airframe))

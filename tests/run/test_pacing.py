@@ -23,7 +23,7 @@ class Clock:
 class Silent:
     """A bridge whose clients say nothing."""
 
-    heard = 0
+    received = 0
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
@@ -106,7 +106,7 @@ def test_a_busy_client_is_answered_and_does_not_hurry_the_clock() -> None:
     class Busy:
         """A bridge whose sockets always have something to read, after a tenth of a millisecond."""
 
-        answered = heard = 0
+        answered = received = 0
 
         def wait(self, seconds: float) -> bool:
             clock.now += min(1e-4, seconds)
@@ -134,7 +134,7 @@ def test_slices_grow_while_nobody_says_anything() -> None:
         pacing.after_slice(vehicle)  # type: ignore[arg-type]
         assert 20_000 <= pacing.slice_us <= max(20_000, vehicle.time_us // 10)
     assert pacing.slice_us * 1e-6 * wall_s_a_simulated_s == pytest.approx(1e-3, rel=0.01)
-    vehicle.bridge.heard = 1
+    vehicle.bridge.received = 1
     pacing.after_slice(vehicle)  # type: ignore[arg-type]
     assert pacing.slice_us == 20_000
 
@@ -178,7 +178,7 @@ def test_slices_are_whole_ticks_within_their_bounds(speedup: float | None, steps
         clock.now += took
         time_us, heard = time_us + passed_us, heard + said
         listener = Silent(clock)
-        listener.heard = heard
+        listener.received = heard
         pacing.listen(listener, time_us)
         assert isinstance(pacing.slice_us, int) and TICK_US <= pacing.slice_us <= LONGEST_QUIET_US
         assert pacing.slice_us % TICK_US == 0

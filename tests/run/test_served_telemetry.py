@@ -33,8 +33,8 @@ class Reader:
     def __init__(self, simulation: Simulation, sock: socket.socket) -> None:
         self.socket, self.pieces = sock, list[bytes]()
         sock.send(ALL_AT_4_HZ)
-        heard = simulation.bridge.heard
-        while simulation.bridge.heard == heard:
+        heard = simulation.bridge.received
+        while simulation.bridge.received == heard:
             simulation.bridge.wait(5.0)
             simulation.bridge.receive()
         sock.setblocking(False)
@@ -134,9 +134,9 @@ def test_udp_clients_are_streamed_to_from_their_beginning_and_after_a_reboot(cor
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sock.connect(link.local_address)
     beat = message("HEARTBEAT")
-    heard = simulation.bridge.heard
+    heard = simulation.bridge.received
     sock.send(encode_v2(beat, beat.payload(), 0, 255, 190))  # a client that asks for nothing
-    while simulation.bridge.heard == heard:
+    while simulation.bridge.received == heard:
         simulation.bridge.wait(5.0)
         simulation.bridge.receive()
     sock.setblocking(False)

@@ -28,21 +28,21 @@ EVEN = AIRFRAME.changed(wheel_radius_left=0.035)
 """Without the drift."""
 
 
-def figures(airframe=AIRFRAME):
+def properties(airframe=AIRFRAME):
     fleet = TurtlebotRecord.fleet(1)
-    fleet["figures"] = airframe.record()
-    return TurtlebotRecord.of(fleet, 0).figures
+    fleet["airframe"] = airframe.record()
+    return TurtlebotRecord.of(fleet, 0).airframe
 
 
 def test_wheels_follow_speed_and_turn():
-    assert wheel_speeds(figures(EVEN), 0.3, 0.0) == approx((0.3, 0.3))
-    assert wheel_speeds(figures(EVEN), 0.0, 1.0) == approx((-0.115, 0.115))
+    assert wheel_speeds(properties(EVEN), 0.3, 0.0) == approx((0.3, 0.3))
+    assert wheel_speeds(properties(EVEN), 0.0, 1.0) == approx((-0.115, 0.115))
 
 
 def test_wheels_are_limited_one_by_one():
-    assert wheel_speeds(figures(EVEN), 5.0, 0.0) == approx((0.7, 0.7))
-    assert wheel_speeds(figures(EVEN), 0.6, 2.0) == approx((0.37, 0.7))
-    assert wheel_speeds(figures(EVEN), -9.0, 0.0) == approx((-0.7, -0.7))
+    assert wheel_speeds(properties(EVEN), 5.0, 0.0) == approx((0.7, 0.7))
+    assert wheel_speeds(properties(EVEN), 0.6, 2.0) == approx((0.37, 0.7))
+    assert wheel_speeds(properties(EVEN), -9.0, 0.0) == approx((-0.7, -0.7))
 
 
 def test_straight_command_drifts_to_the_right():
@@ -67,9 +67,9 @@ def test_turn_is_counter_clockwise_and_an_exact_arc():
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, 3.14, -3.14])
 def test_wheels_turn_and_move_a_body_by_their_mean_and_difference(heading):
-    body, figures = Body(), TurtlebotRecord().figures
-    body.heading, figures.wheel_separation = heading, 0.2
-    move(body, figures, WheelSpeeds(0.3, 0.1), np.empty((0, 9)))
+    body, airframe = Body(), TurtlebotRecord().airframe
+    body.heading, airframe.wheel_separation = heading, 0.2
+    move(body, airframe, WheelSpeeds(0.3, 0.1), np.empty((0, 9)))
     turned = (0.3 - 0.1) / 0.2 * 0.01
     assert math.remainder(body.heading - heading - turned, math.tau) == approx(0.0, abs=1e-12)
     assert math.hypot(body.north, body.east) == approx(0.2 * 0.01)
@@ -78,12 +78,12 @@ def test_wheels_turn_and_move_a_body_by_their_mean_and_difference(heading):
 
 
 def test_a_command_holds_until_its_time_out():
-    command, figures = Command(), TurtlebotRecord().figures
-    figures.wheel_radius = figures.wheel_radius_left = figures.wheel_radius_right = 0.04
-    figures.wheel_speed_max, figures.command_timeout = 1.0, 0.6
+    command, airframe = Command(), TurtlebotRecord().airframe
+    airframe.wheel_radius = airframe.wheel_radius_left = airframe.wheel_radius_right = 0.04
+    airframe.wheel_speed_max, airframe.command_timeout = 1.0, 0.6
     command.forward, command.time_us = 0.3, 1_000_000
-    assert commanded(figures, command, 1_590_000) == approx((0.3, 0.3))
-    assert commanded(figures, command, 1_600_000) == (0.0, 0.0)
+    assert commanded(airframe, command, 1_590_000) == approx((0.3, 0.3))
+    assert commanded(airframe, command, 1_600_000) == (0.0, 0.0)
 
 
 def test_wheels_stop_when_the_command_is_too_old():
@@ -227,12 +227,12 @@ def test_bad_poses_are_refused(pose):
         Turtlebot(OPEN).reset(pose)
 
 
-def test_bad_figures_lidars_counts_and_commands_are_refused():
+def test_bad_properties_lidars_counts_and_commands_are_refused():
     fleet = Turtlebots(OPEN)
-    with pytest.raises(AirframeError, match=r"unknown figure 'radios'"):
-        fleet.set_figure(0, "radios", 1.0)
+    with pytest.raises(AirframeError, match=r"unknown property 'radios'"):
+        fleet.set_property(0, "radios", 1.0)
     with pytest.raises(AirframeError, match=r"range_noise = -1.0 is outside 0"):
-        fleet.set_figure(0, "range_noise", -1.0)
+        fleet.set_property(0, "range_noise", -1.0)
     with pytest.raises(ValueError, match="readings must be"):
         Turtlebots(OPEN, lidar=Lidar(10, 20, 1.0))
     with pytest.raises(ValueError, match="count = 0"):
@@ -243,10 +243,10 @@ def test_bad_figures_lidars_counts_and_commands_are_refused():
         fleet.restore((b"", b""))
 
 
-def test_figures_are_of_one_robot():
+def test_properties_are_of_one_robot():
     fleet = Turtlebots(OPEN, 2)
-    fleet.set_figure(1, "wheel_radius_left", 0.036)
+    fleet.set_property(1, "wheel_radius_left", 0.036)
     fleet.commands[:] = 0.3, 0.0
     fleet.advance(0.6)
     assert fleet.pose(1)[3] < fleet.pose(0)[3] < 0.0
-    assert first_difference(fleet.fleet[0]["figures"], fleet.fleet[1]["figures"]).startswith("wheel_radius_left")
+    assert first_difference(fleet.fleet[0]["airframe"], fleet.fleet[1]["airframe"]).startswith("wheel_radius_left")

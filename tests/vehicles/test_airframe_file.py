@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from pathlib import Path
 
 import pytest
@@ -40,10 +41,10 @@ def test_every_airframe_is_read_back_bit_for_bit(own, name) -> None:
     assert not isinstance(known, CopterAirframe) or read.rotors == known.rotors
 
 
-def test_every_figure_that_the_model_uses_is_in_the_file_with_its_unit(own) -> None:
+def test_every_property_that_the_model_uses_is_in_the_file_with_its_unit(own) -> None:
     text = Path(own()).read_text()
-    for figure in CopterAirframe.known:
-        assert (f"{figure.name} = " in text) == (not figure.models or 0 in figure.models), figure.name
+    for prop in CopterAirframe.known:
+        assert (f"{prop.name} = " in text) == (not prop.models or 0 in prop.models), prop.name
     assert "mass = 1.14  # [kg] everything included" in text
     assert "# angular_damping = 0.0  # [1/s]" in text
 
@@ -66,7 +67,7 @@ def test_notes_and_head_are_comments(tmp_path) -> None:
     assert "FRAME_CLASS = 1  # from the log\n" in text
 
 
-def test_intervals_are_data_and_go_with_their_figures(tmp_path) -> None:
+def test_intervals_are_data_and_go_with_their_properties(tmp_path) -> None:
     known = vehicles.load("erle_copter")
     inertia = tuple(known.value("inertia"))
     measured = {"mass": (1.12, 1.16), "inertia": (tuple(0.9 * x for x in inertia), tuple(1.1 * x for x in inertia))}
@@ -81,12 +82,12 @@ def test_intervals_are_data_and_go_with_their_figures(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("interval", "says"),
     [
-        ("mass = [1.2, 1.3]", r"interval of 'mass' = \(1.2, 1.3\) does not hold the figure, which is 1.14"),
+        ("mass = [1.2, 1.3]", r"interval of 'mass' = \(1.2, 1.3\) does not hold the property, which is 1.14"),
         ("mass = [1.1]", r"interval of 'mass' = \(1.1,\); low and high are needed"),
         ("mass = 1.14", r"interval of 'mass' = 1.14; low and high are needed"),
         ("mass = [-1, 2]", r"mass = -1 is outside 0.001 .. 10000 kg"),
         ("inertia = [0.0, 1.0]", r"inertia = 0.0; expected 3 numbers"),
-        ("mas = [1.0, 2.0]", r"interval of 'mas': there is no such figure; did you mean 'mass'"),
+        ("mas = [1.0, 2.0]", r"interval of 'mas': there is no such property; did you mean 'mass'"),
         ("mass = ['a', 'b']", r"intervals.mass = 'a'; numbers are allowed"),
     ],
 )
@@ -99,10 +100,10 @@ def test_intervals_that_cannot_be_are_named(own, interval, says) -> None:
     ("old", "new", "says"),
     [
         ("mass = 1.14", "mass = -1.0", r"mass = -1.0 is outside 0.001 .. 10000 kg"),
-        ("mass = 1.14", "mass = '1.14'", r"figures.mass = '1.14'; numbers are allowed"),
-        ("mass = 1.14", "mass = true", r"figures.mass = True; numbers are allowed"),
-        ("mass = 1.14", "mas = 1.14", r"unknown figure 'mas'; did you mean 'mass'"),
-        ("mass = 1.14", "", r"figures missing: mass"),
+        ("mass = 1.14", "mass = '1.14'", r"properties.mass = '1.14'; numbers are allowed"),
+        ("mass = 1.14", "mass = true", r"properties.mass = True; numbers are allowed"),
+        ("mass = 1.14", "mas = 1.14", r"unknown property 'mas'; did you mean 'mass'"),
+        ("mass = 1.14", "", r"properties missing: mass"),
         ("inertia = [", "inertia = [1.0, ", r"inertia = \(1.0, .*expected 3 numbers"),
         ('kind = "copter"', 'kind = "plane"', r"kind = 'plane' is not known; it is one of copter, rover"),
         ('kind = "copter"', "", r"kind is missing; it is one of copter, rover"),
@@ -129,6 +130,14 @@ def test_parameters_that_the_firmware_lacks_or_refuses_are_named_with_the_file(o
         Simulation(own(("ANGLE_MAX = 3000", "ANGLE_MAX = -5")))
 
 
+def test_the_old_name_of_the_properties_is_read(own) -> None:
+    assert vehicles.load(own(("[properties]", "[figures]"))) == vehicles.load(own())
+    with pytest.raises(AirframeError, match=r"mine\.toml': figures.mass = 'x'; numbers are allowed"):
+        vehicles.load(own(("[properties]", "[figures]"), ("mass = 1.14", "mass = 'x'")))
+    with pytest.raises(AirframeError, match=r"mine\.toml': there are 'figures' and 'properties': .* keep one of them"):
+        vehicles.load(own(("[properties]", "[figures]\nmass = 1.0\n[properties]")))
+
+
 @pytest.mark.parametrize("content", [b"\xff\xfe", None])
 def test_files_that_cannot_be_read_are_named(tmp_path, content) -> None:
     path = tmp_path / "odd.toml"
@@ -138,10 +147,16 @@ def test_files_that_cannot_be_read_are_named(tmp_path, content) -> None:
         vehicles.load(str(path))
 
 
-def test_recordings_keep_the_figures_and_do_not_open_the_file(own, tmp_path) -> None:
+def test_recordings_keep_the_properties_and_do_not_open_the_file(own, tmp_path) -> None:
     path = own(("mass = 1.14", "mass = 1.5"))
     data = Scenario(path).to_json()
     (tmp_path / "mine.toml").unlink()
+    assert Scenario.from_json(data).airframe.value("mass") == 1.5
+    described = data["airframe"]
+    described["figures"] = described["properties"]
+    with pytest.raises(AirframeError, match="there are 'figures' and 'properties'"):
+        Scenario.from_json(data)
+    del described["properties"]
     assert Scenario.from_json(data).airframe.value("mass") == 1.5
 
 
@@ -159,3 +174,9 @@ def test_sitl_frame_lists_prints_and_writes(tmp_path, capsys, monkeypatch) -> No
     assert "does not end in .toml" in capsys.readouterr().err
     assert cli.main(["frame", "--out", "mine.toml"]) == 2
     assert "which?" in capsys.readouterr().err
+
+
+def test_an_airframe_as_json_has_its_properties_under_the_key_of_version_0_1_too(capsys) -> None:
+    assert cli.main(["frame", "skid_rover", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["properties"]["track"] == data["figures"]["track"] == vehicles.load("skid_rover").properties["track"]

@@ -23,7 +23,7 @@ def test_the_own_set_is_the_airframe_itself_and_others_stand_over_it(frame):
     for name, chosen in SETS.items():
         made = equipped(airframe, name)
         assert made.name == frame and made.value("lidar_samples") == airframe.value("lidar_samples")
-        assert all(made.value(figure) == value for figure, value in chosen.figures.items())
+        assert all(made.value(name) == value for name, value in chosen.properties.items())
         assert all(made.parameters[name] == value for name, value in chosen.parameters.items())
 
 
@@ -48,8 +48,8 @@ def test_the_start_of_an_episode_is_known_as_well_as_the_set_knows_it(sensors, w
 def test_the_height_is_that_of_the_system_where_it_has_one(sensors, source):
     own, made = load("erle_copter"), equipped(load("erle_copter"), sensors)
     assert made.parameters.get("EK3_SRC1_POSZ") == source
-    for figure in ("baro_noise", "baro_drift", "baro_drift_time"):
-        assert made.value(figure) == own.value(figure), "the barometer is the airframe's"
+    for name in ("baro_noise", "baro_drift", "baro_drift_time"):
+        assert made.value(name) == own.value(name), "the barometer is the airframe's"
 
 
 def test_the_command_line_takes_a_set():
@@ -57,4 +57,4 @@ def test_the_command_line_takes_a_set():
     add_vehicle_options(parser)
     given = parser.parse_args(["--frame", "erle_copter", "--sensors", "rtk"])
     given.vehicle, given.params = "copter", None
-    assert scenario_of(given).airframe.value("gps_noise_horizontal") == SETS["rtk"].figures["gps_noise_horizontal"]
+    assert scenario_of(given).airframe.value("gps_noise_horizontal") == SETS["rtk"].properties["gps_noise_horizontal"]

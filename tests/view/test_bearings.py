@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sitl.core.vectors import Quat, Vec3
-from sitl.view.axes import place
+from sitl.view.axes import to_scene
 from sitl.view.cameras import FOLLOW, NARROW, TOP, Cameras
 from sitl.view.frame import Frame
 from sitl.view.scene.bearings import LENGTHS, arrow, bar, length_for
@@ -20,8 +20,8 @@ FRAME = Frame(time_us=0, pos=Vec3(1.0, 2.0, -10.0), q=Quat(1.0, 0.0, 0.0, 0.0), 
 
 def test_the_arrow_points_north_and_the_bar_east() -> None:
     tip, end = arrow(2.0)[0][1], bar(2.0)[0][1]
-    assert tuple(tip) == pytest.approx(place(Vec3(2.0, 0.0, 0.0)))
-    assert tuple(end) == pytest.approx(place(Vec3(0.0, 2.0, 0.0)))
+    assert tuple(tip) == pytest.approx(to_scene(Vec3(2.0, 0.0, 0.0)))
+    assert tuple(end) == pytest.approx(to_scene(Vec3(0.0, 2.0, 0.0)))
 
 
 @pytest.mark.parametrize(("span", "length"), [(0.1, 0.2), (0.99, 0.5), (1.0, 1.0), (73.0, 50.0), (1e6, LENGTHS[-1])])

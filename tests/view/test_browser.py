@@ -36,7 +36,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 from sitl.missions.comparison import flight
 from sitl.missions.view import together
 from sitl.view import library
-from sitl.view.axes import place
+from sitl.view.axes import to_scene
 from sitl.view.flight_page import FlightPage
 from sitl.view.live_page import LivePage
 
@@ -190,7 +190,7 @@ def test_going_through_flights_shows_the_state_of_that_time(browser: Any, flight
     assert f"{math.dist(one.pos, two.pos):.2f} m apart at 60.0 s" in text(browser)
     for frame, nodes in zip((one, two), flights.scene.vehicles, strict=True):
         assert f"{-frame.pos.z:.1f} m" in text(browser)
-        assert tuple(nodes.body.position) == pytest.approx(place(frame.pos))
+        assert tuple(nodes.body.position) == pytest.approx(to_scene(frame.pos))
     click(browser, "Play")
     until(browser, lambda: flights.player.time > 61.0)
     click(browser, "Stop")

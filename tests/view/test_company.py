@@ -13,7 +13,7 @@ from sitl.run.pacing import StoppablePacing
 from sitl.run.swarm import SwarmPacing, serve_swarm
 from sitl.run.watched import Watched
 from sitl.swarm import Swarm
-from sitl.view.axes import place, turn
+from sitl.view.axes import to_scene, turn
 from sitl.view.colours import css, of_ends, of_vehicle
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
@@ -47,7 +47,7 @@ def test_each_vehicle_is_drawn_where_it_truly_is(page: LivePage) -> None:
         assert len(node.batched_positions) == len(node.batched_wxyzs) == len(which)
         drawn.update((int(k), tuple(at)) for k, at in zip(which, node.batched_positions, strict=True))
     bodies = [vehicle.v.physics.body for vehicle in page._vehicles]
-    assert [drawn[k] for k in range(3)] == [pytest.approx(place(body.pos), abs=1e-5) for body in bodies]
+    assert [drawn[k] for k in range(3)] == [pytest.approx(to_scene(body.pos), abs=1e-5) for body in bodies]
     assert np.linalg.norm(np.subtract(drawn[0], drawn[1])) == pytest.approx(4.0, abs=0.1)
     assert tuple(page.scene.vehicle.body.wxyz) == pytest.approx(turn(bodies[0].q))
 
@@ -69,7 +69,7 @@ def test_another_one_is_chosen_shown_and_commanded(page: LivePage) -> None:
     rover = page._vehicles[2]
     assert page.simulation is rover and page.frame is not None and page.frame.company is not None
     assert page.frame.company.chosen == 2
-    assert tuple(page.scene.vehicle.body.position) == pytest.approx(place(rover.v.physics.body.pos))
+    assert tuple(page.scene.vehicle.body.position) == pytest.approx(to_scene(rover.v.physics.body.pos))
     assert "chassis" in page.scene.vehicle._pieces, "its own shape"
     assert page.frame.signals["physics.body.pos[0]"] == rover.v.physics.body.pos.x
     page.ask(lambda: page.pilot.set_parameter("CRUISE_SPEED", 1.25))
@@ -103,7 +103,7 @@ def test_each_has_its_number_and_its_colour_in_the_scene_and_beside_it(page: Liv
     assert company is not None and page.frame is not None
     assert [label.text for label in company.labels] == ["1", "2", "3"]
     for label, vehicle in zip(company.labels, page._vehicles, strict=True):
-        x, y, z = place(vehicle.v.physics.body.pos)
+        x, y, z = to_scene(vehicle.v.physics.body.pos)
         assert label.position[:2] == pytest.approx((x, y), abs=1e-4) and label.position[2] > z
     colours = [tuple(row) for row in of_ends([of_vehicle(k) for k in range(3)]).tolist()]
     drawn = {tuple(row) for node, which in company.nodes for row in np.atleast_2d(node.batched_colors).tolist()}

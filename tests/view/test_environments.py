@@ -12,7 +12,7 @@ import pytest
 from sitl.agents.runs.files import read_arrays
 from sitl.cli import main
 from sitl.core.vectors import Vec3
-from sitl.view.axes import place
+from sitl.view.axes import to_scene
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
 from sitl.envs.page.page import EnvPage
@@ -126,7 +126,7 @@ def test_a_pose_is_turned_into_the_simulators_axes() -> None:
     state[0, :4] = 3.0, 2.0, 1.0, 0.5 * np.pi
     pos, _ = poses(state, 0.25)
     assert pos[0] == pytest.approx((3.0, -1.75, -1.0)), "the body is 0.25 m behind its base, which looks to the left"
-    assert place(Vec3(*pos[0])) == pytest.approx((3.0, 1.75, 1.0))
+    assert to_scene(Vec3(*pos[0])) == pytest.approx((3.0, 1.75, 1.0))
 
 
 def test_a_training_that_is_shown_learns_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

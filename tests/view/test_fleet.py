@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sitl import Fleet, Move
-from sitl.view.axes import place
+from sitl.view.axes import to_scene
 from sitl.view.layout import GRID, ONE, side_by_side
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
@@ -36,7 +36,7 @@ def test_each_is_drawn_where_it_is_in_its_own_world_or_in_one(fleet: Fleet) -> N
             assert all(which.tolist() == list(range(COUNT)) for _, which in nodes)
             return np.array(nodes[0][0].batched_positions)
 
-        true = np.array([place(fleet.view(k).physics.body.pos) for k in range(COUNT)])
+        true = np.array([to_scene(fleet.view(k).physics.body.pos) for k in range(COUNT)])
         apart = drawn() - true
         assert page.layout.value == GRID and len(np.unique(apart.round(2), axis=0)) == COUNT
         page.vehicle_number.value = 40

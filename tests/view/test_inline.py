@@ -8,7 +8,7 @@ import pytest
 from sitl import Simulation
 from sitl.client import Endpoint
 from sitl.simulation import Core
-from sitl.view.axes import place
+from sitl.view.axes import to_scene
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
 
@@ -23,7 +23,7 @@ def test_a_notebook_gets_a_frame_with_the_page_which_shows_the_newest(core: Core
         assert f'src="{view.page.address}"' in html and 'height="300"' in html
         assert view.page.frame is not None and view.page.frame.time_us == 5_000_000
         at = tuple(view.page.scene.vehicle.body.position)
-        assert at == pytest.approx(place(simulation.v.physics.body.pos))
+        assert at == pytest.approx(to_scene(simulation.v.physics.body.pos))
     finally:
         view.close()
     assert simulation.observers == []

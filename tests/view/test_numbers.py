@@ -87,8 +87,8 @@ def compare(simulation: Simulation, source: LiveSource) -> None:
     assert first(shown["heading"][0]) == hud.heading
     yaw = math.degrees(euler_of(body.q).yaw) % 360.0
     assert first(shown["heading"][1]) == round(yaw) % 360
-    assert shown["place"][0] == f"{horizon.number(local.x, 1, 'N')}, {horizon.number(local.y, 1, 'E')}"
-    assert shown["place"][1] == f"{horizon.number(body.pos.x, 1, 'N')}, {horizon.number(body.pos.y, 1, 'E')}"
+    assert shown["position"][0] == f"{horizon.number(local.x, 1, 'N')}, {horizon.number(local.y, 1, 'E')}"
+    assert shown["position"][1] == f"{horizon.number(body.pos.x, 1, 'N')}, {horizon.number(body.pos.y, 1, 'E')}"
     assert first(below["battery (vehicle)"]) == pytest.approx(said["SYS_STATUS"].voltage_battery * 1e-3, abs=0.051)
     assert below["GPS (vehicle)"] == f"3D, {said['GPS_RAW_INT'].satellites_visible} sat"
     assert below["item (vehicle)"] == str(said["MISSION_CURRENT"].seq)
@@ -142,7 +142,7 @@ def test_without_an_autopilot_there_is_only_the_truth() -> None:
     simulation = Simulation("erle_copter", seed=3)
     source = LiveSource(simulation)
     frame = source.frame(source.capture())
-    frame = replace(frame, told=None)
+    frame = replace(frame, reported=None)
     assert all(vehicle == "-" and true != "-" for vehicle, true in rows(state(frame, "1")).values())
     assert instrument(frame)[-1] == "truth"
 
@@ -171,5 +171,5 @@ def test_an_environments_place_is_the_truth() -> None:
     source = EnvSource(session, "circuit")
     facts = dict(source.frame(source.capture()).facts)
     x, y, z = session.robot.true_state()[0, :3]
-    assert facts["place (truth)"] == f"{x:.2f}, {y:.2f}, {z:.2f} m" and "speed (truth)" in facts
+    assert facts["position (truth)"] == f"{x:.2f}, {y:.2f}, {z:.2f} m" and "speed (truth)" in facts
     env.close()

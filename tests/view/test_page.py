@@ -23,7 +23,7 @@ from sitl.run.runner import serve
 from sitl.run.watched import Watched
 from sitl.simulation import Core
 from sitl.view import page as pages
-from sitl.view.axes import place, turn
+from sitl.view.axes import to_scene, turn
 from sitl.view.controls import on_ground
 from sitl.view.frame import Mark, Plan
 from sitl.view.page import PageAddressError, free_port
@@ -67,11 +67,11 @@ def test_the_vehicle_in_the_scene_is_where_it_truly_is(page: LivePage) -> None:
     fly(page, 0.5)
     frame, body = page.frame, page.simulation.v.physics.body
     assert frame is not None
-    assert tuple(page.scene.vehicle.body.position) == pytest.approx(place(body.pos))
+    assert tuple(page.scene.vehicle.body.position) == pytest.approx(to_scene(body.pos))
     assert tuple(page.scene.vehicle.body.wxyz) == pytest.approx(turn(body.q))
     assert page.scene.estimate.body.visible and page.scene.set_point.visible and page.scene.plan.home.visible
     assert frame.estimate_pos is not None
-    assert tuple(page.scene.estimate.body.position) == pytest.approx(place(frame.estimate_pos))
+    assert tuple(page.scene.estimate.body.position) == pytest.approx(to_scene(frame.estimate_pos))
     page.show(frame)  # the state is renewed with every third frame
     page.show(frame)
     assert "GUIDED" in page.panel.state_html and "ARMED" in page.panel.state_html
@@ -127,7 +127,7 @@ def test_sticks_on_the_page_fly_it_and_are_given_back(page: LivePage) -> None:
 def test_what_is_refused_is_said(page: LivePage) -> None:
     said: list[str] = []
     page.notify = lambda text, client=None, title="": said.append(text)  # type: ignore[method-assign]
-    page.pilot._tell = said.append
+    page.pilot._report = said.append
     fly(page, 1.0)
     page.ask(page.pilot.arm)
     page.ask(lambda: page.pilot.go_to(1.0, 1.0))
@@ -222,7 +222,7 @@ def test_to_follow_the_vehicle_the_stage_is_moved(page: LivePage) -> None:
     vehicle.take_off(6.0)
     fly(page, 0.1)
     assert page.frame is not None
-    assert page.cameras.shift() == pytest.approx([-each for each in place(page.frame.pos)])
+    assert page.cameras.shift() == pytest.approx([-each for each in to_scene(page.frame.pos)])
     page.cameras.choose("free")
     there = page.cameras.shift()
     vehicle.set_velocity(3.0, 0.0)
@@ -285,18 +285,18 @@ def test_impacts_are_marked_where_they_were(core: Core) -> None:
     try:
         fly(page, 0.1)
         v = page.simulation.v
-        assert page.scene.contacts.places == [] and page.frame is not None and page.frame.hits == 0
+        assert page.scene.contacts.positions == [] and page.frame is not None and page.frame.hits == 0
         v.physics.body.pos, v.physics.body.vel = v.physics.body.pos - Vec3(0.0, 0.0, 3.0), Vec3(0.0, 0.0, 0.0)
         v.physics.ground.state = GROUND_AIRBORNE
         fly(page, 3.0)
         hits, speed = int(v.physics.ground.hit_count), float(v.physics.ground.hit_speed)
         assert hits == 1 and speed > 5.0, "it fell three metres"
-        assert page.scene.contacts.places == [pytest.approx(place(page.frame.pos))]
+        assert page.scene.contacts.positions == [pytest.approx(to_scene(page.frame.pos))]
         assert page.frame.hits == 1 and page.frame.hit_speed == pytest.approx(speed)
         page.show(page.frame)
         page.show(page.frame)
         page.show(page.frame)
-        assert f"1, last {speed:.1f} m/s" in page.panel.state_html and len(page.scene.contacts.places) == 1
+        assert f"1, last {speed:.1f} m/s" in page.panel.state_html and len(page.scene.contacts.positions) == 1
     finally:
         page.close()
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from sitl.plants.local import stand_alone
-from sitl.view.axes import place
+from sitl.view.axes import to_scene
 from sitl.view.plant import ELSEWHERE, PlantSource
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
@@ -26,7 +26,7 @@ def test_a_copter_falls_while_nobody_drives_its_motors() -> None:
         frame, body = page.frame, plant.vehicle.v.physics.body
         assert frame is not None and frame.mode == ELSEWHERE and frame.time_us == 1_000_000
         assert frame.pos == body.pos and frame.estimate_pos is None and any(frame.rotors)
-        assert tuple(page.scene.vehicle.body.position) == pytest.approx(place(body.pos))
+        assert tuple(page.scene.vehicle.body.position) == pytest.approx(to_scene(body.pos))
         assert not page.scene.estimate.body.visible
         assert not [name for name in page.source.signal_names() if name.startswith(("ATTITUDE", "autopilot"))]
         assert plant.vehicle.fleet.tobytes() == before

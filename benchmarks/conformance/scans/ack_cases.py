@@ -33,7 +33,7 @@ class Case(NamedTuple):
     params: tuple[float, ...] = ()
     frame: int = MavFrame.GLOBAL_RELATIVE_ALT
     """Of COMMAND_INT."""
-    is_place: bool = False
+    is_location: bool = False
     """The fifth and sixth are degrees."""
 
     @property
@@ -137,7 +137,8 @@ def _places(command: str | int, first: tuple[tuple[float, ...], ...], z: float =
         if frame == MavFrame.GLOBAL_RELATIVE_ALT or four == first[0]
     ]
     bad = [
-        Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_place=True) for place in ((91.0, 0.0, z), (0.0, 181.0, z))
+        Case(number, (*first[0], 0, 0, 0, 0)[:4] + place, is_location=True)
+        for place in ((91.0, 0.0, z), (0.0, 181.0, z))
     ]
     return [*good, *bad]
 
@@ -163,7 +164,7 @@ _BY_MODE = (
 BY_MODE = (
     *(case for case in CASES if command_name(case.number) in _BY_MODE),
     *(
-        Case(command_number("DO_REPOSITION"), (*speed_and_flags, 0, 0, *HERE, 10.0), is_place=True)
+        Case(command_number("DO_REPOSITION"), (*speed_and_flags, 0, 0, *HERE, 10.0), is_location=True)
         for speed_and_flags in ((3, 1), (-1, 0), (-1, 1))
     ),
 )

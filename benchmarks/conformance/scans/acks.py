@@ -101,7 +101,7 @@ def ask(program: Program, case: Case, by_int: bool) -> str:
     p = [*case.params, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0][:7]
     fields = {f"param{k}": p[k - 1] for k in range(1, 5)}
     if by_int:
-        scale = 1e7 if case.is_place else 1.0
+        scale = 1e7 if case.is_location else 1.0
         fields |= {"x": round(p[4] * scale), "y": round(p[5] * scale), "z": p[6], "frame": case.frame}
     else:
         fields |= {f"param{k}": p[k - 1] for k in range(5, 8)}

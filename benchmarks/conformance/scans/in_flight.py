@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """When a parameter acts that is set while a vehicle moves: at once, on the next leg, when the mode is entered again.
 
-A row is a parameter and a manoeuvre. Its figure (a speed, a rate, a lean) is read with the old value, some seconds
+A row is a parameter and a manoeuvre. Its metric (a speed, a rate, a lean) is read with the old value, some seconds
 after the new one is set, after another order in the same mode, and after the mode was entered anew.
 """
 
@@ -18,12 +18,12 @@ AT_ONCE, NEXT_ORDER, MODE_ANEW, NEVER = "at once", "next order", "mode entered a
 SEEN = 0.5
 """Share of the whole change that counts."""
 LEAST = 0.08
-"""A figure that changes by less, as a share of it, has not changed."""
+"""A metric that changes by less, as a share of it, has not changed."""
 FAR = 2000.0
 LEG_S = 14.0
 """A leg has its speed by then: ArduCopter forgets a WPNAV_SPEED that is set while it still speeds up [s]."""
 Order = Callable[[Program, int], None]
-Figure = Callable[[Program], float]
+Metric = Callable[[Program], float]
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Manoeuvre:
     mode: str
     order: Order
     """Begins it; its number, from 0, tells one from the next."""
-    figure: Figure
+    metric: Metric
     height_m: float = 30.0
     settle_s: float = 7.0
     between: str = "LOITER"
@@ -206,25 +206,25 @@ def when(program: Program, name: str, m: Manoeuvre, old: float, new: float) -> s
     program.set_mode(m.mode)
     m.order(program, 0)
     program.delay(m.settle_s)
-    figures = [m.figure(program)]
+    metrics = [m.metric(program)]
     program.params[name] = new
     program.delay(m.settle_s)
-    figures.append(m.figure(program))
+    metrics.append(m.metric(program))
     if m.order is not nothing:
         m.order(program, 1)
         program.delay(m.settle_s + 4.0)
-    figures.append(m.figure(program))
+    metrics.append(m.metric(program))
     program.set_mode(m.between)
     program.delay(5.0)
     program.set_mode(m.mode)
     m.order(program, 2)
     program.delay(m.settle_s + 4.0)
-    figures.append(m.figure(program))
-    first, last = figures[0], figures[-1]
+    metrics.append(m.metric(program))
+    first, last = metrics[0], metrics[-1]
     if abs(last - first) <= LEAST * max(abs(first), abs(last)):
         return NEVER
-    for figure, said in zip(figures[1:], (AT_ONCE, NEXT_ORDER, MODE_ANEW), strict=True):
-        if abs(figure - first) >= SEEN * abs(last - first) and not math.isclose(figure, first):
+    for metric, said in zip(metrics[1:], (AT_ONCE, NEXT_ORDER, MODE_ANEW), strict=True):
+        if abs(metric - first) >= SEEN * abs(last - first) and not math.isclose(metric, first):
             return said
     return NEVER
 

@@ -110,7 +110,7 @@ def runs_of_sweep(options: argparse.Namespace, path: Path, configure: Configure,
     return runs
 
 
-def tell_sweep(path: Path) -> None:
+def print_sweep(path: Path) -> None:
     """Write the table of a sweep, and print it."""
     file, text = write_table(Sweep.load(path))
     print(f"{text}\n{file}")
@@ -189,7 +189,7 @@ def train(options: argparse.Namespace) -> int:
     path, runs = _runs(options)
     if all(is_done(run) for run in runs):
         if is_sweep(path):
-            tell_sweep(path)
+            print_sweep(path)
         print(f"{path} is done; a greater --episodes or --steps continues it")
         return 0
     with Bar(runs) as bar, shown_training(options) as shows:
@@ -202,7 +202,7 @@ def train(options: argparse.Namespace) -> int:
         print(f"interrupted; continue with: sitl train --resume {path}", file=sys.stderr)
         return 130
     if is_sweep(path):
-        tell_sweep(path)
+        print_sweep(path)
     print(path)
     return 0
 

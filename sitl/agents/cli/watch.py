@@ -48,17 +48,17 @@ def watch(options: argparse.Namespace) -> int:
         raise AgentError("render_mode is chosen by --out: with it a film, without it a window")
     episodes = options.episodes or 1
     if options.out is None and not options.window and showing.can_be_on_page(run, **changes):
-        showing.page(run, options.episodes, options.seed, options.speed, _tell, **changes)
+        showing.page(run, options.episodes, options.seed, options.speed, _print_episode, **changes)
         return 0
     if options.out is None:
-        showing.window(run, episodes, options.seed, options.speed, _tell, **changes)
+        showing.window(run, episodes, options.seed, options.speed, _print_episode, **changes)
         return 0
-    pictures = showing.film(run, options.out, episodes, options.seed, options.speed, _tell, **changes)
+    pictures = showing.film(run, options.out, episodes, options.seed, options.speed, _print_episode, **changes)
     print(f"{options.out}: {pictures} pictures")
     return 0
 
 
-def _tell(episode: int, steps: int, reward: float, terminated: bool) -> None:
+def _print_episode(episode: int, steps: int, reward: float, terminated: bool) -> None:
     print(f"episode {episode}: {steps} steps, reward {reward:.0f}{', ended by itself' if terminated else ''}")
 
 

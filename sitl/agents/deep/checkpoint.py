@@ -30,12 +30,12 @@ MODEL = "model.zip"
 _ABOUT, _STATE, _ARRAYS, _MEMORY = "about.json", "state.json", "state.npz", "memory.npz"
 _TENSORS, _SUFFIX = "tensors.pth", ".weights.pth"
 Score = tuple[float, ...]
-"""How good a model is, the most important figure first; greater is better."""
+"""How good a model is, the most important value first; greater is better."""
 _REMEMBERED = ("actions", "rewards", "dones", "timeouts")
 _SEEN = ("observations", "next_observations")
 """Arrays of a replay buffer; of a goal-conditioned one the latter are arrays by name, and it has those of _EPISODES."""
 _EPISODES = ("ep_start", "ep_length")
-_BEGUN, _PLACE = "_current_ep_start", "place"
+_BEGUN, _CURSOR = "_current_ep_start", "place"
 MOST = 1024 * MIB
 """Memory that each of a model's weights, its state and the description may take when it is read [bytes]; that of a
 replay buffer, what the buffer has."""
@@ -98,7 +98,7 @@ def score_of(path: Path) -> Score:
     """
     try:
         with _opened(path) as archive:
-            return tuple(float(figure) for figure in documents.of_json(unpack(archive, _ABOUT, MOST))["score"])
+            return tuple(float(value) for value in documents.of_json(unpack(archive, _ABOUT, MOST))["score"])
     except (ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
         raise AgentError(f"{path} is no best model: {error}") from None
 
@@ -255,7 +255,7 @@ def _remembered(memory: Any) -> bytes:
     rows = {name: array[:filled] for name, array in _columns(memory).items()}
     if hasattr(memory, _BEGUN):
         rows[_BEGUN] = getattr(memory, _BEGUN)
-    return _arrays({_PLACE: np.array([memory.pos, memory.full]), **rows})
+    return _arrays({_CURSOR: np.array([memory.pos, memory.full]), **rows})
 
 
 def _columns(memory: Any) -> plain.Arrays:
@@ -274,12 +274,12 @@ def _remember(memory: Any, archive: zipfile.ZipFile) -> None:
     seen = set()
     for name, rows in each_array(unpack(archive, _MEMORY, most + MIB), most):
         seen.add(name)
-        if name == _PLACE:
+        if name == _CURSOR:
             memory.pos, memory.full = int(rows[0]), bool(rows[1])
         elif name == _BEGUN and hasattr(memory, _BEGUN):
             getattr(memory, _BEGUN)[:] = rows
         else:
             columns[name][: len(rows)] = rows
-    missing = {_PLACE, *columns} - seen
+    missing = {_CURSOR, *columns} - seen
     if missing:
         raise ValueError(f"its memory has no {', '.join(sorted(missing))}")

@@ -33,20 +33,20 @@ class Checks:
 
     Args:
         config: configuration of the run. Episodes are played as those of its evaluation, which may have other starts
-            and be longer than those that are learnt from; where they all start at one place, starts are moved by up
+            and be longer than those that are learnt from; where they all start at one position, starts are moved by up
             to 0.1 m and 0.1 rad.
-        figures: its settings; they say how often.
+        settings: its settings; they say how often.
         path: path of the best model; what another run left there is removed.
         begun: steps after which the run goes on; 0: it is new.
     """
 
-    def __init__(self, config: RunConfig, figures: Settings, path: Path, begun: int) -> None:
+    def __init__(self, config: RunConfig, settings: Settings, path: Path, begun: int) -> None:
         plan = config.evaluation
         self._config = config.with_(
             max_steps=plan.max_steps or config.max_steps, env_options={**config.env_options, **plan.options}
         )
-        self._figures, self._path = figures, path
-        self._every, self._count = figures.check_every, figures.check_episodes
+        self._settings, self._path = settings, path
+        self._every, self._count = settings.check_every, settings.check_episodes
         self._due = self._next(begun)
         self._best: checkpoint.Score = ()
         if begun and path.exists():
@@ -81,12 +81,12 @@ class Checks:
         """Score of the model: all episodes are played at once. It is -inf after more crashes than the best model had:
         then the rest is not played."""
         env, self.solved = self._made(), 0
-        features = Features(env.single_observation_space, self._figures.sectors)
-        frames = Frames(self._count, self._figures.frames, features.width)
+        features = Features(env.single_observation_space, self._settings.sectors)
+        frames = Frames(self._count, self._settings.frames, features.width)
         actions = Actions(env.single_action_space, self._config.algorithm)
         rows = frames.begin(features(self._begun(env)))
         rewards, playing, crashes = np.zeros(self._count), np.ones(self._count, np.bool_), 0
-        by_crashes, by_goal = self._figures.check_by == "crashes", learns_by_goal(self._figures)
+        by_crashes, by_goal = self._settings.check_by == "crashes", learns_by_goal(self._settings)
         most = -self._best[0] if by_crashes and self._best else np.inf
         while playing.any():
             if crashes > most:

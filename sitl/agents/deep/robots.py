@@ -53,13 +53,13 @@ class Robots(VecEnv):
         self._scale, self._first = reward_scale, list(seeds)
         self._actions: Any = None
         self._by_goal = by_goal
-        room: gym.Space[Any] = gym.spaces.Box(-np.inf, np.inf, (frames * features.width,), np.float32)
+        space: gym.Space[Any] = gym.spaces.Box(-np.inf, np.inf, (frames * features.width,), np.float32)
         if by_goal:
             parts = features.by_name(np.zeros((1, features.width), np.float32)).items()
-            room = gym.spaces.Dict(
+            space = gym.spaces.Dict(
                 {name: gym.spaces.Box(-np.inf, np.inf, row.shape[1:], np.float32) for name, row in parts}
             )
-        super().__init__(env.num_envs, room, actions.space)
+        super().__init__(env.num_envs, space, actions.space)
 
     def reset(self) -> Any:
         """See ``VecEnv``."""

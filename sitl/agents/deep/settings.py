@@ -16,7 +16,7 @@ class Settings:
     """Settings of all algorithms.
 
     Raises:
-        AgentError: a figure outside its limits.
+        AgentError: a setting outside its limits.
     """
 
     robots: int = 16

@@ -50,20 +50,20 @@ def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
 
 def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:
     """See ``Algorithm``."""
-    figures = settings_of(config.algorithm, config.settings)
-    seen = Features(observations, figures.sectors)
+    settings = settings_of(config.algorithm, config.settings)
+    seen = Features(observations, settings.sectors)
     Actions(actions, config.algorithm)
-    if not (isinstance(figures, OffPolicy) and learns_by_goal(figures)):
+    if not (isinstance(settings, OffPolicy) and learns_by_goal(settings)):
         return
-    episodes = figures.robots * config.max_steps
-    if figures.warm_up < episodes or figures.memory < 3 * episodes:
+    episodes = settings.robots * config.max_steps
+    if settings.warm_up < episodes or settings.memory < 3 * episodes:
         raise AgentError(
-            f"warm_up = {figures.warm_up}, memory = {figures.memory}: with hindsight they must be {episodes} (robots * "
-            f"max_steps) and {3 * episodes} at least, as it replays whole episodes"
+            f"warm_up = {settings.warm_up}, memory = {settings.memory}: with hindsight they must be {episodes} "
+            f"(robots * max_steps) and {3 * episodes} at least, as it replays whole episodes"
         )
-    if not (seen.has_goals and figures.frames == 1):
+    if not (seen.has_goals and settings.frames == 1):
         raise AgentError(
-            f"hindsight = {figures.hindsight}, frames = {figures.frames} in {config.env}: replay with other goals "
+            f"hindsight = {settings.hindsight}, frames = {settings.frames} in {config.env}: replay with other goals "
             "needs a goal-conditioned environment (sitl envs) and frames = 1"
         )
 
@@ -72,34 +72,34 @@ def train(folder: RunFolder, watch: Watch) -> None:
     """See ``Algorithm``."""
     stable_baselines3()
     config = folder.config
-    figures = settings_of(config.algorithm, config.settings)
-    torch(figures.threads)
-    env = environments.make_many(config, figures.robots)
+    settings = settings_of(config.algorithm, config.settings)
+    torch(settings.threads)
+    env = environments.make_many(config, settings.robots)
     watch.shows(env)
     try:
-        _train(folder, watch, figures, env)
+        _train(folder, watch, settings, env)
     finally:
         env.close()
 
 
-def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.VectorEnv[Any, Any, Any]) -> None:
+def _train(folder: RunFolder, watch: Watch, settings: Settings, env: gym.vector.VectorEnv[Any, Any, Any]) -> None:
     from .robots import Robots
 
     config, path = folder.config, folder.path / checkpoint.MODEL
     spaces = (env.single_observation_space, env.single_action_space)
-    tally = Tally(figures.robots, environments.step_time(env))
-    seeds = [environments.seed_of(config.seed, robot) for robot in range(figures.robots)]
+    tally = Tally(settings.robots, environments.step_time(env))
+    seeds = [environments.seed_of(config.seed, robot) for robot in range(settings.robots)]
     robots = Robots(
-        env, Features(spaces[0], figures.sectors), figures.frames, Actions(spaces[1], config.algorithm),
-        figures.reward_scale, tally, seeds, learns_by_goal(figures),
+        env, Features(spaces[0], settings.sectors), settings.frames, Actions(spaces[1], config.algorithm),
+        settings.reward_scale, tally, seeds, learns_by_goal(settings),
     )  # fmt: skip
-    model = models.make(config.algorithm, figures, robots, config.seed)
+    model = models.make(config.algorithm, settings, robots, config.seed)
     if path.exists():
         checkpoint.resume(path, model, robots)
     folder.episodes.keep(tally.done)
     curriculum = Curriculum(config.curriculum, env)
     curriculum.follow(tally.done_steps)
-    checks = Checks(config, figures, folder.path / BEST, model.num_timesteps)
+    checks = Checks(config, settings, folder.path / BEST, model.num_timesteps)
     last, spent = time.monotonic(), 0.0
 
     def save() -> None:
@@ -126,7 +126,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
         solved = checks.after(model, done)  # before the model is kept: one that is gone on with has been checked
         if solved is not None:
             tally.solved_checks = tally.solved_checks + 1 if solved else 0
-        if figures.enough and tally.solved_checks >= figures.enough:
+        if settings.enough and tally.solved_checks >= settings.enough:
             (folder.path / ENOUGH).touch()
             done = True
         if time.monotonic() - last > max(_PERIOD_S, _SHARE * spent):
@@ -136,7 +136,7 @@ def _train(folder: RunFolder, watch: Watch, figures: Settings, env: gym.vector.V
     # learning rates and the like fall towards an end that the last, unfinished episodes cannot pass
     steps = config.steps if config.steps is not None else (config.episodes or 0) * config.max_steps
     try:
-        _learn(model, steps + figures.robots * config.max_steps - model.num_timesteps, between)
+        _learn(model, steps + settings.robots * config.max_steps - model.num_timesteps, between)
     finally:
         checks.close()
     unwritten.extend(tally.take())
@@ -171,8 +171,8 @@ def model_of(folder: RunFolder) -> Path:
 def policy(folder: RunFolder) -> DeepPolicy:
     """See ``Algorithm``: the best network of the checks, or the last one where there were none."""
     config = folder.config
-    figures = settings_of(config.algorithm, config.settings)
-    torch(figures.threads)
+    settings = settings_of(config.algorithm, config.settings)
+    torch(settings.threads)
     model, (observations, actions) = checkpoint.load(model_of(folder), config.algorithm)
-    seen, moves = Features(observations, figures.sectors), Actions(actions, config.algorithm)
-    return DeepPolicy(network_of(model), figures, seen, moves)
+    seen, moves = Features(observations, settings.sectors), Actions(actions, config.algorithm)
+    return DeepPolicy(network_of(model), settings, seen, moves)

@@ -75,7 +75,7 @@ class Recipe:
         """A run by this recipe; what is given replaces what the recipe says, options and settings one by one.
 
         Raises:
-            AgentError: a setting that the algorithm does not have, a figure that cannot be, or another environment
+            AgentError: a setting that the algorithm does not have or that cannot be, or another environment
                 than the recipe's.
             MissingExtra: the algorithm needs what is not installed.
         """
@@ -233,5 +233,5 @@ def runs_of(out: Path, recipe: Recipe, seeds: int) -> list[RunFolder]:
     Raises:
         AgentError: there are other runs in their place.
     """
-    place = out / "runs" / recipe.name
-    return [RunFolder.ensure(folders.seed_folder(place, seed), recipe.config(seed)) for seed in range(seeds)]
+    root = out / "runs" / recipe.name
+    return [RunFolder.ensure(folders.seed_folder(root, seed), recipe.config(seed)) for seed in range(seeds)]

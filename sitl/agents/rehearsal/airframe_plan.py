@@ -17,7 +17,7 @@ GROUP = "vehicle"
 
 
 def airframe_plan(path: str | Path) -> Plan:
-    """The plan of an airframe with intervals: as it is, each figure at both ends of its interval, and all drawn.
+    """The plan of an airframe with intervals: as it is, each property at both ends of its interval, and all drawn.
 
     Args:
         path: of the file, as ``sitl identify`` writes it, or the name of an airframe.
@@ -28,8 +28,8 @@ def airframe_plan(path: str | Path) -> Plan:
     airframe = airframe_of(path)
     if not airframe.intervals:
         raise AgentError(
-            f"{airframe.title} has no intervals, which say how far off its figures may be: `sitl identify` writes them "
-            "as a table [intervals]"
+            f"{airframe.title} has no intervals, which say how far off its properties may be: `sitl identify` writes "
+            "them as a table [intervals]"
         )
     return Plan(Path(str(path)).stem, tuple(_changes(str(path), airframe)), summary=airframe.description)
 

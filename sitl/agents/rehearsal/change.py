@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One change of a simulation that a policy is tried under: figures, noise, latency, world, physics, any option."""
+"""One change of a simulation that a policy is tried under: properties, noise, latency, world, physics, any option."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ def altered(world: str | Path | World, mirror: bool = False, stretch: float = 1.
     found = worlds.load(world)
     side = -1.0 if mirror else 1.0
 
-    def place(position: tuple[float, float, float]) -> tuple[float, float, float]:
+    def moved(position: tuple[float, float, float]) -> tuple[float, float, float]:
         x, y, z = position
         return stretch * x, side * stretch * y, z
 
     def solid(one: Solid) -> Solid:
         if isinstance(one, Box):
             x, y, z = one.size
-            return replace(one, centre=place(one.centre), size=(stretch * x, stretch * y, z), yaw=side * one.yaw)
-        return replace(one, centre=place(one.centre), radius=stretch * one.radius)
+            return replace(one, centre=moved(one.centre), size=(stretch * x, stretch * y, z), yaw=side * one.yaw)
+        return replace(one, centre=moved(one.centre), radius=stretch * one.radius)
 
     what = [*(["mirrored"] if mirror else []), *([f"x {stretch:g}"] if stretch != 1.0 else [])]
     return World(
         name=" ".join([found.name, *what]),
         solids=tuple(solid(one) for one in found.solids),
-        starts=tuple(replace(s, position=place(s.position), yaw=side * s.yaw) for s in found.starts),
+        starts=tuple(replace(s, position=moved(s.position), yaw=side * s.yaw) for s in found.starts),
         description=found.description,
         source=found.source,
         floor_z=found.floor_z,
@@ -73,11 +73,11 @@ class Change:
     group: str
     """One of ``GROUPS``."""
     scale: Mapping[str, float] = field(default_factory=dict)
-    """Figure of the robot -> factor of its default value."""
+    """Property of the robot -> factor of its default value."""
     set: Mapping[str, Value] = field(default_factory=dict)
-    """Figure -> value, in the figure's unit; of a vector a list."""
+    """Property -> value, in the property's unit; of a vector a list."""
     identified: bool = False
-    """Each episode draws the figures that were measured within their intervals (``Airframe.intervals``)."""
+    """Each episode draws the properties that were measured within their intervals (``Airframe.intervals``)."""
     latency: float | None = None
     """Latency [s]; None: unchanged."""
     mirror: bool = False
@@ -97,14 +97,14 @@ class Change:
         where = f"change {self.name!r}"
         if self.group not in GROUPS:
             raise AgentError(f"{where}: group = {self.group!r}; it is one of {', '.join(GROUPS)}")
-        for figure, value in _table(where, "scale", self.scale).items():
+        for name, value in _table(where, "scale", self.scale).items():
             if not _is_number(value):
-                raise AgentError(f"{where}: scale.{figure} = {value!r}; it must be a number")
-        for figure, given in _table(where, "set", self.set).items():
+                raise AgentError(f"{where}: scale.{name} = {value!r}; it must be a number")
+        for name, given in _table(where, "set", self.set).items():
             if not _is_number(given) and not (isinstance(given, list | tuple) and all(map(_is_number, given))):
-                raise AgentError(f"{where}: set.{figure} = {given!r}; it must be a number, or a list of a vector's")
-        for figure in {*self.scale} & {*self.set}:
-            raise AgentError(f"{where}: figure {figure!r} is both scaled and set; give one of them")
+                raise AgentError(f"{where}: set.{name} = {given!r}; it must be a number, or a list of a vector's")
+        for name in {*self.scale} & {*self.set}:
+            raise AgentError(f"{where}: property {name!r} is both scaled and set; give one of them")
         if self.latency is not None and not (_is_number(self.latency) and self.latency >= 0.0):
             raise AgentError(f"{where}: latency = {self.latency!r}; it must be a number from 0 on [s]")
         if not _is_number(self.stretch) or not 0.1 <= self.stretch <= 10.0:
@@ -153,12 +153,12 @@ class Change:
             drawn: what its episodes draw by themselves, as its wind (``Randomisation.ranges``), which stays.
 
         Raises:
-            AgentError: the robot has no such figure.
+            AgentError: the robot has no such property.
         """
         out = {**home, **self.options}
-        figures = {name: scaled(robot, name, factor) for name, factor in self.scale.items()} | dict(self.set)
-        if figures or self.identified:
-            out["randomise"] = dict(drawn or {}) | {name: (value, value) for name, value in figures.items()}
+        properties = {name: scaled(robot, name, factor) for name, factor in self.scale.items()} | dict(self.set)
+        if properties or self.identified:
+            out["randomise"] = dict(drawn or {}) | {name: (value, value) for name, value in properties.items()}
         if self.identified:
             out["randomise"][IDENTIFIED] = True
         if self.latency is not None:
@@ -183,7 +183,7 @@ def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mappi
     changed = {name: value for name, value in options.items() if name not in home or home[name] is not value}
     randomise = changed.pop("randomise", None) or {}
     if IDENTIFIED in randomise:
-        return False  # of another vehicle, which ``options`` says, or of one whose figures were not guessed
+        return False  # of another vehicle, which ``options`` says, or of one whose properties were not guessed
     fixed = ((name, tuple(range_)) for name, range_ in randomise.items() if not callable(range_))
     values = {name: low for name, (low, high) in fixed if low == high}  # others are drawn at home, too
     if "latency" in changed:
@@ -194,26 +194,26 @@ def is_covered(options: Mapping[str, Any], home: Mapping[str, Any], drawn: Mappi
     return len(ranges) == len(values) and all(low <= values[name] <= high for name, (low, high) in ranges.items())
 
 
-def usual(robot: Any, figure: str) -> Value:
-    """Default value of a figure of the robot.
+def usual(robot: Any, name: str) -> Value:
+    """Default value of a property of the robot.
 
     Raises:
         AgentError: it has none.
     """
-    if figure not in robot.figures:
-        hint = did_you_mean(figure, robot.figures)
-        raise AgentError(f"robot {robot.name!r} has no figure {figure!r}{hint}")
+    if name not in robot.properties:
+        hint = did_you_mean(name, robot.properties)
+        raise AgentError(f"robot {robot.name!r} has no property {name!r}{hint}")
     airframe = getattr(robot, "airframe", None)
     try:
-        value: Any = np.asarray(airframe.value(figure), float)  # type: ignore[union-attr,type-var]
+        value: Any = np.asarray(airframe.value(name), float)  # type: ignore[union-attr,type-var]
     except (AttributeError, KeyError):
-        raise AgentError(f"figure {figure!r} of robot {robot.name!r} has no usual value to scale: set it") from None
+        raise AgentError(f"property {name!r} of robot {robot.name!r} has no usual value to scale: set it") from None
     return tuple(value.tolist()) if value.ndim else float(value)
 
 
-def scaled(robot: Any, figure: str, factor: float) -> Value:
+def scaled(robot: Any, name: str, factor: float) -> Value:
     """``factor`` times the default value, rounded; of a vector each element."""
-    value = usual(robot, figure)
+    value = usual(robot, name)
     if isinstance(value, tuple):
         return tuple(float(f"{factor * one:.12g}") for one in value)
     return float(f"{factor * value:.12g}")  # type: ignore[operator]

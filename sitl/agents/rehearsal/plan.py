@@ -40,7 +40,7 @@ class Plan:
     training: Mapping[str, Any] = field(default_factory=dict)
     """recipe: that ``sitl benchmark rehearsal`` trains by; steps or episodes: other than the recipe's."""
     randomise: Mapping[str, Any] = field(default_factory=dict)
-    """Randomisation of the second policy: scale and set (figure -> low, high), latency (low, high) [s], draws."""
+    """Randomisation of the second policy: scale and set (property -> low, high), latency (low, high) [s], draws."""
 
     def __post_init__(self) -> None:
         names = [change.name for change in self.changes]
@@ -52,8 +52,8 @@ class Plan:
         _known(f"training: {', '.join(_TRAINING)}", self.training, _TRAINING)
         _known(f"randomise: {', '.join(_RANDOMISE)}", self.randomise, _RANDOMISE)
         for key in ("scale", "set"):
-            for figure, limits in _mapping(key, self.randomise.get(key, {})).items():
-                _range(f"randomise.{key}.{figure}", limits)
+            for name, limits in _mapping(key, self.randomise.get(key, {})).items():
+                _range(f"randomise.{key}.{name}", limits)
         if "latency" in self.randomise:
             _range("randomise.latency", self.randomise["latency"])
 
@@ -77,15 +77,15 @@ class Plan:
         return [change for change in self.changes if change.name in only or change.group in only]
 
     def randomisation(self, robot: Any) -> dict[str, Any]:
-        """The option ``randomise`` of an environment for training, with the robot's own figures.
+        """The option ``randomise`` of an environment for training, with the robot's own properties.
 
         Raises:
-            AgentError: the robot has no such figure.
+            AgentError: the robot has no such property.
         """
         out: dict[str, Any] = {}
-        for figure, (low, high) in self.randomise.get("scale", {}).items():
-            ends = scaled(robot, figure, low), scaled(robot, figure, high)
-            out[figure] = [np.minimum(*ends).tolist(), np.maximum(*ends).tolist()]
+        for name, (low, high) in self.randomise.get("scale", {}).items():
+            ends = scaled(robot, name, low), scaled(robot, name, high)
+            out[name] = [np.minimum(*ends).tolist(), np.maximum(*ends).tolist()]
         for name, limits in self.randomise.get("set", {}).items():
             out[name] = [float(limit) for limit in limits]
         if "latency" in self.randomise:

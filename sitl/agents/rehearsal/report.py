@@ -41,9 +41,9 @@ def write_changes(path: Path, sections: Mapping[str, Sequence[Rehearsed]]) -> No
             rows.append((title, one.name, "home", "", one.home.mean, 1.0, 1.0, 1.0, *_parts(one.home), *4 * [""], ""))
             advantages = [None] * len(one.changes) if one is rehearsed[0] else one.advantages(rehearsed[0])
             for change, tried, share, above in zip(one.changes, one.tried, one.transfer_ratios(), advantages):
-                figures: Sequence[Any] = ("",) * 6 if share is None else (tried.mean, *share, *_parts(tried))
+                values: Sequence[Any] = ("",) * 6 if share is None else (tried.mean, *share, *_parts(tried))
                 last = (*(above or ("", "", "")), int(tried.seen), tried.refused)
-                rows.append((title, one.name, change.name, change.group, *figures, *last))
+                rows.append((title, one.name, change.name, change.group, *values, *last))
     write_csv(path, CHANGES, rows)
 
 
@@ -63,8 +63,8 @@ def write_episodes(path: Path, sections: Mapping[str, Sequence[Rehearsed]], seed
         for title, rehearsed in sections.items()
         for one in rehearsed
         for name, tried in [("home", one.home), *zip([change.name for change in one.changes], one.tried)]
-        for run, *figures in zip(one.runs, tried.rewards, tried.crashed, tried.false_alarms)
-        for episode, (reward, crash, false) in enumerate(zip(*figures))
+        for run, *values in zip(one.runs, tried.rewards, tried.crashed, tried.false_alarms)
+        for episode, (reward, crash, false) in enumerate(zip(*values))
     )
     write_csv(path, EPISODES, rows)
 
@@ -137,8 +137,8 @@ def _section(document: Document, folder: Path, title: str, rehearsed: Sequence[R
 def _about(one: Rehearsed) -> list[str]:
     config = one.runs[0].config
     randomised = config.env_options.get("randomise")
-    figures = [name for name in randomised or () if name != DRAWS]
-    drawn = ", ".join(figures) or "one simulation"
+    drawn_names = [name for name in randomised or () if name != DRAWS]
+    drawn = ", ".join(drawn_names) or "one simulation"
     home = one.home
     seeds, episodes = home.rewards.shape
     return [
@@ -255,7 +255,7 @@ def draw(path: Path, rehearsed: Sequence[Rehearsed]) -> Path:
     """Transfer ratios as dots with their intervals, a line a change, a colour a run."""
     changes = rehearsed[0].changes
     made, axes = curves.figure(9.0, 1.2 + _LINE * len(changes) * (1.0 + 0.25 * (len(rehearsed) - 1)))
-    place = axes[0, 0]
+    ax = axes[0, 0]
     lines = np.arange(len(changes), dtype=float)
     for number, (colour, one) in enumerate(zip(curves.COLOURS * 9, rehearsed)):
         offset = 0.6 * ((number + 0.5) / len(rehearsed) - 0.5)
@@ -263,14 +263,14 @@ def draw(path: Path, rehearsed: Sequence[Rehearsed]) -> Path:
         found = [(line, ratio) for line, ratio in ratios if ratio and not math.isnan(ratio.value)]
         values = np.array([ratio for _, ratio in found], float).reshape(-1, 3) * 100.0
         spread = np.abs(values[:, 1:] - values[:, :1]).T
-        place.errorbar(
+        ax.errorbar(
             values[:, 0], [line + offset for line, _ in found], xerr=spread, fmt="o", color=colour, label=one.name,
             capsize=2.0, markersize=4.5, linewidth=1.2,
         )  # fmt: skip
-    place.axvline(100.0, color="black", linewidth=0.8)
-    place.axvline(0.0, color="grey", linewidth=0.5)
-    place.set_yticks(lines, [change.name for change in changes])
-    place.set(xlabel="share of the reward at home [%]", ylim=(len(changes) - 0.4, -0.6))
-    place.grid(axis="x", alpha=0.3)
+    ax.axvline(100.0, color="black", linewidth=0.8)
+    ax.axvline(0.0, color="grey", linewidth=0.5)
+    ax.set_yticks(lines, [change.name for change in changes])
+    ax.set(xlabel="share of the reward at home [%]", ylim=(len(changes) - 0.4, -0.6))
+    ax.grid(axis="x", alpha=0.3)
     made.legend(loc="outside upper center", ncols=4)
     return curves.save(made, path)

@@ -50,11 +50,11 @@ def lidar_distance(robot: Any) -> float:
     """True horizontal distance from the lidar to the nearest solid at its height [m]; 0 where it is unknown."""
     if isinstance(robot, Turtlebot):
         x, y, z, yaw = robot.pose[0].tolist()
-        figures = robot.robots.views[0].figures
-        ahead = float(figures.lidar_ahead)  # type: ignore[attr-defined]
-        place = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(figures.lidar_height))  # type: ignore[attr-defined]
-        north, east, down = to_ned(*place)
-    elif isinstance(robot, AutopilotRobot) and robot.figures:
+        airframe = robot.robots.views[0].airframe
+        ahead = float(airframe.lidar_ahead)  # type: ignore[attr-defined]
+        position = (x + ahead * cos(yaw), y + ahead * sin(yaw), z + float(airframe.lidar_height))  # type: ignore[attr-defined]
+        north, east, down = to_ned(*position)
+    elif isinstance(robot, AutopilotRobot) and robot.properties:
         v = robot.view(0)
         body, (forward, right, below) = v.physics.body, v.physics.airframe.lidar_at
         heading = euler_of(body.q).yaw
@@ -128,7 +128,7 @@ def home_options(config: RunConfig, boots: int | None = None) -> dict[str, Any]:
 def jitter_of(config: RunConfig, robot: Any) -> float:
     """Default distance by which starts are moved [m, rad]: as in the run's evaluation; but a robot without noise that
     always
-    starts at one place would repeat the same episode."""
+    starts at one position would repeat the same episode."""
     starts = "start" in {**config.env_options, **config.evaluation.options}
     if config.evaluation.jitter == 0.0 and not starts and isinstance(robot, Turtlebot):
         return JITTER

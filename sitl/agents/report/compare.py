@@ -135,11 +135,11 @@ def _task(group: Group) -> dict[str, Any]:
 
 def _about(group: Group, groups: Sequence[Group]) -> list[str]:
     config = group.config
-    all_figures = [_settings(other) for other in groups]
-    figures = _settings(group)
+    all_settings = [_settings(other) for other in groups]
+    settings = _settings(group)
     if len(groups) > 1:
-        figures = {n: v for n, v in figures.items() if any(other.get(n) != v for other in all_figures)}
-    text = ", ".join(f"{name} = {value}" for name, value in figures.items())
+        settings = {n: v for n, v in settings.items() if any(other.get(n) != v for other in all_settings)}
+    text = ", ".join(f"{name} = {value}" for name, value in settings.items())
     return [group.name, config.env, config.algorithm, str(len(group.runs)), str(group.rewards.shape[1]), text]
 
 

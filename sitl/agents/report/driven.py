@@ -85,7 +85,7 @@ class Trails(gym.Wrapper[Any, Any, Any, Any]):
         self._noted: list[list[tuple[float, float]]] = []
         self.worlds: list[World] = []
         """That of each episode."""
-        self._where = place_of(env)
+        self._where = position_of(env)
 
     def reset(self, **arguments: Any) -> Any:
         """See ``gymnasium.Env``."""
@@ -119,7 +119,7 @@ def whereabouts(trail: Floats, world: World) -> Whereabouts:
     return Whereabouts(farthest, bool(world.solids) and not (x0 <= x <= x1 and y0 <= y <= y1))
 
 
-def place_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
+def position_of(env: gym.Env[Any, Any]) -> Callable[[], tuple[float, float]]:
     """Says where the robot of an environment really is: x, y [m]. The pose of a vehicle with an autopilot is what its
     autopilot believes, which is metres off at times."""
     robot: Any = env.unwrapped.robot  # type: ignore[attr-defined]

@@ -74,7 +74,7 @@ def write_report(dishes: Sequence[Dish], folder: Path) -> Path:
     document = Document("The environments, learnt")
     document.paragraph(
         f"Each recipe trained with {seeds} seed{'s' if seeds > 1 else ''} and then played without learning and "
-        "exploring. Figures are means over seeds, with the lowest and the highest seed in brackets where they differ."
+        "exploring. Values are means over seeds, with the lowest and the highest seed in brackets where they differ."
     )
     _played(document, dishes)
     _trained(document, dishes)
@@ -183,8 +183,8 @@ _HEAD = (
 
 def _rows(dish: Dish) -> list[list[object]]:
     rows: list[list[object]] = []
-    figures = zip(dish.seeds(), _episodes(dish), _steps(dish), dish.group.simulated_s, dish.group.wall_s, dish.driven)
-    for seed, episodes, steps, simulated, wall, driven in figures:
+    every = zip(dish.seeds(), _episodes(dish), _steps(dish), dish.group.simulated_s, dish.group.wall_s, dish.driven)
+    for seed, episodes, steps, simulated, wall, driven in every:
         found = driven.evaluation
         count = len(found.episodes)
         rows.append(

@@ -108,12 +108,12 @@ def write_report(
     groups = {key: group.first(common) for key, group in groups.items()}
     extra = [group.first(common) for group in extra]
     every = list(groups.values())
-    seeds, figures = len(every[0].runs), every[0].config.settings
+    seeds, settings = len(every[0].runs), every[0].config.settings
     document = Document("The paper's benchmark: Q-learning and Sarsa on circuit2")
     document.paragraph(
-        f"{ENVIRONMENT}, {common} episodes of at most {every[0].config.max_steps} steps, alpha {figures['alpha']}, "
-        f"gamma {figures['gamma']}, epsilon {figures['epsilon']} x {figures['epsilon_decay']} an episode down to "
-        f"{figures['epsilon_floor']}, {seeds} seed{'s' if seeds > 1 else ''}. The paper shows one run of each. "
+        f"{ENVIRONMENT}, {common} episodes of at most {every[0].config.max_steps} steps, alpha {settings['alpha']}, "
+        f"gamma {settings['gamma']}, epsilon {settings['epsilon']} x {settings['epsilon_decay']} an episode down to "
+        f"{settings['epsilon_floor']}, {seeds} seed{'s' if seeds > 1 else ''}. The paper shows one run of each. "
         '"Textbook" is Q-learning and Sarsa as textbooks have them, "as coded" has what the authors\' code did '
         "otherwise."
     )
@@ -132,7 +132,7 @@ def write_report(
         f"What was learnt, without learning and exploring: {play} episodes a seed, from the paper's start moved by up "
         f"to {JITTER:g} m and {JITTER:g} rad, since from the very start every episode is the same: the robot has no "
         "noise. The best table of a run plays. With a constant step size tables never settle; so every "
-        f"{figures['check_every']} episodes the table drove {figures['check_episodes']} episodes from other moved "
+        f"{settings['check_every']} episodes the table drove {settings['check_episodes']} episodes from other moved "
         "starts, and the one with the highest mean reward was kept. A lap of circuit2 is right, right, left, right, "
         "right, right."
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts of reports on groups of runs: tables of blocks, curves, aggregate figures, greedy play."""
+"""Parts of reports on groups of runs: tables of blocks, curves, aggregate statistics, greedy play."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def with_interval(mean: float, half: float) -> str:
 
 
 def with_range(value: float, low: float, high: float, digits: int = 0) -> str:
-    """A figure and its 95 % bootstrap interval as text."""
+    """A statistic and its 95 % bootstrap interval as text."""
     text = f"{value:.{digits}f}"
     return text if math.isnan(low) else f"{text} ({low:.{digits}f} .. {high:.{digits}f})"
 
@@ -92,11 +92,11 @@ def draw_curves(path: Path, groups: Sequence[Group], block: int, paper: Mapping[
     """
     made, axes = curves.figure(14.0, 4.2 * ((len(groups) + 2) // 2), (len(groups) + 2) // 2, 2)
     flat = list(axes.flat)
-    for place, group in zip(flat, groups):
-        draw_raw(place, group.rewards[0], f"{group.name}, seed {group.runs[0].config.seed}", block)
-    raw = [place.get_ylim() for place in flat[: len(groups)]]
-    for place in flat[: len(groups)]:
-        place.set_ylim(min(low for low, _ in raw), max(high for _, high in raw))
+    for ax, group in zip(flat, groups):
+        draw_raw(ax, group.rewards[0], f"{group.name}, seed {group.runs[0].config.seed}", block)
+    raw = [ax.get_ylim() for ax in flat[: len(groups)]]
+    for ax in flat[: len(groups)]:
+        ax.set_ylim(min(low for low, _ in raw), max(high for _, high in raw))
     last = flat[len(groups)]
     draw_means(last, {group.name: group.rewards for group in groups}, block)
     for style, (name, means) in zip(("--", ":", "-."), paper.items()):
@@ -172,7 +172,7 @@ def aggregates(document: Document, folder: Path, groups: Sequence[Group], block:
             "other, equal scores counting half."
         )
         document.table(["", "probability"], pairs)
-    write_csv(folder / "aggregates.csv", ("of", "figure", "over", "value", "low", "high"), rows)
+    write_csv(folder / "aggregates.csv", ("of", "statistic", "over", "value", "low", "high"), rows)
     document.paragraph(f"Performance profiles: the share of seeds whose score in {over} is above each level.")
     document.picture(draw_profile(folder / "profile.png", groups, block, over), "performance profiles")
 
@@ -200,7 +200,7 @@ def greedy_play(
         laps = [e.mean_laps for e in evaluations]
         rates = [math.nan if math.isnan(e.mean_laps) else 100.0 * e.lap_rate for e in evaluations]
         cells = [f"{np.mean(rewards):.0f}", f"{100 - np.mean(crashes):.0f} %", f"{np.mean(laps):.1f}"]
-        best = max(zip(rates, crashes), key=lambda figures: figures[0] - figures[1])[0]
+        best = max(zip(rates, crashes), key=lambda shares: shares[0] - shares[1])[0]
         cells += [f"{np.mean(rates):.0f} %", f"{best:.0f} %"]
         table.append([group.name, str(plan.episodes), *("-" if "nan" in cell else cell for cell in cells)])
         seeds = [run.config.seed for run in group.runs]

@@ -73,19 +73,19 @@ def interquartile_mean(samples: Floats, axis: int = -1) -> Floats:
 
 
 def _interval(
-    figure: Callable[..., Floats], samples: tuple[Floats, ...], seed: int, resamples: int
+    statistic: Callable[..., Floats], samples: tuple[Floats, ...], seed: int, resamples: int
 ) -> tuple[Floats, Floats]:
     """Low and high end of a 95 % percentile bootstrap interval.
 
     Args:
-        figure: ``figure(*samples, axis)`` reduces the last axis of each of its samples.
+        statistic: ``statistic(*samples, axis)`` reduces the last axis of each of its samples.
         samples: shapes (runs,); each is resampled independently of the others.
         seed: seed of the resampling.
         resamples: number of resamples.
     """
     result = scipy_stats().bootstrap(
         samples,
-        figure,
+        statistic,
         axis=-1,
         vectorized=True,
         n_resamples=resamples,
@@ -160,7 +160,7 @@ def wilson(count: int, of: int) -> tuple[float, float]:
     return max(low, 0.0), min(high, 1.0)
 
 
-def trained_interval(figures: Floats, seed: int = 0, resamples: int = 2000) -> tuple[float, float, float]:
+def trained_interval(scores: Floats, seed: int = 0, resamples: int = 2000) -> tuple[float, float, float]:
     """Interquartile mean over trainings of their mean over episodes, and the ends of its 95 % bootstrap interval.
 
     All trainings play the same episodes, so both are drawn anew, with replacement and independently of each other:
@@ -168,21 +168,21 @@ def trained_interval(figures: Floats, seed: int = 0, resamples: int = 2000) -> t
     for tasks and draw other trainings for each of them, which hides that trainings differ.
 
     Args:
-        figures: of each episode, shape (trainings, episodes).
+        scores: of each episode, shape (trainings, episodes).
         seed: seed of the resampling.
         resamples: number of resamples.
 
     Returns:
         (interquartile mean, low end, high end); nan for the ends of a single training.
     """
-    value = float(interquartile_mean(figures.mean(axis=1)))
-    trainings, episodes = figures.shape
+    value = float(interquartile_mean(scores.mean(axis=1)))
+    trainings, episodes = scores.shape
     if trainings < 2:
         return value, math.nan, math.nan
     rng = np.random.default_rng(seed)
     rows = rng.integers(trainings, size=(resamples, trainings))
     weights = rng.multinomial(episodes, np.full(episodes, 1.0 / episodes), size=resamples) / episodes
-    means = np.take_along_axis(weights @ figures.T, rows, axis=1)
+    means = np.take_along_axis(weights @ scores.T, rows, axis=1)
     low, high = np.percentile(interquartile_mean(means), (2.5, 97.5))
     return value, float(low), float(high)
 

@@ -29,7 +29,7 @@ def write_table(sweep: Sweep) -> tuple[Path, str]:
     block = block_of(groups, None)
     rows = []
     for group in groups:
-        mean, half = (float(figure) for figure in mean_interval(group.last(block)))
+        mean, half = (float(one) for one in mean_interval(group.last(block)))
         rows.append((group, mean, half))
     rows.sort(key=lambda row: -row[1])
     values = [[_text(sweep.combinations[group.name][name]) for name in sweep.names] for group, _, _ in rows]

@@ -44,10 +44,10 @@ class Bar:
             self._recent.append(row.reward)
             self.steps += row.steps
             self.simulated_s += row.simulated_s
-        self._bar.set_postfix_str(self._figures(rows[-1]), refresh=False)
+        self._bar.set_postfix_str(self._values(rows[-1]), refresh=False)
         self._bar.update(sum(row.steps for row in rows) if self._by_steps else len(rows))
 
-    def _figures(self, last: Episode) -> str:
+    def _values(self, last: Episode) -> str:
         reward = sum(self._recent) / len(self._recent)
         parts = [f"reward {reward:.0f}"]
         if not math.isnan(last.epsilon):

@@ -19,7 +19,7 @@ class EvaluationPlan:
     """Part of what a run is. Nothing that is learnt depends on it, but which network is kept as the best does.
 
     Raises:
-        AgentError: a figure that cannot be.
+        AgentError: a setting that cannot be.
     """
 
     episodes: int = EPISODES

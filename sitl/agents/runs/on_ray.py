@@ -124,16 +124,16 @@ class _Pool:
 
     def _check(self, there: dict[str, str]) -> None:
         """Refuse a worker with other versions: results depend on them."""
-        place = there.pop("place", "?")
+        host = there.pop("host", "?")
         if "error" in there:
             raise AgentError(
-                f"the Ray worker at {place} cannot load gym-sitl: {there['error']}; install gym-sitl "
+                f"the Ray worker at {host} cannot load gym-sitl: {there['error']}; install gym-sitl "
                 f"{self._versions['gym-sitl']} there"
             )
         shared = ((name, mine, there.get(name, mine)) for name, mine in self._versions.items())
         other = [f"{name} {theirs}, not {mine}" for name, mine, theirs in shared if theirs != mine]
         if other:
-            raise AgentError(f"the Ray worker at {place} has {'; '.join(other)}: install the same there as here")
+            raise AgentError(f"the Ray worker at {host} has {'; '.join(other)}: install the same there as here")
 
     def _next(self, slot: _Slot) -> None:
         if not self._todo:
@@ -204,13 +204,13 @@ def _actor_class() -> type:
         def open(self) -> dict[str, str]:
             import socket
 
-            place = socket.gethostname()
+            host = socket.gethostname()
             try:
                 from sitl.agents.runs.ray_worker import Worker, libraries
             except Exception as error:
-                return {"place": place, "error": str(error)}
+                return {"host": host, "error": str(error)}
             self._worker = Worker()
-            return {"place": place, **libraries()}
+            return {"host": host, **libraries()}
 
         def begin(self, *words: Any) -> Any:
             return self._worker.begin(*words)

@@ -83,13 +83,13 @@ class Worker:
             self._thread.join(2.0)
 
     def _work(self, work: Work, item: Any, contents: Sequence[transfer.Content | bytes]) -> None:
-        places: dict[Path, Path] = {}
+        folders: dict[Path, Path] = {}
         try:
             with tempfile.TemporaryDirectory(prefix="sitl-") as root:
                 for number, (path, content) in enumerate(zip(transfer.paths_of(item), contents)):
-                    places[path] = Path(root, str(number), path.name or "folder")
-                    transfer.unpack(places[path], content)
-                sync = _Sync(list(places.values()), self._messages)
+                    folders[path] = Path(root, str(number), path.name or "folder")
+                    transfer.unpack(folders[path], content)
+                sync = _Sync(list(folders.values()), self._messages)
 
                 def send_progress(message: Any) -> None:
                     self._messages.put(("progress", message))
@@ -100,13 +100,13 @@ class Worker:
                     return self._stop.is_set()
 
                 try:
-                    message = ("done", work(transfer.moved(item, places), send_progress, stopped))
+                    message = ("done", work(transfer.moved(item, folders), send_progress, stopped))
                 finally:
                     sync.now()
             self._messages.put(message)
         except BaseException as error:  # any end of this thread is reported to the other side
-            for path, place in places.items():  # messages name the folders of the sending machine
-                error.args = tuple(a.replace(str(place), str(path)) if isinstance(a, str) else a for a in error.args)
+            for path, folder in folders.items():  # messages name the folders of the sending machine
+                error.args = tuple(a.replace(str(folder), str(path)) if isinstance(a, str) else a for a in error.args)
             known = sendable(error) if isinstance(error, Exception) else RuntimeError(repr(error))
             self._messages.put(("raised", known))
 

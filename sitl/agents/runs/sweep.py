@@ -58,7 +58,7 @@ def combinations(axes: Sequence[tuple[str, Sequence[Any]]]) -> list[Values]:
     """All of them, the last axis fastest.
 
     Raises:
-        AgentError: an axis comes twice, or two combinations cannot be told apart by their folders' names.
+        AgentError: an axis comes twice, or two combinations cannot be distinguished by their folders' names.
     """
     names = [name for name, _ in axes]
     for k, name in enumerate(names):

@@ -72,11 +72,11 @@ class Mirrored:
 
 
 def _files(folder: Path) -> Iterator[tuple[str, Path]]:
-    for place, inner, names in os.walk(folder):
+    for root, inner, names in os.walk(folder):
         inner[:] = [name for name in inner if not name.startswith(".")]
         for name in names:
             if not name.startswith("."):  # a hidden file is not written completely yet
-                path = Path(place, name)
+                path = Path(root, name)
                 yield path.relative_to(folder).as_posix(), path
 
 
@@ -86,20 +86,20 @@ def paths_of(item: Any) -> list[Path]:
     return list(dict.fromkeys(_paths(item)))
 
 
-def moved(item: Any, places: Mapping[Path, Path]) -> Any:
-    """A copy of an item in which paths are replaced as ``places`` says."""
+def moved(item: Any, folders: Mapping[Path, Path]) -> Any:
+    """A copy of an item in which paths are replaced as ``folders`` says."""
     if next(_paths(item), None) is None:
         return item
     if isinstance(item, Path):
-        return places.get(item, item)
+        return folders.get(item, item)
     if isinstance(item, tuple | list):
-        parts = [moved(part, places) for part in item]
+        parts = [moved(part, folders) for part in item]
         return type(item)(*parts) if hasattr(item, "_fields") else type(item)(parts)
     if isinstance(item, dict):
-        return {name: moved(part, places) for name, part in item.items()}
+        return {name: moved(part, folders) for name, part in item.items()}
     if dataclasses.is_dataclass(item) and not isinstance(item, type):
         fields = [field.name for field in dataclasses.fields(item) if field.init]
-        return dataclasses.replace(item, **{name: moved(getattr(item, name), places) for name in fields})
+        return dataclasses.replace(item, **{name: moved(getattr(item, name), folders) for name in fields})
     return item
 
 

@@ -59,9 +59,9 @@ class Robot(NamedTuple):
     beams: Beams
     readings: NarrowTable
     crashed: Flags
-    """Room, shape (1,)."""
+    """Memory, shape (1,)."""
     digits: IntTable
-    """Room, shape (1, n)."""
+    """Memory, shape (1, n)."""
 
 
 class Extent(NamedTuple):
@@ -98,7 +98,7 @@ def run_episode(
 
     Args:
         learners: the learner, shape (1,).
-        table: its own; there must be room for ``extent.limit`` states more.
+        table: its own; there must be space for ``extent.limit`` states more.
         radix: see ``key_of``.
         extent: of the episode.
         rules: of the task.

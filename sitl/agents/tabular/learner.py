@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A tabular learner: a table, the figures it learns by, random numbers. It chooses, learns, is saved and goes on."""
+"""A tabular learner: a table, the settings it learns by, random numbers. It chooses, learns, is saved and goes on."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ class Learner:
         self._view.epsilon = epsilon_in(episode, s.epsilon, s.epsilon_decay, s.epsilon_floor) * (not self._view.frozen)
 
     def arguments(self, new_states: int) -> tuple[Records[LearnerState], Memory]:
-        """Record and table as ``learn`` takes them, with room for so many states more."""
-        self.table.make_room(self.states, new_states)
+        """Record and table as ``learn`` takes them, with space for so many states more."""
+        self.table.reserve(self.states, new_states)
         return self._records, self.table.memory
 
     def first_key(self, observation: Any) -> int:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a tabular learner learns by: the paper's figures, and what its code did otherwise."""
+"""What a tabular learner learns by: the paper's settings, and what its code did otherwise."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Settings:
     """Hyper-parameters; the defaults are the paper's parameters and the textbooks' algorithm.
 
     Raises:
-        AgentError: a figure outside its limits.
+        AgentError: a setting outside its limits.
     """
 
     alpha: float = 0.2
@@ -71,14 +71,14 @@ class Settings:
             raise AgentError("check_episodes = 0; it must be 1 or more (check_every = 0 checks never)")
 
     @classmethod
-    def of(cls, figures: Mapping[str, Any]) -> Settings:
+    def of(cls, values: Mapping[str, Any]) -> Settings:
         """From names and values.
 
         Raises:
             AgentError: no such setting, or a value that cannot be.
         """
-        check_names(figures, [field.name for field in fields(cls)], "setting {!r}")
-        return cls(**figures)
+        check_names(values, [field.name for field in fields(cls)], "setting {!r}")
+        return cls(**values)
 
     @classmethod
     def as_coded(cls, algorithm: str) -> Settings:

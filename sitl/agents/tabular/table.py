@@ -91,7 +91,7 @@ class Table:
         """The arrays as laws take them."""
         return Memory(self.keys, self.values, self.visits)
 
-    def make_room(self, taken: int, more: int) -> None:
+    def reserve(self, taken: int, more: int) -> None:
         """Grow until ``more`` states beside the ``taken`` ones leave half of the rows empty."""
         rows = len(self.keys)
         while 2 * (taken + more) > rows:
@@ -132,7 +132,7 @@ class Table:
             raise AgentError(f"this is no table: its states are not numbers from 0 to {2 * table.size - 1}, each once")
         if not np.isfinite(values).all() or (visits < 0).any():
             raise AgentError("this is no table: it has values that are no numbers")
-        table.make_room(0, len(keys))
+        table.reserve(0, len(keys))
         for key, row, count in zip(keys.tolist(), values, visits):
             slot = slot_of(table.keys, key)
             table.keys[slot], table.values[slot], table.visits[slot] = key, row, count

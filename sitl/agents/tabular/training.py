@@ -152,9 +152,9 @@ LENGTH = {"episodes": EPISODES}
 
 def settings(algorithm: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """See ``Algorithm``; "as_coded": true begins with what the paper's code did."""
-    figures = dict(given)
-    base = Settings.as_coded(algorithm) if figures.pop("as_coded", False) is True else Settings()
-    return Settings.of({**base.as_dict(), **figures}).as_dict()
+    changed = dict(given)
+    base = Settings.as_coded(algorithm) if changed.pop("as_coded", False) is True else Settings()
+    return Settings.of({**base.as_dict(), **changed}).as_dict()
 
 
 def check(config: RunConfig, observations: gym.Space[Any], actions: gym.Space[Any]) -> None:

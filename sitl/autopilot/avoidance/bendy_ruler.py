@@ -4,7 +4,8 @@
 A bearing is free when the vehicle keeps OA_MARGIN_MAX as far as it looks ahead, and then as far again in one of three
 directions. It looks OA_BR_LOOKAHEAD far; nearer, down to half of it, while no bearing is free. A bearing that differs
 much from the last one (OA_BR_CONT_ANGLE) has to be better by OA_BR_CONT_RATIO. While a bearing bends away from the
-destination, or would soon, the vehicle steers for the place at its end (vertically for one as far as the destination).
+destination, or would soon, the vehicle steers for the position at its end (vertically for one as far as the
+destination).
 
 Behaviour: https://ardupilot.org/copter/docs/common-oa-bendyruler.html
 """
@@ -16,7 +17,7 @@ from typing import Any, NamedTuple
 
 from ...core.algebra import cross2, direction, dot, dot2, horizontal, norm, norm2, with_down
 from ...core.elementary import atan2, hypot, sincos
-from ...core.geodesy import place_e7
+from ...core.geodesy import location_e7
 from ...core.kernels import law
 from ...core.scalars import constrain, wrap_pi
 from ...core.vectors import Vec2, Vec3
@@ -58,8 +59,8 @@ def _rows(v: Any, margin: float, how: float) -> list[Row]:
     slope = atan2(here.z - target.z, hypot(target.x - here.x, target.y - here.y)) if upright else 0.0
     angles = (round(math.degrees(angle)) % 360 for angle in (towards, est.yaw, slope))
     origin = est.origin_lat, est.origin_lon
-    places = [(*place_e7(*origin, place.x, place.y), home - place.z) for place in (nav.target, target)]
-    return [("OABR", (2 if upright else 1, int(how) & 1, *angles, int(how) >> 1, margin, *places[0], *places[1]))]
+    locations = [(*location_e7(*origin, pos.x, pos.y), home - pos.z) for pos in (nav.target, target)]
+    return [("OABR", (2 if upright else 1, int(how) & 1, *angles, int(how) >> 1, margin, *locations[0], *locations[1]))]
 
 
 BENDY_RULER_LOOKED = Event(72, log=_rows)  # a: margin [m], b: 1 it steers, 3 and goes on as before
@@ -92,29 +93,29 @@ class Found(NamedTuple):
 @law
 def distance_to_segment(point: Vec3, a: Vec3, b: Vec3) -> float:
     """Of a point to the line between two others [m]."""
-    way = b - a
-    length = dot(way, way)
-    share = constrain(dot(point - a, way) / length, 0.0, 1.0) if length > 0.0 else 0.0
-    return norm(a + way * share - point)
+    delta = b - a
+    length = dot(delta, delta)
+    share = constrain(dot(point - a, delta) / length, 0.0, 1.0) if length > 0.0 else 0.0
+    return norm(a + delta * share - point)
 
 
 @law
 def crosses(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool:
     """Whether the lines from ``a`` to ``b`` and from ``c`` to ``d`` cross."""
-    way, edge = b - a, d - c
-    on_edge = cross2(way, c - a) * cross2(way, d - a) < 0.0
+    delta, edge = b - a, d - c
+    on_edge = cross2(delta, c - a) * cross2(delta, d - a) < 0.0
     return on_edge and cross2(edge, a - c) * cross2(edge, b - c) < 0.0
 
 
 @law
 def flat(point: Vec2) -> Vec3:
-    """A place on the plane."""
+    """A position on the plane."""
     return Vec3(point.x, point.y, 0.0)
 
 
 @law
 def margin_of_polygon(fence: FenceState, s: int, a: Vec2, b: Vec2) -> float:
-    """How far a way stays from the edges of polygon ``s`` [m]; below zero when it crosses them."""
+    """How far a path stays from the edges of polygon ``s`` [m]; below zero when it crosses them."""
     margin = FAR
     for k in range(int(fence.count[s])):
         c, d = shapes.corner_of(fence, s, k), shapes.corner_of(fence, s, k + 1)
@@ -128,7 +129,7 @@ def margin_of_polygon(fence: FenceState, s: int, a: Vec2, b: Vec2) -> float:
 
 @law
 def margin_of_area(fence: FenceState, s: int, a: Vec2, b: Vec2) -> float:
-    """How far a way stays from the edge of area ``s`` [m]; below zero where it does not."""
+    """How far a path stays from the edge of area ``s`` [m]; below zero where it does not."""
     if not shapes.is_circle(fence, s):
         return margin_of_polygon(fence, s, a, b)
     centre, radius = shapes.centre(fence, s), float(fence.radius[s])
@@ -139,7 +140,7 @@ def margin_of_area(fence: FenceState, s: int, a: Vec2, b: Vec2) -> float:
 
 @law
 def margin_of_fences(ap: Autopilot, a: Vec3, b: Vec3, upright: bool) -> float:
-    """How far a way stays from all fences that are on, and their margins [m]."""
+    """How far a path stays from all fences that are on, and their margins [m]."""
     fence, p, margin = ap.fence, ap.params.FENCE, FAR
     on, home = active(fence, p), ap.home.pos
     if (on & CIRCLE) != 0 and ap.home.is_set:
@@ -156,32 +157,32 @@ def margin_of_fences(ap: Autopilot, a: Vec3, b: Vec3, upright: bool) -> float:
 
 @law
 def margin_of_objects(ap: Autopilot, a: Vec3, b: Vec3, time_us: int) -> float:
-    """How far a way stays from all objects [m]."""
+    """How far a path stays from all objects [m]."""
     margin = FAR
     for k in range(OBJECTS):
         if objects.is_known(ap.objects, k, time_us):
-            away = distance_to_segment(objects.place(ap.objects, k), a, b)
+            away = distance_to_segment(objects.position(ap.objects, k), a, b)
             margin = min(margin, away - ap.objects.radius[k])
     return margin
 
 
 @law
 def margin_of(ap: Autopilot, a: Vec3, b: Vec3, ruler: Ruler, time_us: int) -> float:
-    """How far a way stays from everything [m]."""
+    """How far a path stays from everything [m]."""
     margin = margin_of_objects(ap, a, b, time_us)
     return margin if ruler.objects_only else min(margin, margin_of_fences(ap, a, b, ruler.upright))
 
 
 @law
 def ahead(start: Vec3, bearing: float, slope: float, distance: float) -> Vec3:
-    """The place in a direction; ``slope``: up positive [rad]."""
+    """The position in a direction; ``slope``: up positive [rad]."""
     rise, level = sincos(slope)
     return start + with_down(direction(bearing) * (level * distance), -rise * distance)
 
 
 @law
 def towards(ruler: Ruler, angle: float, distance: float) -> Vec3:
-    """The place at an angle [rad] from the direction to the destination."""
+    """The position at an angle [rad] from the direction to the destination."""
     if ruler.upright:
         return ahead(ruler.pos, ruler.bearing, angle, distance)
     return ahead(ruler.pos, ruler.bearing + angle, 0.0, distance)
@@ -189,15 +190,15 @@ def towards(ruler: Ruler, angle: float, distance: float) -> Vec3:
 
 @law
 def clear_side(ap: Autopilot, ruler: Ruler, start: Vec3, time_us: int) -> int:
-    """From the end of the first look: 0 the way to the destination is free, 1 or 2 one beside it; -1 none."""
-    way = ruler.destination - start
-    level = norm2(horizontal(way))
-    bearing = atan2(way.y, way.x)
-    distance = constrain(ruler.second, PAST, max(norm(way) if ruler.upright else level, PAST))
+    """From the end of the first look: 0 the path to the destination is free, 1 or 2 one beside it; -1 none."""
+    offset = ruler.destination - start
+    level = norm2(horizontal(offset))
+    bearing = atan2(offset.y, offset.x)
+    distance = constrain(ruler.second, PAST, max(norm(offset) if ruler.upright else level, PAST))
     for k in range(3):
         side = float(k if k < 2 else -1)
         if ruler.upright:
-            end = ahead(start, bearing, atan2(-way.z, level) + side * SLOPE_TURN, distance)
+            end = ahead(start, bearing, atan2(-offset.z, level) + side * SLOPE_TURN, distance)
         else:
             end = ahead(start, bearing + side * TURN, 0.0, distance)
         if margin_of(ap, start, end, ruler, time_us) > ap.params.OA.MARGIN_MAX:
@@ -206,8 +207,8 @@ def clear_side(ap: Autopilot, ruler: Ruler, start: Vec3, time_us: int) -> int:
 
 
 @law
-def is_same_place(a: Vec2, b: Vec2) -> bool:
-    """Whether two places are one."""
+def is_same_position(a: Vec2, b: Vec2) -> bool:
+    """Whether two positions are one."""
     return a.x == b.x and a.y == b.y
 
 
@@ -215,7 +216,7 @@ def is_same_place(a: Vec2, b: Vec2) -> bool:
 def kept(ap: Autopilot, ruler: Ruler, found: Found, time_us: int) -> Found:
     """``found``, or the last direction again where a great change gains little."""
     detour, p = ap.modes.nav.detour, ap.params.OA.BR
-    same = is_same_place(detour.bent_from, horizontal(ruler.destination))
+    same = is_same_position(detour.bent_from, horizontal(ruler.destination))
     if found.bends and same and p.CONT_RATIO > 0.0:
         last = wrap_pi(detour.bearing if ruler.upright else detour.bearing - ruler.bearing)
         if abs(wrap_pi(last - found.angle)) > math.radians(p.CONT_ANGLE):
@@ -255,10 +256,10 @@ def look(ap: Autopilot, ruler: Ruler, time_us: int) -> Found:
 
 @law
 def height_on_leg(origin: Vec3, destination: Vec3, point: Vec3) -> float:
-    """How far down the way from an origin to a destination is beside a point [m]."""
-    way = horizontal(destination) - horizontal(origin)
-    length = dot2(way, way)
-    share = dot2(horizontal(point) - horizontal(origin), way) / length if length > 0.0 else 1.0
+    """How far down the path from an origin to a destination is beside a point [m]."""
+    offset = horizontal(destination) - horizontal(origin)
+    length = dot2(offset, offset)
+    share = dot2(horizontal(point) - horizontal(origin), offset) / length if length > 0.0 else 1.0
     return origin.z + (destination.z - origin.z) * constrain(share, 0.0, 1.0)
 
 
@@ -266,13 +267,13 @@ def height_on_leg(origin: Vec3, destination: Vec3, point: Vec3) -> float:
 def plan(ap: Autopilot, origin: Vec3, destination: Vec3, upright: bool, time_us: int) -> None:
     """Look once, on the leg from an origin to a destination, and steer where that is needed."""
     nav, oa, est = ap.modes.nav, ap.params.OA, ap.estimate
-    detour, way = nav.detour, destination - est.pos
+    detour, offset = nav.detour, destination - est.pos
     reach = max(oa.BR.LOOKAHEAD, 1.0)
     detour.lookahead = constrain(detour.lookahead, 0.5 * reach, reach)
-    distance = norm2(horizontal(way))
+    distance = norm2(horizontal(offset))
     course = atan2(est.vel.y, est.vel.x) if norm2(horizontal(est.vel)) > SLOW else est.yaw
     ruler = Ruler(
-        est.pos, destination, atan2(way.y, way.x), distance, min(detour.lookahead, distance + PAST),
+        est.pos, destination, atan2(offset.y, offset.x), distance, min(detour.lookahead, distance + PAST),
         detour.lookahead, course, upright, oa.TYPE != 1.0,
     )  # fmt: skip
     found = look(ap, ruler, time_us)
@@ -295,7 +296,7 @@ def watch(ap: Autopilot, ground_d: float, upright: bool, time_us: int) -> None:
     """Ten times a second: on the way to a destination it looks once a second.
 
     ``ground_d``: how far down from the origin the heights of the leg count from [m].
-    ``upright``: it looks for ways over and under what is in the way (OA_BR_TYPE 2).
+    ``upright``: it looks for paths over and under what is in the way (OA_BR_TYPE 2).
     """
     nav = ap.modes.nav
     detour = nav.detour

@@ -91,9 +91,9 @@ def avoid_areas(avoid: Avoidance, fence: FenceState, vel: Vec2, pos: Vec2, m: Ma
 
 
 @law
-def share_before_circle(way: Vec2, centre: Vec2, radius: float) -> float:
-    """The part of a way that leads to a circle's edge; above 1: it does not lead there."""
-    size, along = dot2(way, way), dot2(way, centre)
+def share_before_circle(path: Vec2, centre: Vec2, radius: float) -> float:
+    """The part of a path that leads to a circle's edge; above 1: it does not lead there."""
+    size, along = dot2(path, path), dot2(path, centre)
     square = along * along - size * (dot2(centre, centre) - radius * radius)
     if square < 0.0 or size <= 0.0:
         return 2.0
@@ -103,14 +103,14 @@ def share_before_circle(way: Vec2, centre: Vec2, radius: float) -> float:
 
 
 @law
-def share_before_area(fence: FenceState, s: int, way: Vec2, pos: Vec2) -> float:
-    """The part of a way from ``pos`` that leads to the edge of area ``s``; above 1: it does not lead there."""
+def share_before_area(fence: FenceState, s: int, path: Vec2, pos: Vec2) -> float:
+    """The part of a path from ``pos`` that leads to the edge of area ``s``; above 1: it does not lead there."""
     if shapes.is_circle(fence, s):
-        return share_before_circle(way, shapes.centre(fence, s) - pos, float(fence.radius[s]))
+        return share_before_circle(path, shapes.centre(fence, s) - pos, float(fence.radius[s]))
     share = 2.0
     for k in range(int(fence.count[s])):
         wall = Wall(shapes.corner_of(fence, s, k) - pos, shapes.corner_of(fence, s, k + 1) - pos)
-        share = min(share, velocity.share_before(way, wall))
+        share = min(share, velocity.share_before(path, wall))
     return share
 
 
@@ -119,8 +119,8 @@ def look(seen: Proximity, fence: FenceState, pos: Vec2, yaw: float, p: Proximity
     """What a sensor would read that sees the edges of areas as walls, as that of ArduPilot's simulator does."""
     begin_scan(seen, 0.0, RANGE, p)
     for k in range(SECTORS):
-        way = turned(Vec2(RANGE, 0.0), yaw + k * SECTOR)
+        path = turned(Vec2(RANGE, 0.0), yaw + k * SECTOR)
         share = 2.0
         for s in range(fence.shapes):
-            share = min(share, share_before_area(fence, s, way, pos))
+            share = min(share, share_before_area(fence, s, path, pos))
         note_reading(seen, k * SECTOR, share * RANGE, p)

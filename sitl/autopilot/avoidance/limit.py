@@ -11,7 +11,7 @@ from ...core.algebra import direction, dot2, horizontal
 from ...core.kernels import law
 from ...core.vectors import Vec2
 from ..fence.checks import active, margin_of
-from ..fence.shapes import place
+from ..fence.shapes import use_origin
 from ..fence.state import AREAS, CIRCLE
 from ..state import Autopilot, Vehicle
 from . import fences, objects, obstacles, proximity, velocity
@@ -40,7 +40,7 @@ def watch(v: Vehicle, too_low: bool) -> None:
             if seen.scan != before and objects.are_noted(ap):
                 objects.note_scan(ap, v.sensors, v.time_us)
         elif seen.kind == proximity.SIMULATED and ap.fence.shapes > 0 and ap.estimate.origin_set:
-            place(ap.fence, ap.estimate)
+            use_origin(ap.fence, ap.estimate)
             fences.look(seen, ap.fence, horizontal(ap.estimate.pos), ap.estimate.yaw, p.PRX1)
             proximity.end_scan(seen, v.time_us, p.PRX.FILT)
     enabled = int(p.AVOID.ENABLE)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The database of objects (OA_DB_*): where the proximity sensor has seen something, for BendyRuler.
 
-An object is a ball around a reading's place, as wide as the beam there. A reading within a known object renews it.
-Where all places are taken, the farthest object makes room for a nearer one.
+An object is a ball around a reading's position, as wide as the beam there. A reading within a known object renews it.
+Where all slots are taken, a nearer object replaces the farthest.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BEAM = math.radians(5.0)
 
 
 @law
-def place(objects: Objects, k: int) -> Vec3:
+def position(objects: Objects, k: int) -> Vec3:
     """Where object ``k`` is, NED [m]."""
     return Vec3(float(objects.north[k]), float(objects.east[k]), float(objects.down[k]))
 
@@ -47,7 +47,7 @@ def forget(objects: Objects) -> None:
 
 @law
 def note(objects: Objects, at: Vec3, away: float, pos: Vec3, time_us: int, p: ObjectDatabase) -> None:
-    """Something was seen at a place, ``away`` from the vehicle at ``pos``, NED [m]."""
+    """Something was seen at a position, ``away`` from the vehicle at ``pos``, NED [m]."""
     radius = max(p.RADIUS_MIN, away * tan(math.radians(0.5 * p.BEAM_WIDTH)))
     chosen, farthest = -1, away
     for k in range(min(int(p.SIZE), OBJECTS)):
@@ -55,12 +55,12 @@ def note(objects: Objects, at: Vec3, away: float, pos: Vec3, time_us: int, p: Ob
             if farthest < math.inf:
                 chosen, farthest = k, math.inf
             continue
-        gap = place(objects, k) - at
+        gap = position(objects, k) - at
         if dot(gap, gap) <= objects.radius[k] * objects.radius[k]:
             objects.radius[k] = max(float(objects.radius[k]), radius)
             objects.until_ms[k] = until(time_us, p)
             return
-        distance = norm(place(objects, k) - pos)
+        distance = norm(position(objects, k) - pos)
         if distance > farthest:
             chosen, farthest = k, distance
     if chosen >= 0:
@@ -85,8 +85,8 @@ def note_reading(ap: Autopilot, angle: float, distance: float, time_us: int) -> 
         return
     at = mounted(angle, p)
     if not (is_ignored(at, p) or is_ground(seen, at, distance)):
-        way = rotate(estimate.q, with_down(direction(at) * distance, 0.0))
-        note(ap.objects, estimate.pos + way, distance, estimate.pos, time_us, db)
+        ray = rotate(estimate.q, with_down(direction(at) * distance, 0.0))
+        note(ap.objects, estimate.pos + ray, distance, estimate.pos, time_us, db)
 
 
 @law

@@ -49,7 +49,7 @@ class Proximity(Record):
     distance: Floats = array(SECTORS)  # of each sector [m], low-passed
     angle: Floats = array(SECTORS)  # of its reading, clockwise from the nose [rad]
     seen_us: Ints = array(SECTORS, stored="i8")  # when; 0: nothing is there
-    nearest: Floats = array(SECTORS)  # room for the readings of one scan
+    nearest: Floats = array(SECTORS)  # space for the readings of one scan
     nearest_angle: Floats = array(SECTORS)
 
 

@@ -2,7 +2,7 @@
 """The shortest path around the areas of the fence (OA_TYPE 2): A* from corner to corner, as far as they see each other
 (shell side).
 
-A way keeps a margin from all edges; where it begins or ends nearer to them, it keeps that distance there.
+A path keeps a margin from all edges; where it begins or ends nearer to them, it keeps that distance there.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ Points = NDArray[np.float64]
 """Shape (count, 2): north, east [m]."""
 
 AROUND_CORNER = 8
-"""Places around a corner that a way may turn at,"""
+"""Positions around a corner that a path may turn at,"""
 AROUND_CIRCLE = 16
 """and around a circle."""
 SLACK = 0.01
-"""A way may come so much nearer than its margin [m]."""
+"""A path may come so much nearer than its margin [m]."""
 
 
 class Circle(NamedTuple):
@@ -45,7 +45,7 @@ class Map:
 
     Args:
         fence: in the vehicle's record.
-        margin: that ways keep from edges [m].
+        margin: that paths keep from edges [m].
     """
 
     def __init__(self, fence: FenceState, margin: float) -> None:
@@ -64,7 +64,7 @@ class Map:
         self._b = np.concatenate([none, *(np.roll(corners, -1, axis=0) for corners, _ in self._polygons)])
 
     def clearance(self, points: Points) -> NDArray[np.float64]:
-        """How far places are from the edges of all areas [m]; below 0: a place is where none may be."""
+        """How far positions are from the edges of all areas [m]; below 0: a position is where none may be."""
         clearance = np.full(len(points), math.inf)
         if len(self._a):
             clearance = np.min(_distance(points[:, None], self._a, self._b), axis=1)
@@ -76,10 +76,10 @@ class Map:
         return clearance
 
     def sees(self, start: Points, ends: Points, margins: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """To which of the places ``ends`` a straight way leads from ``start``, each with its margin [m]."""
+        """To which of the positions ``ends`` a straight path leads from ``start``, each with its margin [m]."""
         free = np.ones(len(ends), bool)
         if len(self._a):
-            near = np.min(_distance(self._a, start, ends[:, None]), axis=1)  # of corners to the way
+            near = np.min(_distance(self._a, start, ends[:, None]), axis=1)  # of corners to the path
             free &= (near >= margins - SLACK) & ~np.any(_cross(start, ends[:, None], self._a, self._b), axis=1)
         for circle in self._circles:
             if circle.stays_in:
@@ -88,16 +88,16 @@ class Map:
             free &= near >= circle.radius + margins - SLACK
         return free
 
-    def turning_places(self) -> Points:
-        """Places that ways may turn at."""
+    def turning_points(self) -> Points:
+        """Positions that paths may turn at."""
         rings = [self._ring(np.asarray(corner), self.margin, AROUND_CORNER) for corner in self._a]
         rings += [self._ring(c.centre, c.radius + self.margin, AROUND_CIRCLE) for c in self._circles if not c.stays_in]
-        places = np.concatenate([np.empty((0, 2)), *rings])
-        return places[self.clearance(places) >= self.margin] if len(places) else places
+        positions = np.concatenate([np.empty((0, 2)), *rings])
+        return positions[self.clearance(positions) >= self.margin] if len(positions) else positions
 
     @staticmethod
     def _ring(centre: Points, radius: float, count: int) -> Points:
-        """Places around a circle whose connecting lines stay out of it."""
+        """Positions around a circle whose connecting lines stay out of it."""
         angle = 2.0 * math.pi * np.arange(count) / count
         out = (radius + SLACK) / cos(math.pi / count)
         found: Points = centre + out * np.column_stack((arrays.cos(angle), arrays.sin(angle)))
@@ -105,56 +105,57 @@ class Map:
 
 
 def a_star(fence: FenceState, start: Vec2, end: Vec2, margin: float) -> list[Vec2] | None:
-    """Places where the shortest way from ``start`` to ``end`` [m, NE] turns, and its end; None: there is no way."""
+    """Positions where the shortest path from ``start`` to ``end`` [m, NE] turns, and its end; None:
+    there is no path."""
     area = Map(fence, margin)
     ends = np.array([start, end])
     clearance = area.clearance(ends)
     if clearance[0] < 0.0 or clearance[1] < 0.0:
         return None
-    places = np.concatenate((ends, area.turning_places()))
-    clearances = np.minimum(np.concatenate((clearance, np.full(len(places) - 2, margin))), margin)
-    left = arrays.hypot(*(places - places[1]).T)
-    length = np.full(len(places), math.inf)
-    before = np.zeros(len(places), int)
-    done = np.zeros(len(places), bool)
+    positions = np.concatenate((ends, area.turning_points()))
+    clearances = np.minimum(np.concatenate((clearance, np.full(len(positions) - 2, margin))), margin)
+    left = arrays.hypot(*(positions - positions[1]).T)
+    length = np.full(len(positions), math.inf)
+    before = np.zeros(len(positions), int)
+    done = np.zeros(len(positions), bool)
     length[0] = 0.0
     queue = [(float(left[0]), 0)]
     while queue:
         _, k = heapq.heappop(queue)
         if k == 1:
-            return _trail(places, before)
+            return _trail(positions, before)
         if done[k]:
             continue
         done[k] = True
-        step = length[k] + arrays.hypot(*(places - places[k]).T)
+        step = length[k] + arrays.hypot(*(positions - positions[k]).T)
         open_ = np.flatnonzero(~done & (step < length))
-        open_ = open_[area.sees(places[k], places[open_], np.minimum(clearances[k], clearances[open_]))]
+        open_ = open_[area.sees(positions[k], positions[open_], np.minimum(clearances[k], clearances[open_]))]
         length[open_], before[open_] = step[open_], k
         for j in open_:
             heapq.heappush(queue, (float(step[j] + left[j]), int(j)))
     return None
 
 
-def _trail(places: Points, before: NDArray[np.int_]) -> list[Vec2]:
+def _trail(positions: Points, before: NDArray[np.int_]) -> list[Vec2]:
     trail, k = list[Vec2](), 1
     while k != 0:
-        trail.append(Vec2(float(places[k, 0]), float(places[k, 1])))
+        trail.append(Vec2(float(positions[k, 0]), float(positions[k, 1])))
         k = int(before[k])
     return trail[::-1]
 
 
 def _distance(points: Points, a: Points, b: Points) -> NDArray[np.float64]:
     """Of points to the lines from ``a`` to ``b``."""
-    way = b - a
-    square = np.sum(way * way, axis=-1)
-    share = np.clip(np.sum((points - a) * way, axis=-1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    away: NDArray[np.float64] = lengths(points - a - way * share[..., None])
+    delta = b - a
+    square = np.sum(delta * delta, axis=-1)
+    share = np.clip(np.sum((points - a) * delta, axis=-1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    away: NDArray[np.float64] = lengths(points - a - delta * share[..., None])
     return away
 
 
 def _side(a: Points, b: Points, points: Points) -> NDArray[np.float64]:
-    way, to = b - a, points - a
-    side: NDArray[np.float64] = way[..., 0] * to[..., 1] - way[..., 1] * to[..., 0]
+    delta, to = b - a, points - a
+    side: NDArray[np.float64] = delta[..., 0] * to[..., 1] - delta[..., 1] * to[..., 0]
     return side
 
 

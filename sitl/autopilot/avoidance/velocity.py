@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Velocities that stop before walls and slide along them, and that back out of margins.
 
-The vehicle is at the origin of the plane: walls are places relative to it, north and east [m]. It brakes as a position
-controller does that stops at the margin: with a gain, or without one evenly.
+The vehicle is at the origin of the plane: walls are positions relative to it, north and east [m]. It brakes as a
+position controller does that stops at the margin: with a gain, or without one evenly.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Braking(NamedTuple):
 
 
 class Wall(NamedTuple):
-    """A straight line between two places."""
+    """A straight line between two positions."""
 
     a: Vec2
     b: Vec2
@@ -77,23 +77,23 @@ def reach(vel: Vec2, margin: float, b: Braking) -> Vec2:
 
 @law
 def nearest(wall: Wall) -> Vec2:
-    """The place of a wall that is nearest to the vehicle."""
-    way = wall.b - wall.a
-    length = dot2(way, way)
+    """The position of a wall that is nearest to the vehicle."""
+    edge = wall.b - wall.a
+    length = dot2(edge, edge)
     if length <= 0.0:
         return wall.a
-    return wall.a + way * min(max(-dot2(wall.a, way) / length, 0.0), 1.0)
+    return wall.a + edge * min(max(-dot2(wall.a, edge) / length, 0.0), 1.0)
 
 
 @law
-def share_before(way: Vec2, wall: Wall) -> float:
-    """The part 0 .. 1 of a way that leads to a wall; above 1: it does not lead there."""
+def share_before(path: Vec2, wall: Wall) -> float:
+    """The part 0 .. 1 of a path that leads to a wall; above 1: it does not lead there."""
     along = wall.b - wall.a
-    across = cross2(way, along)
+    across = cross2(path, along)
     if across == 0.0:
         return 2.0
     met = cross2(wall.a, along) / across
-    at = cross2(wall.a, way) / across
+    at = cross2(wall.a, path) / across
     return met if met >= 0.0 and 0.0 <= at <= 1.0 else 2.0
 
 
@@ -101,9 +101,9 @@ def share_before(way: Vec2, wall: Wall) -> float:
 def before_wall(vel: Vec2, wall: Wall, margin: float, b: Braking) -> Vec2:
     """``vel`` that stops a margin [m] before a wall, or slides along it."""
     if b.stops:
-        way = reach(vel, margin, b)
-        share = share_before(way, wall)
-        return vel if share > 1.0 else shortened(vel, share * norm2(way) - margin, b)
+        path = reach(vel, margin, b)
+        share = share_before(path, wall)
+        return vel if share > 1.0 else shortened(vel, share * norm2(path) - margin, b)
     near = nearest(wall)
     distance = norm2(near)
     return slowed(vel, near / distance, distance - margin, b) if distance > 0.0 else vel
@@ -112,25 +112,25 @@ def before_wall(vel: Vec2, wall: Wall, margin: float, b: Braking) -> Vec2:
 @law
 def within_circle(vel: Vec2, centre: Vec2, radius: float, b: Braking) -> Vec2:
     """``vel`` of a vehicle that stays within ``radius`` [m] of ``centre``, or does not go further out."""
-    place = -centre
-    out, speed = norm2(place), norm2(vel)
+    position = -centre
+    out, speed = norm2(position), norm2(vel)
     if speed <= 0.0:
         return vel
     if not b.stops:
-        end = place + reach(vel, -LOOK_AHEAD, b)
+        end = position + reach(vel, -LOOK_AHEAD, b)
         beyond = norm2(end)
         if beyond <= radius:
             return vel
-        towards = end * (radius / beyond) - place
+        towards = end * (radius / beyond) - position
         left = norm2(towards)
         return towards * (min(speed, speed_before(left, b)) / left) if left > 0.0 else ZERO2
-    way = reach(vel, 0.0, b)
+    path = reach(vel, 0.0, b)
     if out >= radius:
-        return ZERO2 if norm2(place + way) >= out else vel
-    # place + share * way is on the circle
-    size, along = dot2(way, way), dot2(place, way)
+        return ZERO2 if norm2(position + path) >= out else vel
+    # position + share * path is on the circle
+    size, along = dot2(path, path), dot2(position, path)
     share = (-along + math.sqrt(along * along + size * (radius * radius - out * out))) / size
-    return vel if share > 1.0 else shortened(vel, share * norm2(way), b)
+    return vel if share > 1.0 else shortened(vel, share * norm2(path), b)
 
 
 @law
@@ -141,13 +141,13 @@ def outside_circle(vel: Vec2, centre: Vec2, radius: float, b: Braking) -> Vec2:
         return vel
     if not b.stops:
         return slowed(vel, centre / out, out - radius, b)
-    way = reach(vel, 0.0, b)
-    size, along = dot2(way, way), dot2(centre, way)
+    path = reach(vel, 0.0, b)
+    size, along = dot2(path, path), dot2(centre, path)
     square = along * along - size * (out * out - radius * radius)
     if along <= 0.0 or square <= 0.0:
         return vel
     share = max((along - math.sqrt(square)) / size, 0.0)
-    return vel if share > 1.0 else shortened(vel, share * norm2(way), b)
+    return vel if share > 1.0 else shortened(vel, share * norm2(path), b)
 
 
 @law

@@ -141,7 +141,7 @@ FUNCTIONS = shared.by_number(
         *shared.COMMON,
         *(shared.change_mode(number, NAMES[mode], mode, request) for number, mode in _MODES.items() if mode in NAMES),
         AuxFunction(3, _simple, "high or middle: SIMPLE; low: off"),
-        AuxFunction(7, _save_waypoint, "high, armed, not in AUTO: adds the place to the mission", "SaveWaypoint"),
+        AuxFunction(7, _save_waypoint, "high, armed, not in AUTO: adds the position to the mission", "SaveWaypoint"),
         AuxFunction(13, _super_simple, "high: SUPER_SIMPLE; middle: SIMPLE; low: off"),
         AuxFunction(MOTOR_INTERLOCK, _interlock, "low: motors stand; else they may turn", "MotorInterlock"),
         shared.fitted(payload.SWITCH_WINCH, "high: the winch holds its line; else it lets go", "WinchEnable"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Failsafes: radio, ground station, battery, estimator. FAILSAFE (which; 0 off, else what follows) tells the shell."""
+"""Failsafes: radio, ground station, battery, estimator. FAILSAFE (which; 0 off, else what follows) reports to the
+shell."""
 
 from __future__ import annotations
 
@@ -191,7 +192,7 @@ def follows(modes: Modes, arming: Arming, otherwise: int, options: int, for_batt
 
 @law
 def lose(v: Vehicle, which: int, how: int, action: int, reason: int, method: int) -> None:
-    """Tell of a link that is lost, and do what follows."""
+    """Report a link that is lost, and do what follows."""
     emit(v.autopilot.events, v.time_us, FAILSAFE, float(which), float(how))
     if how in (ACTS, DISARMS):
         act(v, action, reason, method)
@@ -252,7 +253,7 @@ def watch_estimate(v: Vehicle) -> None:
 
 @law
 def watch_glitch(v: Vehicle) -> None:
-    """Tell of fixes that are not believed."""
+    """Report fixes that are not believed."""
     ap = v.autopilot
     glitch = ap.estimate.status_flags & GPS_GLITCHING != 0
     if glitch != ap.modes.failsafe.glitch:

@@ -38,7 +38,7 @@ def _texts(v: Any, does: float, by_mission: float) -> list[Text]:
     return [Text(MavSeverity.WARNING, instead if by_mission else f"SmartRTL Unavailable, {instead}")]
 
 
-NO_WAY_BACK = Event(36, says=_texts)  # SMART_RTL cannot be entered, or (b: 1) AUTO_RTL; a: what it does
+NO_RETURN_PATH = Event(36, says=_texts)  # SMART_RTL cannot be entered, or (b: 1) AUTO_RTL; a: what it does
 
 _BATTERY = (NOTHING, DO_LAND, DO_RTL, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_STOP, DO_AUTO_RTL, DO_BRAKE)
 _RADIO = (NOTHING, DO_RTL, DO_RTL, DO_LAND, DO_SMART_RTL, DO_SMART_RTL_OR_LAND, DO_AUTO_RTL, DO_BRAKE)
@@ -95,12 +95,12 @@ def act(v: Vehicle, action: int, reason: int, method: int) -> None:
         if set_mode.request(v, SMART_RTL, reason) == ModeResult.ACCEPTED:
             return
         action = DO_RTL if action == DO_SMART_RTL else DO_LAND
-        emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 0.0)
+        emit(ap.events, v.time_us, NO_RETURN_PATH, float(action), 0.0)
     if action == DO_AUTO_RTL:
         if set_mode.request(v, AUTO_RTL, reason) == ModeResult.ACCEPTED:
             return
         action = DO_RTL
-        emit(ap.events, v.time_us, NO_WAY_BACK, float(action), 1.0)
+        emit(ap.events, v.time_us, NO_RETURN_PATH, float(action), 1.0)
     if action == DO_RTL:
         if mode != RTL and set_mode.request(v, RTL, reason) != ModeResult.ACCEPTED:
             land_with_pause(v, reason)

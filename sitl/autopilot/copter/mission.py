@@ -11,8 +11,8 @@ from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import TERRAIN_FRAMES, MissionItem
+from ..mission.location import down, point
 from ..mission.notes import Note, OutputItem
-from ..mission.place import down, point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.path import clear_legs
@@ -117,14 +117,14 @@ class CopterCommands(Commands[Vehicle]):
             PLANNER.begin(ap, time_us, here)
         elif kind == kinds.LOITER_TURNS:
             _circle(ap, time_us, item, here)
-        elif kind in (kinds.LAND, kinds.PAYLOAD_PLACE) and not item.no_place:
+        elif kind in (kinds.LAND, kinds.PAYLOAD_PLACE) and not item.no_location:
             PLANNER.begin(ap, time_us, point(ap, item, here).replace(z=here.z))  # at the present height
         else:
             _end_path(nav)
             nav.target = here.replace(z=_take_off_to(v, item)) if kind == kinds.TAKEOFF else here
         command.give(nav, kind, seq)
         nav.circle_running = False
-        nav.has_place = not item.no_place
+        nav.has_place = not item.no_location
         if kind in (kinds.WAYPOINT, kinds.LOITER_TIME):
             nav.delay = whole_seconds(item)
         elif kind == kinds.DELAY:
@@ -139,7 +139,7 @@ class CopterCommands(Commands[Vehicle]):
     def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
         """Plan the leg to the following command when the vehicle flies through without a stop.
 
-        The current one must be a waypoint without delay, the next one a leg to a place.
+        The current one must be a waypoint without delay, the next one a leg to a position.
         """
         ap = v.autopilot
         nav = ap.modes.nav
@@ -155,7 +155,7 @@ class CopterCommands(Commands[Vehicle]):
         elif following.is_spline:
             PLANNER.look_ahead_spline(ap, following)
         else:
-            PLANNER.look_ahead(ap, following.place)
+            PLANNER.look_ahead(ap, following.position)
 
     def arrived(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
         """A load that stands is let go."""
@@ -226,15 +226,15 @@ def _following(ap: Autopilot, item: MissionItem | None, after: MissionItem | Non
     """What the command under way goes over into without a stop."""
     if item is None or KINDS.get(item.command) not in LEGS:  # ArduPilot stops before what it skips, too
         return Following()
-    place = _end_of_leg(ap, item, end(ap.modes.nav.current))
+    corner = _end_of_leg(ap, item, end(ap.modes.nav.current))
     is_spline = item.command == MavCmd.NAV_SPLINE_WAYPOINT
     if after is None or KINDS.get(after.command) not in LEGS or whole_seconds(item) > 0.0:
-        return Following(place, is_spline)
-    return Following(place, is_spline, _end_of_leg(ap, after, place), after.command == MavCmd.NAV_SPLINE_WAYPOINT)
+        return Following(corner, is_spline)
+    return Following(corner, is_spline, _end_of_leg(ap, after, corner), after.command == MavCmd.NAV_SPLINE_WAYPOINT)
 
 
 def _is_over_ground(v: Vehicle, item: MissionItem) -> bool:
-    """Whether the way to an item is above the ground, which is no plain."""
+    """Whether the path to an item is above the ground, which is no plain."""
     return item.frame in TERRAIN_FRAMES and not is_flat(v)
 
 
@@ -253,8 +253,8 @@ def _choose_heights(v: Vehicle, item: MissionItem, kind: int) -> None:
 
 def _end_of_leg(ap: Autopilot, item: MissionItem, default: Vec3) -> Vec3:
     """As ``point``, with the height as the path under way counts it."""
-    place = point(ap, item, default)
-    return place.replace(z=-item.z) if ap.modes.nav.over_ground and item.z != 0.0 else place
+    target = point(ap, item, default)
+    return target.replace(z=-item.z) if ap.modes.nav.over_ground and item.z != 0.0 else target
 
 
 def _take_off_to(v: Vehicle, item: MissionItem) -> float:
@@ -267,8 +267,8 @@ def _take_off_to(v: Vehicle, item: MissionItem) -> float:
 
 
 def set_roi(v: Vehicle, item: MissionItem) -> None:
-    """Keep the nose on a place; a place of zeros ends that."""
-    if item.no_place and item.z == 0.0:
+    """Keep the nose on a position; a position of zeros ends that."""
+    if item.no_location and item.z == 0.0:
         _look_ahead(v.autopilot)
         return
     ap = v.autopilot

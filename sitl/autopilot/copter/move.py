@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The copter's controllers and modes are put elsewhere with it: their targets keep their place beside the vehicle."""
+"""The copter's controllers and modes are put elsewhere with it: their targets keep their position beside the
+vehicle."""
 
 from __future__ import annotations
 
@@ -63,7 +64,7 @@ def move_loiter(state: LoiterState, d: Displacement) -> None:
 
 @law
 def move_autotune(t: AutotuneState, d: Displacement) -> None:
-    """The place and heading that AUTOTUNE holds, and the heading from which a twitch in yaw began."""
+    """The position and heading that AUTOTUNE holds, and the heading from which a twitch in yaw began."""
     t.place, t.heading = moved_ne(d, t.place), turned_heading(d, t.heading)
     if t.axis >= YAW:
         t.start_angle += -d.angle if t.backwards else d.angle
@@ -78,7 +79,7 @@ def move_circle(nav: CopterNav, d: Displacement) -> None:
 
 @law
 def move_modes(m: Modes, d: Displacement) -> None:
-    """Set-points and places of the modes."""
+    """Set-points and positions of the modes."""
     yaw, takeoff = m.auto_yaw, m.takeoff
     yaw.yaw, yaw.look_ahead = turned_heading(d, yaw.yaw), turned_heading(d, yaw.look_ahead)
     yaw.roi = moved(on_the_ground(d), yaw.roi)

@@ -12,7 +12,7 @@ from ..radio_checks import STICK_NAMES, calibration_texts
 
 SPIN_MIN_MOST = 0.3
 _ROUNDING = 1e-6
-THR_VALUE_LEAST, THR_VALUE_ROOM = 910.0, 10.0
+THR_VALUE_LEAST, THR_VALUE_MARGIN = 910.0, 10.0
 """FS_THR_VALUE is above the pulse of a receiver that has lost its transmitter, and below the stick's least [us]."""
 ANGLE_LEAST, ANGLE_MOST = 1000.0, 8000.0
 """Of ANGLE_MAX [cdeg]."""
@@ -69,7 +69,7 @@ def flight(s: Subject) -> Iterable[str]:
 def _throttle(s: Subject) -> str:
     limit = s.values["FS_THR_VALUE"]
     least = s.values[f"RC{stick_channel(s.v.autopilot.params.RCMAP, THROTTLE) + 1}_MIN"]
-    wrong = least <= limit + THR_VALUE_ROOM or limit < THR_VALUE_LEAST
+    wrong = least <= limit + THR_VALUE_MARGIN or limit < THR_VALUE_LEAST
     return "Check FS_THR_VALUE" if wrong and s.values["FS_THR_ENABLE"] != 0.0 else ""
 
 

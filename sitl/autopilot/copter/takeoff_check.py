@@ -25,7 +25,7 @@ TAKEOFF_BLOCKED = Event(41, MavSeverity.CRITICAL, _BLOCKED)
 
 @law
 def has_telemetry(sensors: Sensors, motors: int, time_us: int) -> bool:
-    """Whether the speed controllers of all motors have told their speeds lately."""
+    """Whether the speed controllers of all motors have reported their speeds lately."""
     return sensors.esc_motors >= motors and time_us - sensors.esc_time_us < STALE_US and sensors.esc_count > 0
 
 
@@ -50,9 +50,9 @@ def check(v: Vehicle) -> None:
         return
     if not motors.blocked:
         return
-    told = has_telemetry(v.sensors, motors.count, v.time_us)
-    if p.RPM_MIN <= 0.0 or (told and turn_well(v.sensors, motors.count, p)):
+    reported = has_telemetry(v.sensors, motors.count, v.time_us)
+    if p.RPM_MIN <= 0.0 or (reported and turn_well(v.sensors, motors.count, p)):
         motors.blocked = False
     elif v.time_us - motors.warned_us > WARNING_US:
         motors.warned_us = v.time_us
-        emit(ap.events, v.time_us, TAKEOFF_BLOCKED, float(OUT_OF_RANGE if told else NO_TELEMETRY), 0.0)
+        emit(ap.events, v.time_us, TAKEOFF_BLOCKED, float(OUT_OF_RANGE if reported else NO_TELEMETRY), 0.0)

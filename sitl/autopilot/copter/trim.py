@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The autopilot of a copter in the air learns at once what it would learn by flying: the lean and the throttle that
-hold it in another wind, or with other figures."""
+hold it in another wind, or with other properties."""
 
 from __future__ import annotations
 

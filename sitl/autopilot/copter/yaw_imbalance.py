@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Yaw imbalance: what the yaw rate loop must add all the time to keep the heading tells of a weak motor or a bent arm.
+"""Yaw imbalance: what the yaw rate loop must add all the time to keep the heading shows a weak motor or a bent arm.
 
-It is told, every ten seconds, and nothing is done (FLIGHT_OPTIONS 2 switches that off). While thrust is lost nothing
-is told: the heading suffers anyway.
+It is reported, every ten seconds, and nothing is done (FLIGHT_OPTIONS 2 switches that off). While thrust is lost
+nothing is reported: the heading suffers anyway.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SMOOTHED = PERIOD / (PERIOD + 1.0 / (2.0 * math.pi * 0.05))
 """Share of the low-pass of 0.05 Hz that one call takes up."""
 SHARE = 0.75
 """Of ATC_RAT_YAW_IMAX."""
-TOLD_US = 10_000_000
+REPORT_INTERVAL_US = 10_000_000
 _OFF = 2
 
 YAW_IMBALANCE = Event(64, says=lambda v, a, b: [Text(MavSeverity.EMERGENCY, f"Yaw Imbalance {a * 100.0:.0f}%")])
@@ -39,6 +39,6 @@ def check(v: Vehicle) -> None:
     motors.yaw_trim += (abs(ap.control.rate.yaw.integrator) - motors.yaw_trim) * SMOOTHED
     if motors.yaw_trim <= SHARE * most or most <= 0.0 or int(ap.params.FLIGHT_OPTIONS) & _OFF:
         return
-    if motors.yaw_trim_reported_us == 0 or v.time_us - motors.yaw_trim_reported_us >= TOLD_US:
+    if motors.yaw_trim_reported_us == 0 or v.time_us - motors.yaw_trim_reported_us >= REPORT_INTERVAL_US:
         motors.yaw_trim_reported_us = v.time_us
         emit(ap.events, v.time_us, YAW_IMBALANCE, motors.yaw_trim, 0.0)

@@ -29,7 +29,7 @@ class Origin(NamedTuple):
 
 
 @law
-def place_origin(ekf: Ekf, estimate: Estimate, log: Events, origin: Origin) -> None:
+def write_origin(ekf: Ekf, estimate: Estimate, log: Events, origin: Origin) -> None:
     """Set the origin."""
     estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = origin.lat, origin.lon, origin.alt
     estimate.origin_set = True
@@ -42,7 +42,7 @@ def set_origin(ekf: Ekf, estimate: Estimate, log: Events, origin: Origin) -> boo
     """Origin given by a ground station (SET_GPS_GLOBAL_ORIGIN); whether it is taken: not when there is one already."""
     if estimate.origin_set or abs(origin.lat) > 900000000 or abs(origin.lon) > 1800000000 or not abs(origin.alt) < 1e5:
         return False
-    place_origin(ekf, estimate, log, origin)
+    write_origin(ekf, estimate, log, origin)
     return True
 
 

@@ -28,11 +28,11 @@ def is_used(k: int, params: Compass) -> bool:
 @law
 def better(ekf: Ekf, sensors: Sensors, params: Parameters) -> int:
     """The next compass that is used and heard and shows another field than this one, if this one is heard; -1: none."""
-    own, heard = field_of(ekf.compass, sensors, params), is_received(ekf.compass, sensors, ekf.now_us)
+    own, received = field_of(ekf.compass, sensors, params), is_received(ekf.compass, sensors, ekf.now_us)
     for n in range(1, COMPASSES):
         k = (ekf.compass + n) % COMPASSES
         if is_used(k, params.COMPASS) and is_received(k, sensors, ekf.now_us):
-            if not heard or differs(own, field_of(k, sensors, params)):
+            if not received or differs(own, field_of(k, sensors, params)):
                 return k
     return -1
 

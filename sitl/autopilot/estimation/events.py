@@ -38,8 +38,8 @@ def _source(v: Any, a: float, b: float) -> list[Text]:
     said, ekf = [Text(MavSeverity.INFO, f"EKF3 IMU{int(a)} {_SOURCES[b]}")], v.autopilot.ekf
     if b == BY_OTHERS:
         for name, unit, (north, east, down) in (("pos", "m", ekf.pos), ("vel", "m/s", ekf.vel)):
-            place = f"{north:.1f},{east:.1f},{down:.1f} ({unit})"
-            said.append(Text(MavSeverity.INFO, f"EKF3 IMU{int(a)} initial {name} NED = {place}"))
+            position = f"{north:.1f},{east:.1f},{down:.1f} ({unit})"
+            said.append(Text(MavSeverity.INFO, f"EKF3 IMU{int(a)} initial {name} NED = {position}"))
     return said
 
 

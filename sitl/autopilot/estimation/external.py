@@ -34,7 +34,7 @@ def delay_us(p: Settings) -> int:
 
 @law
 def jump_to(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, source: Sources, age: float) -> None:
-    """Jump to the position told, which is ``age`` [s] old, with the velocity told if that is a source."""
+    """Jump to the position reported, which is ``age`` [s] old, with the velocity reported if that is a source."""
     vel = velocity_of(ekf, seen) if source.VELXY == EXTERNAL and seen.velocity.count > 0 else ekf.vel
     reset_ne(ekf, estimate, horizontal(seen.pose.pos + age * vel), horizontal(vel))
     if source.POSZ == EXTERNAL:
@@ -44,14 +44,14 @@ def jump_to(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, source: Sources,
 
 @law
 def velocity_of(ekf: Ekf, seen: VisualOdometry) -> Vec3:
-    """The velocity told, NED [m/s]."""
+    """The velocity reported, NED [m/s]."""
     vel = seen.velocity.vel
     return rotate(ekf.q, vel) if seen.velocity.on_body else vel
 
 
 @law
 def begin(ekf: Ekf, estimate: Estimate, log: Events, seen: VisualOdometry, source: Sources, age: float) -> None:
-    """From holding the position, or a relative one, to the position told, ``age`` [s] old."""
+    """From holding the position, or a relative one, to the position reported, ``age`` [s] old."""
     jump_to(ekf, estimate, seen, source, age)
     ekf.absolute, ekf.relative = True, False
     ekf.pos_fused_us = ekf.now_us
@@ -67,7 +67,7 @@ def innovate_down(ekf: Ekf, down: float, age: float, sigma: float) -> Innovation
 
 @law
 def fuse_pose(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, params: Ekf3, when_us: int, height: bool) -> bool:
-    """Fuse a position told of ``when_us``, with its ``height`` or without; whether it passes its gate."""
+    """Fuse a position reported of ``when_us``, with its ``height`` or without; whether it passes its gate."""
     pose, past, age = seen.pose, past_at(ekf, when_us).pos, 1e-6 * (ekf.now_us - when_us)
     residual, variance = horizontal(pose.pos - past), pose.sigma * pose.sigma
     north = innovate_position(ekf, 0, age, residual.x, variance)
@@ -95,9 +95,9 @@ def fuse_pose(ekf: Ekf, estimate: Estimate, seen: VisualOdometry, params: Ekf3, 
 def fuse_velocity(
     ekf: Ekf, estimate: Estimate, seen: VisualOdometry, params: Ekf3, when_us: int, vertical: bool
 ) -> bool:
-    """Fuse a velocity told of ``when_us``, with its ``vertical`` part or without; whether it passes its gate."""
-    told = velocity_of(ekf, seen)
-    residual, variance = told - past_at(ekf, when_us).vel, seen.velocity.sigma * seen.velocity.sigma
+    """Fuse a velocity reported of ``when_us``, with its ``vertical`` part or without; whether it passes its gate."""
+    measured = velocity_of(ekf, seen)
+    residual, variance = measured - past_at(ekf, when_us).vel, seen.velocity.sigma * seen.velocity.sigma
     north, east = innovate_state(ekf, VEL, residual.x, variance), innovate_state(ekf, VEL + 1, residual.y, variance)
     squares, variances, nominal = (
         north.value * north.value + east.value * east.value,
@@ -125,7 +125,7 @@ def fuse_velocity(
 
 @law
 def align_yaw(ekf: Ekf, estimate: Estimate, log: Events, yaw: float) -> None:
-    """Take the first heading told [rad]."""
+    """Take the first heading reported [rad]."""
     turn(ekf, estimate, wrap_pi(yaw - yaw_of(ekf.q)))
     ekf.yaw_aligned = True
     emit(log, ekf.now_us, EKF_USES, float(ekf.imu), YAW_BY_OTHERS)
@@ -133,7 +133,7 @@ def align_yaw(ekf: Ekf, estimate: Estimate, log: Events, yaw: float) -> None:
 
 @law
 def fuse_yaw(ekf: Ekf, estimate: Estimate, residual: float, sigma: float, params: Ekf3) -> None:
-    """Fuse told minus estimated heading [rad]; one beyond the gate for too long is taken over."""
+    """Fuse reported minus estimated heading [rad]; one beyond the gate for too long is taken over."""
     found = innovate_state(ekf, THETA + 2, residual, sigma * sigma)
     ekf.innovation_yaw = found.value
     ratio = gate_ratio(found.value * found.value, found.variance, sigma, params.YAW_I_GATE)
@@ -196,7 +196,7 @@ def take_velocity(
 def fuse(
     ekf: Ekf, estimate: Estimate, log: Events, seen: VisualOdometry, source: Sources, params: Ekf3, p: Settings
 ) -> bool:
-    """Look at what the other system has told since the last step; whether something was fused."""
+    """Look at what the other system has reported since the last step; whether something was fused."""
     fused = False
     if seen.pose.count != ekf.pose_seen:
         ekf.pose_seen = seen.pose.count

@@ -83,7 +83,7 @@ def gate_ratio(squares: float, variances: float, nominal: float, gate: float) ->
 
     ``nominal``: the EK3_*_M_NSE parameter as it stands, ``gate``: EK3_*_I_GATE. As in ArduPilot the gate is
     that many hundredths of a standard deviation of a sensor with the parameter's noise, wider than
-    noise.py's figure: a knock on the accelerometer must not lock GPS out.
+    noise.py's value: a knock on the accelerometer must not lock GPS out.
     """
     k = 0.01 * gate
     return squares / (k * k * (variances + nominal * nominal))

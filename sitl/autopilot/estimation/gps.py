@@ -23,7 +23,7 @@ from ..params.parameters import Parameters
 from ..params.without_gps import Sources
 from ..state import Estimate, Sensors
 from . import doubt, height, noise, sources
-from .aiding import Origin, fix_ne, place_origin, reset_to_fix, start_using, stop_using
+from .aiding import Origin, fix_ne, reset_to_fix, set_origin, start_using, stop_using
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
 from .height import Height
 from .history import past_at
@@ -73,7 +73,7 @@ def read(ekf: Ekf, count: int) -> None:
 
 @law
 def is_sane(fix: Fix) -> bool:
-    """Whether the message is a 3D fix with figures that make sense."""
+    """Whether the message is a 3D fix with values that make sense."""
     lat, lon, alt = fix.gps_lat, fix.gps_lon, fix.gps_alt
     if fix.gps_fix < 3 or abs(lat) > 900000000 or abs(lon) > 1800000000 or (lat == 0 and lon == 0):
         return False
@@ -307,7 +307,7 @@ def fuse(
     if not ekf.field_known and ekf.yaw_aligned and (ekf.gps_fixes > 1 or not ekf.heading_only):
         learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
-        place_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
+        set_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
         if is_source:
             ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)

@@ -41,13 +41,13 @@ def past_at(ekf: Ekf, when_us: int) -> Past:
         n -= 1
     a, b = n % RING, min(n + 1, last) % RING
     span = ekf.ring_us[b] - ekf.ring_us[a]
-    way = 0.0
+    share = 0.0
     if span > 0:
-        way = min(max((when_us - ekf.ring_us[a]) / span, 0.0), 1.0)
+        share = min(max((when_us - ekf.ring_us[a]) / span, 0.0), 1.0)
     pos, vel = row_vector(ekf.ring_pos, a), row_vector(ekf.ring_vel, a)
     return Past(
-        pos + way * (row_vector(ekf.ring_pos, b) - pos),
-        vel + way * (row_vector(ekf.ring_vel, b) - vel),
+        pos + share * (row_vector(ekf.ring_pos, b) - pos),
+        vel + share * (row_vector(ekf.ring_vel, b) - vel),
     )
 
 

@@ -6,7 +6,7 @@ differ, the second filter begins as a copy of the first, on the other IMU. From 
 agrees better with GPS and barometer is flown by. When the IMUs have shown the same again for a minute, the second
 ends.
 
-What a user sees of it is told in https://ardupilot.org/copter/docs/common-ek3-affinity-lane-switching.html
+What a user sees of it is described in https://ardupilot.org/copter/docs/common-ek3-affinity-lane-switching.html
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 """Yaw from the magnetometer: direction of the horizontal field against the earth's.
 
 Samples are turned to NED with the attitude of their moment and averaged. The declination comes from the
-model of the earth's field as soon as a GPS fix tells where the vehicle is; until then it is zero. What is
+model of the earth's field as soon as a GPS fix gives where the vehicle is; until then it is zero. What is
 left of hard iron is estimated: yaw turns and accelerations under GPS tell it from a yaw error.
 
 So it is with EK3_MAG_CAL 4; otherwise heading.py fuses the means.
@@ -80,7 +80,7 @@ def turn(ekf: Ekf, estimate: Estimate, angle: float) -> None:
 
 @law
 def learn_field(ekf: Ekf, estimate: Estimate, lat_e7: int, lon_e7: int) -> None:
-    """Take the earth's field at a place [degE7]; yaw turns by the declination that was missing until now.
+    """Take the earth's field at a location [degE7]; yaw turns by the declination that was missing until now.
 
     Where the heading alone is fused it does not turn: fusion brings the declination in.
     """

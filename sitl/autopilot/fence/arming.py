@@ -31,7 +31,7 @@ _LOWEST = -100.0
 
 
 def text(refusal: int) -> str:
-    """What is told of a refusal."""
+    """What is reported of a refusal."""
     return _TEXTS.get(refusal) or f"Vehicle breaching {names(refusal)}"
 
 

@@ -19,7 +19,7 @@ from ..modes import ModeReason
 from ..notes import Text
 from ..params.fence import Fence
 from ..state import Estimate, HomeState, Vehicle
-from .shapes import clearance, is_inclusion, place
+from .shapes import clearance, is_inclusion, use_origin
 from .state import (
     AREAS,
     CIRCLE,
@@ -40,7 +40,7 @@ NONE = -1e9
 # FENCE_AUTOENABLE
 ON_TAKEOFF, FLOOR_ON_TAKEOFF, WHEN_ARMED = 1, 2, 3
 # FENCE_OPTIONS
-NO_OTHER_MODE, ONE_IS_ENOUGH, TELLS_MARGIN = 1, 2, 4
+NO_OTHER_MODE, ONE_IS_ENOUGH, REPORTS_MARGIN = 1, 2, 4
 
 AGAIN = 20.0
 """A breached fence counts as breached anew each time the vehicle gets so much further [m]."""
@@ -79,7 +79,7 @@ def _near_texts(v: Any, fences: float, clearance: float) -> list[Text]:
     return [Text(MavSeverity.NOTICE, f"{names(int(fences))} {how}")]
 
 
-# a: bits of fences; b of the first two: 1 the pilot is told
+# a: bits of fences; b of the first two: 1 the pilot is notified
 FENCE_BREACHED = Event(
     44,
     says=lambda v, a, b: [Text(MavSeverity.NOTICE, f"{names(int(a))} breached")] if b != 0.0 else [],
@@ -171,7 +171,7 @@ def judge(fence: FenceState, k: int, margin: float, time_us: int) -> bool:
 
 @law
 def switch(fence: FenceState, how: int, chosen: int, events: Events, time_us: int) -> None:
-    """Switch fences on or off, and tell of those that were not so before."""
+    """Switch fences on or off, and report those that were not so before."""
     before, on = fence.on, how in (AUTO_ON, BY_FLOOR, ON)
     fence.on = before | chosen if on else before & ~chosen
     if not on:
@@ -232,7 +232,7 @@ def margin_of(kind: int, params: Fence) -> float:
 def report_margin(fence: FenceState, before: int, params: Fence, events: Events, time_us: int) -> None:
     """FENCE_OPTIONS 4: within the margin of which fences the vehicle is, breached ones, too, and how far the first of
     them is; anew with each further fence, while not all of them are breached. And that it has left a margin."""
-    if int(params.OPTIONS) & TELLS_MARGIN == 0:
+    if int(params.OPTIONS) & REPORTS_MARGIN == 0:
         return
     left = before & ~fence.near
     if left != 0:
@@ -265,7 +265,7 @@ def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
     if fence.on == 0 and (fence.floor != FLOOR_AUTO or (params.ENABLE == 0.0 and autoenable == 0)):
         fence.breached = fence.near = 0
         return 0
-    place(fence, ap.estimate)
+    use_origin(fence, ap.estimate)
     if standing:
         switch(fence, AUTO_OFF, rests(fence, autoenable) & int(params.TYPE), events, time_us)
     measure(fence, ap.estimate, ap.home, params, limits.x, limits.y)
@@ -285,7 +285,7 @@ def check(v: Vehicle, limits: Vec3, standing: bool) -> int:
 
 @law
 def farthest(fence: FenceState, chosen: int) -> float:
-    """How far beyond those of the fences ``chosen`` the vehicle is, the greatest of the figures [m]."""
+    """How far beyond those of the fences ``chosen`` the vehicle is, the greatest of the distances [m]."""
     over = 0.0
     for k in range(FENCES):
         if chosen >> k & 1 != 0:
@@ -340,15 +340,15 @@ def switch_after_takeoff(fence: FenceState, params: Fence, autoenable: int, even
 
 
 @law
-def allows(fence: FenceState, home: HomeState, place: Vec3, params: Fence, alt_max: float, alt_min: float) -> bool:
-    """Whether a place [m, NED from the origin] is within all fences that are on."""
-    watched, height = active(fence, params), home.pos.z - place.z
+def allows(fence: FenceState, home: HomeState, position: Vec3, params: Fence, alt_max: float, alt_min: float) -> bool:
+    """Whether a position [m, NED from the origin] is within all fences that are on."""
+    watched, height = active(fence, params), home.pos.z - position.z
     if watched & MAX_ALT != 0 and height > alt_max:
         return False
     if watched & MIN_ALT != 0 and height < alt_min:
         return False
-    if watched & CIRCLE != 0 and norm2(horizontal(place) - horizontal(home.pos)) > params.RADIUS:
+    if watched & CIRCLE != 0 and norm2(horizontal(position) - horizontal(home.pos)) > params.RADIUS:
         return False
     if watched & AREAS == 0 or not fence.is_placed:
         return True
-    return beyond_areas(fence, horizontal(place), int(params.OPTIONS) & ONE_IS_ENOUGH != 0) <= 0.0
+    return beyond_areas(fence, horizontal(position), int(params.OPTIONS) & ONE_IS_ENOUGH != 0) <= 0.0

@@ -40,7 +40,7 @@ class Shape(NamedTuple):
     kind: int
     radius: float
     """Of a circle [m]."""
-    places: tuple[tuple[int, int], ...]
+    locations: tuple[tuple[int, int], ...]
     """Latitude and longitude [degE7] of its corners, or of a circle's centre."""
 
 
@@ -86,28 +86,28 @@ def load(fence: FenceState, areas: Sequence[Shape]) -> None:
     """Put areas into the record, instead of those that are there.
 
     Raises:
-        FenceError: there is no room for them; those of before stay.
+        FenceError: there is no space for them; those of before stay.
     """
-    if len(areas) > SHAPES or sum(len(area.places) for area in areas) > CORNERS:
+    if len(areas) > SHAPES or sum(len(area.locations) for area in areas) > CORNERS:
         raise FenceError("Fence exceeds storage size")
     fence.shapes = fence.corners = 0
     fence.is_placed = False
     if areas:
-        fence.reference_lat, fence.reference_lon = areas[0].places[0]
+        fence.reference_lat, fence.reference_lon = areas[0].locations[0]
     for s, area in enumerate(areas):
         fence.kind[s], fence.radius[s] = area.kind, area.radius
-        fence.first[s], fence.count[s] = fence.corners, len(area.places)
-        for lat, lon in area.places:
-            place = offset_ne(fence.reference_lat, fence.reference_lon, lat, lon)
-            fence.north[fence.corners], fence.east[fence.corners] = place.x, place.y
+        fence.first[s], fence.count[s] = fence.corners, len(area.locations)
+        for lat, lon in area.locations:
+            position = offset_ne(fence.reference_lat, fence.reference_lon, lat, lon)
+            fence.north[fence.corners], fence.east[fence.corners] = position.x, position.y
             fence.corners += 1
     fence.shapes = len(areas)
 
 
 def stored_bytes(items: Sequence[MissionItem], areas: Sequence[Shape]) -> int:
-    """Room that a list takes in ArduPilot's storage: its size depends on the board, not on this record."""
+    """Bytes that a list takes in ArduPilot's storage: its size depends on the board, not on this record."""
     total = 5 + sum(9 for item in items if item.command == MavCmd.NAV_FENCE_RETURN_POINT)
-    return total + sum(13 if area.radius > 0.0 else 2 + 8 * len(area.places) for area in areas)
+    return total + sum(13 if area.radius > 0.0 else 2 + 8 * len(area.locations) for area in areas)
 
 
 _LOGGED_KINDS = {STAY_IN: 98, STAY_OUT: 97, CIRCLE_IN: 92, CIRCLE_OUT: 93}
@@ -123,8 +123,8 @@ def rows(v: Any, a: float = 0.0, b: float = 0.0) -> list[Row]:
         for k in range(first, first + int(fence.count[s])):
             at = add_offset(fence.reference_lat, fence.reference_lon, float(fence.north[k]), float(fence.east[k]))
             size = (0, float(fence.radius[s])) if is_round else (int(fence.count[s]) & 255, 0.0)
-            place = (round(at.lat), round(at.lon))
-            found.append(("FNCE", (fence.corners & 255, k & 255, _LOGGED_KINDS[kind], *place, *size)))
+            location = (round(at.lat), round(at.lon))
+            found.append(("FNCE", (fence.corners & 255, k & 255, _LOGGED_KINDS[kind], *location, *size)))
     return found
 
 

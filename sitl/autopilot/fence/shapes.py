@@ -68,11 +68,11 @@ def is_within(fence: FenceState, s: int, point: Vec2) -> bool:
 @law
 def nearest_on_segment(a: Vec2, b: Vec2, point: Vec2) -> Vec2:
     """The point of the line from ``a`` to ``b`` that is nearest to another one."""
-    way = b - a
-    length = dot2(way, way)
+    edge = b - a
+    length = dot2(edge, edge)
     if length <= 0.0:
         return a
-    return a + way * min(max(dot2(point - a, way) / length, 0.0), 1.0)
+    return a + edge * min(max(dot2(point - a, edge) / length, 0.0), 1.0)
 
 
 @law
@@ -107,8 +107,8 @@ def clearance(fence: FenceState, s: int, point: Vec2) -> float:
 
 
 @law
-def place(fence: FenceState, estimate: Estimate) -> None:
-    """Let places count from the estimator's origin, when it has one and it is another one than before."""
+def use_origin(fence: FenceState, estimate: Estimate) -> None:
+    """Let positions count from the estimator's origin, when it has one and it is another one than before."""
     fence.is_placed = estimate.origin_set
     lat, lon = estimate.origin_lat, estimate.origin_lon
     if not estimate.origin_set or (fence.reference_lat == lat and fence.reference_lon == lon):

@@ -31,7 +31,7 @@ def names(fences: int) -> str:
 
 
 class FenceState(Record):
-    """Fences. Places are metres north and east of a point of reference, which is the estimator's origin once
+    """Fences. Positions are metres north and east of a point of reference, which is the estimator's origin once
     ``is_placed``: areas mean nothing before.
     """
 
@@ -57,7 +57,7 @@ class FenceState(Record):
     breaches: int  # so far
     breach_us: int  # since when, of the last time that one was
     recovery_us: int  # since when the pilot brings the vehicle back; 0 not
-    reported_us: int  # when it was last told how far a fence is
+    reported_us: int  # when it was last reported how far a fence is
 
 
 POINTS = 50

@@ -45,9 +45,9 @@ OUTLIER, OUTLIERS = 3.0, 3
 
 
 @law
-def variance(place: Vec3, rates: Vec3) -> float:
+def variance(position: Vec3, rates: Vec3) -> float:
     """Of a measurement [m^2]: it grows with the height and while the vehicle turns."""
-    deviation = abs(place.z) * (0.01 + 0.01 * norm(rates)) + 0.02
+    deviation = abs(position.z) * (0.01 + 0.01 * norm(rates)) + 0.02
     return deviation * deviation
 
 
@@ -120,7 +120,7 @@ def watch(t: LandingTarget, events: Events, time_us: int, is_raw: bool) -> None:
 
 @law
 def carry_to_now(t: LandingTarget, est: Estimate, p: PrecisionLanding) -> None:
-    """From the time of the measurement to now: the place to land at."""
+    """From the time of the measurement to now: the position to land at."""
     t.closing = t.vel
     offset = turned(Vec2(0.01 * p.LAND_OFS_X, 0.01 * p.LAND_OFS_Y), est.yaw)
     t.away = t.pos + p.LAG * t.vel + offset
@@ -187,14 +187,14 @@ def update(
 
 
 @law
-def target_place(t: LandingTarget, est: Estimate) -> Vec2:
+def target_position(t: LandingTarget, est: Estimate) -> Vec2:
     """Where to land, from the origin [m]."""
     return horizontal(est.pos) + t.away
 
 
 @law
 def distance(t: LandingTarget) -> float:
-    """From the place to land at [m]."""
+    """From the position to land at [m]."""
     return norm2(t.away)
 
 

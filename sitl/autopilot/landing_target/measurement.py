@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From a line of sight to the place of the target."""
+"""From a line of sight to the position of the target."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def direction(t: LandingTarget, q: Quat, p: PrecisionLanding, orientation: int) 
 
 @law
 def measure(t: LandingTarget, est: Estimate, height: float, p: PrecisionLanding, orientation: int) -> bool:
-    """Work out ``place`` of a new measurement; False: it tells of none.
+    """Work out ``place`` of a new measurement; False: it reports none.
 
     ``height``: over the ground [m], below 0 unknown. ``orientation``: where the sensor looks.
     """

@@ -43,8 +43,8 @@ class LandingTarget(Record):
     frame: int  # of it
     distance: float  # [m]; 0 unknown
     line_us: int  # when it came; 0 never
-    used_us: int  # ``line_us`` of the last one that gave a place
-    place: Vec3  # that place [m]
+    used_us: int  # ``line_us`` of the last one that gave a position
+    place: Vec3  # that position [m]
     sees: bool  # the sensor is well, and a beacon in its view
     reported: int  # TOLD_BEACON, TOLD_FRAME
     # the estimate, as of PLND_LAG ago
@@ -57,7 +57,7 @@ class LandingTarget(Record):
     covariance: Floats = array(2, 3)  # north, east: of the position, of both, of the velocity
     # as of now
     acquired: bool  # good for landing
-    away: Vec2  # the place to land at [m]
+    away: Vec2  # the position to land at [m]
     closing: Vec2  # its velocity [m/s]
     status: int  # NEVER_SEEN, ...
     lost_us: int  # when it was lost

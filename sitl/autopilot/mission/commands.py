@@ -16,8 +16,8 @@ from ..notes import Text
 from ..state import Vehicle
 from . import item as commands
 from .item import UNREPORTED, MissionItem
+from .location import set_home
 from .notes import Note, OutputItem
-from .place import set_home
 
 V = TypeVar("V", bound=Vehicle)
 
@@ -55,7 +55,7 @@ class Commands(ABC, Generic[V]):
         """The two navigation commands after the one under way, None at the end: plan what is joined without a stop."""
 
     def arrived(self, v: V, seq: int, item: MissionItem) -> list[Note]:
-        """The command under way has come to its place and waits there (COMMAND_ARRIVED)."""
+        """The command under way has come to its location and waits there (COMMAND_ARRIVED)."""
         return []
 
     def completed(self, v: V, seq: int, item: MissionItem) -> list[Note]:

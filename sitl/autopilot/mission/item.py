@@ -26,7 +26,7 @@ class Command(NamedTuple):
     name: str
     """As ArduPilot's "Mission: 1 Takeoff" texts say it."""
     is_nav: bool
-    has_place: bool
+    has_location: bool
     """x, y, z are latitude, longitude [degE7] and altitude [m]."""
 
 
@@ -124,7 +124,7 @@ NUMBER_COMMANDS = (
     MavCmd.NAV_SCRIPT_TIME,
     MavCmd.NAV_ATTITUDE_TIME,
 )
-"""Parameters 5 and 6 are numbers of their own. Of every other command they are a place or stand where one does."""
+"""Parameters 5 and 6 are numbers of their own. Of every other command they are a location or stand where one does."""
 ROI_COMMANDS = (MavCmd.DO_SET_ROI_LOCATION, MavCmd.DO_SET_ROI_NONE, MavCmd.DO_SET_ROI)
 CARRIED_OUT = frozenset(
     (*OUTPUT_COMMANDS, *CAMERA_COMMANDS, *MOUNT_COMMANDS, *PAYLOAD_COMMANDS, *ROI_COMMANDS, MavCmd.DO_PARACHUTE)
@@ -147,9 +147,10 @@ UNREPORTED = frozenset(
         *(MavCmd.DO_SEND_SCRIPT_MESSAGE, MavCmd.DO_SET_RESUME_REPEAT_DIST, MavCmd.NAV_LOITER_TO_ALT),
     )
 )
-"""Of which nothing is told when they are done: no MISSION_ITEM_REACHED, and no word where they are not carried out."""
+"""Of which nothing is reported when they are done: no MISSION_ITEM_REACHED, and no word where they are not carried
+out."""
 MARKS = (MavCmd.JUMP_TAG, MavCmd.DO_LAND_START, MavCmd.DO_RETURN_PATH_START)
-"""Mark a place in the mission: nothing is done there."""
+"""Mark a location in the mission: nothing is done there."""
 COMMON = (
     MavCmd.CONDITION_DELAY, MavCmd.CONDITION_DISTANCE, MavCmd.DO_JUMP, MavCmd.DO_JUMP_TAG, MavCmd.DO_CHANGE_SPEED,
     MavCmd.DO_FENCE_ENABLE, MavCmd.DO_SET_HOME, MavCmd.DO_GUIDED_LIMITS, MavCmd.DO_SET_RESUME_REPEAT_DIST,
@@ -197,7 +198,7 @@ class MissionItem(NamedTuple):
         return f"{self.name} 0" if self.command == MavCmd.JUMP_TAG else self.name
 
     @property
-    def no_place(self) -> bool:
+    def no_location(self) -> bool:
         """Latitude and longitude are both zero: "where the vehicle is"."""
         return self.x == 0 and self.y == 0
 

@@ -28,7 +28,7 @@ def runs(nav: Nav) -> dict[int, int]:
 
 def keep(nav: Nav, counts: MutableMapping[int, int]) -> None:
     """Write the counts to the record;
-    jumps beyond the room there is count as run out (as in ``following``).
+    jumps beyond the space there is count as run out (as in ``following``).
     """
     nav.jump_item[:] = 0
     nav.jump_runs[:] = 0
@@ -54,14 +54,14 @@ def following(
             return 0
         if item.command not in (MavCmd.DO_JUMP, MavCmd.DO_JUMP_TAG):
             return seq
-        place = int(item.p1) if item.command == MavCmd.DO_JUMP else mission.tagged(int(item.p1))
+        target = int(item.p1) if item.command == MavCmd.DO_JUMP else mission.tagged(int(item.p1))
         times, done = int(item.p2), counts.get(seq, 0)
         known = seq in counts or len(counts) < capacity
         if (times == FOREVER or done < times) and known:
             counts[seq] = done if times == FOREVER else done + 1
             if taken is not None:
                 taken.append((seq, counts[seq], times))
-            seq = place
+            seq = target
         else:
             seq += 1
     return 0

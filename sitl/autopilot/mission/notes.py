@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the sequencer tells the outside: what all of the autopilot does, and do-commands for the outside."""
+"""What the sequencer reports to the outside: what all of the autopilot does, and do-commands for the outside."""
 
 from __future__ import annotations
 

@@ -20,11 +20,11 @@ from ..navigation.state import JUMPS, LANDING, RETURN_PATH
 from ..state import Autopilot
 from . import jumps
 from .item import COMMANDS, MissionItem
+from .location import point
 from .mission import Mission
-from .place import point
 
 LANDINGS = (MavCmd.NAV_LAND, MavCmd.NAV_VTOL_LAND)
-RETURN_WANTED = Event(50)  # AUTO_RTL; a: way (BEST, ...), b: 1 AUTO flies already
+RETURN_WANTED = Event(50)  # AUTO_RTL; a: how (BEST, ...), b: 1 AUTO flies already
 RETURN_ACTIVE = Event(51, MavSeverity.INFO, {RETURN_PATH: "Return path active", LANDING: "Landing sequence active"})
 """It flies a part that brings it back already; a: ``mission_part``"""
 
@@ -36,20 +36,20 @@ def marks(mission: Mission, command: int) -> list[int]:
 
 
 def has_path(mission: Mission) -> bool:
-    """Whether there is a return path with a place on it."""
+    """Whether there is a return path with a location on it."""
     return any(next(_path(mission, mark), None) for mark in marks(mission, MavCmd.DO_RETURN_PATH_START))
 
 
 def nearest_landing(mission: Mission, ap: Autopilot) -> int:
-    """Number of the DO_LAND_START nearest to the vehicle (without a place: its first navigation command), 0 none."""
+    """Number of the DO_LAND_START nearest to the vehicle (without a location: its first navigation command), 0 none."""
     here = ap.estimate.pos
 
     def away(k: int) -> float:
         item = mission.items[k]
-        if item.no_place:
+        if item.no_location:
             item = mission.items[jumps.next_nav(mission, k + 1, {}, JUMPS)]
-        place = point(ap, item, here)
-        return hypot(place.x - here.x, place.y - here.y)
+        position = point(ap, item, here)
+        return hypot(position.x - here.x, position.y - here.y)
 
     return min(marks(mission, MavCmd.DO_LAND_START), key=away, default=0)
 
@@ -59,25 +59,25 @@ def nearest_leg(mission: Mission, ap: Autopilot) -> int:
     here = ap.estimate.pos
     best, found = math.inf, 0
     for mark in marks(mission, MavCmd.DO_RETURN_PATH_START):
-        before = None if mission.items[mark].no_place else point(ap, mission.items[mark], here)
+        before = None if mission.items[mark].no_location else point(ap, mission.items[mark], here)
         for k, item in _path(mission, mark):
-            place = point(ap, item, here)
-            away = _distance(here, place if before is None else before, place)
+            position = point(ap, item, here)
+            away = _distance(here, position if before is None else before, position)
             if away < best:
                 best, found = away, k
-            before = place
+            before = position
     return found
 
 
 def _path(mission: Mission, mark: int) -> Iterator[tuple[int, MissionItem]]:
-    """Items with a place that follow a mark of a return path, up to its end."""
+    """Items with a location that follow a mark of a return path, up to its end."""
     seq, counts = mark + 1, dict[int, int]()
     for _ in range(len(mission) + jumps.LONGEST):
         seq = jumps.following(mission, seq, counts, JUMPS)
         item = mission.get(seq)
         if item is None or item.command == MavCmd.DO_LAND_START:
             return
-        if item.is_nav and COMMANDS[item.command].has_place and not item.no_place:
+        if item.is_nav and COMMANDS[item.command].has_location and not item.no_location:
             yield seq, item
         if item.command in LANDINGS:
             return

@@ -84,7 +84,7 @@ class Sequencer:
             LEG_ENDING: self._plan_leg,
             MODE_CHANGED: self._mode_changed,
             EKF_ORIGIN_SET: self._origin_set,
-            returning.RETURN_WANTED: lambda v, way, flies: self.go_back(v, int(way), flies != 0.0),
+            returning.RETURN_WANTED: lambda v, how, flies: self.go_back(v, int(how), flies != 0.0),
             DISARMED: self._disarmed,
         }
         self._publish(holder.v)
@@ -116,7 +116,7 @@ class Sequencer:
         ap.modes.mission_lands = bool(returning.marks(mission, MavCmd.DO_LAND_START))
         ap.modes.mission_returns = returning.has_path(mission)
         ap.modes.mission_over_ground = any(
-            item.frame in TERRAIN_FRAMES and item.command in COMMANDS and COMMANDS[item.command].has_place
+            item.frame in TERRAIN_FRAMES and item.command in COMMANDS and COMMANDS[item.command].has_location
             for item in mission.items[1:]
         )
 
@@ -162,7 +162,7 @@ class Sequencer:
     def start(self, v: Vehicle) -> list[Note]:
         """AUTO was entered: start the mission, or go on where it was (MIS_RESTART, MISSION_SET_CURRENT).
 
-        Before the estimator has an origin no place means anything: then it waits for that.
+        Before the estimator has an origin no location means anything: then it waits for that.
         """
         ap = v.autopilot
         nav = ap.modes.nav
@@ -226,13 +226,13 @@ class Sequencer:
             self._resume_at(nav, max(seq, 1), notes)
         return (True, notes)
 
-    def go_back(self, v: Vehicle, way: int, at_once: bool) -> list[Note]:
+    def go_back(self, v: Vehicle, how: int, at_once: bool) -> list[Note]:
         """Go to the mission's part that brings the vehicle back: ``at_once`` when AUTO flies, else when it begins.
 
-        ``way``: BEST, BY_LANDING or BY_PATH; there must be one.
+        ``how``: BEST, BY_LANDING or BY_PATH; there must be one.
         """
         nav = v.autopilot.modes.nav
-        leg = returning.nearest_leg(self.mission, v.autopilot) if way != BY_LANDING else 0
+        leg = returning.nearest_leg(self.mission, v.autopilot) if how != BY_LANDING else 0
         seq = leg or returning.nearest_landing(self.mission, v.autopilot)
         notes: list[Note] = []
         jumps.keep(nav, {})
@@ -336,7 +336,7 @@ class Sequencer:
         return notes
 
     def _arrived(self, v: Vehicle) -> list[Note]:
-        """The navigation command under way has come to its place."""
+        """The navigation command under way has come to its location."""
         seq = v.autopilot.modes.nav.command_seq
         item = self.mission.get(seq)
         return [] if item is None else self.commands.arrived(v, seq, item)
@@ -377,7 +377,7 @@ class Sequencer:
     def _give(self, v: Vehicle, seq: int, notes: list[Note], ends: list[Note]) -> None:
         """Begin navigation command ``seq``, and run the other do-commands before it.
 
-        ``ends``: what is told of the first, which has run.
+        ``ends``: what is reported of the first, which has run.
         """
         nav = v.autopilot.modes.nav
         item = self.mission.items[seq]
@@ -423,7 +423,7 @@ class Sequencer:
         nav.mission_do_next = 0
 
     def _do(self, v: Vehicle, seq: int, notes: list[Note]) -> list[Note]:
-        """Run do-command ``seq``; what is told when it is done."""
+        """Run do-command ``seq``; what is reported when it is done."""
         item = self.mission.items[seq]
         notes.append(Text(MavSeverity.INFO, f"Mission: {seq} {item.title}"))
         nav = v.autopilot.modes.nav
@@ -466,7 +466,8 @@ def _takes_off(mission: Mission) -> bool:
 
 
 def _end_first(notes: list[Note], ends: list[Note]) -> None:
-    """The first do-command behind a navigation command is done when that is: clients are told of the first alone."""
+    """The first do-command behind a navigation command is done when that is: clients are notified of the first
+    alone."""
     if any(isinstance(note, ItemReached) for note in ends):
         notes[:] = [replace(note, is_sent=False) if isinstance(note, ItemReached) else note for note in notes]
     notes += ends

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Items as ArduPilot's mission storage keeps them, and as they are read back.
 
-A parameter that has no room is dropped, a whole number loses its fraction and wraps at its width, an altitude is whole
-centimetres, and an item without a place has frame 0. All of it was measured: ``tests/conformance/kept/items-*.json``.
+A parameter that does not fit is dropped, a whole number loses its fraction and wraps at its width, an altitude is whole
+centimetres, and an item without a location has frame 0. All of it was measured:
+``tests/conformance/kept/items-*.json``.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def half(value: float) -> float:
 
 
 def dropped(value: float) -> float:
-    """There is no room for it."""
+    """There is no space for it."""
     return 0.0
 
 
@@ -98,7 +99,7 @@ def within(least: float, most: float) -> Keep:
 
 
 class Kept(NamedTuple):
-    """What is kept of a command's parameters; of those behind the fourth only where it has no place."""
+    """What is kept of a command's parameters; of those behind the fourth only where it has no location."""
 
     p1: Keep = dropped
     p2: Keep = dropped
@@ -177,7 +178,7 @@ KEPT: dict[int, Kept] = {
     MavCmd.DO_VTOL_TRANSITION: Kept(u8),
     MavCmd.DO_WINCH: Kept(u8, u8, real, real),
 }
-"""By command. Of one that is not here, as RTL, nothing is kept but its place."""
+"""By command. Of one that is not here, as RTL, nothing is kept but its location."""
 
 
 def stored(item: MissionItem) -> MissionItem:
@@ -192,7 +193,7 @@ def stored(item: MissionItem) -> MissionItem:
     )
     if item.command == MavCmd.NAV_LOITER_TURNS:
         p1, p3 = _circle(item.p1, item.p3)
-    if COMMANDS[item.command].has_place:
+    if COMMANDS[item.command].has_location:
         frame = _SAME_FRAME.get(item.frame, item.frame)
         return MissionItem(item.command, frame, p1, p2, p3, p4, item.x, item.y, altitude(item.z))
     x, y = int(kept.x(item.x)), int(kept.y(item.y))

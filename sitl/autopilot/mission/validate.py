@@ -16,7 +16,7 @@ MAX_ITEMS = 724
 HIGHEST = 83000.0
 """Altitudes are below this [m]."""
 
-PLACE_FRAMES = (MavFrame.GLOBAL, MavFrame.GLOBAL_INT, MavFrame.MISSION, *RELATIVE_FRAMES, *TERRAIN_FRAMES)
+LOCATION_FRAMES = (MavFrame.GLOBAL, MavFrame.GLOBAL_INT, MavFrame.MISSION, *RELATIVE_FRAMES, *TERRAIN_FRAMES)
 MAY_BE_NAN: dict[int, tuple[int, ...]] = {
     **dict.fromkeys(
         (MavCmd.NAV_WAYPOINT, MavCmd.NAV_LOITER_UNLIM, MavCmd.NAV_LAND, MavCmd.NAV_TAKEOFF, MavCmd.NAV_VTOL_TAKEOFF),
@@ -31,9 +31,10 @@ RESERVED = (0, 1)
 
 
 def check(item: MissionItem, taken: Container[int] = STORED) -> int:
-    """Result for one item: parameters are numbers, the command ``taken`` and the frame known, the place on earth.
+    """Result for one item: parameters are numbers, the command ``taken`` and the frame known, the location on earth.
 
-    NaN is taken where it means "as it is". Commands without a place take any frame, and anything where a place stands.
+    NaN is taken where it means "as it is". Commands without a location take any frame, and anything where a location
+    stands.
     """
     may_be_nan = MAY_BE_NAN.get(item.command, ())
     for k, value in enumerate((item.p1, item.p2, item.p3, item.p4), 1):
@@ -43,14 +44,14 @@ def check(item: MissionItem, taken: Container[int] = STORED) -> int:
         return MavMissionResult.INVALID
     if item.command not in COMMANDS or item.command not in taken:
         return MavMissionResult.UNSUPPORTED
-    if COMMANDS[item.command].has_place:
+    if COMMANDS[item.command].has_location:
         if not -900000000 <= item.x <= 900000000:
             return MavMissionResult.INVALID_PARAM5_X
         if not -1800000000 <= item.y <= 1800000000:
             return MavMissionResult.INVALID_PARAM6_Y
         if not abs(item.z) < HIGHEST:
             return MavMissionResult.INVALID_PARAM7
-        if item.frame not in PLACE_FRAMES:
+        if item.frame not in LOCATION_FRAMES:
             return MavMissionResult.UNSUPPORTED_FRAME
     if item.command == MavCmd.DO_JUMP and int(item.p1) < 1:
         return MavMissionResult.ERROR  # to home, which is not flown

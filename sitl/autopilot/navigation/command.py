@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The navigation command under way: given by the shell, begun by AUTO when ``nav.command_count`` changes.
 
-When it, or the condition before do-commands, is done, the shell is told once.
+When it, or the condition before do-commands, is done, the shell is notified once.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ def give_none(nav: Nav) -> None:
 
 @law
 def arrive(nav: Nav, events: Events, time_us: int) -> None:
-    """The command under way has come to its place, where it may wait: ``nav.since_us`` counts from now."""
+    """The command under way has come to its position, where it may wait: ``nav.since_us`` counts from now."""
     nav.since_us = time_us
     emit(events, time_us, COMMAND_ARRIVED, NAV_COMMAND, float(nav.command_count))
 
 
 @law
 def complete(nav: Nav, events: Events, time_us: int) -> None:
-    """Tell the shell, once, that the navigation command is done."""
+    """Report to the shell, once, that the navigation command is done."""
     if not nav.completed:
         nav.completed = True
         emit_and_return(events, time_us, COMMAND_COMPLETE, NAV_COMMAND, float(nav.command_count))
@@ -65,7 +65,7 @@ def is_condition_met(nav: Nav, time_us: int, pos: Vec3, yaw_reached: bool) -> bo
 
 @law
 def check_condition(nav: Nav, events: Events, time_us: int, pos: Vec3, yaw_reached: bool) -> None:
-    """Tell the shell, once, that the condition which holds back do-commands is met; AUTO calls it every tick.
+    """Report to the shell, once, that the condition which holds back do-commands is met; AUTO calls it every tick.
 
     ``pos``: NED [m]; ``yaw_reached``: the turn of CONDITION_YAW is done.
     """

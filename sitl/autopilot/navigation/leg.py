@@ -47,7 +47,7 @@ class Limits(NamedTuple):
 
 
 SLOWING_S = 1.8
-"""Time at one speed in the middle of a leg [s] with which ArduPilot finds room for slowing down there."""
+"""Time at one speed in the middle of a leg [s] with which ArduPilot finds space for slowing down there."""
 
 
 def bounded(limits: Limits) -> Limits:
@@ -126,7 +126,7 @@ def speed_within(length: float, limits: Limits) -> float:
     jerk = pulse_acceleration(pulse, limits) / pulse
     acceleration = limits.acceleration
 
-    def way(speed: float) -> float:
+    def distance(speed: float) -> float:
         full = acceleration * acceleration / jerk
         return (
             0.5 * speed * (speed / acceleration + acceleration / jerk)
@@ -137,7 +137,7 @@ def speed_within(length: float, limits: Limits) -> float:
     low, high = 0.0, limits.speed
     for _ in range(40):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if way(middle) < length else (low, middle)
+        low, high = (middle, high) if distance(middle) < length else (low, middle)
     return low
 
 

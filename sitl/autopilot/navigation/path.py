@@ -27,7 +27,7 @@ from .state import DETOUR_REQUEST, GO_ON, LEG_ENDING, LEG_REQUEST, STRAIGHT, Det
 DIJKSTRA = (2.0, 3.0)
 """OA_TYPE"""
 AGAIN_US = 1_000_000
-"""Where there is no way, one is looked for again so often."""
+"""Where there is no path, one is looked for again so often."""
 
 
 @law
@@ -69,14 +69,14 @@ def request_legs(nav: Nav, events: Events, time_us: int, target: Vec3, following
 
 
 @law
-def set_place(detour: Detour, k: int, place: Vec3) -> None:
-    """Place ``k`` of a detour, NED [m]."""
-    detour.places[3 * k], detour.places[3 * k + 1], detour.places[3 * k + 2] = place.x, place.y, place.z
+def set_position(detour: Detour, k: int, position: Vec3) -> None:
+    """Position ``k`` of a detour, NED [m]."""
+    detour.places[3 * k], detour.places[3 * k + 1], detour.places[3 * k + 2] = position.x, position.y, position.z
 
 
 @law
 def arrive(nav: Nav) -> None:
-    """The leg under way is at its end: the destination, or a place of a detour, after which the shell
+    """The leg under way is at its end: the destination, or a position of a detour, after which the shell
     plans the next leg."""
     if nav.detour.left == 0:
         nav.reached = True
@@ -86,7 +86,7 @@ def arrive(nav: Nav) -> None:
 
 @law
 def areas_of(fence: FenceState, oa: PathPlanning, params: Fence) -> int:
-    """A number for the areas that ways lead around now (OA_TYPE); 0: none."""
+    """A number for the areas that paths lead around now (OA_TYPE); 0: none."""
     if oa.TYPE not in DIJKSTRA or (active(fence, params) & AREAS) == 0:
         return 0
     return fence.shapes << 32 | fence.corners
@@ -94,8 +94,8 @@ def areas_of(fence: FenceState, oa: PathPlanning, params: Fence) -> int:
 
 @law
 def watch_detour(nav: Nav, areas: int, events: Events, time_us: int) -> None:
-    """Ten times a second: where there was no way, look again each second; where the ``areas`` (``areas_of``) are
-    others than before, lay the way anew."""
+    """Ten times a second: where there was no path, look again each second; where the ``areas`` (``areas_of``) are
+    others than before, plan the path anew."""
     if nav.active_us == 0 or time_us - nav.active_us >= AGAIN_US:
         return
     blocked = nav.detour.blocked_us

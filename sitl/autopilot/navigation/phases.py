@@ -115,11 +115,11 @@ def from_rest_to_rest(length: float, speed: float, acceleration: float, pulse: f
 def from_motion(length: float, start: State, v1: float, speed: float, acceleration: float, jerk: float) -> list[Phase]:
     """Phases over ``length`` [m] from a speed and an acceleration (``start``, at 0 m) to speed ``v1``.
 
-    Where the room is too short for it, the motion goes beyond the end and comes back, or begins backwards.
+    Where the distance is too short for it, the motion goes beyond the end and comes back, or begins backwards.
     """
     direct = change_speed(start.v, start.a, v1, acceleration, jerk)
-    way = 1.0 if length >= start.after_all(direct).p else -1.0  # more than a change of speed takes, or less
-    start, length, v1 = State(0.0, way * start.v, way * start.a), way * length, way * v1
+    sign = 1.0 if length >= start.after_all(direct).p else -1.0  # more than a change of speed takes, or less
+    start, length, v1 = State(0.0, sign * start.v, sign * start.a), sign * length, sign * v1
 
     def by_peak(peak: float) -> tuple[list[Phase], list[Phase], float]:
         """(phases to the peak, phases from it, how far they lead)"""
@@ -147,4 +147,4 @@ def from_motion(length: float, start: State, v1: float, speed: float, accelerati
         if first and second and first[-1].jerk == second[0].jerk:
             first, second = first[:-1], [Phase(first[-1].duration + second[0].duration, second[0].jerk), *second[1:]]
         phases = [*first, *second]
-    return [Phase(t, way * j, s) for t, j, s in phases]
+    return [Phase(t, sign * j, s) for t, j, s in phases]

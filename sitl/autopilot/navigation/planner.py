@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from typing import Any, Generic, TypeVar
 
 from ...core.algebra import ZERO, horizontal, vector_at, with_down
-from ...core.geodesy import place_e7
+from ...core.geodesy import location_e7
 from ...core.mavlink import MavSeverity
 from ...core.sums import separation
 from ...core.vectors import Vec3
@@ -16,13 +16,13 @@ from ..avoidance.shortest_path import a_star
 from ..events import Event, Row, emit
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
-from .path import areas_of, set_place
+from .path import areas_of, set_position
 from .profile import clear, evaluate
 from .state import DETOUR, ENDED, GO_ON, STRAIGHT, Leg
 
 A = TypeVar("A", bound=Autopilot)
-TOLD_US = 5_000_000
-"""That there is no way is said no more often."""
+REPORT_INTERVAL_US = 5_000_000
+"""That there is no path is said no more often."""
 
 
 def _rows(v: Any, is_closed: bool) -> list[Row]:
@@ -32,15 +32,15 @@ def _rows(v: Any, is_closed: bool) -> list[Row]:
     goal = vector_at(detour.places, 0) if detour.left > 0 else nav.target
     state = (
         (3, 2, 0, 0) if is_closed else (2, 0, 1, min(detour.left + 2, 255))
-    )  # an error: no way; found: so many points
-    places = (place_e7(est.origin_lat, est.origin_lon, place.x, place.y) for place in (goal, nav.target))
-    return [("OADJ", (*state, *next(places), *next(places)))]
+    )  # an error: no path; found: so many points
+    locations = (location_e7(est.origin_lat, est.origin_lon, position.x, position.y) for position in (goal, nav.target))
+    return [("OADJ", (*state, *next(locations), *next(locations)))]
 
 
-NO_WAY = Event(60, MavSeverity.CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
-"""There is no way around the areas of the fence."""
-WAY_LAID = Event(75, log=lambda v, a, b: _rows(v, False))
-"""The way around them has turns."""
+NO_PATH = Event(60, MavSeverity.CRITICAL, "Dijkstra: could not find path", log=lambda v, a, b: _rows(v, True))
+"""There is no path around the areas of the fence."""
+PATH_PLANNED = Event(75, log=lambda v, a, b: _rows(v, False))
+"""The path around them has turns."""
 
 
 def end(leg: Leg) -> Vec3:
@@ -105,7 +105,7 @@ class Planner(ABC, Generic[A]):
         return self.stopping_point(ap), False
 
     def begin(self, ap: A, time_us: int, target: Vec3) -> None:
-        """Set off to ``target`` (NED [m]), around what is in the way (OA_TYPE); where there is no way it stops."""
+        """Set off to ``target`` (NED [m]), around what is in the way (OA_TYPE); where there is no path it stops."""
         nav = ap.modes.nav
         detour = nav.detour
         detour.left = detour.blocked_us = 0
@@ -115,26 +115,26 @@ class Planner(ABC, Generic[A]):
             self.begin_leg(ap, time_us, target)
             return
         origin, _ = self.origin_of_next(ap, time_us)
-        way = a_star(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
-        if way is None or len(way) > DETOUR:
+        path = a_star(ap.fence, horizontal(origin), horizontal(target), ap.params.OA.MARGIN_MAX)
+        if path is None or len(path) > DETOUR:
             self.begin_leg(ap, time_us, self.stopping_point(ap))
-            set_place(detour, 0, target)
+            set_position(detour, 0, target)
             detour.left, detour.blocked_us = 1, time_us
-            if time_us - detour.reported_us >= TOLD_US or detour.reported_us == 0:
+            if time_us - detour.reported_us >= REPORT_INTERVAL_US or detour.reported_us == 0:
                 detour.reported_us = time_us
-                emit(ap.events, time_us, NO_WAY, 0.0, 0.0)
+                emit(ap.events, time_us, NO_PATH, 0.0, 0.0)
             return
-        places = [with_down(place, target.z) for place in way[:-1]] + [target]
-        for k, place in enumerate(reversed(places)):
-            set_place(detour, k, place)
-        detour.left = len(places)
+        positions = [with_down(position, target.z) for position in path[:-1]] + [target]
+        for k, position in enumerate(reversed(positions)):
+            set_position(detour, k, position)
+        detour.left = len(positions)
         self._go_to_next(ap, time_us)
-        if len(places) > 1:
-            emit(ap.events, time_us, WAY_LAID, 0.0, 0.0)
+        if len(positions) > 1:
+            emit(ap.events, time_us, PATH_PLANNED, 0.0, 0.0)
 
     def go_on(self, ap: A, time_us: int) -> None:
-        """A place of a detour is reached: on to the next one. Where there was no way, or the areas are others than
-        before, a way to the destination is laid anew."""
+        """A position of a detour is reached: on to the next one. Where there was no path, or the areas are others than
+        before, a path to the destination is planned anew."""
         nav = ap.modes.nav
         detour = nav.detour
         has_bent = detour.bend == ENDED
@@ -187,7 +187,7 @@ class Planner(ABC, Generic[A]):
     def look_ahead(self, ap: A, target: Vec3 | None) -> None:
         """Plan the leg after the current one, to be joined without a stop; None: stop at the end of the current one.
 
-        On a detour it is the leg to the detour's next place.
+        On a detour it is the leg to the detour's next position.
         """
         nav = ap.modes.nav
         if nav.next.started:

@@ -36,13 +36,13 @@ CONDITION_YAW = 3  # until auto_yaw (modes) has turned
 
 COMMAND_COMPLETE = Event(6)  # the command under way is done (b: its count), or a condition is met: the shell goes on
 LEG_ENDING = Event(7)  # the shell plans the following leg
-COMMAND_ARRIVED = Event(27)  # the navigation command under way is at its place, b: its count (nav.command_count)
+COMMAND_ARRIVED = Event(27)  # the navigation command under way is at its position, b: its count (nav.command_count)
 
 # What COMMAND_COMPLETE and LEG_ENDING events say in ``a``
 NAV_COMMAND = 0.0  # the navigation command
 DO_COMMAND = 1.0  # the condition that held back do-commands is met
 LEG_REQUEST = 2.0  # LEG_ENDING: the core asks for a leg to ``request`` (path.request_leg)
-DETOUR_REQUEST = 4.0  # LEG_ENDING: a place of a detour is reached, or a way is to be looked for again
+DETOUR_REQUEST = 4.0  # LEG_ENDING: a position of a detour is reached, or a path is to be looked for again
 SPEED_REQUEST = 3.0  # LEG_ENDING: the speed limit changed: plan the legs anew
 
 # State of the mission (``mission_state``)
@@ -62,11 +62,11 @@ BY_PATH = 2
 
 SEGMENTS = 16
 DETOUR = 24
-"""Places of a detour that there is room for."""
+"""Positions of a detour that there is space for."""
 STRAIGHT, BENT, ENDED = 0, 1, 2
 """Whether BendyRuler steers; ``ENDED``: no longer, and the shell plans a leg to the destination."""
 GO_ON = 3
-"""``request_pending``: a place of a detour is reached."""
+"""``request_pending``: a position of a detour is reached."""
 JUMPS = 100
 
 
@@ -96,12 +96,12 @@ class Leg(Record):
 
 
 class Detour(Record):
-    """A way around fences: places behind the end of the leg under way (``navigation.detour``)."""
+    """A path around fences: positions behind the end of the leg under way (``navigation.detour``)."""
 
-    left: int  # places that are still to come, the destination the last of them; 0: none
+    left: int  # positions that are still to come, the destination the last of them; 0: none
     places: Floats = array(3 * DETOUR, stored="f4")  # the next one last, NED [m]
     areas: int  # the areas of the fence that it was laid around (``path.areas_of``)
-    blocked_us: int  # there is no way: when that was found; 0 not
+    blocked_us: int  # there is no path: when that was found; 0 not
     reported_us: int  # when it was last said
     bend: int  # BendyRuler: STRAIGHT, BENT, ENDED (``avoidance.bendy_ruler``)
     bent_target: Vec3  # what it steers for in place of the destination, NED [m]

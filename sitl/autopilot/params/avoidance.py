@@ -33,7 +33,7 @@ class ProximitySensor(ParameterGroup):
 
 
 class BendyRuler(ParameterGroup):
-    """OA_BR_: how BendyRuler looks for a way."""
+    """OA_BR_: how BendyRuler looks for a path."""
 
     LOOKAHEAD: float = param(15.0, 1.0, 100.0, "m", "So far it looks, at most")
     CONT_RATIO: float = param(1.5, 1.0, 2.0, "", "A great change of bearing must gain so much of margin; 0: nothing")
@@ -51,17 +51,17 @@ class ObjectDatabase(ParameterGroup):
 
 
 class PathPlanning(ParameterGroup):
-    """OA_: ways around fences and objects, in modes that follow legs."""
+    """OA_: paths around fences and objects, in modes that follow legs."""
 
     TYPE: float = param(
         0,
         0,
         3,
         "",
-        "0 straight, 1 BendyRuler, 2 the shortest way around areas (Dijkstra), 3 both",
+        "0 straight, 1 BendyRuler, 2 the shortest path around areas (Dijkstra), 3 both",
         INT8,
     )
-    MARGIN_MAX: float = param(5.0, 0.1, 100.0, "m", "Distance that such ways keep from areas, and from objects")
+    MARGIN_MAX: float = param(5.0, 0.1, 100.0, "m", "Distance that such paths keep from areas, and from objects")
     OPTIONS: float = param(1, 0, 7, "", "1: after BendyRuler a leg begins where the vehicle is, else goes on", INT16)
     BR: BendyRuler = group("BendyRuler")
     DB: ObjectDatabase = group("Objects that are known to BendyRuler")

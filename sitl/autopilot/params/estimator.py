@@ -11,7 +11,7 @@ _GATE = "innovation gate, hundredths of a standard deviation"
 
 
 class Ekf3(ParameterGroup):
-    """EK3_: the extended Kalman filter. What its noise figures mean here is told in ``estimation/noise.py``."""
+    """EK3_: the extended Kalman filter. What its noise values mean here is described in ``estimation/noise.py``."""
 
     ENABLE: float = param(1, 0, 1, "", "start the filter at boot", INT8)
     VELNE_M_NSE: float = param(0.3, 0.01, 100, "m/s", "GPS horizontal velocity noise")

@@ -9,13 +9,13 @@ _FAR = 1e9
 
 
 class Fence(ParameterGroup):
-    """FENCE_: places that the vehicle is to stay in, or out of."""
+    """FENCE_: areas that the vehicle is to stay in, or out of."""
 
     ENABLE: float = param(0, 0, 1, "", "Set: switches all fences of FENCE_TYPE on (1) or off (0)", INT8)
     TYPE: float = param(7, 0, 15, "", "Bits: 1 greatest height, 2 circle around home, 4 areas, 8 least height", INT8)
     ACTION: float = param(1, -128, 127, "", "When breached: 0 nothing, 1 RTL or LAND, ...", INT8)
     RADIUS: float = param(300.0, -_FAR, _FAR, "m", "Of the circle around home")
-    MARGIN: float = param(2.0, -_FAR, _FAR, "m", "Room that is kept to the fences")
+    MARGIN: float = param(2.0, -_FAR, _FAR, "m", "Clearance that is kept to the fences")
     MARGIN_XY: float = param(0.0, -_FAR, _FAR, "m", "The same for the circle and areas; 0: as FENCE_MARGIN")
     TOTAL: float = param(0, -128, 127, "", "Points of areas that are loaded, as FENCE_POINT counts them", INT8)
     OPTIONS: float = param(
@@ -27,7 +27,7 @@ class Fence(ParameterGroup):
 
 
 class Rally(ParameterGroup):
-    """RALLY_: places to return to, besides home."""
+    """RALLY_: locations to return to, besides home."""
 
     TOTAL: float = param(0, 0, 127, "", "Rally points that are loaded", INT8)
     LIMIT_KM: float = param(

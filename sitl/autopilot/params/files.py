@@ -42,7 +42,7 @@ class FileValues(dict[str, float]):
         """What was passed over in the files."""
         self.read_only: frozenset[str] = frozenset()
         """Names that are marked ``@READONLY``."""
-        self._told = [False]
+        self._reported = [False]
         if isinstance(values, FileValues):
             self._add(values)
 
@@ -65,18 +65,18 @@ class FileValues(dict[str, float]):
 
     @property
     def is_reported(self) -> bool:
-        """Whether the user has been told what there is to say of them (``notes``), or of a copy."""
-        return self._told[0]
+        """Whether the user has been sent what there is to report of them (``notes``), or of a copy."""
+        return self._reported[0]
 
     @is_reported.setter
     def is_reported(self, value: bool) -> None:
-        self._told[0] = value
+        self._reported[0] = value
 
     def _add(self, other: FileValues) -> None:
         self.sources.update(other.sources)
         self.remarks += other.remarks
         self.read_only = (self.read_only - other.keys()) | other.read_only
-        self._told = other._told
+        self._reported = other._reported
 
 
 Given = Mapping[str, float] | str | Path
@@ -134,8 +134,8 @@ def given(params: Given | None) -> dict[str, float]:
 def apply(values: Values, given: Mapping[str, float], source: str = "parameters") -> list[str]:
     """Set a vehicle's parameters to all values given, or none of them; returns the names that its firmware lacks.
 
-    Those of files (``FileValues``) are set as a vehicle takes them; the user is told what it does not take, if that has
-    not been done, and nothing is returned.
+    Those of files (``FileValues``) are set as a vehicle takes them; the user is notified of what it does not take, if
+    that has not been done, and nothing is returned.
 
     Raises:
         ParameterError: a known parameter's value is refused; nothing was set.
@@ -176,14 +176,15 @@ def report(table: Table, values: FileValues) -> None:
 
 
 def not_read(values: FileValues) -> list[str]:
-    """What the user of files is told whatever the firmware is: lines that were passed over, files that are empty."""
+    """What is reported to the user of files whatever the firmware is: lines that were passed over,
+    files that are empty."""
     empty = [source for source, names in values.sources.items() if not names]
     return values.remarks + [f"{source}: nothing was set: it has no parameters" for source in empty]
 
 
 def notes(table: Table, values: FileValues) -> list[str]:
-    """What the user of files is told: lines that were passed over, and values that this firmware does not take as they
-    are."""
+    """What is reported to the user of files: lines that were passed over, and values that this firmware does not take
+    as they are."""
     names = {name for listed in values.sources.values() for name in listed}
     found = {name: value for name, value in values.items() if name in names}
     known = {name: value for name, value in found.items() if name in table}
@@ -202,8 +203,10 @@ def notes(table: Table, values: FileValues) -> list[str]:
             f"{_counted(idle)} of the files {'has' if len(idle) == 1 else 'have'} no effect here: {_some(idle)}"
         )
     if outside := [table[name] for name, value in known.items() if table[name].out_of_range(value)]:
-        told = [f"{p.name} {known[p.name]:g} ({p.used(stored(p, known[p.name])):g})" for p in outside]
-        texts.append(f"{_counted(outside)} of the files {_are(outside)} out of range (used instead): {', '.join(told)}")
+        listed = [f"{p.name} {known[p.name]:g} ({p.used(stored(p, known[p.name])):g})" for p in outside]
+        texts.append(
+            f"{_counted(outside)} of the files {_are(outside)} out of range (used instead): {', '.join(listed)}"
+        )
     if marked := [name for name in known if name in values.read_only]:
         texts.append(f"{_counted(marked)} of the files {_are(marked)} @READONLY, and can be set here: {_some(marked)}")
     return texts

@@ -102,7 +102,7 @@ class ParameterGroup(Record):
     A field that a subclass declares again goes where the subclass has it: the order of fields is the order on the wire.
     """
 
-    keeps_places: ClassVar[bool] = False
+    keeps_offsets: ClassVar[bool] = False
     _small: ClassVar[int] = 0
 
 
@@ -161,7 +161,7 @@ def rows(record: type[Record], prefix: str = "", path: str = "", note: Any = Non
 
     Args:
         record: the class.
-        prefix, path: of the names and of the places of its rows.
+        prefix, path: of the names and of the paths of its rows.
         note: how it was declared.
         n: its number, from 1, where it is one of many.
 
@@ -173,18 +173,18 @@ def rows(record: type[Record], prefix: str = "", path: str = "", note: Any = Non
     if unknown:
         raise ValueError(f"{path or record.__name__}: {sorted(unknown)} changed, which {record.__name__} does not have")
     for field in record.fields.values():
-        name, place = prefix + field.name, path + field.name
+        name, at = prefix + field.name, path + field.name
         numbers = range(1, field.shape[0] + 1) if field.shape else ()
         if field.record is not None:
             for k in numbers:
-                yield from rows(field.record, f"{name}{k}_", f"{place}[{k - 1}].", field.note, k)
+                yield from rows(field.record, f"{name}{k}_", f"{at}[{k - 1}].", field.note, k)
             if not numbers:
-                yield from rows(field.record, f"{name}_", f"{place}.", field.note)
+                yield from rows(field.record, f"{name}_", f"{at}.", field.note)
             continue
         doc = f"{changed.label}: {field.note.doc}" if changed.label else field.note.doc
-        row = _changed(field.note._replace(name=name, path=place, doc=doc), changed.changes.get(field.name, {}), n)
+        row = _changed(field.note._replace(name=name, path=at, doc=doc), changed.changes.get(field.name, {}), n)
         for k in numbers:
-            yield row._replace(name=f"{name}{k}", path=f"{place}[{k - 1}]", doc=row.doc.replace("{n}", str(k)))
+            yield row._replace(name=f"{name}{k}", path=f"{at}[{k - 1}]", doc=row.doc.replace("{n}", str(k)))
         if not numbers:
             yield row._replace(doc=row.doc.replace("{n}", str(n)))
 

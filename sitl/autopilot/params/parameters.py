@@ -74,13 +74,13 @@ class Parameters(ParameterGroup):
     STAT: Statistics
     VISO: VisualOdometry
 
-    places: ClassVar[dict[str, int]]
-    """Name -> place among ``numbers``."""
+    indices: ClassVar[dict[str, int]]
+    """Name -> index among ``numbers``."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        cls.places = {row.name: locate(cls.dtype, row.path)[0] // _BYTES for row in rows(cls)}
-        for name, k in cls.places.items():
+        cls.indices = {row.name: locate(cls.dtype, row.path)[0] // _BYTES for row in rows(cls)}
+        for name, k in cls.indices.items():
             if name not in cls.fields:
                 setattr(cls, name, _by_full_name(k))
 

@@ -18,9 +18,9 @@ class PrecisionLanding(ParameterGroup):
     LAND_OFS_Y: float = param(0, -2000, 2000, "cm", "So far to its right")
     EST_TYPE: float = param(1, 0, 1, "", "0: each measurement counts as it is; 1: a Kalman filter", INT8)
     ACC_P_NSE: float = param(2.5, 0.5, 5.0, "m/s/s", "Noise of the acceleration, as the Kalman filter has it")
-    CAM_POS_X: float = param(0, -5.0, 5.0, "m", "Place of the sensor on the vehicle, forward")
-    CAM_POS_Y: float = param(0, -5.0, 5.0, "m", "Place of the sensor on the vehicle, right")
-    CAM_POS_Z: float = param(0, -5.0, 5.0, "m", "Place of the sensor on the vehicle, down")
+    CAM_POS_X: float = param(0, -5.0, 5.0, "m", "Position of the sensor on the vehicle, forward")
+    CAM_POS_Y: float = param(0, -5.0, 5.0, "m", "Position of the sensor on the vehicle, right")
+    CAM_POS_Z: float = param(0, -5.0, 5.0, "m", "Position of the sensor on the vehicle, down")
     LAG: float = param(0.02, 0.0, 0.25, "s", "Age of a measurement when it arrives")
     XY_DIST_MAX: float = param(2.5, 0.0, 10.0, "m", "No descent while the target is further aside; 0: no limit")
     STRICT: float = param(

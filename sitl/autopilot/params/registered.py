@@ -6,16 +6,16 @@ from __future__ import annotations
 import re
 from typing import TypeVar
 
-from ...core.places import ExtensionError, Places
+from ...core.extensions import ExtensionError, Extensions
 from .parameter import ParameterGroup
 from .parameters import Parameters
 
 P = TypeVar("P", bound=Parameters)
 
-_PLACES = Places("SITL_PARAMETERS", "group of parameters")
+_EXTENSIONS = Extensions("SITL_PARAMETERS", "group of parameters")
 
 
-def register_parameters(firmware: str, prefix: str, place: str) -> None:
+def register_parameters(firmware: str, prefix: str, reference: str) -> None:
     """Give a firmware a group of parameters of another package, before the firmware is imported.
 
     Laws read it as ``autopilot.params.PREFIX``; its names begin with "PREFIX_", and come last on the wire.
@@ -23,16 +23,16 @@ def register_parameters(firmware: str, prefix: str, place: str) -> None:
     Args:
         firmware: "copter" or "rover".
         prefix: capital letters and digits, not taken.
-        place: where the class of the group is: "package.module:NAME", importable by that name.
+        reference: where the class of the group is: "package.module:NAME", importable by that name.
 
     Raises:
         ExtensionError: too late, or an argument is no such text.
     """
     if not re.fullmatch(r"[A-Z][A-Z0-9]{0,9}", prefix):
         raise ExtensionError(
-            f"group of parameters {place}: prefix {prefix!r} is not 1 to 10 capital letters and digits"
+            f"group of parameters {reference}: prefix {prefix!r} is not 1 to 10 capital letters and digits"
         )
-    _PLACES.add(f"{firmware}.{prefix}", place)
+    _EXTENSIONS.add(f"{firmware}.{prefix}", reference)
 
 
 def with_registered(firmware: str, record: type[P]) -> type[P]:
@@ -41,4 +41,4 @@ def with_registered(firmware: str, record: type[P]) -> type[P]:
     Raises:
         ExtensionError: one cannot be imported, is no group, or has a prefix that is taken.
     """
-    return _PLACES.join(firmware, record, ParameterGroup)
+    return _EXTENSIONS.join(firmware, record, ParameterGroup)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names of parameters in other versions of ArduPilot, and what they are here.
 
-No file is converted (a real ArduPilot does not convert ``--defaults`` either): the user is told the name and the value
-that mean the same. Older versions have SYSID_THISMAV and GPS_TYPE; in 4.7 as it was released speeds and lengths are in
-metres, angles in degrees. Source: the parameter lists of 3.4 to 4.7, their release notes and what each version takes
-over from the one before.
+No file is converted (a real ArduPilot does not convert ``--defaults`` either): the user is notified of the name and the
+value that mean the same. Older versions have SYSID_THISMAV and GPS_TYPE; in 4.7 as it was released speeds and lengths
+are in metres, angles in degrees. Source: the parameter lists of 3.4 to 4.7, their release notes and what each version
+takes over from the one before.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ class LandingBeacon(ParameterGroup):
     ENABLE: float = param(0, 0, 1, "", "1: the beacon is on", INT8)
     LAT: float = param(0, -90, 90, "deg", "Latitude of the beacon")
     LON: float = param(0, -180, 180, "deg", "Longitude of the beacon")
-    HEIGHT: float = param(0, -100000, 100000, "m", "Height of the beacon over the place of power-on")
+    HEIGHT: float = param(0, -100000, 100000, "m", "Height of the beacon over the position of power-on")
     RATE: float = param(100, 1, 400, "Hz", "Measurements a second", INT32)
     TYPE: float = param(
         0, 0, 2, "", "Where it is seen: 0 in a cylinder, 1 in a cone, 2 in half a sphere of radius DIST_LMT", INT8

@@ -124,7 +124,7 @@ class Values:
 
     def __init__(self, table: Table, record: Parameters) -> None:
         self.table, self._record = table, record
-        self._numbers, self._places = record.numbers, record.places
+        self._numbers, self._indices = record.numbers, record.indices
         self._listed: tuple[Any, tuple[Parameter, ...]] | None = None
         """The values, and what is listed with them."""
         self.kept: dict[str, float] = {}
@@ -137,7 +137,7 @@ class Values:
         value = self.kept.get(name)
         if value is None:
             value = self.table.fixed.get(name)
-        return self._numbers[self._places[name]] if value is None else value
+        return self._numbers[self._indices[name]] if value is None else value
 
     def __setitem__(self, name: str, value: float) -> None:
         """Set one, as the firmware keeps it."""
@@ -157,7 +157,7 @@ class Values:
                 self.kept[name] = value
 
     def default(self, name: str) -> float:
-        """What clients and logs are told as a parameter's default."""
+        """What clients and logs get as a parameter's default."""
         parameter = self.table[name]
         return stored(parameter, self.defaults.get(name, parameter.default))
 

@@ -41,8 +41,8 @@ def try_arm(v: Vehicle, method: int, force: bool) -> int:
     ap.arming.auto_armed = True
     ap.arming.landed = False
     ap.arming.crash_ticks = 0
-    place = with_down(horizontal(ap.estimate.pos), 0.0)
-    smart_rtl_path.begin(ap.modes.path, place, ap.estimate.position_ok, v.time_us, ap.params.SRTL)
+    pos = with_down(horizontal(ap.estimate.pos), 0.0)
+    smart_rtl_path.begin(ap.modes.path, pos, ap.estimate.position_ok, v.time_us, ap.params.SRTL)
     note_heading(ap.modes.simple, ap.estimate.yaw)
     emit(ap.events, v.time_us, ARMED, float(method), 0.0)
     return 0

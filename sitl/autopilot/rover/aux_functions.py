@@ -41,7 +41,7 @@ FUNCTIONS = shared.by_number(
         *shared.COMMON,
         *(shared.change_mode(number, NAMES[mode], mode, request) for number, mode in _MODES.items() if mode in NAMES),
         AuxFunction(
-            7, _save_waypoint, "high: adds the place to the mission; disarmed begins a new one here", "SaveWaypoint"
+            7, _save_waypoint, "high: adds the position to the mission; disarmed begins a new one here", "SaveWaypoint"
         ),
         *shared.without_effect({63: "SailboatTack", 74: "SailboatMotor", 97: ""}),
         shared.arm_or_disarm(153, arming),

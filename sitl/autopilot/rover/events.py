@@ -23,9 +23,9 @@ EVENTS = with_registered("rover", (
     crash.CRASH_HOLD, smart_rtl_path.PATH_LOST, circle.CIRCLE_ADAPTED, navigation.COMMAND_ARRIVED, hits.HIT_OBSTACLE,
     guided_setpoints.SETPOINT_IGNORED, aux_switch.AUX_SWITCH, smart_rtl_path.PATH_LOW, follow.FOLLOW_OFFSET,
     follow.FOLLOW_OFF, fence.FENCE_BREACHED, fence.FENCE_CLEAR, fence.FENCE_SWITCHED, fence.FENCE_NEAR,
-    fence.FENCE_RECOVERY, planner.NO_WAY, landing_target.LANDING_TARGET_DID, dock.DOCK_DID, ekf.EKF_RELATIVE,
+    fence.FENCE_RECOVERY, planner.NO_PATH, landing_target.LANDING_TARGET_DID, dock.DOCK_DID, ekf.EKF_RELATIVE,
     ekf.EKF_STOPPED_AIDING, ekf.EKF_USES, ekf.EKF_LANE_SWITCHED, ekf.EKF_COMPASS_CHANGED,
-    bendy_ruler.BENDY_RULER_LOOKED, fence_items.FENCE_LOADED, rally.RALLY_LOADED, planner.WAY_LAID,
+    bendy_ruler.BENDY_RULER_LOOKED, fence_items.FENCE_LOADED, rally.RALLY_LOADED, planner.PATH_PLANNED,
     ekf.EKF_EMERGENCY_YAW, failsafe_checks.EVENT_BATTERY_LOW, failsafe_checks.EVENT_BATTERY_CRITICAL,
     failsafe_checks.EVENT_BATTERY_MISSING,
 ))  # fmt: skip

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Failsafes: radio, ground station (FS_ACTION after FS_TIMEOUT), battery (BATT_FS_LOW_ACT, _CRT_ACT), estimator.
 
-FAILSAFE (which, 1 on or 0 off) tells the shell. The pilot's sticks count as centred as soon as the radio is lost.
+FAILSAFE (which, 1 on or 0 off) reports to the shell. The pilot's sticks count as centred as soon as the radio is lost.
 """
 
 from __future__ import annotations
@@ -59,12 +59,12 @@ def text(which: int, on: int) -> str | None:
     return _TEXTS.get((which, on != 0)) or failsafe_checks.text(which, on != 0)
 
 
-def _told(v: Any, which: float, on: float) -> list[Text]:
+def _texts(v: Any, which: float, on: float) -> list[Text]:
     said, severity = text(int(which), int(on != 0.0)), MavSeverity.WARNING if on != 0.0 else MavSeverity.INFO
     return [Text(MavSeverity.CRITICAL if which in (EKF, VARIANCE) else severity, said)] if said else []
 
 
-FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_told)
+FAILSAFE = failsafe_checks.FAILSAFE.saying(says=_texts)
 
 
 @law

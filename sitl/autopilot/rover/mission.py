@@ -10,8 +10,8 @@ from ...core.vectors import Vec3
 from ..mission import item as commands
 from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import MissionItem
+from ..mission.location import point
 from ..mission.notes import Note
-from ..mission.place import point
 from ..navigation import command
 from ..navigation import state as kinds
 from ..navigation.planner import end
@@ -58,19 +58,19 @@ class RoverCommands(Commands[Vehicle]):
         waypoint.stop(v.autopilot.modes.nav)
 
     def give(self, v: Vehicle, seq: int, item: MissionItem) -> list[Note]:
-        """Make ``item`` the command under way; without a place it is where the vehicle is."""
+        """Make ``item`` the command under way; without a position it is where the vehicle is."""
         ap = v.autopilot
         nav = ap.modes.nav
         kind = KINDS[item.command]
         if kind == kinds.GUIDED and not item.p1 > 0.0:
             kind = kinds.PASSED_OVER  # it would end guided driving, which has ended
-        place = flat(point(ap, item, flat(ap.estimate.pos)))
+        position = flat(point(ap, item, flat(ap.estimate.pos)))
         if kind in LEGS:
-            PLANNER.begin(ap, v.time_us, place)
+            PLANNER.begin(ap, v.time_us, position)
         elif kind in (kinds.LOITER_TURNS, kinds.GUIDED):
-            nav.target = place
+            nav.target = position
         command.give(nav, kind, seq)
-        nav.has_place = not item.no_place
+        nav.has_place = not item.no_location
         if kind in LEGS:
             nav.delay = 0.0 if kind == kinds.LOITER_UNLIMITED else whole_seconds(item)
         elif kind == kinds.LOITER_TURNS:
@@ -85,7 +85,7 @@ class RoverCommands(Commands[Vehicle]):
         return []
 
     def look_ahead(self, v: Vehicle, item: MissionItem | None, after: MissionItem | None) -> None:
-        """Plan the leg to the following place when the current command is a waypoint without delay."""
+        """Plan the leg to the following position when the current command is a waypoint without delay."""
         ap = v.autopilot
         nav = ap.modes.nav
         if nav.command_kind != kinds.WAYPOINT or nav.delay > 0.0:
@@ -126,9 +126,9 @@ class RoverCommands(Commands[Vehicle]):
         return is_speed(speed) and set_mode.change_speed(v, speed)
 
 
-def flat(place: Vec3) -> Vec3:
+def flat(position: Vec3) -> Vec3:
     """The point of the plane in which a rover's paths lie, NED [m]."""
-    return Vec3(place.x, place.y, 0.0)
+    return Vec3(position.x, position.y, 0.0)
 
 
 COMMANDS = RoverCommands()

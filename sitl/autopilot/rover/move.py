@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rover's controllers and modes are put elsewhere with it: their targets keep their place beside the vehicle."""
+"""The rover's controllers and modes are put elsewhere with it: their targets keep their position beside the vehicle."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def move_guided(g: GuidedState, d: Displacement) -> None:
 
 @law
 def move_loiter(state: LoiterState, d: Displacement) -> None:
-    """LOITER's place."""
+    """LOITER's position."""
     state.place, state.heading = moved_ne(d, state.place), turned_heading(d, state.heading)
 
 
@@ -67,7 +67,7 @@ def move_nav(nav: RoverNav, d: Displacement) -> None:
 
 @law
 def move_modes(m: Modes, d: Displacement) -> None:
-    """Set-points and places of the modes."""
+    """Set-points and positions of the modes."""
     move_guided(m.guided, d)
     move_loiter(m.loiter, d)
     move_circle(m.circle, d)

@@ -27,19 +27,19 @@ class Ground(NamedTuple):
 
 
 @law
-def height_in_square(t: Terrain, place: Vec2) -> float:
-    """Height [m above sea level] at a place NE [m] in the square or a little beside it, by those of its corners."""
-    u, w = (place.x - t.north) / t.spacing, (place.y - t.east) / t.spacing
+def height_in_square(t: Terrain, position: Vec2) -> float:
+    """Height [m above sea level] at a position NE [m] in the square or a little beside it, by those of its corners."""
+    u, w = (position.x - t.north) / t.spacing, (position.y - t.east) / t.spacing
     south = t.corners[0] + w * (t.corners[1] - t.corners[0])
     north = t.corners[2] + w * (t.corners[3] - t.corners[2])
     return south + u * (north - south)
 
 
 @law
-def is_inside(t: Terrain, place: Vec2) -> bool:
-    """Whether a place NE [m] is in the square."""
+def is_inside(t: Terrain, position: Vec2) -> bool:
+    """Whether a position NE [m] is in the square."""
     size = float(t.spacing)
-    return 0.0 <= place.x - t.north <= size and 0.0 <= place.y - t.east <= size
+    return 0.0 <= position.x - t.north <= size and 0.0 <= position.y - t.east <= size
 
 
 @law

@@ -26,12 +26,12 @@ RANGES = tuple(f"rng_{k}" for k in range(1, 7))
 
 
 class MotionError(SitlError, ValueError):
-    """A line that tells of no motion; the message says what is wrong with it."""
+    """A line that reports no motion; the message says what is wrong with it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """What a line tells. NED from the vehicle's home, body axes forward, right, down."""
+    """What a line reports. NED from the vehicle's home, body axes forward, right, down."""
 
     time: float
     """Of the physics [s]."""
@@ -46,7 +46,7 @@ class Motion:
     attitude: tuple[float, ...]
     """Quaternion, body to NED, w x y z, of length 1."""
     ranges: tuple[float | None, ...] = ()
-    """Of the range-finders 1 .. 6 [m]; None: not told."""
+    """Of the range-finders 1 .. 6 [m]; None: not reported."""
     battery: tuple[float, float] | None = None
     """Voltage [V], current [A]."""
     receiver: tuple[int, ...] = ()
@@ -54,7 +54,7 @@ class Motion:
 
 
 def decode(line: bytes) -> Motion:
-    """What a line tells.
+    """What a line reports.
 
     Raises:
         MotionError: it is no JSON, a field that must be there is not, or a number is not finite or absurd.

@@ -39,7 +39,7 @@ LEG_SPEEDS = {"WPNAV_SPEED": "speed_ne", "WPNAV_SPEED_UP": "speed_up", "WPNAV_SP
 SPEED_MODES = (auto.AUTO, GUIDED, GUIDED_NOGPS, RTL_MODE, SMART_RTL)
 """In which DO_CHANGE_SPEED is taken."""
 FIRST = ("Motors: ", "Interlock/E-Stop Conflict", "Motor Interlock Enabled")
-"""Failed checks that are told alone: the others are not made then."""
+"""Failed checks that are reported alone: the others are not made then."""
 LEG_MODES = (auto.AUTO, RTL_MODE, SMART_RTL, zigzag.ZIGZAG)
 """In which a speed of legs acts as soon as it is set."""
 FRAME_PARAMETERS = ("FRAME_", "SERVO")
@@ -78,11 +78,11 @@ class CopterAutopilot(BaseAutopilot):
         auto.start_mission(self._v.autopilot.modes.auto, self._v.autopilot.arming)
         return True
 
-    def go_back(self, way: int) -> bool:
+    def go_back(self, how: int) -> bool:
         """AUTO_RTL by a return path (BY_PATH) or a landing sequence (BY_LANDING)."""
         if self.mode() != auto.AUTO and self._is_blocked(auto.AUTO):
             return False
-        return int(set_mode.go_back(self._v, way, BY_GROUND_STATION)) == 0
+        return int(set_mode.go_back(self._v, how, BY_GROUND_STATION)) == 0
 
     # ------------------------------------------------------------------ take-off and motors
 
@@ -170,11 +170,11 @@ class CopterAutopilot(BaseAutopilot):
 
     # ------------------------------------------------------------------ GUIDED
 
-    def guided_position(self, place: Vector) -> bool:
-        return int(guided_setpoints.set_position(self._v, Vec3(*place), guided_setpoints.NO_YAW)) == 0
+    def guided_position(self, position: Vector) -> bool:
+        return int(guided_setpoints.set_position(self._v, Vec3(*position), guided_setpoints.NO_YAW)) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
-        """SPEED_TYPE of MAVLink, ``speed`` [m/s]; refused in modes that fly to no place."""
+        """SPEED_TYPE of MAVLink, ``speed`` [m/s]; refused in modes that fly to no position."""
         kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
         if self.mode() not in SPEED_MODES or not 0 <= kind < len(kinds):
             return False
@@ -216,8 +216,8 @@ class CopterAutopilot(BaseAutopilot):
             self._say(MavSeverity.INFO, ["Failed to pause" if on else "Failed to resume"])
         return done
 
-    def set_roi(self, place: Vector | None) -> None:
-        if place is None:
+    def set_roi(self, position: Vector | None) -> None:
+        if position is None:
             commands.clear_roi(self._v.autopilot)
         else:
-            commands.set_roi(self._v.autopilot, Vec3(*place))
+            commands.set_roi(self._v.autopilot, Vec3(*position))

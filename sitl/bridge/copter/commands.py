@@ -15,7 +15,7 @@ from ...autopilot.navigation.state import BY_LANDING, BY_PATH
 from ...core.mavlink import MavFrame, MavResult, MotorTestThrottleType
 from ..channel import Channel
 from ..host import Host
-from ..places import GLOBAL_FRAMES
+from ..locations import GLOBAL_FRAMES
 from ..services import command_table
 from ..services.command import Command, Entry, answered, is_on_earth, result
 from ..services.command_table import set_mode
@@ -39,7 +39,7 @@ def loiter(bridge: Host, channel: Channel, command: Command) -> int:
 
 
 def land(bridge: Host, channel: Channel, command: Command) -> int:
-    """21, 85: changes to LAND, where the vehicle is; the command's place is not used (as in ArduCopter)."""
+    """21, 85: changes to LAND, where the vehicle is; the command's location is not used (as in ArduCopter)."""
     return set_mode(bridge, LAND)
 
 
@@ -97,7 +97,7 @@ def pause_continue(bridge: Host, channel: Channel, command: Command) -> int:
 
 
 def set_roi(bridge: Host, channel: Channel, command: Command) -> int:
-    """195, 201: point the nose at a place, or the gimbal if it has a yaw axis; all zero ends it."""
+    """195, 201: point the nose at a location, or the gimbal if it has a yaw axis; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return MavResult.DENIED
     if not is_on_earth(command.lat, command.lon):
@@ -108,10 +108,10 @@ def set_roi(bridge: Host, channel: Channel, command: Command) -> int:
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         _copter(bridge).set_roi(None)
         return command_table.look_at(bridge, channel, command)
-    place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
-    if place is None:
+    position = bridge.locations.ned(command.lat, command.lon, command.z, command.frame)
+    if position is None:
         return MavResult.FAILED
-    _copter(bridge).set_roi(place)
+    _copter(bridge).set_roi(position)
     return command_table.look_at(bridge, channel, command)
 
 
@@ -152,8 +152,8 @@ def landing_sequence(bridge: Host, channel: Channel, command: Command) -> int:
     return _go_back(bridge, BY_LANDING)
 
 
-def _go_back(bridge: Host, way: int) -> int:
-    return answered(bridge, _copter(bridge).go_back(way))
+def _go_back(bridge: Host, how: int) -> int:
+    return answered(bridge, _copter(bridge).go_back(how))
 
 
 COMMANDS: dict[int, Entry] = {
@@ -169,9 +169,9 @@ COMMANDS: dict[int, Entry] = {
     188: Entry(return_path),
     189: Entry(landing_sequence),
     193: Entry(pause_continue, required=(1,)),
-    195: Entry(set_roi, required=(5, 6, 7), place=True, off_earth=True),
+    195: Entry(set_roi, required=(5, 6, 7), has_location=True, off_earth=True),
     197: Entry(no_roi),
-    201: Entry(set_roi, required=(5, 6, 7), place=True, off_earth=True),
+    201: Entry(set_roi, required=(5, 6, 7), has_location=True, off_earth=True),
     208: Entry(release_parachute, required=(1,)),
     209: Entry(motor_test, required=(1, 2, 3, 4)),
     2520: Entry(move_landing_gear),

@@ -26,7 +26,7 @@ from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Quat, Vec3
 from ...vehicle.copter import Copter
-from ..places import FRAMES_TERRAIN, GLOBAL_FRAMES, LocalPlace, local_place
+from ..locations import FRAMES_TERRAIN, GLOBAL_FRAMES, LocalPosition, local_position
 from ..services import setpoints
 from ..services.follow import take_position
 from ..telemetry.motion import GlobalPositionInt
@@ -42,7 +42,7 @@ UNIT = 1e-3
 
 @law
 def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
-    """Fly to a place, with a velocity or an acceleration, in a local frame."""
+    """Fly to a location, with a velocity or an acceleration, in a local frame."""
     if not is_guided(v.autopilot.modes):
         return
     if m.coordinate_frame not in setpoints.LOCAL_FRAMES:
@@ -53,27 +53,27 @@ def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Copter, sen
 
 @law
 def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
-    """The same with a place on the globe; before there is an origin it is ignored."""
+    """The same with a location on the globe; before there is an origin it is ignored."""
     if not is_guided(v.autopilot.modes):
         return
     frame, use_pos = m.coordinate_frame, (m.type_mask & setpoints.POSITION_IGNORED) == 0
-    if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt) and is_place(m.lat_int, m.lon_int)):
+    if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt) and is_location(m.lat_int, m.lon_int)):
         stop(v)
         return
-    place = local_place(v.autopilot, m.lat_int, m.lon_int, m.alt, frame)
+    position = local_position(v.autopilot, m.lat_int, m.lon_int, m.alt, frame)
     if use_pos and frame in FRAMES_TERRAIN and not is_flat(v):
-        follow_over_ground(v, m, place)
-    elif place.is_known or not use_pos:
-        follow(v, setpoints.global_target(m, place.pos), (m.type_mask & setpoints.FORCE) != 0)
+        follow_over_ground(v, m, position)
+    elif position.is_known or not use_pos:
+        follow(v, setpoints.global_target(m, position.pos), (m.type_mask & setpoints.FORCE) != 0)
 
 
 @law
-def follow_over_ground(v: Copter, m: setpoints.SetPositionTargetGlobalInt, place: LocalPlace) -> None:
-    """Fly to a place at a height above the ground; with a velocity that is nothing that can be flown."""
-    target = setpoints.global_target(m, Vec3(place.pos.x, place.pos.y, -m.alt))
+def follow_over_ground(v: Copter, m: setpoints.SetPositionTargetGlobalInt, position: LocalPosition) -> None:
+    """Fly to a location at a height above the ground; with a velocity that is nothing that can be flown."""
+    target = setpoints.global_target(m, Vec3(position.pos.x, position.pos.y, -m.alt))
     if target.use_vel or target.use_acc or not is_finite(target):
         stop(v)
-    elif place.is_known:
+    elif position.is_known:
         set_position_over_ground(v, target.pos, yaw_of(target))
 
 
@@ -117,7 +117,7 @@ def is_absurd(vel: Vec3) -> bool:
 
 
 @law
-def is_place(lat: int, lon: int) -> bool:
+def is_location(lat: int, lon: int) -> bool:
     """Whether there is such a latitude and longitude [degE7]."""
     return abs(lat) <= 900_000_000 and abs(lon) <= 1_800_000_000
 

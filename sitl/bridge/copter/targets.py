@@ -24,13 +24,13 @@ from ..telemetry.own import NavControllerOutput, PositionTargetGlobalInt
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
 from ..wire.message import Message, consecutive
 
-_FLY_TO_A_PLACE = (AUTO, GUIDED, RTL, SMART_RTL)
-_FOLLOW_A_TRACK = (*_FLY_TO_A_PLACE, LOITER, ZIGZAG)
+_FLY_TO_A_POSITION = (AUTO, GUIDED, RTL, SMART_RTL)
+_FOLLOW_A_TRACK = (*_FLY_TO_A_POSITION, LOITER, ZIGZAG)
 
 
 @law
 def beside_track(c: PositionState, pos: Vec3) -> float:
-    """Distance beside the track [m]: across the velocity wanted, or to the place where there is none."""
+    """Distance beside the track [m]: across the velocity wanted, or to the location where there is none."""
     error, along = c.pos_desired - Vec2(pos.x, pos.y), c.vel_desired
     speed = norm2(along)
     if speed == 0.0:
@@ -50,7 +50,7 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
         to = modes.nav.target
     else:
         to = v.autopilot.home.pos
-    if modes.number in _FLY_TO_A_PLACE:
+    if modes.number in _FLY_TO_A_POSITION:
         m.target_bearing = int16(atan2(to.y - pos.y, to.x - pos.x) * DEG)
         m.wp_dist = uint16(hypot(to.x - pos.x, to.y - pos.y))
     if modes.number in _FOLLOW_A_TRACK:
@@ -62,10 +62,10 @@ def nav_controller_output(m: NavControllerOutput, v: Copter) -> bool:
     return True
 
 
-PLACE = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
+POSITION = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED
 TARGET_MASKS = (
-    PLACE,  # TAKEOFF
-    PLACE,  # POSITION
+    POSITION,  # TAKEOFF
+    POSITION,  # POSITION
     YAWS_IGNORED,  # POS_VEL_ACCEL
     POSITION_IGNORED | YAWS_IGNORED,  # VELOCITY_ACCEL
     POSITION_IGNORED | VELOCITY_IGNORED | YAWS_IGNORED,  # ACCEL
@@ -104,12 +104,12 @@ def position_target_global(m: PositionTargetGlobalInt, v: Copter) -> bool:
     if not estimate.origin_set or (modes.number != AUTO and modes.number != GUIDED):
         return False
     to = from_origin(modes.nav, modes.guided.pos if is_guided(modes) else modes.nav.target)
-    place = add_offset(estimate.origin_lat, estimate.origin_lon, to.x, to.y)
+    location = add_offset(estimate.origin_lat, estimate.origin_lon, to.x, to.y)
     m.time_boot_ms = boot_ms(v.time_us)
-    m.lat_int = int32(place.lat)
-    m.lon_int = int32(place.lon)
+    m.lat_int = int32(location.lat)
+    m.lon_int = int32(location.lon)
     m.alt = estimate.origin_alt - to.z
-    m.type_mask = LAST_BITS | PLACE
+    m.type_mask = LAST_BITS | POSITION
     return True
 
 

@@ -188,7 +188,7 @@ FROM_ESCS = 5
 
 @law
 def rpm(m: Rpm, v: Copter) -> bool:
-    """RPM: mean speed of the motors as their controllers tell it; only with RPM1_TYPE 5."""
+    """RPM: mean speed of the motors as their controllers report it; only with RPM1_TYPE 5."""
     motors = v.sensors.esc_motors
     total = 0.0
     for k in range(motors):

@@ -28,12 +28,12 @@ def terrain_report(m: TerrainReport, v: Copter) -> bool:
     ap = v.autopilot
     t = ap.terrain
     difference = ap.home.pos.z - by_grid(t, ap.estimate.pos, ap.home.pos.z).d
-    place = global_position(v)
-    m.lat, m.lon = place.lat, place.lon
+    location = global_position(v)
+    m.lat, m.lon = location.lat, location.lon
     m.spacing = uint16(float(t.spacing)) if t.is_known else 0
     m.terrain_height = t.home + difference + t.offset
     known = t.was_known or not t.asked
-    m.current_height = ap.home.pos.z - ap.estimate.pos.z - difference if known else place.alt
+    m.current_height = ap.home.pos.z - ap.estimate.pos.z - difference if known else location.alt
     m.pending, m.loaded = uint16(float(t.pending)), uint16(float(t.loaded))
     return True
 

@@ -36,7 +36,7 @@ class AutopilotEnd:
     """One vehicle's autopilot on a link to its physics.
 
     Args:
-        fleet, index: the record, whose memory stays in place; it has the figures of its airframe.
+        fleet, index: the record, whose memory stays in place; it has the properties of its airframe.
         v: view of it.
         vehicle_type: MAV_TYPE for the heartbeat.
     """
@@ -57,7 +57,7 @@ class AutopilotEnd:
         self._until_ack = 0
         """Command whose acknowledgement has to come first."""
         self.truth_us, self.truth = -1, truth.NOWHERE
-        """Where the vehicle really is, as last told, and when that was [us]."""
+        """Where the vehicle really is, as last reported, and when that was [us]."""
         self.refused = 0
         """Messages with numbers that cannot be right."""
         self.repeated = 0

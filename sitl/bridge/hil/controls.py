@@ -90,13 +90,13 @@ def stretch(given: Controls, lowest: float, highest: float) -> Controls:
 def actuators_writer(fleet: np.ndarray[Any, Any], index: int) -> Callable[[Controls], None]:
     """A function that puts an answer into a record's actuators."""
     start = index * fleet.dtype.itemsize
-    place = start + locate(fleet.dtype, "actuators.controls")[0]
+    address = start + locate(fleet.dtype, "actuators.controls")[0]
     armed = start + locate(fleet.dtype, "actuators.armed")[0]
     memory = fleet.view("u1").data
     write, write_armed = struct.Struct(f"<{OUTPUTS}f").pack_into, struct.Struct("<q").pack_into
 
     def put(controls: Controls) -> None:
-        write(memory, place, *controls.outputs)
+        write(memory, address, *controls.outputs)
         write_armed(memory, armed, 1 if controls.mode & MavModeFlag.SAFETY_ARMED else 0)
 
     return put

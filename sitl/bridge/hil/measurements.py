@@ -30,7 +30,7 @@ class GpsWriter:
 
     Args:
         reader: of the record.
-        airframe: its record, with the figures of its receiver.
+        airframe: its record, with the properties of its receiver.
     """
 
     marks = (S + "count", S + "fix")
@@ -90,7 +90,7 @@ class GpsReader:
         """The fields, checked.
 
         Raises:
-            RefusedError: a place that is not on the globe, or an absurd time or fix.
+            RefusedError: a position that is not on the globe, or an absurd time or fix.
         """
         values: tuple[Any, ...] = GPS_KIND.unpack_from(payload.ljust(GPS_KIND.size, b"\0"))
         t, lat, lon, fix = values[0], values[1], values[2], values[11]
@@ -161,7 +161,7 @@ class Measurements:
         if hasattr(v.physics, "ground"):
             sources.append(_Plain(truth.HITS_KIND, truth.HitWriter(reader, "physics.ground", truth.GROUND)))
         self.marks = tuple(mark for source in sources for mark in source.marks)
-        """Fields of the record that change when there is more to tell than HIL_SENSOR."""
+        """Fields of the record that change when there is more to report than HIL_SENSOR."""
         self._read = reader.fields(*self.marks)
         self._slots: list[tuple[slice, Source]] = []
         at = 0
@@ -191,7 +191,7 @@ class Measurements:
         if marks == self._seen:
             return self.sender.frame(sensor.SENSOR_KIND, self.imu.payload())
         seen, self._seen = self._seen, marks
-        frames = [self._frames(source) for place, source in self._slots if marks[place] != seen[place]]
+        frames = [self._frames(source) for index, source in self._slots if marks[index] != seen[index]]
         return b"".join(frames) + self.sender.frame(sensor.SENSOR_KIND, self.imu.payload())
 
     def _frames(self, source: Source) -> bytes:
@@ -205,7 +205,7 @@ class Inbox:
     """Writes one vehicle's ``sensors``.
 
     Args:
-        fleet, index: the record, whose memory stays in place; it has the figures of its airframe.
+        fleet, index: the record, whose memory stays in place; it has the properties of its airframe.
         v: view of it.
     """
 

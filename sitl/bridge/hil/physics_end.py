@@ -130,7 +130,7 @@ class PhysicsEnd:
         return self._truth_every_us, self._truth_due_us
 
     def go_on_with(self, ticks: int, is_armed: bool, truth_due_us: int, is_last_unsent: bool) -> bytes:
-        """So many ticks were answered elsewhere; gives what the last of them has to tell, unless it was told."""
+        """So many ticks were answered elsewhere; gives what the last of them has to report, unless it was reported."""
         sent = ticks - is_last_unsent
         self._complained = False
         self._now += sent * TICK_US
@@ -216,7 +216,7 @@ class PhysicsEnd:
         return self._send()
 
     def _send(self) -> bytes:
-        """What the next tick, which is done, has to tell."""
+        """What the next tick, which is done, has to report."""
         self._now += TICK_US
         self.ticks += 1
         self.clock.sent(self._now)

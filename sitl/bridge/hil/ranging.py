@@ -79,7 +79,7 @@ class ScanReader:
     """
 
     def __init__(self, v: Any, samples: int) -> None:
-        self._sensors, self._samples, self._figures = v.sensors, samples, v.physics.airframe
+        self._sensors, self._samples, self._properties = v.sensors, samples, v.physics.airframe
         self._readings = np.empty(samples, np.float32)
         self._parts = -(-samples // PART)
         self._time_us, self._next = -1, 0
@@ -116,7 +116,7 @@ class ScanReader:
             s.lidar_ranges[: self._samples] = self._readings
             s.lidar_time_us = t
             s.lidar_count += 1
-            show_lidar(s, self._figures)
+            show_lidar(s, self._properties)
 
 
 class RangeReader:

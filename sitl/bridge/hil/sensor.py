@@ -36,7 +36,7 @@ DITHER_MAG, DITHER_BARO = 1e-5, 1e-3
 """What every second sample shows more [gauss], [hPa]: little of the earth's field, a centimetre."""
 
 Sent = tuple[int, int, float]
-"""Samples of magnetometer and barometer that were told last, and the height by the latter [m]."""
+"""Samples of magnetometer and barometer that were reported last, and the height by the latter [m]."""
 Values = tuple[Any, ...]
 """Fields in wire order."""
 
@@ -177,7 +177,7 @@ class BatteryReader:
 
 WHEELS_KIND = message("WHEEL_DISTANCE")
 WHEELS_S = "sensors.wheel_"
-WHEELS, PLACES = 2, 16
+WHEELS, SLOTS = 2, 16
 _WHEELS_LIMITS = (1e9,) * WHEELS
 _NAMES = ("distance[0]", "distance[1]")
 
@@ -193,7 +193,7 @@ class WheelWriter:
     def payloads(self) -> list[bytes]:
         """The last sample, at the present time; nothing without encoders."""
         t, count, left, right = self._read()
-        return [WHEELS_KIND.pack(t, left, right, *(0.0,) * (PLACES - WHEELS), WHEELS)] if count else []
+        return [WHEELS_KIND.pack(t, left, right, *(0.0,) * (SLOTS - WHEELS), WHEELS)] if count else []
 
 
 class WheelReader:

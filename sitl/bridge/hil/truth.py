@@ -26,9 +26,9 @@ NOWHERE = Carried((1.0, 0.0, 0.0, 0.0), (0.0,) * 3, 0, 0, 0, (0,) * 3, (0,) * 3)
 def truth_payload(time_us: int, truth: Carried) -> bytes:
     """The message; air speed is the speed over the ground, as without wind."""
     speed = uint16(lengths(truth.velocity))
-    place = truth.lat, truth.lon, truth.alt
+    location = truth.lat, truth.lon, truth.alt
     return TRUTH_KIND.pack(
-        time_us, *truth.attitude, *truth.rates, *place, *truth.velocity, speed, speed, *truth.acceleration
+        time_us, *truth.attitude, *truth.rates, *location, *truth.velocity, speed, speed, *truth.acceleration
     )
 
 
@@ -77,9 +77,9 @@ class HitReader:
     """From payloads into a record, where the autopilot's tick looks for touches."""
 
     def __init__(self, v: Any) -> None:
-        self._places: dict[str, Any] = {SOLID: v.physics.obstacles}
+        self._contacts: dict[str, Any] = {SOLID: v.physics.obstacles}
         if hasattr(v.physics, "ground"):
-            self._places[GROUND] = v.physics.ground
+            self._contacts[GROUND] = v.physics.ground
 
     def read(self, payload: bytes) -> Hit | None:
         """The touch; None when the message is about something else.
@@ -89,7 +89,7 @@ class HitReader:
         """
         fields = HITS_KIND.decode(payload)
         name = fields.name.decode("ascii", "replace")
-        if name not in self._places:
+        if name not in self._contacts:
             return None
         if not within((fields.x,), _HITS_LIMITS):
             raise culprit(HITS_KIND.name, ("x",), (fields.x,), _HITS_LIMITS)
@@ -99,6 +99,6 @@ class HitReader:
 
     def write(self, hit: Hit) -> None:
         """Put a touch into the record."""
-        place = self._places[hit[2]]
-        place.hit_time_us, place.hit_speed = hit[0], hit[1]
-        place.hit_count += 1
+        contact = self._contacts[hit[2]]
+        contact.hit_time_us, contact.hit_speed = hit[0], hit[1]
+        contact.hit_count += 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ways for bytes to reach a client: in process, UDP, TCP; and links written as text: ``udp:127.0.0.1:14550``."""
+"""Links by which bytes reach a client: in process, UDP, TCP; and links written as text: ``udp:127.0.0.1:14550``."""
 
 from __future__ import annotations
 

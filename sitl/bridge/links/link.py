@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ...errors import SitlError
 
 if TYPE_CHECKING:
-    from .faulty_way import Ways
+    from .faulty_direction import Directions
 
 Selector = selectors.BaseSelector
 
@@ -34,7 +34,7 @@ class Peer:
     is_signed = True
     """Whether frames to and from it are signed once the vehicle has a key (``sitl.bridge.signing``)."""
     takes_unsigned = False
-    """Whether its frames are heard without signature then, too."""
+    """Whether its frames are received without signature then, too."""
     is_log = False
     """Whether it is a log, which gets what other clients are answered, too."""
 
@@ -44,7 +44,7 @@ class Peer:
         self.why_closed = ""
         self.last_received = 0
         """Number of the last piece of bytes that came from it on its link; 0 before the first."""
-        self.ways: Ways | None = None
+        self.directions: Directions | None = None
         """Between it and the vehicle, where the link has faults."""
         self._inbox: list[bytes] = []
         self.outbox: list[bytes] = []
@@ -128,7 +128,7 @@ class Link:
         peer.deliver(data)
 
     def silent_for_longest(self) -> Peer:
-        """The peer to go when there is no room for another; one that never said anything is first."""
+        """The peer to go when there is no space for another; one that never said anything is first."""
         return min(self.peers, key=lambda peer: peer.last_received)
 
     def take_unsigned(self) -> None:
@@ -185,7 +185,9 @@ class DatagramLink(Link):
         super().close()
 
 
-def heard(selector: Selector, links: Iterable[Link], peers: list[Peer], seconds: float) -> Iterator[tuple[Peer, bytes]]:
+def receive_all(
+    selector: Selector, links: Iterable[Link], peers: list[Peer], seconds: float
+) -> Iterator[tuple[Peer, bytes]]:
     """What each peer has sent, for who serves links by itself; waits up to ``seconds`` [s] wall time for something.
 
     Peers that are closed leave ``peers``.

@@ -29,7 +29,7 @@ _WEB = tuple(f"{word} ".encode() for word in ("GET", "POST", "HEAD", "PUT", "DEL
 """Beginnings of what a browser sends: it lets any site's page post bytes to this machine, frames among them."""
 
 
-_NO_ROOM = frozenset((errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM))
+_EXHAUSTED = frozenset((errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM))
 
 
 def _reserve() -> int:
@@ -143,7 +143,7 @@ class TcpServerLink(Link):
             self.refusals.append(f"{self.name}: connections are refused: {why}")
         self._refuses = True
 
-    def _make_room(self, error: OSError) -> None:
+    def _free_descriptor(self, error: OSError) -> None:
         """No descriptor or memory for a connection that waits, and that would be reported for ever.
 
         Close it in the place of the reserve; if that fails as well, do not look again before a client leaves.
@@ -154,7 +154,7 @@ class TcpServerLink(Link):
         try:
             self._socket.accept()[0].close()
         except OSError as again:
-            if again.errno in _NO_ROOM:
+            if again.errno in _EXHAUSTED:
                 self._listen(False)
         self._reserve = _reserve()
 
@@ -162,8 +162,8 @@ class TcpServerLink(Link):
         try:
             sock, address = self._socket.accept()
         except OSError as error:
-            if error.errno in _NO_ROOM:
-                self._make_room(error)
+            if error.errno in _EXHAUSTED:
+                self._free_descriptor(error)
             return  # else gone again before we looked
         if len(self.peers) >= MAX_CONNECTIONS:
             silent = self.silent_for_longest()

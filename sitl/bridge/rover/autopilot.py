@@ -61,9 +61,9 @@ class RoverAutopilot(BaseAutopilot):
         """Whether a mission waits for set-points (NAV_GUIDED_ENABLE)."""
         return self.mode() == AUTO and bool(guided_setpoints.is_open(self._modes))
 
-    def guided_position(self, place: Vector) -> bool:
-        """Drive to a place; its height means nothing to a rover."""
-        return int(guided_setpoints.set_position(self._v, Vec2(place[0], place[1]))) == 0
+    def guided_position(self, position: Vector) -> bool:
+        """Drive to a position; its height means nothing to a rover."""
+        return int(guided_setpoints.set_position(self._v, Vec2(position[0], position[1]))) == 0
 
     def change_speed(self, kind: int, speed: float) -> bool:
         """``speed`` [m/s]; airspeed (0) is ground speed (1), there are no others."""
@@ -80,12 +80,12 @@ class RoverAutopilot(BaseAutopilot):
     # ------------------------------------------------------------------ home
 
     def set_home_here(self) -> bool:
-        return self._told_home(super().set_home_here())
+        return self._report_home(super().set_home_here())
 
     def set_home(self, lat: int, lon: int, alt: float) -> bool:
-        return self._told_home(super().set_home(lat, lon, alt))
+        return self._report_home(super().set_home(lat, lon, alt))
 
-    def _told_home(self, ok: bool) -> bool:
+    def _report_home(self, ok: bool) -> bool:
         if ok:
             self._say(MavSeverity.INFO, [home.set_text(self._v.autopilot.home)])
         return ok

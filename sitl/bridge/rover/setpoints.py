@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the rover makes of set-points: a place to drive to, or a heading or turn rate with a speed.
+"""What the rover makes of set-points: a location to drive to, or a heading or turn rate with a speed.
 
 Rules of ArduRover (https://ardupilot.org/dev/docs/mavlink-rover-commands.html). A position is taken first; else a
 velocity becomes the heading of its direction and a speed up to WP_SPEED. With a yaw beside it the velocity gives the
@@ -28,7 +28,7 @@ from ...core.mavlink import MavFrame
 from ...core.scalars import constrain, finite
 from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
-from ..places import GLOBAL_FRAMES, local_place
+from ..locations import GLOBAL_FRAMES, local_position
 from ..services import setpoints
 from ..services.follow import take_position
 from ..telemetry.motion import GlobalPositionInt
@@ -41,7 +41,7 @@ LOCAL_NUMBER, GLOBAL_NUMBER = setpoints.SetPositionTargetLocalNed.kind.id, setpo
 
 @law
 def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Rover, sender: int) -> None:
-    """Drive to a place or with a velocity in a local frame."""
+    """Drive to a location or with a velocity in a local frame."""
     estimate = v.autopilot.estimate
     if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in setpoints.LOCAL_FRAMES:
         follow(v, setpoints.local_target(m, estimate), m.vel.x < 0.0, LOCAL_NUMBER)
@@ -49,12 +49,12 @@ def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Rover, send
 
 @law
 def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Rover, sender: int) -> None:
-    """The same with a place on the globe, whose height means nothing."""
+    """The same with a location on the globe, whose height means nothing."""
     if m.coordinate_frame not in GLOBAL_FRAMES or not is_open(v.autopilot.modes):
         return
-    place = local_place(v.autopilot, m.lat_int, m.lon_int, 0.0, MavFrame.GLOBAL)
-    if place.is_known or (m.type_mask & setpoints.POSITION_IGNORED) != 0:
-        follow(v, setpoints.global_target(m, place.pos), m.vel.x < 0.0, GLOBAL_NUMBER)
+    position = local_position(v.autopilot, m.lat_int, m.lon_int, 0.0, MavFrame.GLOBAL)
+    if position.is_known or (m.type_mask & setpoints.POSITION_IGNORED) != 0:
+        follow(v, setpoints.global_target(m, position.pos), m.vel.x < 0.0, GLOBAL_NUMBER)
 
 
 @law

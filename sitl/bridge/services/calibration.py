@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Calibration of gyros and accelerometers at rest, as MAV_CMD_PREFLIGHT_CALIBRATION asks for it.
 
-Accelerometers are calibrated level ("simple", "level"), or in six positions: clients are told the position (a text,
+Accelerometers are calibrated level ("simple", "level"), or in six positions: clients are sent the position (a text,
 and MAV_CMD_ACCELCAL_VEHICLE_POS once a second), and answer with that command, or with any COMMAND_ACK, when the vehicle
 is in it.
 """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The camera (CAM1_*): a servo output or a relay triggers it, or commands to other components of the vehicle.
 
-Whether there is one, CAM1_TYPE says at boot. No image is made: a picture is counted, and CAMERA_FEEDBACK tells of it.
+Whether there is one, CAM1_TYPE says at boot. No image is made: a picture is counted, and CAMERA_FEEDBACK reports it.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class State(NamedTuple):
     pictures: int = 0
     taken_us: int | None = None
     """When the last one was taken."""
-    place: tuple[float, float] | None = None
+    position: tuple[float, float] | None = None
     """Where, from the estimator's origin [m]; without a picture: where counting the distance began."""
     off_us: int = 0
     """When the output goes back."""
@@ -72,7 +72,7 @@ class CameraService(StatefulService):
         return {} if self.kind == camera.NO_CAMERA else {FEEDBACK.name: self.feedback}
 
     def feedback(self) -> bytes:
-        """CAMERA_FEEDBACK: place, attitude [deg] and time of the last picture; with CAM1_TYPE at boot."""
+        """CAMERA_FEEDBACK: location, attitude [deg] and time of the last picture; with CAM1_TYPE at boot."""
         return self._state.feedback
 
     # ------------------------------------------------------------------ what it is asked
@@ -157,7 +157,7 @@ class CameraService(StatefulService):
         off_us = now + self._us("CAM1_DURATION")
         pos, count = self.bridge.vehicle.v.autopilot.estimate.pos, state.pictures + 1
         self._state = state._replace(
-            feedback=self._report(count), pictures=count, taken_us=now, place=(float(pos.x), float(pos.y)),
+            feedback=self._report(count), pictures=count, taken_us=now, position=(float(pos.x), float(pos.y)),
             off_us=off_us, is_waiting=False,
         )  # fmt: skip
         if self.kind == camera.BY_MAVLINK:
@@ -212,13 +212,13 @@ class CameraService(StatefulService):
 
     def _look_at_distance(self) -> None:
         distance, estimate = self._values["CAM1_TRIGG_DIST"], self.bridge.vehicle.v.autopilot.estimate
-        place = self._state.place
+        position = self._state.position
         if not distance > 0.0:
-            if place is not None:
-                self._state = self._state._replace(place=None)
+            if position is not None:
+                self._state = self._state._replace(position=None)
         elif estimate.position_ok:
             x, y = float(estimate.pos.x), float(estimate.pos.y)
-            if place is None:
-                self._state = self._state._replace(place=(x, y))
-            elif hypot(x - place[0], y - place[1]) >= distance:
+            if position is None:
+                self._state = self._state._replace(position=(x, y))
+            elif hypot(x - position[0], y - position[1]) >= distance:
                 self.take_picture()

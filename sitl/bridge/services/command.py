@@ -27,14 +27,14 @@ class Command(NamedTuple):
     """p7: altitude [m] or whatever the command makes of it."""
     frame: int
     p5: float
-    """As given, for commands that are not about a place."""
+    """As given, for commands that are not about a location."""
     p6: float
     sender: tuple[int, int] = (0, 0)
     """System and component."""
 
 
 HIGHEST_M = 83_000.0
-"""ArduPilot keeps no altitude of a place that is further from zero."""
+"""ArduPilot keeps no altitude of a location that is further from zero."""
 
 
 class Entry(NamedTuple):
@@ -44,7 +44,7 @@ class Entry(NamedTuple):
     """Gives the MAV_RESULT."""
     required: tuple[int, ...] = ()
     """Parameters (1..7) that must be numbers: NaN is refused with DENIED."""
-    place: bool = False
+    has_location: bool = False
     """p5, p6 are latitude and longitude [deg] in COMMAND_LONG."""
     int_only: bool = False
     """COMMAND_LONG is UNSUPPORTED: single precision cannot say where."""
@@ -53,7 +53,7 @@ class Entry(NamedTuple):
     takes_nan: bool = False
     """A NaN stays one."""
     off_earth: bool = False
-    """``run`` answers a place that is not on Earth, too; else that is DENIED."""
+    """``run`` answers a location that is not on Earth, too; else that is DENIED."""
 
 
 def result(ok: bool) -> int:
@@ -70,14 +70,14 @@ def answered(bridge: Host, ok: bool) -> int:
 def from_long(fields: Any, entry: Entry) -> Command | None:
     """Command of a COMMAND_LONG, or None when a parameter is infinite, a required one NaN.
 
-    Or the place not on Earth, or too high.
+    Or the location not on Earth, or too high.
     """
     clean = _clean(tuple(getattr(fields, f"param{n}") for n in range(1, 8)), entry)
     if clean is None:
         return None
     p1, p2, p3, p4, p5, p6, p7 = clean
     lat = lon = 0
-    if entry.place:
+    if entry.has_location:
         if abs(p7) > HIGHEST_M or (not entry.off_earth and not (abs(p5) <= 90.0 and abs(p6) <= 180.0)):
             return None
         lat, lon = round(p5 * 1e7), round(p6 * 1e7)
@@ -104,7 +104,7 @@ def from_int(fields: Any, entry: Entry) -> Command | None:
     if clean is None:
         return None
     p1, p2, p3, p4, p5, p6, p7 = clean
-    if entry.place and (abs(p7) > HIGHEST_M or (not entry.off_earth and not is_on_earth(fields.x, fields.y))):
+    if entry.has_location and (abs(p7) > HIGHEST_M or (not entry.off_earth and not is_on_earth(fields.x, fields.y))):
         return None
     return Command(fields.command, p1, p2, p3, p4, fields.x, fields.y, p7, fields.frame, p5, p6)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The commands: about the autopilot itself, and about the vehicle.
 
-Commands about the vehicle that every firmware knows: arming, modes, outputs, places, the mission.
+Commands about the vehicle that every firmware knows: arming, modes, outputs, locations, the mission.
 
 Results as ArduPilot gives them.
 """
@@ -16,7 +16,7 @@ from ..autopilot_api import LONGEST_US
 from ..channel import Channel
 from ..dialect import message
 from ..host import Host
-from ..places import FRAMES_AMSL, GLOBAL_FRAMES
+from ..locations import FRAMES_AMSL, GLOBAL_FRAMES
 from ..telemetry.shell import banner
 from . import calibration
 from .calibration import CalibrationService
@@ -151,7 +151,7 @@ def cancel_compass_calibration(bridge: Host, channel: Channel, command: Command)
 
 
 def calibrate_compass_by_heading(bridge: Host, channel: Channel, command: Command) -> int:
-    """42006: p1 heading [deg], p2 bits of compasses (0 all), p3 and p4 place [deg] (0, 0: where the vehicle is)."""
+    """42006: p1 heading [deg], p2 bits of compasses (0 all), p3 and p4 location [deg] (0, 0: where the vehicle is)."""
     return int(bridge.get(CompassCalibrationService).use_heading(command.p1, command.p2, command.p3, command.p4))
 
 
@@ -297,7 +297,8 @@ def configure_mount(bridge: Host, channel: Channel, command: Command) -> int:
 
 
 def control_mount(bridge: Host, channel: Channel, command: Command) -> int:
-    """205: p1 pitch, p2 roll, p3 yaw [deg]; p7 0 folds, 1 neutral, 2 these angles, 3 sticks, 4 last place, 6 home."""
+    """205: p1 pitch, p2 roll, p3 yaw [deg]; p7 0 folds, 1 neutral, 2 these angles, 3 sticks, 4 last location,
+    6 home."""
     return int(bridge.get(MountService).control(command.p1, command.p2, command.p3, command.z))
 
 
@@ -318,7 +319,7 @@ def follow_system(bridge: Host, channel: Channel, command: Command) -> int:
 
 
 def look_at(bridge: Host, channel: Channel, command: Command) -> int:
-    """195, 201: the gimbal points at a place; all zero ends it."""
+    """195, 201: the gimbal points at a location; all zero ends it."""
     if command.frame not in GLOBAL_FRAMES:
         return MavResult.DENIED
     if not is_on_earth(command.lat, command.lon):
@@ -327,7 +328,7 @@ def look_at(bridge: Host, channel: Channel, command: Command) -> int:
     if command.lat == 0 and command.lon == 0 and command.z == 0.0:
         mount.look_ahead()
     else:
-        alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
+        alt = bridge.locations.alt(command.lat, command.lon, command.z, command.frame)
         if alt is None:
             return MavResult.FAILED
         mount.look_at(command.lat, command.lon, alt)
@@ -341,10 +342,10 @@ def look_ahead(bridge: Host, channel: Channel, command: Command) -> int:
 
 
 def reposition(bridge: Host, channel: Channel, command: Command) -> int:
-    """192: go to a place in GUIDED; p2 bit 1 changes to GUIDED first (else DENIED in another mode).
+    """192: go to a location in GUIDED; p2 bit 1 changes to GUIDED first (else DENIED in another mode).
 
-    The place is refused before the mode is changed. p1 is the speed [m/s] of a rover that drives to a place already
-    (FAILED to one that stands or is steered), and nothing to a copter.
+    The location is refused before the mode is changed. p1 is the speed [m/s] of a rover that drives to a location
+    already (FAILED to one that stands or is steered), and nothing to a copter.
     """
     if command.frame not in GLOBAL_FRAMES:
         bridge.get(StatusTextService).say(MavSeverity.WARNING, f"Unknown mavlink coordinate frame {command.frame}")
@@ -354,25 +355,25 @@ def reposition(bridge: Host, channel: Channel, command: Command) -> int:
     in_guided = bridge.autopilot.mode() == bridge.profile.guided
     if not in_guided and not (0.0 <= command.p2 < 2.0**31 and int(command.p2) & CHANGE_MODE):
         return MavResult.DENIED
-    place = bridge.places.ned(command.lat, command.lon, command.z, command.frame)
-    if place is None:
+    position = bridge.locations.ned(command.lat, command.lon, command.z, command.frame)
+    if position is None:
         return MavResult.FAILED
     if not in_guided and set_mode(bridge, bridge.profile.guided) != MavResult.ACCEPTED:
         return MavResult.FAILED
     if command.p1 > 0.0 and not bridge.autopilot.change_reposition_speed(command.p1):
         return MavResult.FAILED
-    return result(bridge.autopilot.guided_position(place))
+    return result(bridge.autopilot.guided_position(position))
 
 
 def set_home(bridge: Host, channel: Channel, command: Command) -> int:
-    """179: p1 1 (or latitude and longitude zero): here; else the place given."""
+    """179: p1 1 (or latitude and longitude zero): here; else the location given."""
     if command.p1 == 1.0 or (command.lat == 0 and command.lon == 0):
         return _home_result(bridge, bridge.autopilot.set_home_here())
     if command.frame not in GLOBAL_FRAMES and command.p1 == 0.0:
         return MavResult.DENIED
     if command.p1 != 0.0 or not is_on_earth(command.lat, command.lon):
         return MavResult.FAILED
-    alt = bridge.places.alt(command.lat, command.lon, command.z, command.frame)
+    alt = bridge.locations.alt(command.lat, command.lon, command.z, command.frame)
     if alt is None:
         return MavResult.FAILED
     return _home_result(bridge, bridge.autopilot.set_home(command.lat, command.lon, alt))
@@ -385,7 +386,7 @@ def set_origin(bridge: Host, channel: Channel, command: Command) -> int:
     if bridge.vehicle.v.autopilot.estimate.origin_set:
         return MavResult.FAILED
     if command.frame not in FRAMES_AMSL or (command.lat == 0 and command.lon == 0):
-        return MavResult.DENIED  # a height over what is not known yet, or a place that nobody means
+        return MavResult.DENIED  # a height over what is not known yet, or a location that nobody means
     return _home_result(bridge, bridge.autopilot.set_origin(command.lat, command.lon, command.z))
 
 
@@ -467,19 +468,19 @@ COMMANDS: dict[int, Entry] = {
     520: Entry(request_version, required=(1,)),
     20: Entry(return_to_launch),
     176: Entry(do_set_mode, required=(1, 2)),
-    179: Entry(set_home, required=(5, 6, 7), place=True, off_earth=True, long_frame=0),
+    179: Entry(set_home, required=(5, 6, 7), has_location=True, off_earth=True, long_frame=0),
     181: Entry(set_relay, required=(1, 2)),
     182: Entry(repeat_relay, required=(1, 2, 3)),
     183: Entry(set_servo, required=(1, 2)),
     184: Entry(repeat_servo, required=(1, 2, 3, 4)),
-    192: Entry(reposition, required=(5, 6, 7), place=True, int_only=True),
+    192: Entry(reposition, required=(5, 6, 7), has_location=True, int_only=True),
     202: Entry(configure_camera),
     203: Entry(control_camera),
     206: Entry(set_camera_distance, required=(1,)),
-    195: Entry(look_at, place=True, off_earth=True),
+    195: Entry(look_at, has_location=True, off_earth=True),
     197: Entry(look_ahead),
     198: Entry(follow_system),
-    201: Entry(look_at, place=True, off_earth=True),
+    201: Entry(look_at, has_location=True, off_earth=True),
     204: Entry(configure_mount),
     205: Entry(control_mount),
     207: Entry(enable_fence, required=(1,)),
@@ -489,6 +490,6 @@ COMMANDS: dict[int, Entry] = {
     224: Entry(set_mission_current, required=(1,)),
     300: Entry(mission_start),
     400: Entry(arm_disarm, required=(1,)),
-    611: Entry(set_origin, required=(5, 6, 7), place=True, int_only=True),
+    611: Entry(set_origin, required=(5, 6, 7), has_location=True, int_only=True),
     **OTHERS,
 }

@@ -90,9 +90,11 @@ class CommandService(Service):
 
     def _answer(self, channel: Channel, fields: Any, entry: Entry | None, result: int, sender: Sender) -> None:
         self._ack(channel, fields.command, result, sender)
-        frame, is_place = (MavFrame.GLOBAL_RELATIVE_ALT, False) if entry is None else (entry.long_frame, entry.place)
+        frame, is_location = (
+            (MavFrame.GLOBAL_RELATIVE_ALT, False) if entry is None else (entry.long_frame, entry.has_location)
+        )
         for listener in self.bridge.listeners:
-            listener.commanded(fields, frame, is_place, sender, result)
+            listener.commanded(fields, frame, is_location, sender, result)
 
     def _set_mode(self, channel: Channel, fields: Any, sender: Sender) -> None:
         as_command = Command(MavCmd.DO_SET_MODE, fields.base_mode, fields.custom_mode, 0.0, 0.0, 0, 0, 0.0, 0, 0.0, 0.0)
@@ -126,8 +128,8 @@ class Grants:
             if fields.x < 0:
                 _ack(channel, GRANT, MavResult.DENIED, sender, 0)
             else:
-                if fields.x and channel.peer.ways is not None:  # its questions come in time from now on
-                    channel.peer.ways.hold(False)
+                if fields.x and channel.peer.directions is not None:  # its questions come in time from now on
+                    channel.peer.directions.hold(False)
                 self.until_us = max(self.until_us, 1000 * fields.x)
                 self._asked.append((channel.peer, sender, 1000 * fields.x))
         elif fields.command == RESEED:

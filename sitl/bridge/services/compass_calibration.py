@@ -3,7 +3,7 @@
 
 While the vehicle turns, samples that lie apart from each other are kept; when there are enough of them, offsets and the
 matrix against soft iron are fitted so that all are as long as the earth's field. MAG_CAL_PROGRESS and MAG_CAL_REPORT
-tell of it ten times a second.
+report it ten times a second.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class CompassCalibrationService(Service):
         return MavResult.ACCEPTED
 
     def use_heading(self, yaw: float, mask: float, lat: float, lon: float) -> int:
-        """Find the offsets from a true heading [deg] at a place [deg] (0, 0: where it is). The MAV_RESULT."""
+        """Find the offsets from a true heading [deg] at a location [deg] (0, 0: where it is). The MAV_RESULT."""
         ap, chosen = self.bridge.vehicle.v.autopilot, self._chosen(mask)
         if lat == 0.0 and lon == 0.0:
             if not ap.estimate.origin_set:
@@ -203,7 +203,7 @@ class CompassCalibrationService(Service):
         return SUCCESS if fit.fitness < params.CAL_FIT and max(map(abs, fit.offset)) < params.OFFS_MAX else FAILURE
 
     def _strength(self) -> float | None:
-        """Of the earth's field where the vehicle is [mGauss]; None before it knows its place."""
+        """Of the earth's field where the vehicle is [mGauss]; None before it knows its location."""
         estimate = self.bridge.vehicle.v.autopilot.estimate
         if not estimate.origin_set:
             return None

@@ -125,7 +125,7 @@ class FaultService(Service):
             if left:
                 before = {name: self._seen(name, self._without_faults(name)) for name in left}
                 now = {name: self._seen(name, value) for name, value in left.items()}
-                why = changes_nothing(failure, now, before, self._present) or self._unheard(now, before)
+                why = changes_nothing(failure, now, before, self._present) or self._not_transmitted(now, before)
             if not why and failure.drives_outputs and not vehicle.v.autopilot.arming.armed:
                 why = "the vehicle was not armed"
             try:
@@ -156,7 +156,7 @@ class FaultService(Service):
             return max(set_by, default=0.0)
         return self._seen(name, vehicle.parameters[name])
 
-    def _unheard(self, values: Mapping[str, float], before: Mapping[str, float]) -> str:
+    def _not_transmitted(self, values: Mapping[str, float], before: Mapping[str, float]) -> str:
         """Why channels that are to stay as they are do nothing; "": one of them is transmitted."""
         if values.keys() != {STUCK}:
             return ""

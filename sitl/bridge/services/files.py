@@ -2,7 +2,7 @@
 """The files that MAVLink FTP serves: parameters, missions (which it takes, too), logs, links, what parameters mean, and
 what clients have made (``client_files.py``).
 
-As ArduPilot's: ``@SYS/`` tells of the running system, ``@MISSION/`` has mission, fence and rally points as items of
+As ArduPilot's: ``@SYS/`` reports the running system, ``@MISSION/`` has mission, fence and rally points as items of
 MISSION_ITEM_INT behind a header of five numbers, ``logs/`` the on-board logs.
 """
 
@@ -85,7 +85,7 @@ def read(bridge: Host, clients: ClientFiles, path: str, queries: list[str]) -> b
 
 
 def listing(bridge: Host, clients: ClientFiles, path: str) -> list[str] | None:
-    """Entries of a folder, as FTP tells them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
+    """Entries of a folder, as FTP reports them: "DNAME" or "FNAME<tab>SIZE"; None: there is none that can be listed."""
     sizes = {f"@SYS/{name}": UNKNOWN_SIZE for name in SYSTEM} | {"@SYS/storage.bin": STORAGE_SIZE}
     sizes |= {name: len(file()) for name, file in _system(bridge).items()}
     sizes |= {name: entry.size for name, entry in _logs(bridge).items()}

@@ -16,7 +16,7 @@ from ...core.records import Floats
 from ...core.scalars import finite
 from ...core.vectors import Vec3
 from ...vehicle.record import Vehicle
-from ..places import local_place
+from ..locations import local_position
 from ..telemetry.motion import GlobalPositionInt
 from ..wire.message import Message
 from .setpoints import rotation
@@ -48,30 +48,34 @@ def take_position(m: GlobalPositionInt, v: Vehicle, sender: int, over_home: bool
     if (m.lat == 0 and m.lon == 0) or lead.sends_more or not is_lead(lead, p, sender, v.time_us):
         return
     alt, frame = (m.relative_alt, MavFrame.GLOBAL_RELATIVE_ALT) if over_home else (m.alt, MavFrame.GLOBAL)
-    place = local_place(ap, m.lat, m.lon, alt * 1e-3, frame)
-    if place.is_known:
+    local = local_position(ap, m.lat, m.lon, alt * 1e-3, frame)
+    if local.is_known:
         vel = m.vel * 0.01
         take(
-            lead, p, sender, Report(place.pos, vel, ZERO, m.hdg <= HEADINGS, math.radians(m.hdg * 0.01), 0.0), v.time_us
+            lead,
+            p,
+            sender,
+            Report(local.pos, vel, ZERO, m.hdg <= HEADINGS, math.radians(m.hdg * 0.01), 0.0),
+            v.time_us,
         )
 
 
 @law
 def follow_target(m: FollowTarget, v: Vehicle, sender: int) -> None:
-    """FOLLOW_TARGET: what else it tells counts as its est_capabilities say."""
+    """FOLLOW_TARGET: what else it reports counts as its est_capabilities say."""
     ap = v.autopilot
     lead, p, has = ap.modes.follow, ap.params.FOLL, m.est_capabilities
     if (m.lat == 0 and m.lon == 0) or (has & HAS_POSITION) == 0 or not is_lead(lead, p, sender, v.time_us):
         return
-    place = local_place(ap, m.lat, m.lon, m.alt, MavFrame.GLOBAL)
+    local = local_position(ap, m.lat, m.lon, m.alt, MavFrame.GLOBAL)
     vel = vector(m.vel) if (has & HAS_VELOCITY) != 0 else ZERO
     acc = vector(m.acc) if (has & HAS_ACCELERATION) != 0 else ZERO
     body = rotation(m.attitude_q)
     turn = rotate(body.q, vector(m.rates)).z
-    if not place.is_known or not finite(vel.x + vel.y + vel.z + acc.x + acc.y + acc.z + turn):
+    if not local.is_known or not finite(vel.x + vel.y + vel.z + acc.x + acc.y + acc.z + turn):
         return
     has_heading = (has & HAS_ATTITUDE) != 0 and body.is_given
-    take(lead, p, sender, Report(place.pos, vel, acc, has_heading, yaw_of(body.q), turn), v.time_us)
+    take(lead, p, sender, Report(local.pos, vel, acc, has_heading, yaw_of(body.q), turn), v.time_us)
     lead.sends_more = True
 
 

@@ -231,7 +231,7 @@ class FtpService(Service):
         return request.data.split(b"\0", 1)[0].decode("ascii", "replace").strip("/")
 
     def _file(self, request: _Request) -> bytes | files.Log | None:
-        """What is in the file that is asked for; None when there is none, which the client is told."""
+        """What is in the file that is asked for; None when there is none; the client gets the error."""
         path, _, query = self._path(request).partition("?")
         data = files.read(self.bridge, self._clients, path, query.split("&"))
         if data is None:
@@ -247,19 +247,19 @@ class FtpService(Service):
         if entries is None:
             self._refuse(request, FILE_NOT_FOUND)
             return
-        told = b""
+        listing = b""
         for entry in entries[request.offset :]:
             more = entry.encode("ascii", "replace") + b"\0"
-            if len(told) + len(more) > DATA_BYTES:
+            if len(listing) + len(more) > DATA_BYTES:
                 break
-            told += more
-        if told:
-            self._reply(request, told, request.offset)
+            listing += more
+        if listing:
+            self._reply(request, listing, request.offset)
         else:
             self._refuse(request, END_OF_FILE)
 
     def _session(self, request: _Request) -> _Session | None:
-        """The client's open session; None when it has another one or none, which it is told."""
+        """The client's open session; None when it has another one or none; it gets the error."""
         found = self._sessions.get(request.channel)
         if found is None or request.session != found.number or found.sender != request.sender:
             self._refuse(request, INVALID_SESSION)

@@ -17,7 +17,7 @@ from .statustext import StatusTextService
 RELEASE, GRAB = 0, 1
 """GRIPPER_ACTIONS"""
 NEUTRAL = -1
-"""It was not told to move since boot."""
+"""It was not commanded to move since boot."""
 MOVES_US = 500_000
 """So long it moves."""
 TEXTS = {RELEASE: ("Gripper load releasing", "Gripper load released"),
@@ -64,7 +64,7 @@ class GripperService(PayloadService):
         self.bridge.autopilot.gripper_is(self.is_there, state.action == RELEASE and state.is_done)
 
     def carry_out(self, item: MissionItem) -> None:
-        """A mission's DO_GRIPPER; it is told as done even where there is no gripper."""
+        """A mission's DO_GRIPPER; it is reported as done even where there is no gripper."""
         action = int(item.p2)
         self.act(action)
         if action in IN_MISSIONS:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Home and origin: SET_GPS_GLOBAL_ORIGIN, SET_HOME_POSITION.
 
-Every change of home or origin is told to all clients.
+Every change of home or origin is sent to all clients.
 """
 
 from __future__ import annotations

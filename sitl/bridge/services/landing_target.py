@@ -20,7 +20,7 @@ _SIDEWAYS = 0.5 * PI
 
 
 class LandingTargetMessage(Message, name="LANDING_TARGET"):
-    """Angles [rad], or (``position_valid``) a place [m]; distance [m]."""
+    """Angles [rad], or (``position_valid``) a position [m]; distance [m]."""
 
     frame: int
     angle_x: float

@@ -24,7 +24,7 @@ class HeartbeatService(Service):
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
         self._channels: frozenset[int] = frozenset()
-        """Numbers of channels on which other components of our own system were heard."""
+        """Numbers of channels on which other components of our own system were received."""
 
     def snapshot(self) -> tuple[int, ...]:
         return tuple(sorted(self._channels))

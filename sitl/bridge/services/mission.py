@@ -20,7 +20,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from . import place_lists
+from . import fence_and_rally
 from .mission_upload import Upload, from_float, from_int, to_float, to_int
 from .service import Handler, Service
 from .setpoints import SetpointService
@@ -55,7 +55,7 @@ class MissionService(Service):
         self._last: tuple[Channel, Sender, int, range, int] | None = None
         """Who uploaded last, what, the numbers of its items, and when: its acknowledgement may have been lost."""
         self._warned = False
-        """Whether a client was told that MISSION_REQUEST is old."""
+        """Whether a client was sent the text that MISSION_REQUEST is old."""
         self._home = bridge.reader.fields("autopilot.home.lat", "autopilot.home.lon", "autopilot.home.alt")
 
     def handlers(self) -> dict[str, Handler]:
@@ -84,11 +84,13 @@ class MissionService(Service):
 
     def keep(self, fence: tuple[MissionItem, ...], rally: tuple[MissionItem, ...], *, counted: bool = False) -> None:
         """Take lists that were taken before; FENCE_TOTAL and RALLY_TOTAL count them, or stay as they are."""
-        place_lists.load_fence(self.bridge.vehicle, fence, checked=False)
-        place_lists.load_rally(self.bridge.vehicle, rally)
+        fence_and_rally.load_fence(self.bridge.vehicle, fence, checked=False)
+        fence_and_rally.load_rally(self.bridge.vehicle, rally)
         self._lists = {MavMissionType.FENCE: fence, MavMissionType.RALLY: rally}
         if counted:
-            self.bridge.vehicle.parameters.update({"FENCE_TOTAL": place_lists.count(fence), "RALLY_TOTAL": len(rally)})
+            self.bridge.vehicle.parameters.update(
+                {"FENCE_TOTAL": fence_and_rally.count(fence), "RALLY_TOTAL": len(rally)}
+            )
 
     @property
     def lists(self) -> tuple[tuple[MissionItem, ...], tuple[MissionItem, ...]]:
@@ -113,7 +115,7 @@ class MissionService(Service):
             return self.bridge.autopilot.mission_items()
         total = int(self.bridge.vehicle.parameters["RALLY_TOTAL"])
         return (
-            place_lists.counted(self._lists[MavMissionType.RALLY], total)
+            fence_and_rally.counted(self._lists[MavMissionType.RALLY], total)
             if kind == MavMissionType.RALLY
             else self._lists[kind]
         )
@@ -128,19 +130,19 @@ class MissionService(Service):
             return int(self.bridge.autopilot.replace_mission(items))
         vehicle = self.bridge.vehicle
         if kind == MavMissionType.RALLY:
-            self._lists[MavMissionType.RALLY] = items = tuple(place_lists.as_rally_point(item) for item in items)
-            place_lists.load_rally(vehicle, items)
+            self._lists[MavMissionType.RALLY] = items = tuple(fence_and_rally.as_rally_point(item) for item in items)
+            fence_and_rally.load_rally(vehicle, items)
             vehicle.parameters["RALLY_TOTAL"] = len(items)
-        elif not self.replace_fence(tuple(place_lists.as_fence(item) for item in items)):
+        elif not self.replace_fence(tuple(fence_and_rally.as_fence(item) for item in items)):
             return MavMissionResult.ERROR
         else:
-            vehicle.parameters["FENCE_TOTAL"] = place_lists.count(self._lists[MavMissionType.FENCE])
+            vehicle.parameters["FENCE_TOTAL"] = fence_and_rally.count(self._lists[MavMissionType.FENCE])
         return MavMissionResult.ACCEPTED
 
     def replace_fence(self, items: tuple[MissionItem, ...]) -> bool:
         """Replace the fences; whether they could be."""
         try:
-            place_lists.load_fence(self.bridge.vehicle, items)
+            fence_and_rally.load_fence(self.bridge.vehicle, items)
         except FenceError as error:
             say = self.bridge.get(StatusTextService).say
             say(MavSeverity.WARNING, str(error))
@@ -156,9 +158,9 @@ class MissionService(Service):
             return MAX_ITEMS
         vehicle = self.bridge.vehicle
         return (
-            place_lists.most_fence_items(vehicle)
+            fence_and_rally.most_fence_items(vehicle)
             if kind == MavMissionType.FENCE
-            else place_lists.most_rally_points(vehicle)
+            else fence_and_rally.most_rally_points(vehicle)
         )
 
     def take(self, kind: int, rows: Sequence[Any]) -> bool:

@@ -35,7 +35,7 @@ def from_int(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
 def from_float(fields: Any, taken: Container[int]) -> tuple[MissionItem, int]:
     """Item of a MISSION_ITEM (degrees) and its MAV_MISSION_RESULT; degE7 in single precision, as in ArduPilot."""
     known = COMMANDS.get(fields.command)
-    if known is None or not known.has_place:
+    if known is None or not known.has_location:
         return _checked(fields, whole(fields.x), whole(fields.y), taken)
     for value, most, refusal in (
         (fields.x, 90.0, MavMissionResult.INVALID_PARAM5_X),
@@ -72,12 +72,12 @@ def to_int(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: 
 def to_float(item: MissionItem, seq: int, is_current: bool, target: Sender, kind: int) -> tuple[MessageType, bytes]:
     """MISSION_ITEM of an item."""
     known = COMMANDS.get(item.command)
-    scale = 1e-7 if known is None or known.has_place else 1.0
+    scale = 1e-7 if known is None or known.has_location else 1.0
     return ITEM, ITEM.payload(x=item.x * scale, y=item.y * scale, **_common(item, seq, is_current, target, kind))
 
 
 TIMEOUT_US = 8_000_000
-"""Without an item for so long [simulated us] the upload is given up (ArduPilot's figure)."""
+"""Without an item for so long [simulated us] the upload is given up (ArduPilot's value)."""
 ASK_AGAIN_US = 1_000_000
 
 

@@ -28,7 +28,7 @@ from .payload import PayloadService
 ATTITUDE_STATUS, INFORMATION, STATUS = (
     message(f"GIMBAL_{name}") for name in ("DEVICE_ATTITUDE_STATUS", "MANAGER_INFORMATION", "MANAGER_STATUS")
 )
-FOLDED, NEUTRAL, ANGLES, STICKS, PLACE, SYSTEM, HOME = range(7)
+FOLDED, NEUTRAL, ANGLES, STICKS, GPS_POINT, SYSTEM, HOME = range(7)
 """MAV_MOUNT_MODE"""
 RATES = -1
 """Angular rates of a command."""
@@ -58,7 +58,7 @@ class State(NamedTuple):
     pitch_rate: float = 0.0
     """[rad/s]"""
     yaw_rate: float = 0.0
-    place: tuple[int, int, float] | None = None
+    location: tuple[int, int, float] | None = None
     """To point at: latitude, longitude [degE7], m above sea level."""
     locks_sticks: bool = False
     """Function 163: the sticks' yaw is from north."""
@@ -90,7 +90,7 @@ class MountService(PayloadService):
         """Whether it has a yaw axis: then the vehicle need not turn its nose to a region of interest."""
         return self._there and self._fitted["YAW"]
 
-    # ------------------------------------------------------------------ what it tells
+    # ------------------------------------------------------------------ what it reports
 
     def messages(self) -> dict[str, Callable[[], bytes]]:
         if not self._there:
@@ -106,7 +106,7 @@ class MountService(PayloadService):
         state = self._state
         if state.mode == STICKS:
             return state.locks_sticks
-        return state.mode in (PLACE, HOME) or (state.mode in (ANGLES, RATES) and state.is_locked)
+        return state.mode in (GPS_POINT, HOME) or (state.mode in (ANGLES, RATES) and state.is_locked)
 
     def attitude(self) -> bytes:
         """GIMBAL_DEVICE_ATTITUDE_STATUS: the angles of the outputs, from the vehicle; with MNT1_TYPE at boot."""
@@ -143,19 +143,19 @@ class MountService(PayloadService):
             self.control(item.p1, item.p2, item.p3, ANGLES)
         elif item.command == MavCmd.DO_GIMBAL_MANAGER_PITCHYAW:
             self.pitch_yaw(item.p1, item.p2, item.p3, item.p4, item.x, item.z)
-        elif item.command == MavCmd.DO_SET_ROI_NONE or (item.no_place and item.z == 0.0):
+        elif item.command == MavCmd.DO_SET_ROI_NONE or (item.no_location and item.z == 0.0):
             self.look_ahead()
         else:
             ap = self.bridge.vehicle.v.autopilot
-            place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
-            if place is not None:
-                self.look_at(item.x, item.y, float(ap.estimate.origin_alt) - place[2])
+            position = self.bridge.locations.ned(item.x, item.y, item.z, item.frame)
+            if position is not None:
+                self.look_at(item.x, item.y, float(ap.estimate.origin_alt) - position[2])
         if self.turns_by_itself and item.command in commands.ROI_COMMANDS:
             self.bridge.autopilot.set_roi(None)
 
     def control(self, pitch: float, roll: float, yaw: float, mode: float) -> int:
         """DO_MOUNT_CONTROL: angles [deg] (yaw from the nose) and MAV_MOUNT_MODE. Its MAV_RESULT."""
-        if not self._there or mode not in (FOLDED, NEUTRAL, ANGLES, STICKS, PLACE, HOME):
+        if not self._there or mode not in (FOLDED, NEUTRAL, ANGLES, STICKS, GPS_POINT, HOME):
             return MavResult.FAILED
         state = self._state._replace(mode=int(mode))
         if mode == ANGLES:
@@ -169,7 +169,7 @@ class MountService(PayloadService):
 
     def configure(self, mode: float) -> int:
         """DO_MOUNT_CONFIGURE: MAV_MOUNT_MODE, with the angles of before. Its MAV_RESULT."""
-        if not self._there or mode not in (FOLDED, NEUTRAL, ANGLES, STICKS, PLACE, HOME):
+        if not self._there or mode not in (FOLDED, NEUTRAL, ANGLES, STICKS, GPS_POINT, HOME):
             return MavResult.FAILED
         self._state = self._state._replace(mode=int(mode))
         return MavResult.ACCEPTED
@@ -211,8 +211,8 @@ class MountService(PayloadService):
         return MavResult.ACCEPTED
 
     def look_at(self, lat: int, lon: int, alt: float) -> None:
-        """Point at a place [degE7, m above sea level]."""
-        self._state = self._state._replace(mode=PLACE, place=(lat, lon, alt))
+        """Point at a location [degE7, m above sea level]."""
+        self._state = self._state._replace(mode=GPS_POINT, location=(lat, lon, alt))
 
     def look_ahead(self) -> None:
         """MNT1_DEFLT_MODE again."""
@@ -235,8 +235,8 @@ class MountService(PayloadService):
         self.due_us = now_us + EVERY_US
         mode = self._state.mode
         if mode in (FOLDED, NEUTRAL):
-            place = "RETRACT" if mode == FOLDED else "NEUTRAL"
-            roll, pitch, yaw = (math.radians(self._values[f"MNT1_{place}_{axis}"]) for axis in "XYZ")
+            stance = "RETRACT" if mode == FOLDED else "NEUTRAL"
+            roll, pitch, yaw = (math.radians(self._values[f"MNT1_{stance}_{axis}"]) for axis in "XYZ")
         else:
             self._aim()
             roll, pitch, yaw = self._from_vehicle()
@@ -264,7 +264,7 @@ class MountService(PayloadService):
             pitch = state.pitch + state.pitch_rate * dt
             pitch = min(max(pitch, self._limit("PITCH", "MIN")), self._limit("PITCH", "MAX"))
             self._state = state._replace(pitch=pitch, yaw=wrap_pi(state.yaw + state.yaw_rate * dt))
-        elif state.mode in (PLACE, HOME):
+        elif state.mode in (GPS_POINT, HOME):
             to = self._target()
             if to is not None:
                 pitch = atan2(-to.z, hypot(to.x, to.y))
@@ -272,10 +272,10 @@ class MountService(PayloadService):
 
     def _target(self) -> Vec3 | None:
         """From the vehicle to what it points at, NED [m]."""
-        ap, place = self.bridge.vehicle.v.autopilot, self._state.place
+        ap, location = self.bridge.vehicle.v.autopilot, self._state.location
         if self._state.mode == HOME:
             return Vec3(*(a - b for a, b in zip(ap.home.pos, ap.estimate.pos, strict=True)))
-        found = None if place is None else self.bridge.places.ned(*place, 0)
+        found = None if location is None else self.bridge.locations.ned(*location, 0)
         return None if found is None else Vec3(*(a - b for a, b in zip(found, ap.estimate.pos, strict=True)))
 
     def _follow_sticks(self, dt: float) -> None:

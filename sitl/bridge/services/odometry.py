@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Positions and velocities that another system tells (VISO_TYPE 1), for the estimator's sources 6.
+"""Positions and velocities that another system reports (VISO_TYPE 1), for the estimator's sources 6.
 
-Positions are NED from where the estimate began. Times in the messages are not used: what is told is VISO_DELAY_MS old.
+Positions are NED from where the estimate began. Times in the messages are not used: what is reported is VISO_DELAY_MS
+old.
 """
 
 from __future__ import annotations
@@ -117,7 +118,7 @@ def vision_speed(m: VisionSpeed, v: Vehicle, sender: int) -> None:
 
 @law
 def vision_delta(m: VisionDelta, v: Vehicle, sender: int) -> None:
-    """VISION_POSITION_DELTA: the way on the body since the last one [m]; its confidence is the quality."""
+    """VISION_POSITION_DELTA: the displacement on the body since the last one [m]; its confidence is the quality."""
     seen, p, span = v.autopilot.odometry, v.autopilot.params.VISO, 1e-6 * m.time_delta_usec
     if span > 0.0 and finite(m.confidence) and takes(seen, int(min(max(m.confidence, 0.0), 100.0)), p):
         take_velocity(seen, (1.0 / span) * vector(m.position_delta), True, 0.0, v.time_us, p)

@@ -15,16 +15,16 @@ from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
+from .fence_and_rally import counted
 from .mission import MissionService
-from .place_lists import counted
 from .service import Handler, StatefulService
 from .statustext import StatusTextService
 
 FENCE, RALLY = message("FENCE_POINT"), message("RALLY_POINT")
 AROUND = 2
 """Points that FENCE_TOTAL counts besides the corners."""
-Place = tuple[int, int]
-NOWHERE: Place = (0, 0)
+Location = tuple[int, int]
+NOWHERE: Location = (0, 0)
 
 
 class OldPointService(StatefulService):
@@ -57,7 +57,7 @@ class OldPointService(StatefulService):
 
     # ------------------------------------------------------------------ fence
 
-    def _fence(self) -> tuple[Place | None, list[Place]]:
+    def _fence(self) -> tuple[Location | None, list[Location]]:
         """The point of return and the corners of the first area to stay in."""
         items, _ = self.bridge.get(MissionService).lists
         back = [(item.x, item.y) for item in items if item.command == MavCmd.NAV_FENCE_RETURN_POINT]
@@ -78,16 +78,16 @@ class OldPointService(StatefulService):
             self._warn("Invalid fence point, bad lat or lng")
         else:
             back, corners = self._fence()
-            place = (round(fields.lat * 1e7), round(fields.lng * 1e7))
+            location = (round(fields.lat * 1e7), round(fields.lng * 1e7))
             if k == 0:
-                back = place
+                back = location
             elif k < total - 1:
                 if len(corners) != total - AROUND:
                     corners = [NOWHERE] * (total - AROUND)
-                corners[k - 1] = place
+                corners[k - 1] = location
             self._keep(back, corners)
 
-    def _keep(self, back: Place | None, corners: list[Place]) -> None:
+    def _keep(self, back: Location | None, corners: list[Location]) -> None:
         items = [MissionItem(MavCmd.NAV_FENCE_RETURN_POINT, MavFrame.GLOBAL, x=back[0], y=back[1])] if back else []
         items += [
             MissionItem(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, MavFrame.GLOBAL, len(corners), x=x, y=y)
@@ -144,7 +144,7 @@ class OldPointService(StatefulService):
         channel.send(RALLY, RALLY.payload(target_system=system, target_component=component, **point))
 
 
-def _middle(corners: list[Place]) -> Place:
+def _middle(corners: list[Location]) -> Location:
     """The middle of the area's extent, which stands in for a point of return."""
     lats, lons = zip(*corners, strict=True)
     return (min(lats) + max(lats)) // 2, (min(lons) + max(lons)) // 2

@@ -11,7 +11,7 @@ import math
 from ...core.mavlink import MavResult
 from ..channel import Channel
 from ..host import Host
-from ..places import FRAMES_AMSL
+from ..locations import FRAMES_AMSL
 from .command import Command, Entry
 
 
@@ -110,5 +110,5 @@ COMMANDS: dict[int, Entry] = {
     32000: Entry(forward_can),
     42700: Entry(trap),
     42701: Entry(script),
-    43003: Entry(external_position, place=True, int_only=True, takes_nan=True),
+    43003: Entry(external_position, has_location=True, int_only=True, takes_nan=True),
 }

@@ -52,7 +52,7 @@ class State(NamedTuple):
 
 
 class Falling(Protocol):
-    """What a firmware with a parachute tells of the vehicle."""
+    """What a firmware with a parachute reports of the vehicle."""
 
     def armed(self) -> bool: ...
     def is_landed(self) -> bool: ...

@@ -37,8 +37,8 @@ NO_INDEX = 65535
 LIST_EVERY_US = 10_000
 LIST_AT_ONCE = 10
 """A list goes out at ten parameters in 10 ms of simulated time."""
-TOLD = 10
-"""So many parameters without effect are told of, each at its first change: a client may set a thousand."""
+MOST_REPORTED = 10
+"""So many parameters without effect are reported, each at its first change: a client may set a thousand."""
 
 
 class ParameterService(Service):
@@ -157,7 +157,7 @@ class ParameterService(Service):
             channel.send(VALUE, self._one(name))
 
     def set(self, name: str, value: float) -> str | None:
-        """Set a parameter, in its unit, and tell every client, or say why not.
+        """Set a parameter, in its unit, and report it to every client, or say why not.
 
         A number out of range is taken, as ArduPilot takes it; the firmware then goes by the nearest one in range.
 
@@ -186,11 +186,11 @@ class ParameterService(Service):
         return None
 
     def _report(self, name: str) -> None:
-        """Tell the user that a parameter, set for the first time, does nothing here."""
+        """Report to the user that a parameter, set for the first time, does nothing here."""
         self._reported += 1
-        if self._reported <= TOLD:
+        if self._reported <= MOST_REPORTED:
             self.bridge.get(StatusTextService).say(MavSeverity.INFO, f"{name} has no effect in this simulator")
-        elif self._reported == TOLD + 1:
+        elif self._reported == MOST_REPORTED + 1:
             self.bridge.get(StatusTextService).say(MavSeverity.INFO, "Others that are set have no effect either")
 
 

@@ -36,7 +36,7 @@ LEVEL = tan(math.radians(15.0))
 
 
 class ObstacleDistance3d(Message, name="OBSTACLE_DISTANCE_3D"):
-    """A place on the body, forward, right, down, and the sensor's range, all [m]."""
+    """A position on the body, forward, right, down, and the sensor's range, all [m]."""
 
     frame: int
     pos: Vec3 = consecutive("x", "y", "z")
@@ -84,7 +84,7 @@ def distance(m: DistanceSensor, v: Vehicle, sender: int) -> None:
 
 @law
 def obstacle_3d(m: ObstacleDistance3d, v: Vehicle, sender: int) -> None:
-    """OBSTACLE_DISTANCE_3D: an obstacle's place on the body; what is far above or below is left out."""
+    """OBSTACLE_DISTANCE_3D: an obstacle's position on the body; what is far above or below is left out."""
     seen = v.autopilot.proximity
     away = hypot(m.pos.x, m.pos.y)
     is_known = finite(away) and finite(m.min_distance) and finite(m.max_distance)

@@ -21,7 +21,7 @@ from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.vectors import Quat, Vec3
 from ..host import Host
-from ..places import GLOBAL_FRAMES
+from ..locations import GLOBAL_FRAMES
 from ..wire.message import Message, consecutive
 from .service import Service
 
@@ -122,7 +122,7 @@ def local_target(m: SetPositionTargetLocalNed, estimate: Estimate) -> Target:
 
 @law
 def global_target(m: SetPositionTargetGlobalInt, pos: Vec3) -> Target:
-    """The target of a message whose place on the globe is ``pos`` (NED from the origin [m])."""
+    """The target of a message whose location on the globe is ``pos`` (NED from the origin [m])."""
     return masked(m.type_mask, pos, m.vel, m.acc, m.yaw, m.yaw_rate, False)
 
 
@@ -153,7 +153,7 @@ def rotation(numbers: Floats) -> Rotation:
 
 
 class SetpointService(Service):
-    """Mission items with ``current`` 2: places to go to at once, in GUIDED."""
+    """Mission items with ``current`` 2: locations to go to at once, in GUIDED."""
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
@@ -165,8 +165,8 @@ class SetpointService(Service):
         return self._mode() == self._guided
 
     def mission_item_target(self, item: MissionItem) -> bool:
-        """Go to a mission item's place (``current`` = 2), in GUIDED."""
+        """Go to a mission item's location (``current`` = 2), in GUIDED."""
         if not self._listens() or item.frame not in GLOBAL_FRAMES:
             return False
-        place = self.bridge.places.ned(item.x, item.y, item.z, item.frame)
-        return place is not None and self.bridge.autopilot.guided_position(place)
+        position = self.bridge.locations.ned(item.x, item.y, item.z, item.frame)
+        return position is not None and self.bridge.autopilot.guided_position(position)

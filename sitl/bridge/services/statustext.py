@@ -73,7 +73,7 @@ E = "autopilot.events."
 
 
 class EventService(Service):
-    """Reads the ring of events; says texts; tells of home, origin and the mission's progress."""
+    """Reads the ring of events; says texts; reports home, origin and the mission's progress."""
 
     def __init__(self, bridge: Host) -> None:
         super().__init__(bridge)
@@ -113,7 +113,7 @@ class EventService(Service):
         self._find_due()
 
     def read(self) -> None:
-        """Tell of every event since the last call."""
+        """Report every event since the last call."""
         count = int(self._count())
         if count == self._seen:
             return

@@ -33,7 +33,7 @@ NO_DOWNLOAD, LONGEST = 1, 10_000
 BLOCKS_MAX = 256
 """More are forgotten, the oldest first."""
 CHECKED_MAX = 8
-"""Places of TERRAIN_CHECK that are kept."""
+"""Locations of TERRAIN_CHECK that are kept."""
 Source = Callable[[float, float], float | None]
 """Height of the ground [m above sea level] at a latitude and a longitude [deg]; None: not known."""
 LAT_MAX, LON_MAX = 900_000_000, 1_800_000_000
@@ -124,7 +124,7 @@ class TerrainService(Service):
         return [c for c in channels if not c.peer.is_log and interval_of(c.port, REPORT.id) > 0]
 
     def _needed(self) -> tuple[Block, ...]:
-        """Blocks around the vehicle, at home, on the mission's way, at rally points, and where TERRAIN_CHECK asked."""
+        """Blocks around the vehicle, at home, on the mission's path, at rally points, and where TERRAIN_CHECK asked."""
         return tuple(dict.fromkeys(self._find_needed()))[:BLOCKS_MAX]
 
     def _find_needed(self) -> Iterator[Block]:
@@ -135,18 +135,18 @@ class TerrainService(Service):
             yield grid.block_of(home.lat, home.lon, spacing)
         items = self.bridge.autopilot.mission_items()
         if items is not self._items:
-            self._items, self._on_mission = items, tuple(dict.fromkeys(self._ways(items)))
+            self._items, self._on_mission = items, tuple(dict.fromkeys(self._along_mission(items)))
         yield from self._on_mission
         rally = self._ap.rally
         for k in range(min(int(self._ap.params.RALLY.TOTAL), POINTS)):
             yield grid.block_of(rally.lat[k], rally.lon[k], spacing)
         yield from self._checked
 
-    def _ways(self, items: tuple[MissionItem, ...]) -> Iterator[Block]:
+    def _along_mission(self, items: tuple[MissionItem, ...]) -> Iterator[Block]:
         before: tuple[int, int] | None = None
         for item in items[1:]:
             known = COMMANDS.get(item.command)
-            if known is None or not known.has_place or item.no_place:
+            if known is None or not known.has_location or item.no_location:
                 continue
             yield grid.block_of(item.x, item.y, self._spacing)
             if before is not None:
@@ -219,13 +219,14 @@ class TerrainService(Service):
         return near[0] if near else None
 
     def height(self, lat: float, lon: float) -> float | None:
-        """Height of the ground [m above sea level] at a place [degE7]; None: not known."""
+        """Height of the ground [m above sea level] at a location [degE7]; None: not known."""
         if not self._blocks or abs(lat) > LAT_MAX or abs(lon) > LON_MAX:
             return None
         return grid.height_of(self._blocks, lat, lon, self._spacing)
 
     def rise(self, lat: float, lon: float) -> float | None:
-        """How much higher the ground is at a place [degE7] than at home [m]: 0 where it is a plain; None: not known."""
+        """How much higher the ground is at a location [degE7] than at home [m]: 0 where it is a plain; None:
+        not known."""
         t = self._terrain
         if t is None or not (t.asked or t.was_known or self._ap.params.TERRAIN.ENABLE <= 0.0):
             return 0.0
@@ -257,8 +258,8 @@ class TerrainService(Service):
         t, est, home, spacing = self._terrain, self._ap.estimate, self._ap.home, self._spacing
         if t is None or not est.origin_set or not (self._blocks or t.has_square):
             return
-        place = add_offset(est.origin_lat, est.origin_lon, est.pos.x, est.pos.y)
-        square = grid.square_of(self._blocks, *place, spacing)
+        location = add_offset(est.origin_lat, est.origin_lon, est.pos.x, est.pos.y)
+        square = grid.square_of(self._blocks, *location, spacing)
         t.has_square, t.spacing = True, spacing
         t.north, t.east = est.pos.x + square.north, est.pos.y + square.east
         t.is_known = square.corners is not None

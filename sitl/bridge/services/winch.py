@@ -68,8 +68,8 @@ class WinchService(PayloadService):
             self.relax()
         elif action == LENGTH_CONTROL and abs(length) <= UNKNOWN:
             to = self._state.length + length
-            way = "lowering" if length > 0.0 else "raising"
-            text = f"Winch: {way} {abs(length):4.1f}m to {to:4.1f}m"
+            verb = "lowering" if length > 0.0 else "raising"
+            text = f"Winch: {verb} {abs(length):4.1f}m to {to:4.1f}m"
             self.bridge.get(StatusTextService).say(MavSeverity.INFO, text)
             self._start(LENGTH_CONTROL, to)
         elif action == RATE_CONTROL:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""OPTICAL_FLOW: what the sensor shows, and what a companion tells (FLOW_TYPE 5)."""
+"""OPTICAL_FLOW: what the sensor shows, and what a companion reports (FLOW_TYPE 5)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""HIGH_LATENCY2: the state in 42 bytes, made of what other messages tell, as ArduPilot's is."""
+"""HIGH_LATENCY2: the state in 42 bytes, made of what other messages report, as ArduPilot's is."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ UNIT = 5.0
 
 
 def high_latency(vehicle: Vehicle, profile: MavlinkFirmware) -> bytes:
-    """HIGH_LATENCY2: place, target, speeds in 0.2 m/s, headings in 2 degrees, distance to the target in 10 m, failures;
-    ``custom0`` is HEARTBEAT's base_mode. The air's temperature is an airspeed sensor's (ARSPD_ENABLE, ARSPD_TYPE)."""
+    """HIGH_LATENCY2: position, target, speeds in 0.2 m/s, headings in 2 degrees, distance to the target in 10 m,
+    failures; ``custom0`` is HEARTBEAT's base_mode. The air's temperature is an airspeed sensor's (ARSPD_ENABLE,
+    ARSPD_TYPE)."""
     v = vehicle.v
     ap = v.autopilot
     names = ("HEARTBEAT", "VFR_HUD", "SYS_STATUS", "NAV_CONTROLLER_OUTPUT")

@@ -27,7 +27,7 @@ SPEED_ACCURACY = 0.8
 
 
 class GlobalPosition(NamedTuple):
-    """A place on the globe."""
+    """A position on the globe."""
 
     lat: int  # [degE7]
     lon: int  # [degE7]
@@ -258,7 +258,7 @@ class Ahrs(Message, name="AHRS"):
 
 @law
 def ahrs(m: Ahrs, v: Vehicle) -> bool:
-    """AHRS: gyro drift [rad/s]; the DCM figures of the message have no counterpart here and are zero."""
+    """AHRS: gyro drift [rad/s]; the DCM values of the message have no counterpart here and are zero."""
     m.drift = -v.autopilot.estimate.gyro_bias
     return True
 

@@ -64,9 +64,9 @@ def obstacle_distance(m: ObstacleDistance, v: Vehicle) -> bool:
         m.distances[k] = UNKNOWN
     sector, nearest = -1, math.inf
     for k in range(samples):
-        place = k if samples <= SECTORS else min(k * SECTORS // (samples - 1), SECTORS - 1)
-        if place != sector:
-            sector, nearest = place, math.inf
+        index = k if samples <= SECTORS else min(k * SECTORS // (samples - 1), SECTORS - 1)
+        if index != sector:
+            sector, nearest = index, math.inf
         nearest = min(nearest, float(s.lidar_ranges[samples - 1 - k]))
         m.distances[sector] = centimetres(nearest, longest)
     if samples <= SECTORS:
@@ -154,10 +154,10 @@ def distance_sensor(m: DistanceSensor, v: Vehicle, port: Port) -> bool:
 @law
 def limits(v: Vehicle) -> Limits:
     """The range-finder's: of the airframe in a world, else RNGFND1_MIN and RNGFND1_MAX."""
-    figures, down = v.physics.airframe, v.physics.downward
+    airframe, down = v.physics.airframe, v.physics.downward
     if down.ranges:
         return Limits(down.range_min, down.range_max)
-    return Limits(figures.rangefinder_min, figures.rangefinder_max)
+    return Limits(airframe.rangefinder_min, airframe.rangefinder_max)
 
 
 class RangeFinder(Message, name="RANGEFINDER"):

@@ -185,7 +185,7 @@ class MemInfo(Message, name="MEMINFO"):
 
 @law
 def meminfo(m: MemInfo, v: Vehicle) -> bool:
-    """MEMINFO: a process has memory enough; the figure of ArduPilot's SITL."""
+    """MEMINFO: a process has memory enough; the value of ArduPilot's SITL."""
     m.freemem = 65535
     m.freemem32 = 524288
     return True

@@ -60,7 +60,7 @@ def choose_taker(takers: Iterable[Taker]) -> Callable[[int, Any, int, int], bool
 
 
 def choose_targets(takers: Iterable[Taker]) -> Callable[[int], int]:
-    """A law ``target(number)``: place of target_system in the payload of a message that ``takers`` take; -1: none."""
+    """A law ``target(number)``: offset of target_system in the payload of a message that ``takers`` take; -1: none."""
     lines = ["def target(number):\n"]
     for function in takers:
         kind = message_of(function).kind

@@ -85,14 +85,14 @@ def crc_of(data: Bytes, start: int, end: int, extra: int) -> int:
 
 
 @law
-def has_room(port: Port) -> bool:
+def has_space(port: Port) -> bool:
     """Whether the longest frame fits behind those that wait."""
     return port.out_count < OUT_FRAMES and port.out_size + FRAME_MAX <= OUT_BYTES
 
 
 @law
 def open_frame(port: Port, address: int) -> int:
-    """Address of the payload of the next frame: zeros, at full length. There is room (``has_room``)."""
+    """Address of the payload of the next frame: zeros, at full length. There is space (``has_space``)."""
     header = HEADER_V2 if port.version == 2 else HEADER_V1
     start = address + OUT + port.out_size + header
     payload = bytes_at(start, PAYLOAD_MAX)
@@ -103,7 +103,7 @@ def open_frame(port: Port, address: int) -> int:
 
 @law
 def seal(frame: Bytes, version: int, number: int, sender: Sender) -> int:
-    """Write header and checksum around a payload at full length that has been written behind the header's place.
+    """Write header and checksum around a payload at full length that has been written behind the header's bytes.
 
     Trailing zeros of a MAVLink 2 payload are left out. Returns the length of the frame; 0: version 1 cannot carry it.
     """

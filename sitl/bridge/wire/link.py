@@ -38,7 +38,7 @@ def receive_port(v: V, address: int, take: Taker[V], targets: Callable[[int], in
         v: the vehicle.
         address: of the port.
         take: law that acts on a message by its number (``choose.choose_taker``); False: it is the shell's.
-        targets: place of target_system in a message that ``take`` knows, -1: it has none.
+        targets: offset of target_system in a message that ``take`` knows, -1: it has none.
     """
     port = record_at(Port, address)
     port.frame_end = 0
@@ -111,7 +111,7 @@ def run_vehicle(
     """Advance to the first tick at or after ``until_us``, measuring and then sending what falls due.
 
     Back early, at the end of the tick, when something happened that the shell must know, when a message is due that the
-    core cannot send, and when what goes out, or what is logged, needs room.
+    core cannot send, and when what goes out, or what is logged, needs space.
 
     Args:
         fleet: the vehicle's fleet.
@@ -137,15 +137,15 @@ def run_vehicle(
             measure(fleet, index, ranging)
         if wants_shell(v, ranging) or events.count != before or v.time_us >= limits.shell_us:
             return
-        has_room = True
+        has_space = True
         if next_due(links.address, links.clients) <= v.time_us:
             transmit(fleet, index, links.address, links.clients, REGULAR)
-            has_room = spill_all(links.address, links.clients, v.time_us)
+            has_space = spill_all(links.address, links.clients, v.time_us)
             if next_due(links.address, links.clients) <= v.time_us:
                 return
         if row_due(sampler) <= v.time_us and not take_row(sampler, v.time_us):
             return
-        if not has_room:
+        if not has_space:
             return
         if v.time_us >= limits.until_us:
             return

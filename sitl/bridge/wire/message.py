@@ -6,7 +6,7 @@
         roll: float  # [rad]
         ...
 
-Places and types are the dialect's (``dialect.py``): a class names the fields that its users need and says which of
+Offsets and types are the dialect's (``dialect.py``): a class names the fields that its users need and says which of
 them are whole numbers, numbers or arrays. Fields that a class does not name stay zero. Fields of one type that follow
 each other on the wire may be one vector, or one array::
 
@@ -46,7 +46,7 @@ def consecutive(*names: str) -> Any:
 class Message(Record):
     """Base of all messages: the payload in wire order, at full length.
 
-    A subclass of a message has its base's fields, at the places of its own kind.
+    A subclass of a message has its base's fields, at the offsets of its own kind.
     """
 
     kind: ClassVar[MessageType]

@@ -32,19 +32,19 @@ FRAMES = Spool.fields["frames"].offset
 
 @law
 def spill(port: Port, address: int, now_us: int) -> None:
-    """Move the frames in a port, all of the time ``now_us`` since boot, to its spool, which has room for them."""
+    """Move the frames in a port, all of the time ``now_us`` since boot, to its spool, which has space for them."""
     spool = record_at(Spool, port.spool)
     source, target = bytes_at(address + OUT, OUT_BYTES), bytes_at(port.spool + FRAMES, SPOOL_BYTES)
     to, start = spool.used, 0
     for k in range(port.out_count):
         if spool.stamped:
             stamp = port.epoch_us + now_us
-            for place in range(STAMP):
-                target[to + place] = stamp >> (56 - 8 * place) & 0xFF
+            for n in range(STAMP):
+                target[to + n] = stamp >> (56 - 8 * n) & 0xFF
             to += STAMP
         end = port.out_end[k]
-        for place in range(end - start):
-            target[to + place] = source[start + place]
+        for n in range(end - start):
+            target[to + n] = source[start + n]
         to += end - start
         start = end
     spool.used = to
@@ -55,7 +55,7 @@ def spill(port: Port, address: int, now_us: int) -> None:
 @law
 def spill_all(ports: int, count: int, now_us: int) -> bool:
     """The same for all ports that have a spool; False: one of them is nearly full and has to be emptied."""
-    has_room = True
+    has_space = True
     for k in range(count):
         address = ports + k * SIZE
         port = record_at(Port, address)
@@ -63,5 +63,5 @@ def spill_all(ports: int, count: int, now_us: int) -> bool:
             if port.out_count > 0:
                 spill(port, address, now_us)
             if record_at(Spool, port.spool).used > _ENOUGH:
-                has_room = False
-    return has_room
+                has_space = False
+    return has_space

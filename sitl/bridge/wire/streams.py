@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Sequence
 from ...core.kernels import law
 from ...core.memory import record_at
 from ...vehicle.record import Vehicle
-from .frames import close_frame, has_room, open_frame
+from .frames import close_frame, has_space, open_frame
 from .port import SIZE, STREAMS, Port, find_next
 
 Builder = Callable[[int, Vehicle, Port, int], bool]
@@ -29,9 +29,9 @@ def next_due(ports: int, count: int) -> int:
 
 @law
 def send(v: Vehicle, port: Port, address: int, number: int, build: Builder) -> bool:
-    """Send a message now, with all its parts; False: there was no room for it, or for the rest of it."""
+    """Send a message now, with all its parts; False: there was no space for it, or for the rest of it."""
     while True:
-        if not has_room(port):
+        if not has_space(port):
             return False
         if build(number, v, port, open_frame(port, address)):
             close_frame(port, address, number)
@@ -43,7 +43,7 @@ def send(v: Vehicle, port: Port, address: int, number: int, build: Builder) -> b
 def send_due(v: Vehicle, port: Port, address: int, build: Builder) -> bool:
     """Send what has fallen due, each message once however late it is.
 
-    False: the room for frames ran out, or the next one is the shell's; the rest is still due.
+    False: the space for frames ran out, or the next one is the shell's; the rest is still due.
     """
     now = v.time_us
     for k in range(port.stream_count):

@@ -89,7 +89,8 @@ class Calls:
                     yield leaf
 
     def _source(self, names: tuple[str, ...], hints: list[Any], checked: bool, body: str) -> str:
-        """A function ``call`` that takes arguments apart; in ``body`` are its lines, with a place for the parts."""
+        """A function ``call`` that takes arguments apart; in ``body`` are its lines, with a placeholder for the
+        parts."""
         lines, parts, number = [f"def call({', '.join(names)}):"], [], 0
         tests = []
         for name, hint in zip(names, hints):

@@ -104,10 +104,10 @@ def _hash(lines: list[str]) -> str:
 def source_of(function: Any) -> str:
     """The text of a function, without empty lines and those that are comments."""
     code = function.__code__
-    lines, place = _texts(code.co_filename)
-    if code.co_firstlineno > len(place):
+    lines, position = _texts(code.co_filename)
+    if code.co_firstlineno > len(position):
         return repr(code.co_consts)  # made by no file: nothing to read
-    start = place[code.co_firstlineno - 1]
+    start = position[code.co_firstlineno - 1]
     end, margin, body = start + 1, _margin(lines[start]), lines[start].startswith("def ", _margin(lines[start]))
     while end < len(lines):
         line = lines[end]
@@ -123,13 +123,13 @@ def source_of(function: Any) -> str:
 def _texts(file: str) -> tuple[list[str], list[int]]:
     """The lines of a file that say something, and for each of all its lines how many of these come before it."""
     kept: list[str] = []
-    place: list[int] = []
+    position: list[int] = []
     for line in linecache.getlines(file):
         text = line.rstrip()
-        place.append(len(kept))
+        position.append(len(kept))
         if text and not text.lstrip().startswith("#"):
             kept.append(text)
-    return kept, place
+    return kept, position
 
 
 def _margin(line: str) -> int:

@@ -138,11 +138,11 @@ def folder() -> Path | None:
 @cache
 def library() -> Library | None:
     """The library for this machine; None: there is none, or it does not work here."""
-    place = folder()
-    if place is None or not _arrays_are_known():
+    root = folder()
+    if root is None or not _arrays_are_known():
         return None
     for target in usable():
-        file = place / target.file
+        file = root / target.file
         if file.exists():
             try:
                 return Library(file, target)

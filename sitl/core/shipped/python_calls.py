@@ -38,9 +38,9 @@ def entry_for_python(symbol: str, law: Any) -> str:
 
     def python(name: str, of: Any, *given: Any) -> Any:
         """Call a function of Python's."""
-        place = builder.gep(table, [_LONG(0), _LONG(list(PYTHON).index(name))])
+        address = builder.gep(table, [_LONG(0), _LONG(list(PYTHON).index(name))])
         kind = ir.FunctionType(of, [value.type for value in given])
-        return builder.call(builder.inttoptr(builder.load(place), kind.as_pointer()), given)
+        return builder.call(builder.inttoptr(builder.load(address), kind.as_pointer()), given)
 
     with builder.if_then(builder.icmp_signed("!=", entry.args[2], _WORD(len(kinds))), likely=False):
         python("PyErr_BadArgument", _LONG)

@@ -27,21 +27,21 @@ _READY_S, _CLIMB_S = 30, 20
 
 
 class Hold:
-    """A pilot who holds a place by rates and thrust: position -> velocity -> lean -> rates.
+    """A pilot who holds a position by rates and thrust: position -> velocity -> lean -> rates.
 
     Args:
-        place: north, east, down [m].
+        position: north, east, down [m].
         heading: [rad].
         hover: thrust that is tried first, 0 .. 1.
     """
 
-    def __init__(self, place: Sequence[float], heading: float, hover: float = 0.45) -> None:
-        self.place, self.heading, self._hover = place, heading, hover
+    def __init__(self, position: Sequence[float], heading: float, hover: float = 0.45) -> None:
+        self.position, self.heading, self._hover = position, heading, hover
 
     def act(self, inbox: StepTelemetry, seconds: float) -> tuple[float, float, float, float]:
         """Roll, pitch and yaw rate, forward right down [rad/s], and thrust, 0 .. 1, for the next so many seconds."""
         roll, pitch, yaw = inbox.attitude[1:4]
-        errors = [goal - now for goal, now in zip(self.place, inbox.position[1:4])]
+        errors = [goal - now for goal, now in zip(self.position, inbox.position[1:4])]
         speeds = [min(max(1.2 * error, -1.5), 1.5) for error in errors]
         north, east, down = (2.0 * (speed - now) for speed, now in zip(speeds, inbox.position[4:7]))
         c, s = cos(yaw), sin(yaw)

@@ -34,7 +34,7 @@ from .reports import REPORTED, read_report, show_report
 from .setpoints import (
     ACCELERATION_ONLY,
     ATTITUDE_AND_RATES,
-    PLACE_ONLY,
+    POSITION_ONLY,
     RATES_ONLY,
     TURN_AND_SPEED,
     VELOCITY_ONLY,
@@ -45,7 +45,7 @@ from .telemetry import HIT, PART, SCAN_NAME
 GROUND_STATION, COMPONENT = 255, 190
 """MAVLink ids of the environment."""
 RC, VELOCITY, POSITION, ATTITUDE, ROVER_POSITION, ROVER_ATTITUDE, ACCELERATION, THRUST, RATES = range(9)
-"""Sorts of set-points."""
+"""Kinds of set-points."""
 _HIT = np.frombuffer(HIT, np.uint8).astype(np.int64)
 _SCAN = np.frombuffer(SCAN_NAME, np.uint8).astype(np.int64)
 
@@ -132,7 +132,7 @@ def velocity(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int)
 
 @law
 def position(m: SetPositionTargetLocalNed, commands: Table, i: int, system: int, origin: Vec3, mask: int) -> None:
-    """A place of the world [m], yaw [rad]; ``origin``: of the vehicle's local frame, NED in the world [m]."""
+    """A position of the world [m], yaw [rad]; ``origin``: of the vehicle's local frame, NED in the world [m]."""
     north, east, down = to_ned(commands[i, 0], commands[i, 1], commands[i, 2])
     m.target_system = system
     m.coordinate_frame = MavFrame.LOCAL_NED
@@ -185,27 +185,27 @@ def rover_attitude(m: SetAttitudeTarget, commands: Table, i: int, system: int) -
 
 
 @law
-def write_setpoint(sort: int, commands: Table, i: int, end: ClientEnd, origin: Vec3, payload: int) -> int:
+def write_setpoint(kind: int, commands: Table, i: int, end: ClientEnd, origin: Vec3, payload: int) -> int:
     """Write row ``i`` of the set-points to a payload's address; returns the message's number."""
-    if sort == RC:
+    if kind == RC:
         override(record_at(RcChannelsOverride, payload), commands, i, end.system)
         return OVERRIDE
-    if sort == VELOCITY:
+    if kind == VELOCITY:
         velocity(record_at(SetPositionTargetLocalNed, payload), commands, i, end.system)
         return LOCAL
-    if sort in (POSITION, ROVER_POSITION):
-        mask = PLACE_ONLY if sort == POSITION else PLACE_ONLY | YAWS_IGNORED
+    if kind in (POSITION, ROVER_POSITION):
+        mask = POSITION_ONLY if kind == POSITION else POSITION_ONLY | YAWS_IGNORED
         position(record_at(SetPositionTargetLocalNed, payload), commands, i, end.system, origin, mask)
         return LOCAL
-    if sort == ACCELERATION:
+    if kind == ACCELERATION:
         acceleration(record_at(SetPositionTargetLocalNed, payload), commands, i, end.system)
         return LOCAL
     m = record_at(SetAttitudeTarget, payload)
-    if sort in (ATTITUDE, THRUST):
+    if kind in (ATTITUDE, THRUST):
         attitude(m, commands, i, end.system, end.euler.yaw)
-        if sort == THRUST:
+        if kind == THRUST:
             m.thrust = commands[i, 3]
-    elif sort == RATES:
+    elif kind == RATES:
         rates(m, commands, i, end.system)
     else:
         rover_attitude(m, commands, i, end.system)
@@ -214,7 +214,7 @@ def write_setpoint(sort: int, commands: Table, i: int, end: ClientEnd, origin: V
 
 @law
 def send_setpoints(
-    ends: Records[ClientEnd], origins: Table, ports: int, rows: IntLine, sort: int, commands: Table
+    ends: Records[ClientEnd], origins: Table, ports: int, rows: IntLine, kind: int, commands: Table
 ) -> None:
     """Send a set-point to each vehicle of ``rows``.
 
@@ -223,7 +223,7 @@ def send_setpoints(
         origins: of the vehicles' local frames, NED in the world [m], shape (vehicles, 3).
         ports: address of the vehicles' ports.
         rows: numbers of the vehicles.
-        sort: of set-point.
+        kind: of set-point.
         commands: set-points, shape (vehicles, columns).
     """
     for k in range(rows.shape[0]):
@@ -235,7 +235,7 @@ def send_setpoints(
         for byte in range(FRAME_MAX):
             frame[byte] = 0
         origin = Vec3(origins[i, 0], origins[i, 1], origins[i, 2])
-        number = write_setpoint(sort, commands, i, end, origin, start + HEADER_V2)
+        number = write_setpoint(kind, commands, i, end, origin, start + HEADER_V2)
         port.in_size += seal(frame, 2, number, Sender(end.sequence, GROUND_STATION, COMPONENT))
         end.sequence = (end.sequence + 1) & 0xFF
 
@@ -276,8 +276,8 @@ def read_part(end: ClientEnd, m: DebugFloatArray, i: int, scans: NarrowTable, co
     if m.time_usec != end.scan_us:
         end.scan_us = m.time_usec
         end.fresh = 0
-    under_way, scan = coming[i], scans[i]
-    part = under_way[PART * m.array_id :]
+    partial, scan = coming[i], scans[i]
+    part = partial[PART * m.array_id :]
     for k in range(PART):
         part[k] = m.data[k]
     end.fresh |= 1 << m.array_id
@@ -285,14 +285,14 @@ def read_part(end: ClientEnd, m: DebugFloatArray, i: int, scans: NarrowTable, co
         end.fresh = 0
         end.scans += 1
         for k in range(scan.shape[0]):
-            scan[k] = under_way[k]
+            scan[k] = partial[k]
 
 
 @law
 def read_bytes(
     end: ClientEnd, data: Bytes, size: int, i: int, scans: NarrowTable, coming: NarrowTable, address: int
 ) -> None:
-    """Read frames from a vehicle; the port at ``address`` gives room for a payload."""
+    """Read frames from a vehicle; the port at ``address`` gives space for a payload."""
     payload = address + PAYLOAD
     at = 0
     while True:
@@ -348,7 +348,7 @@ def read_row(
 class Origins(NamedTuple):
     """What a vehicle's telemetry is counted from, a row each."""
 
-    places: Table
+    positions: Table
     """Of the vehicles' local frames, NED in the world [m], shape (vehicles, 3)."""
     since_boot_us: IntColumn
     """Simulated time of the vehicles, and that before the last boot, shape (vehicles,)."""
@@ -377,13 +377,15 @@ def show_robots(
         rows: numbers of the vehicles.
     """
     read_ports(ends, robots.scan, coming, ports, rows)
-    state, places = robots.state, origins.places
+    state, positions = robots.state, origins.positions
     for k in range(rows.shape[0]):
         i = rows[k]
         end = ends[i]
         p, v, heading = end.position, end.velocity, end.euler.yaw
         s, c = sincos(heading)
-        x, y, z = from_ned(places[i, 0] + p.x + base_along * c, places[i, 1] + p.y + base_along * s, places[i, 2] + p.z)
+        x, y, z = from_ned(
+            positions[i, 0] + p.x + base_along * c, positions[i, 1] + p.y + base_along * s, positions[i, 2] + p.z
+        )
         state[i, 0], state[i, 1], state[i, 2], state[i, 3] = x, y, z, from_heading(heading)
         state[i, 4], state[i, 5] = v.x * c + v.y * s, v.x * s - v.y * c
         state[i, 6], state[i, 7] = -v.z, -end.rates.z

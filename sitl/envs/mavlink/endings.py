@@ -61,10 +61,10 @@ class Endings:
             is_default = before == signal.SIG_DFL
             if not (is_default or (callable(before) and number not in ignored)):
                 continue  # ignored already, or not Python's
-            if before != self._heard:
+            if before != self._on_signal:
                 self._before[number] = before
             with contextlib.suppress(ValueError, OSError):
-                signal.signal(number, signal.SIG_IGN if number in ignored else self._heard)
+                signal.signal(number, signal.SIG_IGN if number in ignored else self._on_signal)
                 self._installed.add(number)
         return bool(self._installed)
 
@@ -101,7 +101,7 @@ class Endings:
             noted, self._noted = self._noted[0], []
             if not was_ending:
                 before = signal.getsignal(noted)
-                self._leave(noted, self._before.get(noted) if before == self._heard else before, None)
+                self._leave(noted, self._before.get(noted) if before == self._on_signal else before, None)
 
     def settle_all(self) -> None:
         """The process ends: all vehicles are handed over."""
@@ -118,11 +118,11 @@ class Endings:
     def _restore(self) -> None:
         for number in sorted(self._installed):
             with contextlib.suppress(ValueError, OSError):
-                if signal.getsignal(number) in (self._heard, signal.SIG_IGN):
+                if signal.getsignal(number) in (self._on_signal, signal.SIG_IGN):
                     signal.signal(number, self._before[number])
                 self._installed.discard(number)
 
-    def _heard(self, number: int, frame: FrameType | None) -> None:
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
         before = self._before.get(number, signal.SIG_DFL)
         if not self._owed:  # somebody has put this handler back
             signal.signal(number, before)

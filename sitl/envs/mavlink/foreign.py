@@ -80,7 +80,7 @@ class Host(Protocol):
 
 
 class SimParameters(dict[str, float]):
-    """Parameters as the autopilot tells them; those of the wind act on the physics, too, which is not the
+    """Parameters as the autopilot reports them; those of the wind act on the physics, too, which is not the
     autopilot's.
 
     Args:

@@ -44,8 +44,8 @@ class Guard:
     """Limits of an agent on a vehicle.
 
     Args:
-        radius: of the fence about the place where the vehicle was when the environment took it over [m].
-        floor, ceiling: heights above that place's ground between which a copter stays [m]. A floor of 0 or less lets it
+        radius: of the fence about the position where the vehicle was when the environment took it over [m].
+        floor, ceiling: heights above the ground there between which a copter stays [m]. A floor of 0 or less lets it
             land: speeds shrink within some 5 m of the floor, so -5 leaves them as they are.
         speed, climb: greatest speeds, horizontal and vertical [m/s].
         tilt: greatest roll and pitch of attitude set-points [rad].
@@ -110,10 +110,10 @@ class Watch:
         self._limited = self._log_is_lost = False
         self._seen: float | None = None
 
-    def take_over(self, time: float, place: Sequence[float]) -> None:
-        """The agent is in charge from now on. The first place (x, y, z [m]) is the middle of the fence."""
+    def take_over(self, time: float, position: Sequence[float]) -> None:
+        """The agent is in charge from now on. The first position (x, y, z [m]) is the middle of the fence."""
         if not self.deeds:
-            self._centre = np.array(place, np.float64)
+            self._centre = np.array(position, np.float64)
         self.in_charge, self.reason, self._limited, self._seen = True, "", False, None
         self.note(time, "taken over", "")
 
@@ -169,10 +169,10 @@ class Watch:
         share = min(1.0, guard.speed / size) if size > 0.0 else 1.0
         c, s = cos(yaw), sin(yaw)
         v = np.array([row[0] * c - row[1] * s, row[0] * s + row[1] * c]) * share
-        way = np.array(pose[:2]) - self._centre[:2]
-        distance = float(lengths(way))
+        offset = np.array(pose[:2]) - self._centre[:2]
+        distance = float(lengths(offset))
         if distance > 0.0:
-            outward = way / distance
+            outward = offset / distance
             v = v - max(float(products(v, outward)) - _speed_within(guard.radius - distance), 0.0) * outward
         up = min(max(row[2], -guard.climb), guard.climb)
         if self._flies:
@@ -180,9 +180,9 @@ class Watch:
         return [float(v[0] * c + v[1] * s), float(v[1] * c - v[0] * s), up, *row[3:]]
 
     def _position(self, row: list[float], pose: Sequence[float]) -> list[float]:
-        guard, way = self.guard, np.array(row[:2]) - self._centre[:2]
-        share = min(1.0, guard.radius / max(float(lengths(way)), 1e-9))
-        x, y = (self._centre[:2] + share * way).tolist()
+        guard, offset = self.guard, np.array(row[:2]) - self._centre[:2]
+        share = min(1.0, guard.radius / max(float(lengths(offset)), 1e-9))
+        x, y = (self._centre[:2] + share * offset).tolist()
         return [x, y, min(max(row[2], guard.floor), guard.ceiling) if self._flies else row[2], *row[3:]]
 
     def _attitude(self, row: list[float], pose: Sequence[float]) -> list[float]:
@@ -194,7 +194,8 @@ class Watch:
         return [*(min(max(number, -most), most) for number in row[:3]), *row[3:]]
 
     def note(self, time: float, what: str, why: str) -> None:
-        """Add a deed, at a time of the vehicle [s]. A log that cannot be written is told of, once, and ends nothing."""
+        """Add a deed, at a time of the vehicle [s]. A log that cannot be written is reported, once,
+        and ends nothing."""
         deed = Deed(round(time, 3), what, why)
         self.deeds.append(deed)
         if self.guard.log is None:
@@ -232,9 +233,11 @@ def say(text: str) -> None:
         print(f"sitl: {text}", file=sys.stderr, flush=True)
 
 
-def _speed_within(room: float) -> float:
+def _speed_within(clearance: float) -> float:
     """Greatest speed [m/s] towards a fence that is so far away [m]; outside of it one that leads back."""
-    return BRAKING * (math.sqrt(AHEAD_S * AHEAD_S + 2.0 * room / BRAKING) - AHEAD_S) if room > 0.0 else room
+    if clearance <= 0.0:
+        return clearance
+    return BRAKING * (math.sqrt(AHEAD_S * AHEAD_S + 2.0 * clearance / BRAKING) - AHEAD_S)
 
 
 def guard_of(option: Any, is_simulator: bool) -> Guard | None:

@@ -259,10 +259,10 @@ AIRBORNE, AT_REST = 0.5, 0.5
 
 
 def height_above_home(link: Connection) -> float:
-    """[m], as the vehicle tells it now.
+    """[m], as the vehicle reports it now.
 
     Raises:
-        NotReadyError: it does not tell it.
+        NotReadyError: it does not report it.
     """
     inbox = link.inbox
     inbox.height = math.nan
@@ -277,13 +277,13 @@ def height_above_home(link: Connection) -> float:
 
 def has_landed(link: Connection) -> bool:
     """Whether the vehicle says now that it is on the ground; False of one that does not say."""
-    told = link.inbox.reports
-    told[LANDED] = 0.0  # unknown
+    reports = link.inbox.reports
+    reports[LANDED] = 0.0  # unknown
     for _ in range(TRIES):
         if link.command("REQUEST_MESSAGE", LANDED_STATE.id) != MavResult.ACCEPTED:
             return False
         for _ in range(1 if link.is_exact else _ANSWER_LOOKS):
-            if told[LANDED] != 0.0:
+            if reports[LANDED] != 0.0:
                 return bool(link.inbox.landed)
             link.pause(0 if link.is_exact else _LOOK)
     return False

@@ -33,8 +33,8 @@ from .setpoints import LOCAL, RATES_ONLY, TARGET, TURN_AND_LEAN, Encode, Message
 from .telemetry import ESTIMATOR, StepTelemetry
 
 ALTCTL, POSCTL, OFFBOARD = 2 << 16, 3 << 16, 6 << 16
-"""Modes of PX4's, as HEARTBEAT tells them: a main mode in the third byte, one below it in the fourth. The first two are
-flown by sticks, which lean it: one holds its height, the other its place, too."""
+"""Modes of PX4's, as HEARTBEAT reports them: a main mode in the third byte, one below it in the fourth. The first two
+are flown by sticks, which lean it: one holds its height, the other its position, too."""
 HOLD = 4 << 16 | 3 << 24
 MODES = {"HOLD": HOLD, "RTL": 4 << 16 | 5 << 24, "LAND": 4 << 16 | 6 << 24, "ALTCTL": ALTCTL, "POSCTL": POSCTL}
 """Modes that may take over from OFFBOARD."""
@@ -49,13 +49,13 @@ _MIDDLE, _FULL = 1500.0, 400.0
 """Pulse of a stick at rest, and how far from it the stick is at its end [us]."""
 _VELOCITY_AND_TURN = POSITION_IGNORED | ACCELERATION_IGNORED | YAW_IGNORED
 _ACCELERATION_AND_TURN = POSITION_IGNORED | VELOCITY_IGNORED | YAW_IGNORED
-_PLACE_AND_YAW = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
+_POSITION_AND_YAW = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
 _TENTH = 100_000
 _BEFORE = 10
 """Set-points that come before the mode is asked for."""
 _READY_S, _CLIMB_S = 90, 30
 _VALID = 1 | 2 | 4 | 16 | 32
-"""ESTIMATOR_STATUS_FLAGS: attitude, velocity, position on the earth, height. Before, PX4 tells a position, too, and a
+"""ESTIMATOR_STATUS_FLAGS: attitude, velocity, position on the earth, height. Before, PX4 reports a position, too, and a
 heading that knows no declination, or none at all."""
 
 
@@ -134,16 +134,16 @@ def _thrust_of(link: Connection) -> float:
     """The thrust that its own loops ask for now, 0 .. 1.
 
     Raises:
-        NotReadyError: it does not tell it.
+        NotReadyError: it does not report it.
     """
-    told: list[float] = []
-    link.inbox.witness = lambda kind, fields: told.append(float(fields.thrust)) if kind is _ASKED else None
+    thrusts: list[float] = []
+    link.inbox.witness = lambda kind, fields: thrusts.append(float(fields.thrust)) if kind is _ASKED else None
     try:
         for _ in range(_BEFORE):
             link.command("REQUEST_MESSAGE", _ASKED.id)
             link.run(_TENTH // 2)
-            if told:
-                return told[-1]
+            if thrusts:
+                return thrusts[-1]
     finally:
         link.inbox.witness = None
     raise NotReadyError(f"{link.name}: the vehicle does not send {_ASKED.name}")
@@ -154,7 +154,7 @@ def switch(encode: Encode) -> Callable[[Connection], None]:
     the other kind until then. It hovers meanwhile.
 
     Args:
-        encode: of the kind; its last figure at rest is the thrust.
+        encode: of the kind; its last number at rest is the thrust.
     """
 
     def hover(link: Connection) -> None:
@@ -174,14 +174,14 @@ COPTER: dict[str, Encode] = {
 """Kind of set-point -> its message. An attitude with a climb rate is none of PX4's."""
 
 
-def send_place(link: Connection, north: float, east: float, down: float, heading: float) -> None:
+def send_position(link: Connection, north: float, east: float, down: float, heading: float) -> None:
     """Send a position set-point in the vehicle's local frame [m], [rad]."""
-    place = {"x": north, "y": east, "z": down, "yaw": heading}
+    fields = {"x": north, "y": east, "z": down, "yaw": heading}
     link.endpoint.send_payload(
         LOCAL,
         LOCAL.payload(
             target_system=link.inbox.system, target_component=1, coordinate_frame=MavFrame.LOCAL_NED,
-            type_mask=_PLACE_AND_YAW, **place,
+            type_mask=_POSITION_AND_YAW, **fields,
         ),
     )  # fmt: skip
 
@@ -208,7 +208,7 @@ def join(link: Connection, seconds: float) -> None:
         """What OFFBOARD needs before it is asked for, and all the time."""
         nonlocal spot
         spot = spot or (*inbox.position[1:4], inbox.attitude[3])
-        send_place(link, *spot)
+        send_position(link, *spot)
 
     for _ in range(max(round(seconds * 1e6 / _TENTH), 1)):
         if inbox.mode == OFFBOARD:
@@ -252,8 +252,8 @@ def prepare(link: Connection, take_off: float) -> None:
     heading = inbox.attitude[3]
 
     def hold() -> None:
-        """A place above where it stands."""
-        send_place(link, north, east, down - take_off, heading)
+        """A position above where it stands."""
+        send_position(link, north, east, down - take_off, heading)
 
     for _ in range(_BEFORE):
         hold()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a vehicle tells besides where it is: acceleration, battery, wind, range-finder, whether it has landed. Asked for
-only where an observation (``sitl.envs.senses.REPORTS``) or a task needs it.
+"""What a vehicle reports besides where it is: acceleration, battery, wind, range-finder, whether it has landed. Asked
+for only where an observation (``sitl.envs.senses.REPORTS``) or a task needs it.
 
 The laws read one message each, from a record in the core or from a decoded message of ``sitl.bridge.dialect``.
 """
@@ -22,7 +22,7 @@ from sitl.core.kernels import law
 from sitl.core.memory import record_at
 
 ACCELERATION, BATTERY, WIND, RANGE, LANDED = 0, 3, 6, 8, 9
-"""Columns of what is told: specific force forward, left, up [m/s^2]; voltage [V], current [A], share that is left
+"""Columns of what is reported: specific force forward, left, up [m/s^2]; voltage [V], current [A], share that is left
 [0, 1]; where the wind blows to, north and east here, forward and left in ``RobotArrays.reports`` [m/s]; range of the
 range-finder that looks down [m]; MAV_LANDED_STATE."""
 REPORTED = 10
@@ -36,65 +36,65 @@ _UNKNOWN = 65535
 
 
 @law
-def read_imu(told: Line, m: ScaledImu) -> None:
+def read_imu(values: Line, m: ScaledImu) -> None:
     """SCALED_IMU: mG along the body's axes (forward, right, down), at rest (0, 0, -1000)."""
-    told[ACCELERATION] = m.acc.x / MILLIG_PER_ACC
-    told[ACCELERATION + 1] = -m.acc.y / MILLIG_PER_ACC
-    told[ACCELERATION + 2] = -m.acc.z / MILLIG_PER_ACC
+    values[ACCELERATION] = m.acc.x / MILLIG_PER_ACC
+    values[ACCELERATION + 1] = -m.acc.y / MILLIG_PER_ACC
+    values[ACCELERATION + 2] = -m.acc.z / MILLIG_PER_ACC
 
 
 @law
-def read_battery(told: Line, m: SysStatus) -> None:
+def read_battery(values: Line, m: SysStatus) -> None:
     """SYS_STATUS: mV, cA, per cent; what is not measured (65535, -1) becomes 0."""
-    told[BATTERY] = 0.0 if m.voltage_battery == _UNKNOWN else 1e-3 * m.voltage_battery
-    told[BATTERY + 1] = 0.01 * m.current_battery if m.current_battery >= 0 else 0.0
-    told[BATTERY + 2] = 0.01 * m.battery_remaining if m.battery_remaining >= 0 else 0.0
+    values[BATTERY] = 0.0 if m.voltage_battery == _UNKNOWN else 1e-3 * m.voltage_battery
+    values[BATTERY + 1] = 0.01 * m.current_battery if m.current_battery >= 0 else 0.0
+    values[BATTERY + 2] = 0.01 * m.battery_remaining if m.battery_remaining >= 0 else 0.0
 
 
 @law
-def read_wind(told: Line, m: Wind) -> None:
+def read_wind(values: Line, m: Wind) -> None:
     """WIND: where it comes from [deg], its speed [m/s]."""
     angle = math.radians(m.direction)
     sine, cosine = sincos(angle)
-    told[WIND] = -m.speed * cosine
-    told[WIND + 1] = -m.speed * sine
+    values[WIND] = -m.speed * cosine
+    values[WIND + 1] = -m.speed * sine
 
 
 @law
-def read_range(told: Line, m: RangeFinder) -> None:
+def read_range(values: Line, m: RangeFinder) -> None:
     """RANGEFINDER [m]."""
-    told[RANGE] = m.distance
+    values[RANGE] = m.distance
 
 
 @law
-def read_landed(told: Line, m: ExtendedSysState) -> None:
+def read_landed(values: Line, m: ExtendedSysState) -> None:
     """EXTENDED_SYS_STATE."""
-    told[LANDED] = float(m.landed_state)
+    values[LANDED] = float(m.landed_state)
 
 
 @law
-def read_report(told: Line, number: int, payload: int) -> None:
+def read_report(values: Line, number: int, payload: int) -> None:
     """The message ``number`` whose payload is at an address; others are left alone."""
     if number == IMU_:
-        read_imu(told, record_at(ScaledImu, payload))
+        read_imu(values, record_at(ScaledImu, payload))
     elif number == STATUS_:
-        read_battery(told, record_at(SysStatus, payload))
+        read_battery(values, record_at(SysStatus, payload))
     elif number == WIND_:
-        read_wind(told, record_at(Wind, payload))
+        read_wind(values, record_at(Wind, payload))
     elif number == RANGE_:
-        read_range(told, record_at(RangeFinder, payload))
+        read_range(values, record_at(RangeFinder, payload))
     elif number == LANDED_:
-        read_landed(told, record_at(ExtendedSysState, payload))
+        read_landed(values, record_at(ExtendedSysState, payload))
 
 
 @law
-def show_report(told: Line, heading: float, reports: Table, i: int) -> None:
+def show_report(values: Line, heading: float, reports: Table, i: int) -> None:
     """Write what a vehicle of this heading [rad] has told into row ``i``, the wind along its heading."""
     for k in range(REPORTED):
-        reports[i, k] = told[k]
+        reports[i, k] = values[k]
     s, c = sincos(heading)
-    reports[i, WIND] = told[WIND] * c + told[WIND + 1] * s
-    reports[i, WIND + 1] = told[WIND] * s - told[WIND + 1] * c
+    reports[i, WIND] = values[WIND] * c + values[WIND + 1] * s
+    reports[i, WIND + 1] = values[WIND] * s - values[WIND + 1] * c
 
 
 _READERS: dict[int, tuple[type[Message], Any]] = {
@@ -103,7 +103,7 @@ _READERS: dict[int, tuple[type[Message], Any]] = {
 }  # fmt: skip
 
 
-def note_report(told: Any, kind: MessageType, payload: bytes) -> None:
-    """Read a message of one of these kinds into ``told``, ``REPORTED`` floats."""
+def note_report(values: Any, kind: MessageType, payload: bytes) -> None:
+    """Read a message of one of these kinds into ``values``, ``REPORTED`` floats."""
     record, read = _READERS[kind.id]
-    read(told, record.of_payload(payload))
+    read(values, record.of_payload(payload))

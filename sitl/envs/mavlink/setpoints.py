@@ -30,7 +30,7 @@ OVERRIDE, LOCAL, TARGET = (
     message(name) for name in ("RC_CHANNELS_OVERRIDE", "SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
 )
 VELOCITY_ONLY = POSITION_IGNORED | ACCELERATION_IGNORED | YAW_IGNORED
-PLACE_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
+POSITION_ONLY = VELOCITY_IGNORED | ACCELERATION_IGNORED | YAW_RATE_IGNORED
 ACCELERATION_ONLY = POSITION_IGNORED | VELOCITY_IGNORED | YAW_IGNORED
 RATES_ONLY = ATTITUDE_IGNORED
 ATTITUDE_ALONE = ROLL_RATE_IGNORED | PITCH_RATE_IGNORED | BODY_YAW_RATE_IGNORED
@@ -59,18 +59,18 @@ def velocity(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]
     )
 
 
-def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float], mask: int = PLACE_ONLY) -> Message:
-    """SET_POSITION_TARGET_LOCAL_NED: a place of the world [m], yaw [rad]."""
+def position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float], mask: int = POSITION_ONLY) -> Message:
+    """SET_POSITION_TARGET_LOCAL_NED: a position of the world [m], yaw [rad]."""
     north, east, down = to_ned(*row[:3])
-    place = {"x": north - origin[0], "y": east - origin[1], "z": down - origin[2], "yaw": to_heading(row[3])}
+    fields = {"x": north - origin[0], "y": east - origin[1], "z": down - origin[2], "yaw": to_heading(row[3])}
     return LOCAL, LOCAL.payload(
-        target_system=inbox.system, coordinate_frame=MavFrame.LOCAL_NED, type_mask=mask, **place
+        target_system=inbox.system, coordinate_frame=MavFrame.LOCAL_NED, type_mask=mask, **fields
     )
 
 
 def rover_position(row: Sequence[float], inbox: StepTelemetry, origin: Sequence[float]) -> Message:
     """The same (x, y [m]) without a yaw, which a car cannot take at will."""
-    return position(row, inbox, origin, PLACE_ONLY | YAWS_IGNORED)
+    return position(row, inbox, origin, POSITION_ONLY | YAWS_IGNORED)
 
 
 def leaning(roll: float, pitch: float, inbox: StepTelemetry) -> Any:

@@ -27,7 +27,7 @@ PART = 58
 """Readings in a part of a scan."""
 SCAN_NAME = b"LASER"
 HIT = b"SIM Hit obstacle"
-"""How the text begins that tells of a touch."""
+"""How the text begins that reports a touch."""
 _part = struct.Struct("<QH10s").unpack_from
 _seven = struct.Struct("<I6f").unpack_from
 
@@ -64,7 +64,7 @@ class StepTelemetry(Inbox):
         self.angles: npt.NDArray[np.float64] = np.zeros(readings)
         """Of the readings, counter-clockwise from straight ahead [rad]: SECTORS are spread over them."""
         self.hits = 0
-        """Touches told so far."""
+        """Touches reported so far."""
         self.mode, self.armed = -1, False
         self.is_px4 = False
         self.origin: tuple[int, int, int] | None = None
@@ -176,10 +176,10 @@ class StepTelemetry(Inbox):
 
     def recall(self, memory: tuple[Any, ...]) -> None:
         """Go on as from a ``memory``; parts of bytes and of scans are gone."""
-        self.position, self.attitude, (in_sectors, scan, self._scan_us), self.mode, self.armed, self.origin, told = (
+        self.position, self.attitude, (in_sectors, scan, self._scan_us), self.mode, self.armed, self.origin, values = (
             memory
         )
-        self.reports[:] = told
+        self.reports[:] = values
         self.scan_kind = SECTORS if in_sectors else SCAN
         self.scan[:] = scan
         self._splitter = Splitter()

@@ -25,7 +25,7 @@ from sitl.worlds import World
 from ..arena import flies
 from ..robots.robot import Robot, world_of
 from ..session import Session
-from ..targets.places import PlacesTask
+from ..targets.target_task import TargetTask
 from ..tasks import ReachGoal
 
 _MOST = 256
@@ -45,7 +45,7 @@ class Captured(NamedTuple):
     state: Points
     """Of all robots, shape (count, 12): see ``robots.truth``."""
     scan: npt.NDArray[np.float32]
-    places: Points
+    positions: Points
     """Those that the chosen robot is still to reach, shape (n, 3) [m]."""
     episode: int
     total: float
@@ -102,33 +102,33 @@ class EnvSource:
         """The environment as it is now."""
         k, robot = self.chosen, self._robot
         time = float(np.asarray(robot.time)[k])
-        places, signals = self._places(k), self._signals(k)
+        positions, signals = self._positions(k), self._signals(k)
         worlds = tuple(world_of(robot, j) for j in range(robot.count)) if self._session.varies else ()
         return Captured(
-            k, time, states(robot), np.array(robot.scan[k]), places, self.episode, self._total, signals, worlds
+            k, time, states(robot), np.array(robot.scan[k]), positions, self.episode, self._total, signals, worlds
         )  # fmt: skip
 
-    def _places(self, k: int) -> Points:
+    def _positions(self, k: int) -> Points:
         task = self._session.task
         if isinstance(task, ReachGoal):
             x, y = task.goals[k].tolist()
             return np.array([[x, y, float(states(self._robot)[k, 2])]])
-        if isinstance(task, PlacesTask):
+        if isinstance(task, TargetTask):
             first = min(int(task.at[k]), task.per_robot - 1)
-            return np.array(task.places[k, first:])
+            return np.array(task.positions[k, first:])
         return np.zeros((0, 3))
 
     def _signals(self, k: int) -> dict[str, float]:
         session, found = self._session, {}
         for name in self._wanted:
-            word, _, place = name.partition("[")
+            word, _, index = name.partition("[")
             if word in ("reward", "return", "episode"):
                 own = {"reward": session.rewards[k], "return": self._total, "episode": self.episode}
                 found[name] = float(own[word])
             elif word == "action":
-                found[name] = float(np.ravel(session.actions[k])[int(place[:-1])])
+                found[name] = float(np.ravel(session.actions[k])[int(index[:-1])])
             elif self._observation is not None:
-                key, at = word.partition(".")[2], int(place[:-1])
+                key, at = word.partition(".")[2], int(index[:-1])
                 rows = self._observation[key] if key else self._observation
                 found[name] = float(np.ravel(rows[k])[at])
         return found
@@ -182,11 +182,11 @@ class EnvSource:
             mode=f"episode {captured.episode}", armed=True, rotors=self._rotors,
             rolled=(float(self._rolled[0]), float(self._rolled[1])),
             world=self._world(captured), scan=self._scan(captured),
-            plan=self._planned(captured.places, offset), signals=captured.signals,
+            plan=self._planned(captured.positions, offset), signals=captured.signals,
             company=Company(pos, np.array([tuple(each) for each in q]), k) if len(state) > 1 else None,
             facts=(
                 ("time", f"{captured.time:.1f} s"), ("return", f"{captured.total:.2f}"),
-                (f"place ({whose})", f"{state[k, 0]:.2f}, {state[k, 1]:.2f}, {state[k, 2]:.2f} m"),
+                (f"position ({whose})", f"{state[k, 0]:.2f}, {state[k, 1]:.2f}, {state[k, 2]:.2f} m"),
                 (f"speed ({whose})", f"{speed:.2f} m/s"),
             ),
         )  # fmt: skip
@@ -223,11 +223,11 @@ class EnvSource:
         met = np.isfinite(ranges) & (ranges <= self._robot.range_max)
         return hits(ranges[met], np.asarray(angles)[met]) + self._lidar
 
-    def _planned(self, places: Points, offset: Points) -> Plan:
-        key = places.tobytes() + offset.tobytes()
+    def _planned(self, positions: Points, offset: Points) -> Plan:
+        key = positions.tobytes() + offset.tobytes()
         if key != self._plan[0]:
-            at = (places + offset) * FLIP
-            marks = (Mark(f"place {j + 1}", Vec3(*each), j) for j, each in enumerate(at.tolist()))
+            at = (positions + offset) * FLIP
+            marks = (Mark(f"target {j + 1}", Vec3(*each), j) for j, each in enumerate(at.tolist()))
             self._plan = (key, Plan(items=tuple(marks)))
         return self._plan[1]
 
@@ -262,7 +262,7 @@ def states(robot: Robot) -> Points:
 
 
 def poses(state: Points, ahead: float) -> tuple[Points, list[Any]]:
-    """Places NED [m], shape (count, 3), and attitudes of the bodies.
+    """Positions NED [m], shape (count, 3), and attitudes of the bodies.
 
     Args:
         state: see ``states``.
@@ -284,9 +284,9 @@ def shape_of(robot: Robot) -> Shape:
 
 
 def grid(session: Session) -> Points:
-    """Places of the worlds of all robots side by side, in the scene's axes [m], shape (count, 3)."""
+    """Positions of the worlds of all robots side by side, in the scene's axes [m], shape (count, 3)."""
     task, (x0, y0, x1, y1) = session.task, session.robot.world.bounds
-    if isinstance(task, PlacesTask):
+    if isinstance(task, TargetTask):
         low, high = task.arena.low, task.arena.high
         x0, y0, x1, y1 = min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1])
     return side_by_side(session.robot.count, (x0, y0), (x1, y1))

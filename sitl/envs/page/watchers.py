@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an environment tells of its steps, and what is shown of them: all that the page can take, or clips of some."""
+"""What an environment reports of its steps, and what is shown of them: all that the page can take, or clips of some."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LENGTH = 300
 
 
 class Watcher(Protocol):
-    """Is told of episodes and steps; changes nothing."""
+    """Is notified of episodes and steps; changes nothing."""
 
     def started(self, index: int) -> None:
         """An episode of a robot begins."""

@@ -26,7 +26,7 @@ WORLD = "circuit2"
 
 
 def world_of(robot: str | Callable[..., Robot]) -> str:
-    """Name of the world that a robot has room in, for one that is to be in no other."""
+    """Name of the world that a robot fits in, for one that is to be in no other."""
     return WORLDS.get(_name(robot), WORLD) if isinstance(robot, str) else WORLD
 
 

@@ -35,7 +35,7 @@ from ..mavlink.preparation import (
     refusal,
 )
 from ..mavlink.reports import LANDED
-from ..mavlink.setpoints import ATTITUDE_ALONE, LOCAL, PLACE_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
+from ..mavlink.setpoints import ATTITUDE_ALONE, LOCAL, POSITION_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup
@@ -89,7 +89,7 @@ class SocketVehicles(Vehicles):
         """Where that was, in its local frame: NED [m]."""
         self._height = 0.0
         """How high that was above its home [m]."""
-        self._heard_ms = -1000
+        self._received_ms = -1000
         self._is_put_down = self._is_warned = False
         self._sank_ms = 0
         """When the vehicle that is put down was last seen to sink [ms]."""
@@ -177,7 +177,7 @@ class SocketVehicles(Vehicles):
         )
 
     def _joined(self, link: Connection, pose: Pose) -> Origin:
-        """Take over a vehicle that somebody else has brought up; its place at the first episode is the world's start
+        """Take over a vehicle that somebody else has brought up; its position at the first episode is the world's start
         pose. Returns its local origin in the world: north, east, down [m]."""
         kind, inbox, wait = self.setup.kind, link.inbox, self.options.wait
         if self._origin is not None and self.options.reset == RETURN:
@@ -286,14 +286,14 @@ class SocketVehicles(Vehicles):
             return
         if self.setup.kind.takes_off and not self._is_px4 and (has_landed(link) or height_above_home(link) < AIRBORNE):
             self._lift_off(link)
-        x, y, z = place = self._first
-        mask = PLACE_ONLY | YAWS_IGNORED
+        x, y, z = position = self._first
+        mask = POSITION_ONLY | YAWS_IGNORED
         pauses = _PAUSES if self._is_px4 else 1  # it leaves OFFBOARD without set-points
         for _ in range(pauses * max(round(self.options.wait), 1)):
             fields = {"coordinate_frame": MavFrame.LOCAL_NED, "type_mask": mask, "x": x, "y": y, "z": z}
             link.endpoint.send_payload(LOCAL, LOCAL.payload(**_meant(link), **fields))
             link.pause(1_000_000 // pauses)
-            away = separation(inbox.position[1:4], place)
+            away = separation(inbox.position[1:4], position)
             if away < NEAR or not inbox.armed or inbox.mode != self.setup.kind.guided:
                 return
         raise NotReadyError(f"{link.name}: the vehicle is still {away:.1f} m away from where the first episode began")
@@ -314,8 +314,8 @@ class SocketVehicles(Vehicles):
         link = self.links[0]
         assert link is not None
         inbox = link.inbox
-        if inbox.time_ms - self._heard_ms >= 1000:
-            self._heard_ms = inbox.time_ms
+        if inbox.time_ms - self._received_ms >= 1000:
+            self._received_ms = inbox.time_ms
             link.endpoint.send(
                 "HEARTBEAT",
                 type=MavType.GCS,
@@ -338,7 +338,7 @@ class SocketVehicles(Vehicles):
                 "signal can be caught: SIGTERM, SIGHUP and others end this process without a hand-over"
             )
 
-    def told_to_end(self) -> str:
+    def asked_to_end(self) -> str:
         """Why the agent must not go on: the process was told to end, and the agent has passed over it; "": it was
         not."""
         return f"the process was told to end ({ENDINGS.signal})" if ENDINGS.signal else ""
@@ -367,9 +367,9 @@ class SocketVehicles(Vehicles):
         finally:
             if deed is not None:
                 with contextlib.suppress(Exception):
-                    self._tell(link, deed, why)
+                    self._report(link, deed, why)
 
-    def _tell(self, link: Remote, deed: HandOver, why: str) -> None:
+    def _report(self, link: Remote, deed: HandOver, why: str) -> None:
         """What became of a hand-over: into the guard's log, and aloud where the vehicle is not known to be safe."""
         watch = self.watch
         if watch is not None:

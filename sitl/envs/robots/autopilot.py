@@ -34,7 +34,7 @@ from sitl.vehicle.faults import Failure
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe, AirframeError
 from sitl.vehicles.airframe import Value
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 from sitl.vehicles.receivers import equipped
 from sitl.worlds import World, planar
 from sitl.worlds.shapes import from_heading, from_ned, to_ned
@@ -147,8 +147,10 @@ class AutopilotRobot:
         is_driven = isinstance(made, FleetVehicles) and kind.drive is not None
         self.step_time, self.setpoints = 0.1, tuple(s for s in kind.setpoints if s is not MOTORS or is_driven)
         self.crash_range, self.tick = kind.crash_range, max(kind.tick, made.min_step)
-        self.figures: Mapping[str, Figure] = (
-            {**{f.name: f for f in airframe.known if is_changeable(f)}, **made.extra_figures} if made.simulates else {}
+        self.properties: Mapping[str, Property] = (
+            {**{f.name: f for f in airframe.known if is_changeable(f)}, **made.extra_properties}
+            if made.simulates
+            else {}
         )
         self.volume = volume(airframe, chosen.take_off if kind.takes_off else 0.0)
         each_boots = not made.simulates or choice is not None or (chosen.begin == BOOT and chosen.boots > 1)
@@ -204,7 +206,7 @@ class AutopilotRobot:
 
     # ------------------------------------------------------------------ episodes
 
-    def set_figure(self, index: int, name: str, value: Value) -> None:
+    def set_property(self, index: int, name: str, value: Value) -> None:
         """See ``Robot``."""
         self._vehicles.changed[index][name] = value
 
@@ -212,7 +214,7 @@ class AutopilotRobot:
         """Where a vehicle is prepared that is moved to other start poses; before the first reset.
 
         Raises:
-            EnvOptionError: a place so far away that no vehicle can be moved there.
+            EnvOptionError: a position so far away that no vehicle can be moved there.
         """
         north, east, _ = to_ned(*pose[:3])
         try:
@@ -391,7 +393,7 @@ class AutopilotRobot:
         vehicles = self._vehicles
         assert isinstance(vehicles, SocketVehicles)
         if watch.in_charge:
-            why = vehicles.taken() or vehicles.told_to_end() or watch.doubt(self.pose[index].tolist(), row)
+            why = vehicles.taken() or vehicles.asked_to_end() or watch.doubt(self.pose[index].tolist(), row)
             if why:
                 vehicles.hand_over(why)
         self.over[index] = not watch.in_charge
@@ -478,7 +480,7 @@ class AutopilotRobot:
 
     @property
     def camera_mount(self) -> tuple[float, float, float, float] | None:
-        """Where a camera is unless told otherwise: forward, left, up of the body's origin [m], as the lidar; and how
+        """Where a camera is by default: forward, left, up of the body's origin [m], as the lidar; and how
         far the robot's base lies ahead of that origin [m]. None: a vehicle in another process, or with a foreign
         autopilot, has none."""
         if not self._vehicles.has_snapshots:

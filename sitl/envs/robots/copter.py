@@ -31,9 +31,9 @@ def drive(records: Any, rows: npt.NDArray[np.int64], commands: Floats) -> None:
         commands: controls, 0 .. 1, a row a copter of the fleet, shape (count, at least as many as rotors).
     """
     physics = records["physics"]
-    rotors, figures = physics["rotors"], physics["airframe"]
-    count = int(figures["rotor_count"][rows[0]]) if len(rows) else 0
-    least, scale = figures["control_min"][rows, None], physics["derived"]["control_scale"][rows, None]
+    rotors, properties = physics["rotors"], physics["airframe"]
+    count = int(properties["rotor_count"][rows[0]]) if len(rows) else 0
+    least, scale = properties["control_min"][rows, None], physics["derived"]["control_scale"][rows, None]
     wanted = np.clip((commands[rows, :count] * rotors["share"][rows, :count] - least) * scale, 0.0, 1.0)
     stuck = records["autopilot"]["params"]["SIM"]["ENGINE_STUCK"][rows].astype(np.int64)
     is_stuck = (stuck[:, None] >> np.arange(count)) & 1 == 1

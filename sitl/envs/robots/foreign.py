@@ -89,7 +89,7 @@ class ForeignVehicles(Vehicles):
             before: connection of the last episode; it is closed, or reused when we did not start the program.
             scenario: of this episode, but for its parameters.
             wind: parameters of this episode's wind, over those of the options. An ArduPilot has them, too, because
-                what it tells of them acts on the physics.
+                what it reports of them acts on the physics.
         """
         choice, options = self._choice, self.options
         rebooted = before if isinstance(before, Foreign) and choice.program is None else None

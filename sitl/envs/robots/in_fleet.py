@@ -70,7 +70,7 @@ from .starts import Start
 from .truth import true_reports, truth_writer
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
-SORTS: dict[Encode, int] = {
+ENCODINGS: dict[Encode, int] = {
     override: RC, velocity: VELOCITY, position: POSITION, copter_attitude: ATTITUDE,
     rover_position: ROVER_POSITION, rover_attitude: ROVER_ATTITUDE, acceleration: ACCELERATION, thrust: THRUST,
     rates: RATES,
@@ -162,18 +162,18 @@ class FleetVehicles(InProcessVehicles):
     # ------------------------------------------------------------------ episodes
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        figures = tuple(sorted(self.changed[index].items()))
+        properties = tuple(sorted(self.changed[index].items()))
         base, world = self.base or self._start, self.worlds[index]
-        stays = pose == base and not figures and world is self.setup.world
+        stays = pose == base and not properties and world is self.setup.world
         if self.options.begin == BOOT or (self.options.boots == 1 and stays):
-            start, move = self._start_of(pose, figures, world, self._boot_of(seed)), None
+            start, move = self._start_of(pose, properties, world, self._boot_of(seed)), None
         else:
             boot, walks = draw(self.options.boots, seed)
             start = self._start_of(base, (), self.setup.world, boot)
             prepared = self._prepared.get(boot)
             if prepared is None or prepared.state is not start.state:
                 prepared = self._prepared[boot] = Prepared(start.state, self.setup, base)
-            move = prepared.to(pose, figures, seed, world, walks)
+            move = prepared.to(pose, properties, seed, world, walks)
         state = start.state
         if (ready := start.ready.get(self._used)) is not None:  # as the last episodes went on
             state = EpisodeState(ready, state.telemetry, state.origin, state.began_us, *self._used)
@@ -219,8 +219,8 @@ class FleetVehicles(InProcessVehicles):
         self._failing.pop(index, None)
         fleet.receive(index)
         end, telemetry = self._views[index], state.telemetry
-        place, angles, (_, scan, scan_us), end.mode, end.armed, _, end.reports[:] = telemetry
-        end.position_ms, end.position, end.velocity = int(place[0]), place[1:4], place[4:]
+        motion, angles, (_, scan, scan_us), end.mode, end.armed, _, end.reports[:] = telemetry
+        end.position_ms, end.position, end.velocity = int(motion[0]), motion[1:4], motion[4:]
         end.attitude_ms, end.euler, end.rates = int(angles[0]), angles[1:4], angles[4:]
         end.scan_us, end.fresh, end.hits = scan_us, 0, 0
         self._scans[index] = scan[: self._scans.shape[1]]
@@ -299,25 +299,25 @@ class FleetVehicles(InProcessVehicles):
             waits_us: how long each set-point is under way [us], shape (count,); None: no time.
         """
         fleet, rows, kind = self.fleet, self.rows(which), self.setup.kind
-        sort = DIRECT if setpoint == MOTORS.name else SORTS[kind.encode[setpoint]]
+        encoding = DIRECT if setpoint == MOTORS.name else ENCODINGS[kind.encode[setpoint]]
         for index in [k for k in rows.tolist() if k in self._failing] if self._failing else ():
             self._order(index)
         if waits_us is None:
-            self._command(rows, sort, commands)
+            self._command(rows, encoding, commands)
             fleet.advance_us(us, None if which is None else rows)
         else:
             late, sends = rows[waits_us[rows] > 0], rows[waits_us[rows] < us]
             fleet.advance_us(np.minimum(waits_us[late], us), late)
             self._read_shell_bytes()
             self._read_some(late)
-            self._command(sends, sort, commands)
+            self._command(sends, encoding, commands)
             fleet.advance_us(us - np.minimum(waits_us[sends], us), sends)
         self.show(rows)
 
-    def _command(self, rows: Rows, sort: int, commands: Floats) -> None:
+    def _command(self, rows: Rows, encoding: int, commands: Floats) -> None:
         """Send set-points; controls of motors go into the physics."""
-        if sort != DIRECT:
-            self._send(rows, sort, commands)
+        if encoding != DIRECT:
+            self._send(rows, encoding, commands)
             return
         assert self.setup.kind.drive is not None
         self.setup.kind.drive(self.fleet.records, rows, commands)

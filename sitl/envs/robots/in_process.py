@@ -40,8 +40,8 @@ MAX_ELSEWHERE = 8
 
 def check_parameters(simulation: Simulation) -> None:
     """Warn of parameters of an environment that have no effect."""
-    told = isinstance(simulation.scenario.params, FileValues)
-    if (idle := simulation.parameters.idle()) and not told:
+    given = isinstance(simulation.scenario.params, FileValues)
+    if (idle := simulation.parameters.idle()) and not given:
         warnings.warn(f"no effect in this simulator: {', '.join(idle)}", stacklevel=2)
 
 
@@ -74,8 +74,8 @@ class InProcessVehicles(Vehicles):
         return f"connection {self.options.connection!r}"
 
     def begin(self, index: int, pose: Pose, seed: int) -> EpisodeState:
-        figures = tuple(sorted(self.changed[index].items()))
-        state = self._start_of(pose, figures, self.worlds[index], self._boot_of(seed)).state
+        properties = tuple(sorted(self.changed[index].items()))
+        state = self._start_of(pose, properties, self.worlds[index], self._boot_of(seed)).state
         self.restore(index, state)
         self.simulation(index).reseed(seed)
         return state
@@ -99,16 +99,18 @@ class InProcessVehicles(Vehicles):
         boots = self.options.boots
         return seed if self.options.begin == BOOT and boots > 1 else draw(boots, seed).boot
 
-    def _start_of(self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int = SINGLE) -> Start:
+    def _start_of(
+        self, pose: Pose, properties: tuple[tuple[str, Value], ...], world: World, boot: int = SINGLE
+    ) -> Start:
         """The vehicle after a boot with this seed and take-off, at a pose in a world; calculated on first use."""
         origin = self._from.get(world.name)
         if origin is None:
             origin = self._from[world.name] = Origin(self.setup, world)
-        key = origin, tuple(kind.id for kind in self.setup.wanted), pose, figures, boot
-        return STARTS.of(key, lambda: self._started(pose, figures, world, boot))
+        key = origin, tuple(kind.id for kind in self.setup.wanted), pose, properties, boot
+        return STARTS.of(key, lambda: self._started(pose, properties, world, boot))
 
-    def _started(self, pose: Pose, figures: tuple[tuple[str, Value], ...], world: World, boot: int) -> EpisodeState:
-        simulation = self._simulation(pose, figures, world, boot)
+    def _started(self, pose: Pose, properties: tuple[tuple[str, Value], ...], world: World, boot: int) -> EpisodeState:
+        simulation = self._simulation(pose, properties, world, boot)
         link = InProcess(simulation, self.setup.inbox())
         origin = self.prepare(link, pose)
         state = EpisodeState(simulation.snapshot(), link.inbox.memory(), origin, simulation.time_us, "", INTERVAL_US)
@@ -118,12 +120,12 @@ class InProcessVehicles(Vehicles):
     def _simulation(
         self,
         pose: Pose | None = None,
-        figures: Sequence[tuple[str, Value]] = (),
+        properties: Sequence[tuple[str, Value]] = (),
         world: World | None = None,
         boot: int = SINGLE,
     ) -> Simulation:
         simulation: Simulation = self._made(
-            pose, figures, lambda scenario: Simulation(scenario, core=self._core), world, boot
+            pose, properties, lambda scenario: Simulation(scenario, core=self._core), world, boot
         )
         check_parameters(simulation)
         if self.setup.scenario.physics == NATIVE:
@@ -133,19 +135,19 @@ class InProcessVehicles(Vehicles):
     def _made(
         self,
         pose: Pose | None,
-        figures: Sequence[tuple[str, Value]],
+        properties: Sequence[tuple[str, Value]],
         make: Callable[[Scenario], Any],
         world: World | None = None,
         boot: int = SINGLE,
     ) -> Any:
-        """What ``make`` makes of the scenario at a pose, with changed figures, in a world (None: the scenario's).
+        """What ``make`` makes of the scenario at a pose, with changed properties, in a world (None: the scenario's).
 
         Raises:
             EnvOptionError: an option is refused.
         """
         scenario, airframe = booted(self.setup.scenario, self.setup.airframe, boot)
         start = None if pose is None else (*pose[:3], math.degrees(pose[3]))
-        wind, own = wind_and_own(figures)
+        wind, own = wind_and_own(properties)
         params = scenario.parameters | wind
         scenario = scenario if world is None else replace(scenario, world=world)
         try:

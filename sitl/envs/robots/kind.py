@@ -45,7 +45,7 @@ class RobotKind:
     takes_off: bool
     """An episode begins in the air."""
     feels_wind: bool
-    """Wind is among the figures that may be changed."""
+    """Wind is among the properties that may be changed."""
     parameters: Mapping[str, tuple[str, int]] = field(default_factory=dict)
     """Kind of set-point -> parameter and the bit of it that the vehicle must have."""
     drive: Callable[[Any, npt.NDArray[np.int64], Floats], None] | None = None

@@ -24,7 +24,7 @@ from .vehicles import EpisodeState, VehicleSetup
 MOVE, BOOT = "move", "boot"
 BEGINS = (MOVE, BOOT)
 """Values of the option ``begin``."""
-_WINDS = [figure.name for figure in WIND]
+_WINDS = [prop.name for prop in WIND]
 
 
 class Prepared:
@@ -47,7 +47,7 @@ class Prepared:
     def to(
         self,
         pose: Pose,
-        figures: Sequence[tuple[str, Value]],
+        properties: Sequence[tuple[str, Value]],
         seed: int,
         world: World,
         walks: tuple[float, float] | None = None,
@@ -56,7 +56,7 @@ class Prepared:
 
         Args:
             pose: x, y, z [m], yaw [rad] in the world.
-            figures: that differ from the prepared vehicle's, by name.
+            properties: that differ from the prepared vehicle's, by name.
             seed: of the sensors' noise.
             world: that the pose is in.
             walks: slow error of the receiver (``Move.walks``); gusts are drawn, too. None: as prepared.
@@ -64,7 +64,7 @@ class Prepared:
         Raises:
             EnvOptionError: the pose is off the floor.
         """
-        changed: dict[str, Any] = dict(figures)
+        changed: dict[str, Any] = dict(properties)
         wind = None
         if any(name in changed for name in _WINDS):
             speed, direction, turbulence = (changed.pop(name, self._wind[name]) for name in _WINDS)
@@ -73,7 +73,7 @@ class Prepared:
             wind = self._wind["wind_speed"], self._wind["wind_direction"], self._wind["wind_turbulence"]
         along = changed.get("base_along", self._along)
         if pose == self._pose and "base_along" not in changed and walks is None:
-            return Move(wind=wind, figures=changed, seed=seed)
+            return Move(wind=wind, properties=changed, seed=seed)
         try:
             start_pose(world, (*pose[:3], math.degrees(pose[3])), self._setup.airframe.name)
         except OptionError as error:
@@ -85,7 +85,7 @@ class Prepared:
             east - along * sin(heading),
             heading=heading,
             wind=wind,
-            figures=changed,
+            properties=changed,
             seed=seed,
             walks=walks,
         )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 from sitl.worlds import World
 
 from ..actions import Setpoint
@@ -54,8 +54,8 @@ class Robot(Protocol):
     """Default range below which a reading is a crash [m]."""
     setpoints: tuple[Setpoint, ...]
     """Kinds of set-points that ``apply`` accepts; the first is the default."""
-    figures: Mapping[str, Figure]
-    """Figures that ``set_figure`` can change, with their limits."""
+    properties: Mapping[str, Property]
+    """Properties that ``set_property`` can change, with their limits."""
     range_max: float
     """Greatest finite reading [m]."""
     digit_when_inf: int
@@ -97,8 +97,8 @@ class Robot(Protocol):
     def advance(self, seconds: float, rows: npt.NDArray[np.bool_] | None = None) -> None:
         """Advance these robots (None: all; shape (count,)) by simulated time [s], and read all lidars."""
 
-    def set_figure(self, index: int, name: str, value: Any) -> None:
-        """Change a figure of one robot, in the figure's unit, before its ``reset``; a vector as a tuple."""
+    def set_property(self, index: int, name: str, value: Any) -> None:
+        """Change a property of one robot, in the property's unit, before its ``reset``; a vector as a tuple."""
 
     def snapshot(self, index: int) -> Any:
         """State of one robot; after ``restore`` it continues bit for bit. Picklable."""

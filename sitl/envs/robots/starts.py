@@ -25,8 +25,8 @@ MOST = 2048
 
 
 class Origin:
-    """What the start of a vehicle depends on, besides its pose, changed figures, the seed of its boot and the messages
-    that it sends.
+    """What the start of a vehicle depends on, besides its pose, changed properties, the seed of its boot and the
+    messages that it sends.
 
     Args:
         setup: what the vehicles of an environment are made from.
@@ -59,7 +59,7 @@ class Origin:
 
 
 def _scenario(scenario: Scenario) -> Hashable:
-    """A scenario without its airframe, world, start and seed, which are told apart otherwise."""
+    """A scenario without its airframe, world, start and seed, which are distinguished otherwise."""
     return (
         scenario.home, scenario.estimator, type(scenario.params), tuple(sorted(scenario.parameters.items())),
         scenario.physics, tuple(scenario.faults), scenario.terrain,
@@ -67,12 +67,12 @@ def _scenario(scenario: Scenario) -> Hashable:
 
 
 def _airframe(airframe: Airframe) -> Hashable:
-    figures = tuple(sorted((name, _plain(value)) for name, value in airframe.figures.items()))
-    return type(airframe), airframe.name, figures, tuple(sorted(airframe.parameters.items()))
+    properties = tuple(sorted((name, _plain(value)) for name, value in airframe.properties.items()))
+    return type(airframe), airframe.name, properties, tuple(sorted(airframe.parameters.items()))
 
 
 def _plain(value: Any) -> Hashable:
-    """A figure's value: vectors as tuples."""
+    """A property's value: vectors as tuples."""
     return value if isinstance(value, str) or not hasattr(value, "__len__") else tuple(map(float, value))
 
 

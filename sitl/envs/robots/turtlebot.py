@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from sitl.physics.native.turtlebot.state import TICK_S
 from sitl.turtlebots.native import Turtlebots, ticks_in
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 from sitl.vehicles.turtlebot import AIRFRAME, LIDAR, Lidar, TurtlebotAirframe
 from sitl.worlds import World, planar
 
@@ -28,7 +28,7 @@ class Turtlebot:
     Args:
         world: world that the robots drive in.
         count: number of robots.
-        airframe: figures of the robots.
+        airframe: properties of the robots.
         lidar: number of readings and field of view.
         physics: "native", or "pybullet": wheels that slip, walls that it slides along.
 
@@ -43,7 +43,7 @@ class Turtlebot:
     """The Kobuki's command time-out: see docs/environments.md."""
     crash_range = 0.2
     setpoints: tuple[Setpoint, ...] = (DRIVE,)
-    figures: Mapping[str, Figure] = {figure.name: figure for figure in TurtlebotAirframe.known}
+    properties: Mapping[str, Property] = {prop.name: prop for prop in TurtlebotAirframe.known}
     digit_when_inf = 6
 
     def __init__(
@@ -90,7 +90,7 @@ class Turtlebot:
 
     @property
     def airframe(self) -> TurtlebotAirframe:
-        """Figures that all robots start with."""
+        """Properties that all robots start with."""
         return self._robots.airframe
 
     @property
@@ -194,9 +194,9 @@ class Turtlebot:
         render = getattr(self._robots, "render", None)
         return None if render is None else render(index, width, height)
 
-    def set_figure(self, index: int, name: str, value: float) -> None:
+    def set_property(self, index: int, name: str, value: float) -> None:
         """See ``Robot``."""
-        self._robots.set_figure(index, name, value)
+        self._robots.set_property(index, name, value)
 
     def snapshot(self, index: int) -> Any:
         """See ``Robot``."""

@@ -20,7 +20,7 @@ from sitl.simulation import Simulation
 from sitl.vehicle.faults import Failure
 from sitl.vehicles import Airframe
 from sitl.vehicles.airframe import Value
-from sitl.vehicles.figures.figure import Figure
+from sitl.vehicles.properties.property import Property
 from sitl.worlds import World
 
 from ..mavlink import px4, setpoints
@@ -31,7 +31,7 @@ from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
 from .truth import true_reports, true_states
-from .wind import FIGURES
+from .wind import PROPERTIES
 
 INPROCESS = "inprocess"
 _AT_REST = (1500.0, 1500.0, 1500.0, 1500.0, 0.0, 0.0, 0.0, 0.0)
@@ -90,8 +90,8 @@ class AutopilotOptions:
             False: none. None: ``Guard()``, but for what proves to be a simulator.
         threads: that advance vehicles in process on native physics; their number changes no bit of the result.
         begin: how vehicles in process on native physics come to the start of an episode: "move" (one vehicle boots and
-            takes off at the environment's start pose, once, and is moved to others, with other figures), or "boot" (it
-            boots and takes off at each start pose, with each set of figures). Others always boot.
+            takes off at the environment's start pose, once, and is moved to others, with other properties), or "boot"
+            (it boots and takes off at each start pose, with each set of properties). Others always boot.
         boots: number of prepared boots, 1 .. 1024, one of which each episode begins with, by its seed: biases of IMU
             and compass and the errors of the estimate are those of that boot; the slow error of the receiver is
             drawn for each episode. With ``begin="boot"`` each episode has a boot of its own. 1: one boot with seed
@@ -161,7 +161,7 @@ class Vehicles(ABC):
     """
 
     simulates: ClassVar[bool] = True
-    """Whether the physics is in this process, so that figures can be changed and the truth is known."""
+    """Whether the physics is in this process, so that properties can be changed and the truth is known."""
     has_snapshots: ClassVar[bool] = False
     takes_threads: ClassVar[bool] = False
     min_step: ClassVar[float] = 0.005
@@ -183,7 +183,7 @@ class Vehicles(ABC):
         self.links: list[Connection | None] = [None] * count
         """Connection to each vehicle; None before it is needed."""
         self.changed: list[dict[str, Value]] = [{} for _ in range(count)]
-        """Changed figures of each vehicle: name -> value, in the figure's unit; vectors are tuples."""
+        """Changed properties of each vehicle: name -> value, in the property's unit; vectors are tuples."""
         self.watch: Watch | None = None
         """The guard of a vehicle that runs elsewhere."""
         self.scans_used = True
@@ -194,9 +194,9 @@ class Vehicles(ABC):
         """Where a vehicle is prepared that is moved to other starts; None: at the world's start pose."""
 
     @property
-    def extra_figures(self) -> Mapping[str, Figure]:
-        """Figures besides the airframe's that can be changed."""
-        return FIGURES if self.simulates and self.setup.kind.feels_wind else {}
+    def extra_properties(self) -> Mapping[str, Property]:
+        """Properties besides the airframe's that can be changed."""
+        return PROPERTIES if self.simulates and self.setup.kind.feels_wind else {}
 
     def enter(self, index: int, world: World) -> None:
         """One vehicle's next episode is in this world.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The wind as figures of a vehicle whose physics is here: they can be changed from episode to episode."""
+"""The wind as properties of a vehicle whose physics is here: they can be changed from episode to episode."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ PARAMETERS = {
     "wind_direction": "SIM_WIND_DIR",
     "wind_turbulence": "SIM_WIND_TURB",
 }
-FIGURES = {figure.name: figure for figure in WIND}
+PROPERTIES = {prop.name: prop for prop in WIND}
 """Not every kind of vehicle feels wind."""
-assert FIGURES.keys() == PARAMETERS.keys()
+assert PROPERTIES.keys() == PARAMETERS.keys()
 
 
-def wind_and_own(figures: Iterable[tuple[str, Value]]) -> tuple[dict[str, float], dict[str, Value]]:
-    """Figures that were changed, apart: the parameters of the wind, and the airframe's own figures."""
+def wind_and_own(properties: Iterable[tuple[str, Value]]) -> tuple[dict[str, float], dict[str, Value]]:
+    """Properties that were changed, apart: the parameters of the wind, and the airframe's own properties."""
     wind: dict[str, float] = {}
     own: dict[str, Value] = {}
-    for name, value in figures:
+    for name, value in properties:
         if name in PARAMETERS:
             wind[PARAMETERS[name]] = float(value)  # type: ignore[arg-type]
         else:

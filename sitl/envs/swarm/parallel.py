@@ -163,8 +163,8 @@ class SwarmEnv(ParallelEnv):
         self._count, self._hits = 0, self._hit_counts()
         self.swarm.advance_to(self.swarm.time_us + self.step_us)
         self._listen()
-        self.task.begin(self._true_places(), self._rng)
-        self._goals = self.task.goals(self._true_places(), 0.0).copy()
+        self.task.begin(self._true_positions(), self._rng)
+        self._goals = self.task.goals(self._true_positions(), 0.0).copy()
         self._sight.start(noise)
         return self._observe(self._goals), {agent: {} for agent in self.agents}
 
@@ -172,7 +172,7 @@ class SwarmEnv(ParallelEnv):
         """All of them ready to be flown, after the first boot."""
         clients = self._prepare(self.swarm)
         self._ends: list[Endpoint] = [client.connection.endpoint for client in clients]
-        self._told: Floats = np.zeros((len(clients), 6))
+        self._reported: Floats = np.zeros((len(clients), 6))
         return self.swarm.snapshot()
 
     def _prepare(self, swarm: Swarm) -> list[Client]:
@@ -226,15 +226,15 @@ class SwarmEnv(ParallelEnv):
         """
         given = self.check(actions)
         acting = self.agents
-        before = self._true_places()
+        before = self._true_positions()
         for agent, k in self._number.items():
             self._send(k, given.get(agent, (0.0, 0.0, 0.0)))
         self.swarm.advance_to(self.swarm.time_us + self.step_us)
         self._listen()
         self._count += 1
-        places = self._true_places()
-        goals = self.task.goals(places, 1e-6 * self.step_us * self._count)
-        scene = Scene(places, before, goals, self._goals)
+        positions = self._true_positions()
+        goals = self.task.goals(positions, 1e-6 * self.step_us * self._count)
+        scene = Scene(positions, before, goals, self._goals)
         self._goals = goals.copy()
         rewards, is_success = self.task.rewards(scene), self.task.is_success(scene)
         over, hits = self.task.is_over(scene), self._hit_counts()
@@ -253,7 +253,11 @@ class SwarmEnv(ParallelEnv):
             terminations,
             truncations,
             {
-                agent: {"is_success": bool(is_success[k]), "was_hit": bool(was_hit[k]), "true_place": places[k].copy()}
+                agent: {
+                    "is_success": bool(is_success[k]),
+                    "was_hit": bool(was_hit[k]),
+                    "true_place": positions[k].copy(),
+                }
                 for agent, k in numbers.items()
             },
         )
@@ -308,22 +312,22 @@ class SwarmEnv(ParallelEnv):
                 if name == TELEMETRY:
                     north = (m.lat * 1e-7 - lat0) * metres
                     east = (m.lon * 1e-7 - lon0) * metres * cos(math.radians(lat0))
-                    self._told[k] = north, east, alt0 - m.alt * 1e-3, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01
+                    self._reported[k] = north, east, alt0 - m.alt * 1e-3, m.vx * 0.01, m.vy * 0.01, m.vz * 0.01
                 elif name == SCAN_MESSAGE:
                     self._sight.hear(k, m)
 
-    def _true_places(self) -> Floats:
+    def _true_positions(self) -> Floats:
         return np.array([tuple(vehicle.v.physics.body.pos) for vehicle in self.swarm.vehicles])
 
     def _hit_counts(self) -> npt.NDArray[np.int64]:
         return np.array([vehicle.v.physics.obstacles.hit_count for vehicle in self.swarm.vehicles])
 
     def _observe(self, goals: Floats) -> dict[str, Any]:
-        told = self._told
+        reported = self._reported
         found = {}
         for agent, k in self._number.items():
-            others = np.delete(told - told[k], k, axis=0).ravel()
-            row = np.concatenate((told[k, 3:], goals[k] - told[k, :3], others)).astype(np.float32)
+            others = np.delete(reported - reported[k], k, axis=0).ravel()
+            row = np.concatenate((reported[k, 3:], goals[k] - reported[k, :3], others)).astype(np.float32)
             space = self._observation_space
             found[agent] = self._sight.observe(k, np.clip(row, space.low, space.high))
         return found
@@ -336,7 +340,7 @@ class SwarmEnv(ParallelEnv):
         return {
             "task": self.task, "given": self._given, "rng": self._rng, "agents": self.agents,
             "begun": (
-                self.swarm.snapshot(), self._told, self._count, self._hits, [end.sequence for end in self._ends],
+                self.swarm.snapshot(), self._reported, self._count, self._hits, [end.sequence for end in self._ends],
                 self._sight.memory(), self._goals,
             )
             if begun
@@ -348,10 +352,10 @@ class SwarmEnv(ParallelEnv):
         self._rng, self.agents = state["rng"], list(state["agents"])
         if state["begun"] is not None:
             self._ready = self._prepared()  # it is the same each time
-            now, told, self._count, self._hits, sequences, seen, self._goals = state["begun"]
+            now, reported, self._count, self._hits, sequences, seen, self._goals = state["begun"]
             self.swarm.restore(now)
             self._sight.recall(seen)
-            self._told = told.copy()
+            self._reported = reported.copy()
             for endpoint, sequence in zip(self._ends, sequences, strict=True):
                 endpoint.link.receive()
                 endpoint.sequence = sequence

@@ -38,7 +38,7 @@ class Onlooker:
         assert isinstance(world, World)
         self.name, self.world = vehicle.airframe.name, world
         self._bodies = [_body(other) for other in swarm.vehicles]
-        self._figures = [other.airframe for other in swarm.vehicles]
+        self._airframes = [other.airframe for other in swarm.vehicles]
         self._number, self._state = number, np.zeros((1, STATE))
         forward, right, down = vehicle.airframe.value("lidar_at")
         if vehicle.airframe.value("lidar_samples") == 0:
@@ -53,17 +53,17 @@ class Onlooker:
     def others(self) -> Floats:
         """Outlines of the other vehicles, upright discs, shape (1, n, ``DISC``)."""
         found = []
-        for k, (body, figures) in enumerate(zip(self._bodies, self._figures, strict=True)):
-            if k == self._number or figures.value("contact_radius") == 0.0:
+        for k, (body, airframe) in enumerate(zip(self._bodies, self._airframes, strict=True)):
+            if k == self._number or airframe.value("contact_radius") == 0.0:
                 continue
             north, east, down = body["pos"][0].tolist()
             w, x, y, z = body["q"][0].tolist()
             ahead, aside, below = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
-            for along in figures.value("contact_along")[: int(figures.value("contact_discs"))]:
+            for along in airframe.value("contact_along")[: int(airframe.value("contact_discs"))]:
                 middle = down + along * below
-                top, bottom = middle - figures.value("contact_top"), middle + figures.value("contact_bottom")
+                top, bottom = middle - airframe.value("contact_top"), middle + airframe.value("contact_bottom")
                 found.append(
-                    (north + along * ahead, east + along * aside, figures.value("contact_radius"), top, bottom)
+                    (north + along * ahead, east + along * aside, airframe.value("contact_radius"), top, bottom)
                 )
         return np.array(found, np.float64).reshape(1, -1, DISC)
 
@@ -83,7 +83,7 @@ class Sight:
         state: space of "state".
 
     Raises:
-        EnvOptionError: no such name; "scan", and a vehicle has no lidar; a figure of a picture that cannot be.
+        EnvOptionError: no such name; "scan", and a vehicle has no lidar; a setting of a picture that cannot be.
     """
 
     def __init__(self, option: Any, swarm: Swarm, seconds: float, state: gym.spaces.Box) -> None:

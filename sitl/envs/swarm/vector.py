@@ -131,7 +131,7 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             raise gym.error.InvalidAction(f"actions of shape {actions.shape}; it must be {self.action_space.shape}")
         rewards = np.zeros(self.num_envs)
         terminated, truncated = np.zeros((2, self.num_envs), np.bool_)
-        told: dict[str, Any] = {
+        columns: dict[str, Any] = {
             "is_success": np.zeros(self.num_envs, np.bool_),
             "was_hit": np.zeros(self.num_envs, np.bool_),
             "true_place": np.zeros((self.num_envs, 3)),
@@ -147,10 +147,10 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             for row, agent in enumerate(self.agents, first):
                 rewards[row], terminated[row] = paid[agent], terminations[agent]
                 truncated[row] = over and not terminations[agent]
-                for name, values in told.items():
+                for name, values in columns.items():
                     values[row] = infos[agent][name]
         ended = terminated | truncated
-        return self._seen_after(ended), rewards, terminated, truncated, self._infos(told, ended)
+        return self._seen_after(ended), rewards, terminated, truncated, self._infos(columns, ended)
 
     def _given(self, actions: npt.NDArray[Any], k: int) -> dict[str, Any]:
         """Actions of a swarm's agents."""
@@ -165,14 +165,14 @@ class SwarmVectorEnv(VectorEnv[Any, Any, Any]):
             self._see(k, observations)
         return _copy(self._seen)
 
-    def _infos(self, told: dict[str, Any], ended: Flags) -> dict[str, Any]:
+    def _infos(self, columns: dict[str, Any], ended: Flags) -> dict[str, Any]:
         """In Gymnasium's form of "SameStep": what the last step of an episode told is in "final_info"."""
-        infos = _masked(told, ~ended)
+        infos = _masked(columns, ~ended)
         if ended.any():
             last = np.full(self.num_envs, None, object)
             for row in np.flatnonzero(ended).tolist():
                 last[row] = row_of(self._last, row)
-            final = _masked(told, ended)
+            final = _masked(columns, ended)
             infos |= {"final_obs": last, "_final_obs": ended, "final_info": final, "_final_info": ended.copy()}
         return infos
 
@@ -186,10 +186,10 @@ def _copy(seen: Any) -> Any:
     return {name: values.copy() for name, values in seen.items()} if isinstance(seen, dict) else seen.copy()
 
 
-def _masked(told: dict[str, Any], rows: Flags) -> dict[str, Any]:
+def _masked(columns: dict[str, Any], rows: Flags) -> dict[str, Any]:
     infos: dict[str, Any] = {}
     if rows.any():
-        for name, values in told.items():
+        for name, values in columns.items():
             kept = values.copy()
             kept[~rows] = 0
             infos[name], infos["_" + name] = kept, rows.copy()

@@ -11,10 +11,10 @@ import numpy.typing as npt
 from sitl.worlds import World
 
 from ..arena import Arena
-from ..free_ways import FreeWays
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
+from ..shortest_paths import ShortestPaths
 from .waypoints import Waypoints
 
 
@@ -41,9 +41,9 @@ class Among(Waypoints):
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
         super().prepare(robot)
-        self._ways = FreeWays(robot, self.limit)
+        self._paths = ShortestPaths(robot, self.limit)
         self._left = np.zeros(robot.count)
-        """How long each robot's free way to its place is [m]."""
+        """How long each robot's free path to its position is [m]."""
 
     def _bounded(self, limits: Arena, world: World) -> Arena:
         if self.ceiling is None or not self.flies:
@@ -57,17 +57,18 @@ class Among(Waypoints):
         self._aim(index)
 
     def _aim(self, index: int) -> None:
-        x, y, _ = self.places[index, min(self.at[index], self.per_robot - 1)].tolist()
-        self._ways.aim(index, x, y)
-        self._left[index] = self._ways.lengths(self.judged_pose())[index]
+        x, y, _ = self.positions[index, min(self.at[index], self.per_robot - 1)].tolist()
+        self._paths.aim(index, x, y)
+        self._left[index] = self._paths.lengths(self.judged_pose())[index]
 
     def plan_routes(self) -> None:
         """``routes`` is going to be called; before the first episode."""
-        self._ways.plan_routes()
+        self._paths.plan_routes()
 
     def routes(self, ahead: float, out: Floats, first: int = 0) -> None:
         """Write where the routes of all robots to their targets lead next, from where their autopilots believe them to
-        be: short obstacle-free paths that keep away from obstacles where there is room (``free_ways.follow_ways``).
+        be: short obstacle-free paths that keep away from obstacles where there is space
+        (``shortest_paths.follow_paths``).
 
         Args:
             ahead: how far along the path [m].
@@ -75,10 +76,10 @@ class Among(Waypoints):
                 columns).
             first: column of the first one.
         """
-        self._ways.follow(self._from(), ahead, out, first)
+        self._paths.follow(self._from(), ahead, out, first)
 
     def _nearer(self, pose: Floats) -> Floats:
-        left = self._ways.lengths(pose)
+        left = self._paths.lengths(pose)
         np.subtract(self._left, left, self._gain)
         self._left[:] = left
         return self._gain

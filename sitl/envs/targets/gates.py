@@ -21,7 +21,7 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..senses import SensingRobot
 from ..worlds import PerWorld
-from .places import Outcome, PlacesTask, checked_far
+from .target_task import Outcome, TargetTask, checked_far
 
 
 class Gate(NamedTuple):
@@ -80,7 +80,7 @@ class GatePrices(NamedTuple):
 class Course(NamedTuple):
     """What robots fly or drive through."""
 
-    places: Table
+    positions: Table
     """Middles of the gates of all laps, one robot after another [m], shape (count * n, 3)."""
     counts: IntLine
     """Gates of a lap of each robot, shape (count,)."""
@@ -112,13 +112,13 @@ def pay_gates(
         runs: see ``Runs``.
         outcome: see ``Outcome``; terms of the rewards: progress, gates, time.
     """
-    places, counts, at, laps, passed = course.places, course.counts, runs.at, runs.laps, runs.passed
+    positions, counts, at, laps, passed = course.positions, course.counts, runs.at, runs.laps, runs.passed
     success, rewards, paid = outcome.success, outcome.rewards, outcome.paid
-    per_robot = places.shape[0] // at.shape[0]
+    per_robot = positions.shape[0] // at.shape[0]
     for i in range(rewards.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
-        x, y, z = places[row, 0] - before[i, 0], places[row, 1] - before[i, 1], places[row, 2] - before[i, 2]
-        u, v, w = places[row, 0] - now[i, 0], places[row, 1] - now[i, 1], places[row, 2] - now[i, 2]
+        x, y, z = positions[row, 0] - before[i, 0], positions[row, 1] - before[i, 1], positions[row, 2] - before[i, 2]
+        u, v, w = positions[row, 0] - now[i, 0], positions[row, 1] - now[i, 1], positions[row, 2] - now[i, 2]
         was, left = math.sqrt(x * x + y * y + z * z), math.sqrt(u * u + v * v + w * w)
         nearer = min(was, prices.far) - min(left, prices.far)
         gain, gate = prices.progress * nearer, prices.gate if passed[i] else 0.0
@@ -143,7 +143,7 @@ _HIGH = 4.0
 """Of gates that are marked on the floor [m]."""
 
 
-class Gates(PlacesTask):
+class Gates(TargetTask):
     """Pass gates in order and in their direction, for one or more laps. The end of the last lap is success and ends
     the episode.
 
@@ -160,7 +160,7 @@ class Gates(PlacesTask):
         far: distance from which on nearer is worth nothing, and farther costs nothing [m].
         gate_reward: reward for each gate passed.
         each_second: reward per second.
-        others: further arguments of ``PlacesTask``.
+        others: further arguments of ``TargetTask``.
     """
 
     sees_truth = True
@@ -213,7 +213,7 @@ class Gates(PlacesTask):
 
     @property
     def per_robot(self) -> int:
-        """See ``PlacesTask``: gates of all rounds, in the world that has most; of others the last gate comes again."""
+        """See ``TargetTask``: gates of all rounds, in the world that has most; of others the last gate comes again."""
         return self.laps * self._rows.shape[1]
 
     @property
@@ -234,8 +234,8 @@ class Gates(PlacesTask):
         more = len(gates) - self._rows.shape[1]
         if more > 0:
             self._rows = np.concatenate((self._rows, np.repeat(self._rows[:, -1:], more, axis=1)), axis=1)
-            self.places = np.concatenate(
-                (self.places, np.repeat(self.places[:, -1:], self.laps * more, axis=1)), axis=1
+            self.positions = np.concatenate(
+                (self.positions, np.repeat(self.positions[:, -1:], self.laps * more, axis=1)), axis=1
             )
             self._link()
         self._rows[index, : len(gates)], self._rows[index, len(gates) :] = gates, gates[-1]
@@ -260,13 +260,13 @@ class Gates(PlacesTask):
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         gates = self._rows[index, : self._counts[index], :3]
-        self.places[index] = gates[-1]
-        self.places[index, : self._held(index)] = np.tile(gates, (self.laps, 1))
+        self.positions[index] = gates[-1]
+        self.positions[index, : self._held(index)] = np.tile(gates, (self.laps, 1))
         self.at[index], self.success[index], self._lap[index] = 0, False, 0.0
         self._before[index] = self._sensing.judged_state()[index, :3]
 
     def _from(self) -> Floats:
-        """See ``PlacesTask``: where the robot really is."""
+        """See ``TargetTask``: where the robot really is."""
         return self._sensing.judged_state()
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
@@ -282,7 +282,7 @@ class Gates(PlacesTask):
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return "progress", "gates", "time"
 
     info_stays = True

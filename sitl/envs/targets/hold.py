@@ -17,7 +17,7 @@ from ..judge import TRUTH
 from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import Outcome, PlacesTask, distance_of, nearness
+from .target_task import Outcome, TargetTask, distance_of, nearness
 
 
 class Holding(NamedTuple):
@@ -73,23 +73,23 @@ def goal_worths(
 
 @law
 def judge_hold(
-    rule: Holding, state: Table, places: Table, axes: Line, actions: Table, since: Line, outcome: Outcome
+    rule: Holding, state: Table, positions: Table, axes: Line, actions: Table, since: Line, outcome: Outcome
 ) -> None:
-    """Judge a step of robots that hold their places.
+    """Judge a step of robots that hold their positions.
 
     Args:
         rule: see ``Holding``.
         state: x, y, z [m] and more, shape (count, n).
-        places: [m], shape (count, 3).
+        positions: [m], shape (count, 3).
         axes: what x, y, z count in distances, shape (3,).
         actions: the agent's, shape (count, m).
-        since: how long each has been at its place [s]: of the step before, becomes that of now, shape (count,).
+        since: how long each has been at its position [s]: of the step before, becomes that of now, shape (count,).
         outcome: see ``Outcome``; terms of the rewards: the goal's alone if they are sparse, already there; else
-            nearness and, if there is room, effort.
+            nearness and, if there is space, effort.
     """
     crashed, success, rewards, paid = outcome.crashed, outcome.success, outcome.rewards, outcome.paid
     for i in range(rewards.shape[0]):
-        distance = distance_of(state, i, places, i, axes)
+        distance = distance_of(state, i, positions, i, axes)
         if rule.is_sparse:
             worth = paid[0, i]
         else:
@@ -124,7 +124,7 @@ _NONE = np.zeros((1, 1))
 """In place of actions without numbers."""
 
 
-class Hold(PlacesTask):
+class Hold(TargetTask):
     """Go to a target position near the start and hold it.
 
     Reward of a step: ``step_time * max(1 - distance / scale, 0)``, or with ``half`` ``step_time / (1 + (distance /
@@ -141,7 +141,7 @@ class Hold(PlacesTask):
         is_sparse: the reward is that of ``compute_reward`` instead: 0 within ``radius``, else -1.
         far: with ``is_sparse``, a step outside of ``radius`` pays -0.5 - 0.5 * min(distance / far, 1) instead of -1:
             less the farther it is [m].
-        others: further arguments of ``PlacesTask``.
+        others: further arguments of ``TargetTask``.
     """
 
     per_robot = 1
@@ -176,16 +176,16 @@ class Hold(PlacesTask):
         """See ``Task``."""
         super().prepare(robot)
         self.since = np.zeros(robot.count)
-        """How long each robot has been at its place [s], shape (count,)."""
+        """How long each robot has been at its position [s], shape (count,)."""
         self._none = np.zeros((robot.count, 4))
         """Errors of an estimate that counts as it is [m], shape (count, 4)."""
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         wide, high = self.offset
-        place = self.judged_pose()[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
+        position = self.judged_pose()[index, :3] + rng.uniform(-1.0, 1.0, 3) * (wide, wide, high if self.flies else 0.0)
         arena = self.arena_at(index)
-        self.places[index, 0] = np.clip(place, arena.low, arena.high)
+        self.positions[index, 0] = np.clip(position, arena.low, arena.high)
         self.at[index], self.since[index], self.success[index] = 0, 0.0, False
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
@@ -213,7 +213,7 @@ class Hold(PlacesTask):
         _goals.unchecked()(achieved, desired, errors, self.axes, float(self.radius), float(self.far), self._paid[0])
 
     def paid_names(self) -> tuple[str, ...]:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return ("goal",) if self.is_sparse else ("nearness", "effort") if self.effort else ("nearness",)
 
     def compute_reward(self, achieved: Any, desired: Any, info: Any) -> Floats:
@@ -226,11 +226,11 @@ class Hold(PlacesTask):
             info: of the step, or one for each row; its "estimate_error" is taken off what is achieved where the task
                 judges the truth, so that the result is the reward of the step, exactly. Without it the estimate counts.
         """
-        way = np.asarray(achieved, np.float64) - np.asarray(desired, np.float64)
+        offset = np.asarray(achieved, np.float64) - np.asarray(desired, np.float64)
         if self.judge_of is not None and self.judge_of.by == TRUTH:
-            way -= _errors(info)
-        way *= self.axes
-        return self._worth(np.sqrt((way * way).sum(axis=-1)))
+            offset -= _errors(info)
+        offset *= self.axes
+        return self._worth(np.sqrt((offset * offset).sum(axis=-1)))
 
     def _worth(self, distance: Floats) -> Floats:
         given = np.ascontiguousarray(distance, np.float64).ravel()

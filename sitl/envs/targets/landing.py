@@ -20,7 +20,7 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, floors_of, world_of
 from ..senses import LandingRobot, SensingRobot
 from .moving import MovingTask, end_lost, note_error
-from .places import Outcome, checked_far
+from .target_task import Outcome, checked_far
 
 SLOW, GENTLE = 0.5, 1.0
 """Greatest horizontal speed relative to the pad, and speed of sinking, of a landing that is success [m/s]."""
@@ -81,7 +81,8 @@ class SoFar(NamedTuple):
     sinking: Line
     """[m/s]"""
     touched: Table
-    """Way from where a robot touched the ground to the pad; as long as it flies, from where it is [m], (count, 3)."""
+    """Offset from where a robot touched the ground to the pad; as long as it flies, from where it is [m], (count,
+    3)."""
     sums: Table
     """See ``MovingTask.sums``."""
     errors: Line
@@ -219,23 +220,23 @@ class Land(MovingTask):
         """Of each robot's pad at first [m/s]."""
         self._distance, self._sinking = np.zeros(robot.count), np.zeros(robot.count)
         self._touched = np.zeros((robot.count, 3))
-        """Way from where it touched the ground to the pad; as long as it flies, from where it is [m]."""
+        """Offset from where it touched the ground to the pad; as long as it flies, from where it is [m]."""
 
     def _bounded(self, limits: Arena, world: World) -> Arena:
         return limits._replace(low=(*limits.low[:2], -math.inf))
 
     def _draw(self, index: int, rng: np.random.Generator) -> None:
-        way, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
-        self.centre[index, :2] += way
+        offset, heading = rng.uniform(-self.offset, self.offset, 2), rng.uniform(0.0, math.tau)
+        self.centre[index, :2] += offset
         self.centre[index, 2] = world_of(self._robot, index).floor_z
         self._velocity[index, :2] = self.speed * cos(heading), self.speed * sin(heading)
 
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         super().start(index, robot, rng)
-        way = self.centre[index] - self._sensing.judged_state()[index, :3]
-        self._distance[index], self._sinking[index] = np.sqrt((way * way).sum()), 0.0
-        self._touched[index] = way
+        offset = self.centre[index] - self._sensing.judged_state()[index, :3]
+        self._distance[index], self._sinking[index] = np.sqrt((offset * offset).sum()), 0.0
+        self._touched[index] = offset
 
     def along(self, time: Floats) -> Floats:
         """See ``MovingTask``: 10 s there, 10 s back."""
@@ -245,13 +246,13 @@ class Land(MovingTask):
         _pads.unchecked()(self._velocity, self.centre, times, out)
 
     def _from(self) -> Floats:
-        """See ``PlacesTask``: where the robot really is."""
+        """See ``TargetTask``: where the robot really is."""
         return self._sensing.judged_state()
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = np.ascontiguousarray(step.robot.time)
         floors = np.ascontiguousarray(np.broadcast_to(floors_of(step.robot), time.shape), np.float64)
-        self._place(time)
+        self._move(time)
         rule = Landing(
             float(self.pad), float(self.progress), float(self.far), float(self.each_second * step.seconds),
             float(self.success_reward), float(self.crash_reward), float(self.lost), float(self.lost_reward),
@@ -265,7 +266,7 @@ class Land(MovingTask):
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return "progress", "time", "landing", *(("lost",) if self.lost_reward else ())
 
     def memory(self, index: int) -> Any:

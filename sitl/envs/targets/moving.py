@@ -21,10 +21,10 @@ from ..noise import dirichlet
 from ..options import EnvOptionError, unknown
 from ..rewards import Floats, Step
 from ..robots.robot import Robot
-from .places import Outcome, PlacesTask, nearness, write_ways_to
+from .target_task import Outcome, TargetTask, nearness, write_offsets_to
 
 AHEAD_S = 0.5
-"""Time from one of the places that "path" tells to the next [s]."""
+"""Time from one of the positions that "path" tells to the next [s]."""
 
 
 class Following(NamedTuple):
@@ -70,14 +70,14 @@ def note_error(sums: Table, i: int, squared: float, counts: bool) -> float:
 
 @law
 def judge_follow(
-    rule: Following, state: Table, places: Table, axes: Line, time: Line, noted: Noted, outcome: Outcome
+    rule: Following, state: Table, positions: Table, axes: Line, time: Line, noted: Noted, outcome: Outcome
 ) -> None:
     """Judge a step of robots that follow targets.
 
     Args:
         rule: see ``Following``.
         state: x, y, z [m] and more, shape (count, n).
-        places: of the targets [m], shape (count, 3).
+        positions: of the targets [m], shape (count, 3).
         axes: what x, y, z count in distances, shape (3,).
         time: of each robot's episode [s], shape (count,).
         noted: see ``Noted``; the step is added.
@@ -87,9 +87,9 @@ def judge_follow(
         outcome.crashed, outcome.success, outcome.rewards, outcome.paid, noted.errors
     )  # fmt: skip
     for i in range(rewards.shape[0]):
-        x = axes[0] * (places[i, 0] - state[i, 0])
-        y = axes[1] * (places[i, 1] - state[i, 1])
-        z = axes[2] * (places[i, 2] - state[i, 2])
+        x = axes[0] * (positions[i, 0] - state[i, 0])
+        y = axes[1] * (positions[i, 1] - state[i, 1])
+        z = axes[2] * (positions[i, 2] - state[i, 2])
         squared = x * x + y * y + z * z
         distance = math.sqrt(squared)
         near = rule.seconds * nearness(distance, rule.scale, rule.half)
@@ -103,7 +103,7 @@ def judge_follow(
 
 @law
 def end_lost(i: int, lost: bool, reward: float, outcome: Outcome, row: int) -> None:
-    """End the episode of robot ``i`` if it has lost its target; what that costs is told in a row of ``paid``."""
+    """End the episode of robot ``i`` if it has lost its target; what that costs is written to a row of ``paid``."""
     if reward != 0.0:
         cost = reward if lost and not outcome.terminated[i] else 0.0
         outcome.rewards[i] += cost
@@ -115,7 +115,7 @@ def end_lost(i: int, lost: bool, reward: float, outcome: Outcome, row: int) -> N
 _spread, _follow = Kernel(spread_times), Kernel(judge_follow)
 
 
-class MovingTask(PlacesTask):
+class MovingTask(TargetTask):
     """Base of tasks with a moving target. Reward of a step: ``step_time * max(1 - distance / scale, 0)``, or with
     ``half`` ``step_time / (1 + (distance / half)^2)``.
 
@@ -129,7 +129,7 @@ class MovingTask(PlacesTask):
         lost: distance beyond which the episode ends [m].
         lost_reward: added to the reward then.
         half: distance at which the reward is half of that at the target [m]; None: it decreases linearly (``scale``).
-        others: further arguments of ``PlacesTask``.
+        others: further arguments of ``TargetTask``.
     """
 
     per_robot = 1
@@ -153,7 +153,8 @@ class MovingTask(PlacesTask):
         """Root mean square distance of each robot from its target [m], shape (count,)."""
         self._first = np.zeros(robot.count, np.int64)
         self._ahead: dict[int, tuple[Floats, Floats]] = {}
-        """By number of places: times [s], shape (count, places), and places [m], shape (count * places, 3)."""
+        """By number of positions: times [s], shape (count, positions), and positions [m], shape (count * positions,
+        3)."""
         self.sums = np.zeros((robot.count, 2))
         """Sum of the squared distances [m^2], and their number, shape (count, 2)."""
         self.centre = np.zeros((robot.count, 3))
@@ -164,7 +165,7 @@ class MovingTask(PlacesTask):
         self.centre[index] = self.judged_pose()[index, :3]
         self.at[index], self.sums[index], self.success[index] = 0, 0.0, False
         self._draw(index, rng)
-        self.places[index, 0] = self.along(np.zeros((self._robot.count, 1)))[index, 0]
+        self.positions[index, 0] = self.along(np.zeros((self._robot.count, 1)))[index, 0]
 
     def _draw(self, index: int, rng: np.random.Generator) -> None:
         """Draw what is random in one robot's episode."""
@@ -179,21 +180,21 @@ class MovingTask(PlacesTask):
         """Where each robot's target is: x, y, z [m], shape (count, k, 3), at times of its episode [s], shape (count,
         k)."""
 
-    def ways_from(self, pose: Floats, count: int) -> Floats:
-        """See ``PlacesTask``: to where the target is now, and after each further 0.5 s."""
+    def offsets_from(self, pose: Floats, count: int) -> Floats:
+        """See ``TargetTask``: to where the target is now, and after each further 0.5 s."""
         out = np.empty((len(pose), 3 * count))
-        self._write_ways(np.ascontiguousarray(pose, np.float64), count, out, 0)
+        self._write_offsets(np.ascontiguousarray(pose, np.float64), count, out, 0)
         return out.reshape(len(out), count, 3)
 
-    def _write_ways(self, pose: Floats, count: int, out: Floats, first: int) -> None:
+    def _write_offsets(self, pose: Floats, count: int, out: Floats, first: int) -> None:
         ahead = self._ahead.get(count)
         if ahead is None:
             rows = len(self.at)
             ahead = self._ahead[count] = np.empty((rows, count)), np.empty((rows * count, 3))
-        times, places = ahead
+        times, positions = ahead
         _spread.unchecked()(np.ascontiguousarray(self._robot.time), AHEAD_S, times)
-        self._writer(times, places)
-        write_ways_to.unchecked()(pose, places, self._first, count, count, out, first)
+        self._writer(times, positions)
+        write_offsets_to.unchecked()(pose, positions, self._first, count, count, out, first)
 
     def _along(self, time: Floats) -> Floats:
         """``along`` by ``_write_along``."""
@@ -206,13 +207,13 @@ class MovingTask(PlacesTask):
         """Write ``along`` at times, shape (count, k), into ``out``, shape (count * k, 3)."""
         out[:] = self.along(times).reshape(out.shape)
 
-    def _place(self, time: Floats) -> None:
+    def _move(self, time: Floats) -> None:
         """Put each target where it is at a time of its episode [s], shape (count,)."""
         self._writer(time.reshape(-1, 1), self._spots)
 
     def _judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
         time = np.ascontiguousarray(step.robot.time)
-        self._place(time)
+        self._move(time)
         rule = Following(
             float(self.radius), float(self.settle), float(self.scale), float(self.half or 0.0), float(self.lost),
             float(self.lost_reward), step.seconds,
@@ -223,7 +224,7 @@ class MovingTask(PlacesTask):
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return ("nearness", "lost") if self.lost_reward else ("nearness",)
 
     info_stays = True

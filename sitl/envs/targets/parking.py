@@ -18,7 +18,7 @@ from ..options import EnvOptionError
 from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..worlds import PerWorld
-from .places import Outcome, PlacesTask
+from .target_task import Outcome, TargetTask
 
 _NEAR = 4.0
 """Within about so far of the bay the heading counts [m]."""
@@ -52,23 +52,23 @@ def worth_of(
 
 @law
 def judge_park(
-    rule: Parking, state: Table, places: Table, headings: Line, left: Line, away: Line, outcome: Outcome
+    rule: Parking, state: Table, positions: Table, headings: Line, left: Line, away: Line, outcome: Outcome
 ) -> None:
     """Judge a step of robots that park.
 
     Args:
         rule: see ``Parking``.
         state: x, y, z [m], yaw [rad], forward speed [m/s] and more, shape (count, n).
-        places: of the bays [m], shape (count, 3).
+        positions: of the bays [m], shape (count, 3).
         headings: of the bays [rad], shape (count,).
-        left: what each robot's way is still worth: before the step, becomes that of now, shape (count,).
+        left: what each robot's path is still worth: before the step, becomes that of now, shape (count,).
         away: how far each robot is from its bay [m], likewise, shape (count,).
         outcome: see ``Outcome``; terms of the rewards: progress, turn, time, parked.
     """
     success, rewards, paid = outcome.success, outcome.rewards, outcome.paid
     for i in range(rewards.shape[0]):
         distance, error, worth = worth_of(
-            rule, state[i, 0], state[i, 1], state[i, 3], places[i, 0], places[i, 1], headings[i]
+            rule, state[i, 0], state[i, 1], state[i, 3], positions[i, 0], positions[i, 1], headings[i]
         )
         both, progress = left[i] - worth, rule.progress * (away[i] - distance)
         rewards[i] += both + rule.time
@@ -86,7 +86,7 @@ def judge_park(
 _park = Kernel(judge_park)
 
 
-class Park(PlacesTask):
+class Park(TargetTask):
     """Drive into a bay, drawn at random for each episode, and stop there in the bay's heading.
 
     Success ends the episode: the robot is within ``radius`` of the bay's centre, its heading error is below ``angle``
@@ -103,7 +103,7 @@ class Park(PlacesTask):
         turn_progress: reward for each radian of heading error less.
         each_second: reward per second.
         success_reward: reward for parking.
-        others: further arguments of ``PlacesTask``.
+        others: further arguments of ``TargetTask``.
     """
 
     per_robot = 1
@@ -139,7 +139,7 @@ class Park(PlacesTask):
         self.headings = np.zeros(robot.count)
         """Of each robot's bay [rad], shape (count,)."""
         self._left = np.zeros(robot.count)
-        """What each robot's way is still worth."""
+        """What each robot's path is still worth."""
         self._distance = np.zeros(robot.count)
         """From each robot to its bay [m]."""
 
@@ -166,7 +166,7 @@ class Park(PlacesTask):
         """See ``Task``."""
         bays = self._bays_in(world_of(robot, index))
         x, y, yaw = bays[int(rng.integers(len(bays)))].tolist()
-        self.places[index, 0] = x, y, self.judged_pose()[index, 2]
+        self.positions[index, 0] = x, y, self.judged_pose()[index, 2]
         self.headings[index], self.at[index], self.success[index] = yaw, 0, False
         assert self.judge_of is not None
         here, there, _, heading, *_ = self.judge_of.table()[index].tolist()
@@ -191,7 +191,7 @@ class Park(PlacesTask):
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return "progress", "turn", "time", "parked"
 
     def memory(self, index: int) -> Any:

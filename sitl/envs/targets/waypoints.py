@@ -20,37 +20,37 @@ from ..rewards import Floats, Step
 from ..robots.robot import Robot, world_of
 from ..starts import ReachableCells
 from ..worlds import PerWorld
-from .places import Outcome, PlacesTask
+from .target_task import Outcome, TargetTask
 
 
 class Nearing(NamedTuple):
-    """How robots come to their places, shape (count,)."""
+    """How robots come to their waypoints, shape (count,)."""
 
     distance: Line
-    """To each robot's present place [m]: of the step before, becomes that of now."""
+    """To each robot's present waypoint [m]: of the step before, becomes that of now."""
     gain: Line
     """How much nearer each robot has come [m], written."""
     passed: Flags
-    """Whether each robot has passed a place, written."""
+    """Whether each robot has passed a waypoint, written."""
 
 
 @law
-def pass_places(pose: Table, places: Table, up: float, radius: float, at: IntLine, nearing: Nearing) -> None:
-    """Judge a step on the way along places.
+def pass_targets(pose: Table, positions: Table, up: float, radius: float, at: IntLine, nearing: Nearing) -> None:
+    """Judge a step on the way along waypoints.
 
     Args:
         pose: x, y, z [m] and more, shape (count, m).
-        places: x, y, z [m], one robot after another, shape (count * n, 3).
+        positions: x, y, z [m], one robot after another, shape (count * n, 3).
         up: what heights count: 1, or 0 for robots that do not fly.
-        radius: distance at which a place is passed [m].
-        at: number of each robot's present place; goes on where that is passed, shape (count,).
+        radius: distance at which a waypoint is passed [m].
+        at: number of each robot's present waypoint; goes on where that is passed, shape (count,).
         nearing: see ``Nearing``.
     """
     distance, gain, passed = nearing.distance, nearing.gain, nearing.passed
-    per_robot = places.shape[0] // at.shape[0]
+    per_robot = positions.shape[0] // at.shape[0]
     for i in range(at.shape[0]):
         row = i * per_robot + min(at[i], per_robot - 1)
-        x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], up * (places[row, 2] - pose[i, 2])
+        x, y, z = positions[row, 0] - pose[i, 0], positions[row, 1] - pose[i, 1], up * (positions[row, 2] - pose[i, 2])
         now = math.sqrt(x * x + y * y + z * z)
         gain[i] = distance[i] - now
         passed[i] = now < radius and at[i] < per_robot
@@ -59,7 +59,11 @@ def pass_places(pose: Table, places: Table, up: float, radius: float, at: IntLin
             at[i] += 1
             if at[i] < per_robot:
                 row += 1
-                x, y, z = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1], up * (places[row, 2] - pose[i, 2])
+                x, y, z = (
+                    positions[row, 0] - pose[i, 0],
+                    positions[row, 1] - pose[i, 1],
+                    up * (positions[row, 2] - pose[i, 2]),
+                )
                 distance[i] = math.sqrt(x * x + y * y + z * z)
 
 
@@ -68,33 +72,33 @@ class Prices(NamedTuple):
 
     progress: float
     """For each metre nearer."""
-    place: float
-    """For each place."""
+    passing: float
+    """For each waypoint passed."""
     time: float
     """For a step."""
 
 
 @law
-def pay_places(prices: Prices, nearer: Line, passed: Flags, at: IntLine, last: int, outcome: Outcome) -> int:
-    """Pay for a step on the way along places; all of shape (count,).
+def pay_targets(prices: Prices, nearer: Line, passed: Flags, at: IntLine, last: int, outcome: Outcome) -> int:
+    """Pay for a step on the way along waypoints; all of shape (count,).
 
     Args:
         prices: see ``Prices``.
         nearer: how much nearer each robot has come [m].
-        passed: whether each robot has passed a place.
-        at: number of each robot's present place.
-        last: number of places: who has passed all has done the task, and the episode ends.
+        passed: whether each robot has passed a waypoint.
+        at: number of each robot's present waypoint.
+        last: number of waypoints: who has passed all has done the task, and the episode ends.
         outcome: see ``Outcome``; terms of the rewards: progress, places, time.
 
     Returns:
-        How many have passed a place, and have others before them.
+        How many have passed a waypoint, and have others before them.
     """
     success, rewards, paid = outcome.success, outcome.rewards, outcome.paid
     going = 0
     for i in range(rewards.shape[0]):
-        gain, place = prices.progress * nearer[i], prices.place if passed[i] else 0.0
-        rewards[i] += gain + place + prices.time
-        paid[0, i], paid[1, i], paid[2, i] = gain, place, prices.time
+        gain, passing = prices.progress * nearer[i], prices.passing if passed[i] else 0.0
+        rewards[i] += gain + passing + prices.time
+        paid[0, i], paid[1, i], paid[2, i] = gain, passing, prices.time
         if outcome.crashed[i]:
             paid[0, i], paid[1, i], paid[2, i] = 0.0, 0.0, 0.0
         success[i] = at[i] == last
@@ -105,10 +109,10 @@ def pay_places(prices: Prices, nearer: Line, passed: Flags, at: IntLine, last: i
     return going
 
 
-_pass, _pay = Kernel(pass_places), Kernel(pay_places)
+_pass, _pay = Kernel(pass_targets), Kernel(pay_targets)
 
 
-class Waypoints(PlacesTask):
+class Waypoints(TargetTask):
     """Pass one or more waypoints in order. Passing the last one is success and ends the episode.
 
     Reward of a step: ``progress`` times the decrease of the distance to the current waypoint [m], plus ``each_second``
@@ -123,7 +127,7 @@ class Waypoints(PlacesTask):
         progress: reward for each metre nearer.
         place_reward: reward for each waypoint passed.
         each_second: reward per second.
-        others: further arguments of ``PlacesTask``.
+        others: further arguments of ``TargetTask``.
     """
 
     def __init__(
@@ -153,7 +157,7 @@ class Waypoints(PlacesTask):
 
     @property
     def per_robot(self) -> int:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return self._count
 
     def prepare(self, robot: Robot) -> None:
@@ -162,7 +166,7 @@ class Waypoints(PlacesTask):
         self._distance, self._gain = np.zeros(robot.count), np.zeros(robot.count)
         self._passed = np.zeros(robot.count, np.bool_)
         self._going = 0
-        """How many robots have passed a place in this step, and go on to another."""
+        """How many robots have passed a waypoint in this step, and go on to another."""
         self._cells_in = PerWorld(self._cells) if self.reachable and self._fixed is None else None
         if self._cells_in is not None:
             self._cells_in(robot.world)
@@ -173,9 +177,9 @@ class Waypoints(PlacesTask):
     def start(self, index: int, robot: Robot, rng: np.random.Generator) -> None:
         """See ``Task``."""
         here = self.judged_pose()[index, :3]
-        self.places[index] = self._drawn(index, here, rng) if self._fixed is None else self._fixed
+        self.positions[index] = self._drawn(index, here, rng) if self._fixed is None else self._fixed
         self.at[index], self.success[index] = 0, False
-        self._distance[index] = lengths(self.axes * (self.places[index, 0] - here))
+        self._distance[index] = lengths(self.axes * (self.positions[index, 0] - here))
 
     def _drawn(self, index: int, here: Floats, rng: np.random.Generator) -> Floats:
         out, arena = np.empty((self._count, 3)), self.arena_at(index)
@@ -199,11 +203,11 @@ class Waypoints(PlacesTask):
         )  # fmt: skip
 
     def paid_names(self) -> tuple[str, ...]:
-        """See ``PlacesTask``."""
+        """See ``TargetTask``."""
         return "progress", "places", "time"
 
     def _nearer(self, pose: Floats) -> Floats:
-        """How much nearer each robot has come to its place [m], shape (count,)."""
+        """How much nearer each robot has come to its waypoint [m], shape (count,)."""
         return self._gain
 
     info_stays = True

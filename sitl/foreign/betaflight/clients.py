@@ -6,7 +6,7 @@ from __future__ import annotations
 import selectors
 from collections.abc import Callable, Sequence
 
-from ...bridge.links.link import Link, Peer, heard
+from ...bridge.links.link import Link, Peer, receive_all
 from ...client.outbox import Outbox
 from ..process import Cutter
 from .face import Face
@@ -40,7 +40,7 @@ class Clients:
         for peer in self._peers:
             if not peer.closed:
                 peer.flush()
-        for _, data in heard(self._selector, self._links, self._peers, seconds):
+        for _, data in receive_all(self._selector, self._links, self._peers, seconds):
             for frame in Cutter().feed(data):
                 self._tap(frame)
             self._face.feed(data)

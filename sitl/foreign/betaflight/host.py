@@ -151,13 +151,13 @@ class BetaflightHost:
             self._gone()
 
     def _state(self, now_us: int) -> bytes:
-        """What it gets of the motion: our IMU's and barometer's readings, the true attitude, velocity and place."""
+        """What it gets of the motion: our IMU's and barometer's readings, the true attitude, velocity and position."""
         values = self._sensed()
         north, east, down = self._position()
         lat, lon = add_offset(self._home[0], self._home[1], north, east)
-        place = 1e-7 * lat, 1e-7 * lon, self._home[2] - down
+        location = 1e-7 * lat, 1e-7 * lon, self._home[2] - down
         return wire.state(
-            1e-6 * now_us, values[:3], values[3:6], values[6:10], values[10:13], place, 100.0 * values[13]
+            1e-6 * now_us, values[:3], values[3:6], values[6:10], values[10:13], location, 100.0 * values[13]
         )
 
     def _receive(self, now_us: int) -> None:

@@ -132,7 +132,7 @@ class BetaflightSession:
         running: Callable[[], bool] = lambda: True,
         on_slice: Callable[[], None] = lambda: None,
     ) -> None:
-        """As ``sitl.run.runner.serve``: clients are heard between two slices.
+        """As ``sitl.run.runner.serve``: bytes of clients are read between two slices.
 
         Raises:
             AutopilotEndedError: the program has ended.

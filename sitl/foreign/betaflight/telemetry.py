@@ -19,7 +19,7 @@ from .sticks import Sticks
 _UNKNOWN16, _UNKNOWN8 = 65535, 255
 _CELLS = 10
 _KNOWN = 0x01 | 0x02 | 0x04 | 0x08 | 0x10 | 0x20
-"""Of EKF_STATUS_REPORT: attitude, velocity, place and height are known; this is the true state."""
+"""Of EKF_STATUS_REPORT: attitude, velocity, position and height are known; this is the true state."""
 
 
 class Telemetry:
@@ -76,7 +76,7 @@ class Telemetry:
         return round(100.0 * math.degrees(euler_of(self._v.physics.body.q).yaw)) % 36_000
 
     @property
-    def _place(self) -> tuple[int, int, int]:
+    def _location(self) -> tuple[int, int, int]:
         """Latitude, longitude [degE7], altitude [mm]."""
         north, east, down = self._v.physics.body.pos
         lat, lon = add_offset(self._home[0], self._home[1], north, east)
@@ -98,7 +98,7 @@ class Telemetry:
         body = self._v.physics.body
         north, east, down = (min(max(round(100.0 * speed), -32768), 32767) for speed in body.vel)
         return message("GLOBAL_POSITION_INT").pack(
-            self._ms, *self._place, round(-1e3 * body.pos[2]), north, east, down, self._heading
+            self._ms, *self._location, round(-1e3 * body.pos[2]), north, east, down, self._heading
         )
 
     def _gps(self) -> bytes:
@@ -167,7 +167,7 @@ class Telemetry:
 
     def _simstate(self) -> bytes:
         body = self._v.physics.body
-        lat, lon, _ = self._place
+        lat, lon, _ = self._location
         roll, pitch, yaw = euler_of(body.q)
         xacc, yacc, zacc = body.specific_force
         xgyro, ygyro, zgyro = body.rates

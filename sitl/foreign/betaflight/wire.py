@@ -31,7 +31,13 @@ Three = Sequence[float]
 
 
 def state(
-    time_s: float, rates: Three, force: Three, attitude: Sequence[float], velocity: Three, place: Three, pressure: float
+    time_s: float,
+    rates: Three,
+    force: Three,
+    attitude: Sequence[float],
+    velocity: Three,
+    location: Three,
+    pressure: float,
 ) -> bytes:
     """How the vehicle moves.
 
@@ -40,11 +46,11 @@ def state(
         rates, force: of the body, forward right down [rad/s], [m/s^2].
         attitude: body to NED, w x y z.
         velocity: north, east, down [m/s].
-        place: latitude, longitude [deg], altitude [m].
+        location: latitude, longitude [deg], altitude [m].
         pressure: of the air [Pa].
     """
     north, east, down = velocity
-    lat, lon, alt = place
+    lat, lon, alt = location
     return _state(time_s, *rates, *force, *attitude, east, north, -down, lon, lat, alt, pressure)
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a rover from its logs."""
+"""Properties of a rover from its logs."""

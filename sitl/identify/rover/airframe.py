@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rover's airframe by the figures of its logs."""
+"""A rover's airframe by the properties of its logs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ... import vehicles
 from ...autopilot.rover.parameters import TABLE
 from ...vehicles import RoverAirframe
-from ...vehicles.figures.rover import STEERING_TURNING_CIRCLE
+from ...vehicles.properties.rover import STEERING_TURNING_CIRCLE
 from ..flight import FlightLog, IdentifyError
 from ..shared import NOISES, Found, battery, kept
 from .model import BASES
@@ -24,14 +24,14 @@ _LEAST_ANGLE = 0.2
 
 
 class RoverModel(NamedTuple):
-    """The airframe, and what its figures follow from."""
+    """The airframe, and what its properties follow from."""
 
     airframe: RoverAirframe
     notes: dict[str, str]
 
 
 def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> RoverModel:
-    """The shipped airframe that steers as the log's does, changed by figures.
+    """The shipped airframe that steers as the log's does, changed by properties.
 
     Raises:
         IdentifyError: speed or steering were not found.
@@ -70,11 +70,11 @@ def model_of(logs: Sequence[FlightLog], found: Found, mass: float | None) -> Rov
     for name in NOISES:
         if found(name).is_observed:
             take(name, name, found(name).value)
-    figures = {**base.figures, **{name: _allowed(base, name, value) for name, value in changes.items()}}
+    properties = {**base.properties, **{name: _allowed(base, name, value) for name, value in changes.items()}}
     airframe = RoverAirframe(
         name="identified",
         description=f"identified from {', '.join(log.path.name for log in logs)}",
-        figures=figures,
+        properties=properties,
         parameters={**_base_parameters(base), **kept(first.parameters, _KEPT, TABLE)},
     )
     return RoverModel(airframe, notes)
@@ -95,7 +95,7 @@ def _drive(found: Found, take: Any, changes: dict[str, Any]) -> None:
 
 def _steer(found: Found, take: Any, changes: dict[str, Any], base: Any) -> None:
     """Wheelbase, angle, time of the servo. The ratio of curvature at full steering to that of the slope about straight
-    on is tan(angle) / angle for front wheels, sin(angle) / angle for a turning circle: it tells the angle."""
+    on is tan(angle) / angle for front wheels, sin(angle) / angle for a turning circle: it gives the angle."""
     slope, radius, angle = found("steering_gain").value, found("turning_radius"), float(base.value("steering_angle"))
     source = "steering_gain"
     if radius.is_observed:
@@ -144,8 +144,8 @@ def _power(first: FlightLog, found: Found, take: Any, changes: dict[str, Any], b
 
 def _allowed(base: Any, name: str, value: Any) -> Any:
     """Within what an airframe may have."""
-    figure = next(figure for figure in base.known if figure.name == name)
-    return value if isinstance(value, tuple) else min(max(value, figure.low), figure.high)
+    prop = next(prop for prop in base.known if prop.name == name)
+    return value if isinstance(value, tuple) else min(max(value, prop.low), prop.high)
 
 
 def _base_parameters(base: Any) -> dict[str, float]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Drives of a rover's physics under given outputs, many at once: what a log's outputs would have made of an airframe.
 
-The laws are those of the simulator (``sitl.physics.native.rover``), so that figures are fitted to the very model that
-they are for.
+The laws are those of the simulator (``sitl.physics.native.rover``), so that properties are fitted to the very model
+that they are for.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...core.records import Records
 from ...physics.native.rover.prepare import prepare
 from ...physics.native.rover.state import Physics
 from ...physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, move
-from ...vehicles.figures.rover import STEERING_SKID
+from ...vehicles.properties.rover import STEERING_SKID
 
 Array = np.ndarray[Any, Any]
 
@@ -70,21 +70,21 @@ class Courses(NamedTuple):
     """What the battery gives [W]."""
 
 
-def drive(figures: Array, first: Array, second: Array, speed: Array, yaw_rate: Array) -> Courses:
+def drive(properties: Array, first: Array, second: Array, speed: Array, yaw_rate: Array) -> Courses:
     """Courses of an airframe.
 
     Args:
-        figures: record of the airframe (``Airframe.record``).
+        properties: record of the airframe (``Airframe.record``).
         first, second: outputs -1 .. 1 (cars, samples), ``STEP_S`` apart.
         speed, yaw_rate: at the beginning (cars,) [m/s], [rad/s]; wheels and servos are as if they had been there.
     """
     count, samples = first.shape
     cars = np.zeros(count, Physics.dtype)
     one = Physics.of(cars, 0)
-    cars["airframe"] = figures
+    cars["airframe"] = properties
     prepare(one.airframe, one.derived)
     cars["derived"] = cars["derived"][0]
-    skids = figures["steering_model"] == STEERING_SKID
+    skids = properties["steering_model"] == STEERING_SKID
     across = 0.5 / one.derived.inverse_track * yaw_rate if skids else np.zeros(count)
     wheels, body = cars["wheels"], cars["body"]
     wheels["speed"][:, 0], wheels["speed"][:, 1] = speed + across, speed - across

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the figures of a rover's airframe would be in a log: to judge estimates."""
+"""What the properties of a rover's airframe would be in a log: to judge estimates."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import math
 
 from ...core.constants import GRAVITY
 from ...vehicles import RoverAirframe
-from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
 
 
 def expected(airframe: RoverAirframe) -> dict[str, float]:
-    """Figures by name; infinite or not a number: there is none.
+    """Properties by name; infinite or not a number: there is none.
 
     Args:
         airframe: whose outputs -1 .. 1 are the firmware's (SERVOn_MIN, _MAX).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a rover's drive and steering with which its model drives as the log's vehicle did under the same outputs.
+"""Properties of a rover's drive and steering with which its model drives as the log's vehicle did by its outputs.
 
 Speed, yaw rate and acceleration of all stretches are fitted at once, and when each step of the outputs happened, since
 the log has it to a tenth of a second. A limit (of the motors, of the servo, of the grip) is in the model only when the
@@ -28,7 +28,7 @@ _SHIFT = 0.1
 _GAIN = 0.002
 """Part of the squares that a limit must explain to be in the model."""
 _WORSE = 1.1
-"""With the other figures as they were, a limit may first be worse by this factor."""
+"""With the other properties as they were, a limit may first be worse by this factor."""
 _SERVO_S = (0.05, 0.1, 0.2, 0.4)
 _SHARES = (0.9, 0.75, 0.6, 0.45, 0.3)
 _LAGS_S = (0.05, 0.2, 0.6, 2.0)
@@ -37,7 +37,7 @@ _OUTLIER = 3.0
 
 
 class DriveFit:
-    """The best figures.
+    """The best properties.
 
     Args:
         data: what was measured.
@@ -70,7 +70,7 @@ class DriveFit:
         self.courses: Courses = self.model.courses(self.data, self.base)
 
     def interval(self, name: str) -> tuple[float, float]:
-        """A figure and its standard error."""
+        """A property and its standard error."""
         k = self.names.index(name)
         return float(self.fit.value[k]), float(self.fit.error[k])
 
@@ -85,7 +85,7 @@ class DriveFit:
             slope[k] = (function(self._model(there)) - value) / step
         return value, math.sqrt(max(float(slope @ self.fit.covariance @ slope), 0.0))
 
-    # ------------------------------------------------------------------ parameters: figures, then onsets
+    # ------------------------------------------------------------------ parameters: properties, then onsets
 
     def _model(self, p: Array) -> Model:
         return Model(dict(zip(self.names, p.tolist())), self.data.skids)
@@ -104,8 +104,8 @@ class DriveFit:
     def _move(self, onsets: Array) -> None:
         pairs = [[one.steps.onset.copy() for one in pair] for pair in self.data.outputs]
         for step, onset in zip(self._steps, onsets):
-            for channel, place in step.places:
-                pairs[step.log][channel][place] = onset
+            for channel, index in step.indices:
+                pairs[step.log][channel][index] = onset
         moved = [
             (pair[0].with_onset(first), pair[1].with_onset(second))
             for pair, (first, second) in zip(self.data.outputs, pairs)
@@ -137,7 +137,7 @@ class DriveFit:
         return np.concatenate(self._parts(p))
 
     def _slopes(self, p: Array) -> Array:
-        """Of the residuals by figures, and by onsets: of every second step at once, since each acts for a while."""
+        """Of the residuals by properties, and by onsets: of every second step at once, since each acts for a while."""
         at = self._residuals(p)
         found = np.zeros((len(at), len(p)))
         _, high = self._limits()
@@ -198,7 +198,7 @@ class DriveFit:
             track = top * float(turn @ turn) / max(float(turn @ r), 1e-6)
             steerings: list[tuple[float, ...]] = [(factor * min(max(track, 0.05), 9.0), 0.0) for factor in (1.0, 1.4)]
         else:
-            at, known = (1e4 * series.stretch + series.place for series in (data.yaw_rate, data.speed))
+            at, known = (1e4 * series.stretch + series.sample for series in (data.yaw_rate, data.speed))
             x = np.interp(at, known, v) * turn
             bend = min(max(float(x @ r) / max(float(x @ x), 1e-9), 1e-3), 40.0)
             steerings = [(factor * bend, shape, 0.0) for factor in (1.0, 1.3) for shape in (0.4, -0.4)]

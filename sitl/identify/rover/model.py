@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rover's figures as a fit moves them, and the airframe that they are."""
+"""A rover's properties as a fit moves them, and the airframe that they are."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import numpy as np
 from ... import vehicles
 from ...core.constants import GRAVITY
 from ...vehicles import RoverAirframe
-from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
+from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
 from .courses import Courses, drive
 from .stretches import Stretches
 
 BASES = {True: "skid_rover", False: "erle_rover"}
-"""Whether it skids -> the airframe that lends what no figure tells."""
+"""Whether it skids -> the airframe that lends what no property shows."""
 _NO_SLIP = 1000.0
 
 Array = np.ndarray[Any, Any]
@@ -35,13 +35,13 @@ MOST |= {"track": 19.0, "differ": 0.5, "weakness": 50.0, "slip": 100.0, "servo":
 
 @dataclass(frozen=True)
 class Model:
-    """Figures by name; those that are missing are not in the model."""
+    """Properties by name; those that are missing are not in the model."""
 
     values: dict[str, float]
     skids: bool
 
     def value(self, name: str) -> float:
-        """A figure within what is possible; 0: not in the model."""
+        """A property within what is possible; 0: not in the model."""
         return min(max(self.values.get(name, 0.0), LEAST[name]), MOST[name])
 
     @property
@@ -61,7 +61,7 @@ class Model:
         """By weight: what takes ``loss`` off the speed."""
         return self.value("loss") / GRAVITY / max(self.value("lag"), 1e-3)
 
-    def figures(self) -> dict[str, float]:
+    def properties(self) -> dict[str, float]:
         """Of the airframe whose outputs -1 .. 1 are its own."""
         slip = self.value("slip")
         found = {
@@ -84,7 +84,7 @@ class Model:
         }
 
     def courses(self, data: Stretches, base: Array) -> Courses:
-        """What it does under a log's outputs; all other figures are those of the record ``base``."""
+        """What it does under a log's outputs; all other properties are those of the record ``base``."""
         first, second = data.inputs()
         if self.skids:
             first, second = (1.0 + self.value("differ")) * first, (1.0 - self.value("differ")) * second
@@ -96,7 +96,7 @@ class Model:
         if self.skids:
             first = np.where(first < 0.0, aft, forth) * first
         record = base.copy()
-        for name, value in self.figures().items():
+        for name, value in self.properties().items():
             record[name] = value
         return drive(record, first, second, data.start_speed, data.start_yaw_rate)
 
@@ -114,4 +114,4 @@ def base_of(skids: bool) -> Array:
         "driven_load": 1.0,
         "rear_axle": 0.0,
     }
-    return replace(found, figures={**found.figures, **changes}).record()
+    return replace(found, properties={**found.properties, **changes}).record()

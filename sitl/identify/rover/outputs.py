@@ -51,22 +51,22 @@ class Output:
         change, gap = abs(np.diff(value)), np.diff(time)
         before, after = (np.concatenate(parts) for parts in (([0.0], change[:-1]), (change[1:], [0.0])))
         is_step = (change > _STEP) & (before < _CALM) & (after < _CALM) & (gap < _NEIGHBOURS_S)
-        self.places = np.flatnonzero(is_step)
+        self.indices = np.flatnonzero(is_step)
         self.steps = Steps(time[:-1][is_step], gap[is_step], np.full(int(is_step.sum()), 0.5))
 
     def at(self, time: Array, width: float) -> Array:
         """Its means around these times, over a width [s] that is less than a sample."""
         found = np.interp(time - self.delay, self.time, self.value)
-        for place, begin, length, onset in zip(self.places, *self.steps):
+        for index, begin, length, onset in zip(self.indices, *self.steps):
             inside = slice(*np.searchsorted(time, (begin, begin + length)))
             share = np.clip((time[inside] - begin - onset * length) / width + 0.5, 0.0, 1.0)
-            found[inside] = self.value[place] + share * (self.value[place + 1] - self.value[place])
+            found[inside] = self.value[index] + share * (self.value[index + 1] - self.value[index])
         return found
 
     def with_onset(self, onset: Array) -> Output:
         """The same with steps at other onsets."""
         other = Output.__new__(Output)
-        other.time, other.value, other.places, other.delay = self.time, self.value, self.places, self.delay
+        other.time, other.value, other.indices, other.delay = self.time, self.value, self.indices, self.delay
         other.steps = self.steps._replace(onset=onset)
         return other
 

@@ -2,14 +2,14 @@
 """What a rover's battery gives: for the work of the motors, for their controllers, for the electronics.
 
 Of a direct-current motor, work is force times the speed that the throttle stands for (``physics.native.rover.drive``);
-logs have the force by the mass, so that the figure is the mass by the efficiency.
+logs have the force by the mass, so that what is found is the mass by the efficiency.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..figure import NORMAL_95, Figure
+from ..estimate import NORMAL_95, Estimate
 from ..regression import GUSTS_S, least_squares
 from .fit import DriveFit
 from .model import Array
@@ -19,14 +19,14 @@ _SOUGHT = (LOAD, FULL, ELECTRONICS)
 _SHARE = 0.05
 """Relative half of the interval for what the model leaves out."""
 _OF_ALL = 0.01
-"""Half of the interval by the greatest power: a figure below it is as good as none."""
+"""Half of the interval by the greatest power: a value below it is as good as none."""
 _MOST_RELATIVE = 0.3
 _STANDS = 0.01
 """Speed below which a vehicle without throttle stands [m/s]."""
 _LEAST = 20
 
 
-def power(found: DriveFit) -> list[Figure]:
+def power(found: DriveFit) -> list[Estimate]:
     """The three parts of the battery's power."""
     data = found.data
     if not len(data.voltage.value):
@@ -49,23 +49,23 @@ def power(found: DriveFit) -> list[Figure]:
     most = float(np.percentile(given, 99.0))
     rolling, unsure = found.of(lambda model: model.rolling_resistance)  # what most of the work may be done against
     of_load = min(NORMAL_95 * unsure / max(rolling, 1e-9), 1.0)
-    figures = []
+    estimates = []
     for sought, value, error, scale in zip((LOAD, FULL), fit.value, fit.error, size):
         share = float(np.hypot(_SHARE, of_load)) if sought is LOAD else _SHARE
         half = float(np.linalg.norm([NORMAL_95 * error, share * value, _OF_ALL * most]))
         if value < half:
-            figures.append(
+            estimates.append(
                 sought.hidden(f"too little to tell: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}")
             )
         elif half > _MOST_RELATIVE * value:
-            figures.append(sought.hidden(f"too uncertain: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}"))
+            estimates.append(sought.hidden(f"too uncertain: {value / scale:.3g} +- {half / scale:.2g} {sought.unit}"))
         else:
             ends = (value - half) / scale, (value + half) / scale
-            figures.append(sought.between(value / scale, *ends, f"{len(given)} rows of BAT"))
-    return [*figures, electronics]
+            estimates.append(sought.between(value / scale, *ends, f"{len(given)} rows of BAT"))
+    return [*estimates, electronics]
 
 
-def _electronics(current: Array) -> Figure:
+def _electronics(current: Array) -> Estimate:
     """Of rows of a vehicle that stands with its motors off."""
     if len(current) < _LEAST:
         return ELECTRONICS.hidden(f"it stood for {len(current)} rows of BAT without throttle; {_LEAST} are needed")

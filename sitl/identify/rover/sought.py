@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rover's figures by name, unit and meaning."""
+"""A rover's properties by name, unit and meaning."""
 
 from __future__ import annotations
 
-from ..figure import Sought
+from ..estimate import Sought
 
 FORWARD = Sought("speed_by_throttle", "m/s", "forward speed that full throttle stands for, without load")
 BACKWARD = Sought("speed_by_throttle_back", "m/s", "the same backwards")

@@ -20,12 +20,12 @@ class Step:
     Args:
         data: in which it is.
         log, channels: of which.
-        places: number of the step of each channel.
+        indices: number of the step of each channel.
     """
 
-    def __init__(self, data: Stretches, log: int, channels: tuple[int, ...], places: tuple[int, ...]) -> None:
-        self.log, self.places = log, tuple(zip(channels, places))
-        begin = float(data.outputs[log][channels[0]].steps.begin[places[0]])
+    def __init__(self, data: Stretches, log: int, channels: tuple[int, ...], indices: tuple[int, ...]) -> None:
+        self.log, self.indices = log, tuple(zip(channels, indices))
+        begin = float(data.outputs[log][channels[0]].steps.begin[indices[0]])
         self.rows: list[slice] = []
         """Residuals that it changes."""
         before = 0
@@ -38,7 +38,7 @@ class Step:
 
 
 def _times(data: Stretches, series: Series) -> Array:
-    return data.begin[series.stretch] + STEP_S * (series.place + 1.0)
+    return data.begin[series.stretch] + STEP_S * (series.sample + 1.0)
 
 
 def steps_of(

@@ -33,14 +33,14 @@ class Series:
     Args:
         value: (n,)
         stretch: of each sample (n,).
-        place: in samples of the course, with what is between (n,).
+        sample: in samples of the course, with what is between (n,).
         group: log of each sample, of which a constant is taken off.
         cutoff: of the low-pass that is behind what was measured [Hz]; 0: none.
     """
 
     value: Array
     stretch: Array
-    place: Array
+    sample: Array
     group: Array
     cutoff: float = 0.0
 
@@ -50,8 +50,8 @@ class Series:
             b, a = signal.butter(2, 2.0 * STEP_S * self.cutoff)
             settled = signal.lfilter_zi(b, a)[None, :] * course[:, :1]
             course, _ = signal.lfilter(b, a, course, 1, settled)
-        k = np.clip(self.place.astype(int), 0, course.shape[1] - 2)
-        part = self.place - k
+        k = np.clip(self.sample.astype(int), 0, course.shape[1] - 2)
+        part = self.sample - k
         return (1.0 - part) * course[self.stretch, k] + part * course[self.stretch, k + 1]
 
     def free(self, residual: Array) -> Array:
@@ -138,7 +138,7 @@ class Stretches:
 def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
     """Of these logs; a text says what they lack."""
     columns: dict[str, list[list[Array]]] = {name: [] for name in _MEASURED}
-    begins, places, pairs, starts = [], [], [], []
+    begins, numbers, pairs, starts = [], [], [], []
     skids = is_skid(logs[0])
     cutoff = accel_cutoff = 0.0
     count = 0
@@ -173,13 +173,13 @@ def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
                 for name, (time, value) in measured.items():
                     inside = (time >= begin + SETTLES_S) & (time < piece.end)
                     # A sample is that of its ticks' end, an acceleration the mean over them.
-                    place = (time[inside] - begin) / STEP_S - (0.5 if name == "accel" else 1.0)
+                    sample = (time[inside] - begin) / STEP_S - (0.5 if name == "accel" else 1.0)
                     columns[name].append(
-                        [value[inside], np.full(len(place), count), place, np.full(len(place), number)]
+                        [value[inside], np.full(len(sample), count), sample, np.full(len(sample), number)]
                     )
                 starts.append([_near(begin, moved[0], moved[1]), _near(begin, imu.time, imu["GyrZ"])])
                 begins.append(float(begin))
-                places.append(number)
+                numbers.append(number)
                 count += 1
     if not count:
         return f"no {LENGTH_S:.0f} s in one piece with RCOU, IMU, ATT and XKF1"
@@ -187,7 +187,7 @@ def stretches(logs: Sequence[FlightLog]) -> Stretches | str:
     first, second = np.array(starts).T
     return Stretches(
         begin=np.array(begins),
-        log=np.array(places),
+        log=np.array(numbers),
         outputs=tuple(pairs),
         speed=series["speed"],
         yaw_rate=replace(series["yaw_rate"], cutoff=cutoff),
@@ -210,8 +210,8 @@ def _body_velocity(log: FlightLog) -> tuple[Array, Array, Array]:
 
 
 def _series(rows: list[list[Array]]) -> Series:
-    value, stretch, place, group = (np.concatenate(column) for column in zip(*rows))
-    return Series(value, stretch, place, group)
+    value, stretch, sample, group = (np.concatenate(column) for column in zip(*rows))
+    return Series(value, stretch, sample, group)
 
 
 def _battery(log: FlightLog) -> dict[str, tuple[Array, Array]]:

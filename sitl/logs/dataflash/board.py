@@ -29,18 +29,18 @@ COMMANDS = Message("MAVC").of(
 """MAVC: a COMMAND_INT or COMMAND_LONG (WL) from SS, SC to TS, TC, and its MAV_RESULT."""
 
 
-def command(fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> tuple[Any, ...]:
+def command(fields: Any, frame: int, is_location: bool, sender: tuple[int, int], result: int) -> tuple[Any, ...]:
     """Numbers of MAVC.
 
     Args:
         fields: of COMMAND_LONG or COMMAND_INT.
-        frame, is_place: of a COMMAND_LONG, which has none: its MAV_FRAME, and whether p5 and p6 are in degrees.
+        frame, is_location: of a COMMAND_LONG, which has none: its MAV_FRAME, and whether p5 and p6 are in degrees.
         sender: its system and component.
         result: MAV_RESULT.
     """
     is_long = not hasattr(fields, "x")
     if is_long:
-        scale, z = (1e7 if is_place else 1.0), fields.param7
+        scale, z = (1e7 if is_location else 1.0), fields.param7
         x, y = (_whole(p * scale) for p in (fields.param5, fields.param6))
     else:
         frame, x, y, z = fields.frame, fields.x, fields.y, fields.z

@@ -47,7 +47,7 @@ class Columns(Tables):
     Args:
         path: of a .bin, or a .log as text.
         names: messages that are wanted; None: all. A mapping says of each which fields are kept; None: all of them.
-        progress: is told how far it is.
+        progress: called with how far it is.
 
     Raises:
         LogError: it cannot be read, is longer than ``MOST_BYTES``, or is no DataFlash log.
@@ -247,7 +247,7 @@ def _chain(heads: Array, ends: Array) -> Array:
 
 
 def _gather(data: Array, at: Array, dtype: np.dtype[Any]) -> Array:
-    """Rows that begin at these places."""
+    """Rows that begin at these offsets."""
     size = dtype.itemsize
     if not len(at) or not size:
         return np.zeros(len(at), dtype)

@@ -351,8 +351,8 @@ AHR2 = Message("AHR2", bits.MEDIUM, _ATTITUDE).of(
     Field("Lng", "L", "U", "G", derived.longitude(E + "origin_", E + "pos")),
     *(Field(f"Q{n + 1}", "f", source=f"{E}q[{n}]") for n in range(4)),
 )
-"""AHR2: the second attitude source; this firmware has one estimator and logs it again, as AHRS2 tells it."""
-_BODY, _PLACE = "physics.body.", "physics.place."
+"""AHR2: the second attitude source; this firmware has one estimator and logs it again, as AHRS2 reports it."""
+_BODY, _GROUND = "physics.body.", "physics.place."
 
 
 def gps(boot_unix_us: int) -> tuple[Message, ...]:
@@ -406,9 +406,9 @@ TRUTH = Message("SIM", bits.MEDIUM, _ATTITUDE).of(
     Field("Roll", "c", "d", "B", derived.roll(_BODY + "q")),
     Field("Pitch", "c", "d", "B", derived.pitch(_BODY + "q")),
     Field("Yaw", "C", "h", "B", derived.yaw(_BODY + "q")),
-    Field("Alt", "f", "m", "0", derived.difference(_PLACE + "alt", _BODY + "pos[2]")),
-    Field("Lat", "L", "D", "G", derived.latitude(_PLACE, _BODY + "pos")),
-    Field("Lng", "L", "U", "G", derived.longitude(_PLACE, _BODY + "pos")),
+    Field("Alt", "f", "m", "0", derived.difference(_GROUND + "alt", _BODY + "pos[2]")),
+    Field("Lat", "L", "D", "G", derived.latitude(_GROUND, _BODY + "pos")),
+    Field("Lng", "L", "U", "G", derived.longitude(_GROUND, _BODY + "pos")),
     *(Field(f"Q{k + 1}", "f", "-", "0", f"{_BODY}q[{k}]") for k in range(4)),
 )
 """SIM: true position and attitude of the simulated vehicle."""

@@ -102,7 +102,7 @@ CONTROL = Message("CTUN", bits.MEDIUM, bits.CONTROL).of(
 
 
 def _ground(s: Any) -> Array:
-    """Height of the ground as TERRAIN_REPORT tells it [m]."""
+    """Height of the ground as TERRAIN_REPORT reports it [m]."""
     return s(T + "home") + s(T + "difference") + s(T + "offset")
 
 

@@ -31,7 +31,7 @@ EVERY_BIT = 0x7FFFFFFF
 VERSION = (4, 7, 0)
 """The ArduPilot whose messages these are."""
 _RING, _NAV = "autopilot.events.", "autopilot.modes.nav."
-_PLACES = (
+_ORIGINS = (
     (ORIGIN, "autopilot.estimate.origin_set", "autopilot.estimate.origin_"),
     (HOME, "autopilot.home.is_set", "autopilot.home."),
 )
@@ -92,8 +92,8 @@ class LogEncoder:
         chosen = self._kind.messages(self._bits, self._boot_unix_us, self._simulated)
         self._plan = Plan(chosen, self._numbers, self._samples)
         self._samples.want(*(each.path for each in (*EDGES, *HEALTH)), _NAV + "command_count", _NAV + "command_seq")
-        for _, is_set, place in _PLACES:
-            self._samples.want(is_set, place + "lat", place + "lon", place + "alt")
+        for _, is_set, prefix in _ORIGINS:
+            self._samples.want(is_set, prefix + "lat", prefix + "lon", prefix + "alt")
         self._samples.begin()
         self._samples.take(0)
         self.sampler, self.sampler_address = self._samples.sampler, self._samples.address
@@ -111,7 +111,7 @@ class LogEncoder:
 
     @property
     def is_full(self) -> bool:
-        """Whether there is no room for more samples."""
+        """Whether there is no space for more samples."""
         return self.sampler.row == ROWS
 
     def note(self, time_us: int, pack: Callable[..., bytes], *arguments: Any) -> None:
@@ -167,7 +167,7 @@ class LogEncoder:
         return self._mission
 
     def parameter(self, time_us: int, name: str) -> None:
-        """Add a parameter that was set; time since boot [us]. Its default is not told again (not a number)."""
+        """Add a parameter that was set; time since boot [us]. Its default is not reported again (not a number)."""
         value = self._values[name] = self._vehicle.parameters[name]
         self.note(time_us, self.events.parameters, [(name, value, math.nan)])
 
@@ -200,7 +200,7 @@ class LogEncoder:
         return len(self._out)
 
     def begin(self, time_us: int) -> None:
-        """Encode the head of the log: formats, parameters, version, mode, mission, places; time since boot [us]."""
+        """Encode the head of the log: formats, parameters, version, mode, mission, locations; time since boot [us]."""
         v, pack = self._vehicle, self.events
         self._last_us = time_us
         title, build = self._kind.title, self._kind.build_type
@@ -220,9 +220,9 @@ class LogEncoder:
             *(pack.pack(name, time_us, *numbers) for name, numbers in fence.rows(v.v) + rally.rows(v.v)),
         ]
         self._samples.turn(0)
-        for kind, is_set, place in _PLACES:
+        for kind, is_set, prefix in _ORIGINS:
             if self._samples.column(is_set)[0]:
-                self._out.append(self._place(0, kind, place, time_us))
+                self._out.append(self._origin(0, kind, prefix, time_us))
 
     def write_rows(self) -> None:
         """Encode the samples and messages so far."""
@@ -249,19 +249,19 @@ class LogEncoder:
                     time_us = int(times[k + 1])
                     self._notes.append((k + 1, time_us, pack("EV", time_us, number)))
         for sensor in HEALTH:
-            heard = column(sensor.path)[: n + 1]
-            silent = (heard > 0) & (times[: n + 1] - heard > SILENCE_US)
+            received = column(sensor.path)[: n + 1]
+            silent = (received > 0) & (times[: n + 1] - received > SILENCE_US)
             for k in np.flatnonzero(silent[1:] != silent[:-1]).tolist():
                 data = pack("ERR", int(times[k + 1]), sensor.subsystem, UNHEALTHY if silent[k + 1] else RESOLVED)
                 self._notes.append((k + 1, int(times[k + 1]), data))
-        for kind, is_set, place in _PLACES:
+        for kind, is_set, prefix in _ORIGINS:
             moved = np.zeros(n, bool)
             for name in ("lat", "lon", "alt"):
-                x = column(place + name)[: n + 1]
+                x = column(prefix + name)[: n + 1]
                 moved |= x[1:] != x[:-1]
             for k in np.flatnonzero(moved & (column(is_set)[1 : n + 1] != 0)).tolist():
                 time_us = int(times[k + 1])
-                self._notes.append((k + 1, time_us, self._place(k + 1, kind, place, time_us)))
+                self._notes.append((k + 1, time_us, self._origin(k + 1, kind, prefix, time_us)))
         count, seq = column(_NAV + "command_count")[: n + 1], column(_NAV + "command_seq")
         for k in np.flatnonzero(count[1:] != count[:-1]).tolist():
             self._command_started(k + 1, int(seq[k + 1]), int(times[k + 1]))
@@ -274,6 +274,6 @@ class LogEncoder:
             data = self.events.command("MISE", time_us, len(mission), seq, item)
             self._notes.append((row, time_us, data))
 
-    def _place(self, row: int, kind: int, place: str, time_us: int) -> bytes:
-        numbers = (float(self._samples.column(place + name)[row]) for name in ("lat", "lon", "alt"))
+    def _origin(self, row: int, kind: int, prefix: str, time_us: int) -> bytes:
+        numbers = (float(self._samples.column(prefix + name)[row]) for name in ("lat", "lon", "alt"))
         return self.events.origin(time_us, kind, *numbers)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ESC: what speed controllers tell of each motor, as ESC_TELEMETRY does (SIM_ESC_TELEM)."""
+"""ESC: what speed controllers report of each motor, as ESC_TELEMETRY does (SIM_ESC_TELEM)."""
 
 from __future__ import annotations
 

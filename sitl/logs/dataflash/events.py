@@ -45,7 +45,7 @@ class Health(NamedTuple):
     subsystem: int
     """Of ERR."""
     path: str
-    """Field of the vehicle's record: when it was last heard [us since boot]; 0: never, or that is not known."""
+    """Field of the vehicle's record: when it was last received [us since boot]; 0: never, or that is not known."""
 
 
 SILENCE_US = 500_000

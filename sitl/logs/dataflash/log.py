@@ -23,7 +23,7 @@ from ...version import __version__
 from ..tlog import LogError
 from . import board
 from .encoder import LogEncoder, Vehicle
-from .samples import place
+from .samples import located
 
 PERSIST_US = 15_000_000
 """Time after disarming, or a refused arming, during which logging continues [us]."""
@@ -93,7 +93,7 @@ class DataFlash:
         self._started = 0
         words = memoryview(vehicle.fleet.view("<i8").reshape(len(vehicle.fleet), -1)[vehicle.index])
         self._words = words
-        at = {name: place(vehicle.fleet.dtype, name)[0] // 8 for name in ("time_us", _COUNT, _ARMED, _ARMED_US)}
+        at = {name: located(vehicle.fleet.dtype, name)[0] // 8 for name in ("time_us", _COUNT, _ARMED, _ARMED_US)}
         self._time_at, self._count_at, self._armed_at, self._armed_us_at = at.values()
         self._closed = False
         self._core_samples_armed = False
@@ -331,10 +331,10 @@ class DataFlash:
     def reached(self, seq: int) -> None:
         """A mission item was reached: not logged, CMD and the status text say it."""
 
-    def commanded(self, fields: Any, frame: int, is_place: bool, sender: tuple[int, int], result: int) -> None:
+    def commanded(self, fields: Any, frame: int, is_location: bool, sender: tuple[int, int], result: int) -> None:
         """Log a command that was answered."""
         self._follow()
-        numbers = board.command(fields, frame, is_place, sender, result)
+        numbers = board.command(fields, frame, is_location, sender, result)
         if self._encoder is None or self._paused:
             self._commands.append((self._now_us, numbers))
             return

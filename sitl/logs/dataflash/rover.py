@@ -65,7 +65,7 @@ def _on_path(s: Any) -> Array:
     return _any_of(s, _PATHS, (auto.ON_PATH, auto.RETURNING), (guided.POSITION,))
 
 
-def _at_place(s: Any) -> Array:
+def _holding_position(s: Any) -> Array:
     return _any_of(s, (LOITER,), (auto.LOITERING,))
 
 
@@ -75,16 +75,16 @@ def _on_circle(s: Any) -> Array:
 
 def _to_target(s: Any) -> tuple[Array, Array]:
     """Vector from the vehicle to its target: north, east [m]; 0 without a target."""
-    places = (
-        (_on_path(s), "nav.target"), (_at_place(s), "loiter.place"), (_on_circle(s), "circle.target"),
+    targets = (
+        (_on_path(s), "nav.target"), (_holding_position(s), "loiter.place"), (_on_circle(s), "circle.target"),
         (_any_of(s, (DOCK,), ()), "dock.place"),
     )  # fmt: skip
 
-    def way(k: int) -> Array:
+    def offset(k: int) -> Array:
         here = s(f"{E}pos[{k}]")
-        return np.select([where for where, _ in places], [s(f"{M}{name}[{k}]") for _, name in places], here) - here
+        return np.select([where for where, _ in targets], [s(f"{M}{name}[{k}]") for _, name in targets], here) - here
 
-    return way(0), way(1)
+    return offset(0), offset(1)
 
 
 def _distance(s: Any) -> Array:

@@ -19,7 +19,7 @@ _PATH = re.compile(r"([\w.]+)(?:\[([\d,]+)\])?$")
 _KINDS = {"<f8": "<f8", "<i8": "<i8", "<f4": "<f4", "<i4": "<i4"}
 
 
-def place(dtype: np.dtype[Any], path: str) -> tuple[int, str]:
+def located(dtype: np.dtype[Any], path: str) -> tuple[int, str]:
     """(offset [bytes], type) of one number of a record: "autopilot.estimate.vel[2]", "autopilot.ekf.P[3,3]".
 
     Raises:
@@ -46,13 +46,13 @@ class Samples:
 
     Args:
         fleet, index: the vehicle; its memory must stay where it is.
-        capacity: rows that there is room for.
+        capacity: rows that there is space for.
     """
 
     def __init__(self, fleet: Array, index: int, capacity: int) -> None:
         self._dtype = fleet.dtype
         self._words = fleet.view("<i8").reshape(len(fleet), -1)[index]
-        self._places: dict[str, tuple[int, str]] = {}
+        self._located: dict[str, tuple[int, str]] = {}
         self._capacity = capacity
         self.sampler = Sampler()
         """With it the core takes rows."""
@@ -69,18 +69,18 @@ class Samples:
             KeyError: the record has no such number.
         """
         for path in paths:
-            if path not in self._places:
-                self._places[path] = place(self._dtype, path)
+            if path not in self._located:
+                self._located[path] = located(self._dtype, path)
 
     def probe(self, path: str) -> Array:
         """Present value as a column of one, wanted from now on: what a function of the samples may be tried with."""
         self.want(path)
-        offset, kind = self._places[path]
+        offset, kind = self._located[path]
         return self._words[offset // 8 : offset // 8 + 1].view(kind)[offset % 8 // int(kind[2]) :][:1].astype("f8")
 
     def begin(self) -> None:
         """Everything is wanted that ever will be: make the rows (one more than ``capacity``, see ``carry``)."""
-        words = sorted({offset // 8 for offset, _ in self._places.values()})
+        words = sorted({offset // 8 for offset, _ in self._located.values()})
         self._taken = np.array(words, np.intp)
         self.rows = np.zeros((self._capacity + 1, len(words)), "<i8")
         self._memory = Sampler.fleet(1)
@@ -88,7 +88,7 @@ class Samples:
         s.rows, s.count, s.words, s.to = self._capacity, len(words), self._taken.ctypes.data, self.rows.ctypes.data
         s.source, s.source_words = self._words.ctypes.data, len(self._words)
         number = {word: k for k, word in enumerate(words)}
-        for path, (offset, kind) in self._places.items():
+        for path, (offset, kind) in self._located.items():
             size = int(kind[2])
             self._columns[path] = number[offset // 8], kind, slice(offset % 8 // size, None, 8 // size)
 

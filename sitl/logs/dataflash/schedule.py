@@ -66,7 +66,7 @@ class RingColumns(Columns):
 
 
 def in_ring(path: str) -> list[str]:
-    """The paths in the record of a number of the ring, one for each place in it."""
+    """The paths in the record of a number of the ring, one for each slot in it."""
     name, _, inner = path.removeprefix(RING).partition("[")
     inner = f",{inner}" if inner else "]"
     return [f"{_INERTIAL}{name}[{k}{inner}" for k in range(INERTIAL_RING)]

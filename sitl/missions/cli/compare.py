@@ -24,7 +24,7 @@ def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "world are equal: exact on native physics, same on another engine; else alike)",
     )
     parser.add_argument("--report", type=Path, metavar="DIR", help="write report.html and junit.xml to this folder")
-    parser.add_argument("--all", action="store_true", help="print every figure, not only those beyond their limits")
+    parser.add_argument("--all", action="store_true", help="print every metric, not only those beyond their limits")
     parser.add_argument("--system", type=int, metavar="N", help="system id of the vehicle in a .tlog that has several")
     parser.set_defaults(function=run)
 

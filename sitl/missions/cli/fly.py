@@ -95,7 +95,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
             if has_curves and MavCmd.NAV_SPLINE_WAYPOINT not in taken:
                 print("  spline waypoints are flown as waypoints along the curve: the firmware has none")
             if file.has_fence_or_rally:
-                say_places(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
+                print_fence_and_rally(file, simulation.parameters["FENCE_ENABLE"] != 0.0)
         pace = StoppablePacing(speedup)
         with shown(simulation, options, pace) as on_slice:
             outcome = fly(
@@ -119,7 +119,7 @@ def _fly(options: argparse.Namespace, speedup: float | None) -> int:
     return 0 if outcome.completed else 1
 
 
-def say_places(file: MissionFile, enabled: bool) -> None:
+def print_fence_and_rally(file: MissionFile, enabled: bool) -> None:
     """Say what is uploaded besides the mission; ``enabled``: the vehicle heeds fences."""
     areas, points = len(file.circles) + len(file.polygons), len(file.rally)
     unheeded = "" if enabled or not areas else " (without effect: FENCE_ENABLE is 0)"

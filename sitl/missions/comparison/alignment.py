@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Aligns two flights: in time, from the start of their missions; and along the way, independent of time."""
+"""Aligns two flights: in time, from the start of their missions; and along the path, independent of time."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def pair(
     Args:
         golden, new: the two.
         align: as a tolerance has it.
-        coarse: the start of one is known to a heartbeat only: then their ways bring the clocks together.
+        coarse: the start of one is known to a heartbeat only: then their paths bring the clocks together.
         names: what errors call them.
 
     Raises:
@@ -99,7 +99,7 @@ def pair(
 
 
 def _with_aligned_clocks(found: Pair, golden: Track, new: Track) -> Pair:
-    """The pair with clocks shifted by the new flight's median delay along the way, when that is at most a
+    """The pair with clocks shifted by the new flight's median delay along the path, when that is at most a
     heartbeat's."""
     matched = match(found.new, found.golden)
     moving = matched.of(lengths(found.golden.data[:, 4:7])) > MOVING
@@ -184,7 +184,7 @@ def _from(track: Track, start: float, logged: float | None = None) -> Track:
 
 @dataclass(frozen=True)
 class Matched:
-    """For each sample of a flight, its matching position on another flight's way."""
+    """For each sample of a flight, its matching position on another flight's path."""
 
     index: Array
     """As a fractional index into the other's samples."""
@@ -199,7 +199,7 @@ class Matched:
 
 
 def match(flight: Track, other: Track) -> Matched:
-    """Match each sample of ``flight`` with the nearest position on the way of ``other``, in increasing order."""
+    """Match each sample of ``flight`` with the nearest position on the path of ``other``, in increasing order."""
     f, o = flight.data[:, 1:4], other.data[:, 1:4]
     if flight.data.shape == other.data.shape and (flight.data[:, :4] == other.data[:, :4]).all():
         return Matched(np.arange(len(f), dtype=float), np.zeros(len(f)), np.zeros(len(f)))
@@ -252,6 +252,6 @@ def _refined(f: Array, o: Array, tf: Array, to: Array, nearest: Array) -> Matche
         best = np.where(better, away, best)
         index = np.where(better, nearest + step * fraction * (end != nearest), index)
     rows = np.arange(len(o))
-    place = np.stack([np.interp(index, rows, o[:, k]) for k in range(2)], axis=1)
-    cross = arrays.hypot(*(f[:, :2] - place).T)
+    position = np.stack([np.interp(index, rows, o[:, k]) for k in range(2)], axis=1)
+    cross = arrays.hypot(*(f[:, :2] - position).T)
     return Matched(index, cross, tf - np.interp(index, rows, to))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares a flight with its golden: figures with limits, and the first divergence in words."""
+"""Compares a flight with its golden: metrics with limits, and the first divergence in words."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ OLD = (
 
 
 @dataclass(frozen=True)
-class Figure:
-    """One figure with its limit."""
+class Metric:
+    """One metric with its limit."""
 
     name: str
     """Name as in tolerance files: "cross_track.max"."""
@@ -77,7 +77,7 @@ class Comparison:
     tolerance: Tolerance
     differences: Differences
     events: list[Event]
-    figures: list[Figure]
+    metrics: list[Metric]
     first: Divergence | None
     """The first difference beyond its limit."""
     first_trace: Divergence | None
@@ -90,12 +90,12 @@ class Comparison:
     @property
     def ok(self) -> bool:
         """Whether everything is within its limits."""
-        return all(figure.ok for figure in self.figures)
+        return all(metric.ok for metric in self.metrics)
 
     @property
-    def failed(self) -> list[Figure]:
-        """Figures beyond their limits."""
-        return [figure for figure in self.figures if not figure.ok]
+    def failed(self) -> list[Metric]:
+        """Metrics beyond their limits."""
+        return [metric for metric in self.metrics if not metric.ok]
 
     @property
     def headline(self) -> str:
@@ -141,14 +141,14 @@ def compare(golden: Flight, new: Flight, tolerance: str | Path | Mapping[str, An
     both = pair(golden.track, new.track, limits.align, golden.coarse or new.coarse)
     differences = measure(both)
     events = compare_events(both, limits)
-    figures = [figure for series in differences.series for figure in _of_series(both, series, differences, limits)]
-    figures += _totals(both, limits)
-    figures += [figure for kind in EVENTS for figure in _of_events(both, kind, events, limits)]
+    metrics = [metric for series in differences.series for metric in _of_series(both, series, differences, limits)]
+    metrics += _totals(both, limits)
+    metrics += [metric for kind in EVENTS for metric in _of_events(both, kind, events, limits)]
     if limits.bits:
-        figures += _of_bits(golden, new)
-    first = _first(both, differences, events, limits, figures)
+        metrics += _of_bits(golden, new)
+    first = _first(both, differences, events, limits, metrics)
     return Comparison(
-        golden, new, both, limits, differences, events, figures, first, _trace(both, differences, events),
+        golden, new, both, limits, differences, events, metrics, first, _trace(both, differences, events),
         [*both.notes, *_notes(golden, new)], is_old,
     )  # fmt: skip
 
@@ -173,7 +173,7 @@ def _is_exact(flight: Flight) -> bool:
     return flight.header is not None and flight.header["physics"] == NATIVE and bool(flight.bits)
 
 
-def _of_bits(golden: Flight, new: Flight) -> list[Figure]:
+def _of_bits(golden: Flight, new: Flight) -> list[Metric]:
     """How many digests of the flights differ: each is of all samples up to its time."""
     if not (golden.bits and new.bits):
         return []
@@ -184,10 +184,10 @@ def _of_bits(golden: Flight, new: Flight) -> list[Figure]:
     if differing:
         at, until = (k * BITS_US * 1e-6 for k in (differing[0], differing[0] + 1))
         text = f"the last bits differ from some time between {at:.0f} and {until:.0f} s after power-on"
-    return [Figure("bits", "digests of all bits", float(len(differing)), "", 0.0, at, text)]
+    return [Metric("bits", "digests of all bits", float(len(differing)), "", 0.0, at, text)]
 
 
-def _of_series(both: Pair, series: Series, differences: Differences, limits: Tolerance) -> list[Figure]:
+def _of_series(both: Pair, series: Series, differences: Differences, limits: Tolerance) -> list[Metric]:
     k = series.worst()
     value, at = series.max, float(series.t[k]) if len(series.t) else 0.0
     text = f"{words.when(both, at)}: {words.deviation(series, k)}" if value > 0.0 else ""
@@ -197,28 +197,28 @@ def _of_series(both: Pair, series: Series, differences: Differences, limits: Tol
         north, east = (float(both.golden[name][g]) for name in ("north", "east"))
         text = f"the point {north:.1f} m north, {east:.1f} m east of home (golden at {at:.1f} s) is missed by this much"
     found = [
-        Figure(f"{series.name}.max", series.title, value, series.unit, limits.limit(f"{series.name}.max"), at, text)
+        Metric(f"{series.name}.max", series.title, value, series.unit, limits.limit(f"{series.name}.max"), at, text)
     ]
     if series.name != "delay":
         name = f"{series.name}.rms"
-        found.append(Figure(name, f"{series.title}, RMS", series.rms, series.unit, limits.limit(name)))
+        found.append(Metric(name, f"{series.title}, RMS", series.rms, series.unit, limits.limit(name)))
     return found
 
 
-def _totals(both: Pair, limits: Tolerance) -> list[Figure]:
+def _totals(both: Pair, limits: Tolerance) -> list[Metric]:
     golden, new = both.golden, both.new
     longer = float(new.t[-1] - golden.t[-1])
     text = f"{new.t[-1]:.1f} s, golden {golden.t[-1]:.1f} s"
-    found = [Figure("duration.max", "duration", abs(longer), "s", limits.limit("duration.max"), words=text)]
+    found = [Metric("duration.max", "duration", abs(longer), "s", limits.limit("duration.max"), words=text)]
     old, now = float(golden["energy"][-1]), float(new["energy"][-1])
     if old > 0.0 and now > 0.0:
         change = 100.0 * abs(now - old) / old if abs(now - old) > 0.0101 else 0.0
         text = f"{now:.2f} Wh, golden {old:.2f} Wh"
-        found.append(Figure("energy.max", "energy", change, "%", limits.limit("energy.max"), words=text))
+        found.append(Metric("energy.max", "energy", change, "%", limits.limit("energy.max"), words=text))
     return found
 
 
-def _of_events(both: Pair, kind: str, events: list[Event], limits: Tolerance) -> list[Figure]:
+def _of_events(both: Pair, kind: str, events: list[Event], limits: Tolerance) -> list[Metric]:
     limit, title = limits.limit(f"{kind}.time"), _EVENT_TITLES[kind]
     mine = [event for event in events if event.kind == kind]
     wrong = [event for event in mine if event.difference(math.inf)]
@@ -226,17 +226,17 @@ def _of_events(both: Pair, kind: str, events: list[Event], limits: Tolerance) ->
     text += f"; and {len(wrong) - 5} more" if len(wrong) > 5 else ""
     at = wrong[0].time if wrong else None
     order = 0.0 if math.isfinite(limit) else math.inf
-    found = [Figure(f"{kind}.order", f"{title}: missing or added", float(len(wrong)), "", order, at, text)]
+    found = [Metric(f"{kind}.order", f"{title}: missing or added", float(len(wrong)), "", order, at, text)]
     worst = max(mine, key=lambda event: abs(event.shift), default=None)
     late, when, text = 0.0, None, ""
     if worst is not None and worst.shift:
         late, when, text = abs(worst.shift), worst.time, words.event_text(worst, SHIFTED)
-    found.append(Figure(f"{kind}.time", f"{title}: time", late, "s", limit, when, text))
+    found.append(Metric(f"{kind}.time", f"{title}: time", late, "s", limit, when, text))
     return found
 
 
 def _first(
-    both: Pair, differences: Differences, events: list[Event], limits: Tolerance, figures: list[Figure]
+    both: Pair, differences: Differences, events: list[Event], limits: Tolerance, metrics: list[Metric]
 ) -> Divergence | None:
     """The first difference beyond its limit."""
     found: list[Divergence] = []
@@ -258,19 +258,19 @@ def _first(
             at = words.when(both, event.time - 1e-3)
             found.append(Divergence(event.time, f"{at}: {words.event_text(event, difference)}"))
     if not found:
-        worst_figure = next((figure for figure in figures if not figure.ok), None)
-        if worst_figure is None:
+        worst_metric = next((metric for metric in metrics if not metric.ok), None)
+        if worst_metric is None:
             return None
-        if worst_figure.name == "bits":
-            return Divergence(worst_figure.at or 0.0, f"{worst_figure.words}; the track that is kept is the same")
-        value, limit_text = (words.number(x, worst_figure.unit) for x in (worst_figure.value, worst_figure.limit))
-        text = f"{worst_figure.title} {value}, {limit_text} allowed"
-        return Divergence(worst_figure.at or 0.0, f"{text} ({worst_figure.words})" if worst_figure.words else text)
+        if worst_metric.name == "bits":
+            return Divergence(worst_metric.at or 0.0, f"{worst_metric.words}; the track that is kept is the same")
+        value, limit_text = (words.number(x, worst_metric.unit) for x in (worst_metric.value, worst_metric.limit))
+        text = f"{worst_metric.title} {value}, {limit_text} allowed"
+        return Divergence(worst_metric.at or 0.0, f"{text} ({worst_metric.words})" if worst_metric.words else text)
     first = min(found, key=lambda divergence: divergence.t)
-    place = differences["position"]
-    if "of the golden" not in first.words and place.first_over(limits.limit("position.max")) is not None:
-        worst = place.worst()
-        far = f"farthest {words.deviation(place, worst)}, {words.when(both, float(place.t[worst]))}"
+    position = differences["position"]
+    if "of the golden" not in first.words and position.first_over(limits.limit("position.max")) is not None:
+        worst = position.worst()
+        far = f"farthest {words.deviation(position, worst)}, {words.when(both, float(position.t[worst]))}"
         first = Divergence(first.t, f"{first.words}; {far}")
     return first
 

@@ -142,9 +142,9 @@ class Differences:
 
     series: tuple[Series, ...]
     matched: Matched
-    """Matching position on golden's way of each sample of the new flight."""
+    """Matching position on golden's path of each sample of the new flight."""
     missed: Array
-    """Horizontal distance from each sample of golden to the new flight's way, which shows what was left out [m]."""
+    """Horizontal distance from each sample of golden to the new flight's path, which shows what was left out [m]."""
 
     def __getitem__(self, name: str) -> Series:
         return next(series for series in self.series if series.name == name)
@@ -153,7 +153,7 @@ class Differences:
 def measure(pair: Pair) -> Differences:
     """Compare two aligned flights sample by sample."""
     golden, new = pair.golden, pair.new
-    t, place = new.t, new.data[:, 1:4]
+    t, position = new.t, new.data[:, 1:4]
     matched, back = match(new, golden), match(golden, new)
 
     def of(name: str) -> Array:
@@ -161,15 +161,15 @@ def measure(pair: Pair) -> Differences:
 
     at_time = np.stack([np.interp(t, golden.t, golden[name]) for name in ("north", "east", "down")], axis=1)
     both = (t <= golden.t[-1] + 1e-6) & (t >= golden.t[0] - 1e-6)
-    drift = np.where(both[:, None], place - at_time, np.nan)
-    way = np.stack([of(name) for name in ("north", "east", "down")], axis=1)
-    aside = place - way
+    drift = np.where(both[:, None], position - at_time, np.nan)
+    path = np.stack([of(name) for name in ("north", "east", "down")], axis=1)
+    aside = position - path
     flat = aside * (1.0, 1.0, 0.0)
     speed = arrays.hypot(golden["vn"], golden["ve"])
     fast = np.sqrt(matched.of(speed * speed + np.square(golden["vd"])))
     then = np.stack([of(name) for name in ("vn", "ve", "vd")], axis=1)
     ahead = (new.data[:, 4:7] * then).sum(axis=1) / np.maximum(lengths(then), 1e-9)
-    # where ways come close (a climb's end and the leg that follows) the nearer one may be another part of golden's
+    # where paths come close (a climb's end and the leg that follows) the nearer one may be another part of golden's
     delay = np.where(np.minimum(fast, ahead) > MOVING, matched.delay, np.nan)
     tilt = arrays.hypot(*(new[name] - of(name) for name in ("roll", "pitch")))
     yaw = np.interp(matched.index, np.arange(len(golden)), np.unwrap(golden["yaw"]))
@@ -178,7 +178,7 @@ def measure(pair: Pair) -> Differences:
         Series("position", "position at the same time", "m", 0.0175, t, lengths(drift), drift),
         Series("cross_track", "cross-track", "m", 0.015, t, matched.cross, flat),
         Series("altitude", "altitude", "m", 0.0101, t, -aside[:, 2]),
-        Series("delay", "delay along the way", "s", 0.05, t, delay),
+        Series("delay", "delay along the path", "s", 0.05, t, delay),
         Series("speed", "ground speed", "m/s", 0.015, t, arrays.hypot(new["vn"], new["ve"]) - matched.of(speed)),
         Series("climb", "climb rate", "m/s", 0.0101, t, of("vd") - new["vd"]),
         Series("tilt", "roll and pitch", "deg", 0.15, t, np.degrees(tilt)),

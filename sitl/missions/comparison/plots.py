@@ -162,11 +162,11 @@ def _events(axis: Any, comparison: Comparison) -> None:
 
 
 def _name_items(axis: Any, comparison: Comparison) -> None:
-    """Label the mission items above a panel, as far as there is room."""
+    """Label the mission items above a panel, as far as there is space."""
     new = comparison.pair.new
-    last, room = -np.inf, 0.015 * max(float(new.t[-1]), 1.0)
+    last, spacing = -np.inf, 0.015 * max(float(new.t[-1]), 1.0)
     for at, seq in new.items:
-        if at - last >= room:
+        if at - last >= spacing:
             axis.annotate(
                 str(seq), (at, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points", xytext=(0, 2),
                 fontsize=10, ha="center", color="#444",

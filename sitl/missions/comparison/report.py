@@ -14,7 +14,7 @@ from sitl.core.whole_file import write_whole
 from sitl.errors import MissingExtra, OptionError
 
 from . import scene, words
-from .compare import Comparison, Figure
+from .compare import Comparison, Metric
 from .events import SHIFTED, Event
 
 
@@ -35,13 +35,13 @@ class Case:
 
 
 def cases_of(comparison: Comparison) -> list[Case]:
-    """A case for each figure that is judged."""
+    """A case for each metric that is judged."""
     found = []
-    for figure in comparison.figures:
-        if figure.is_judged:
-            value, limit = words.number(figure.value, figure.unit), words.number(figure.limit, figure.unit)
-            text = f"{figure.title}: {value}, {limit} allowed. {figure.words}".strip()
-            found.append(Case(comparison.new.name, figure.name, 0.0, "" if figure.ok else text, output=text))
+    for metric in comparison.metrics:
+        if metric.is_judged:
+            value, limit = words.number(metric.value, metric.unit), words.number(metric.limit, metric.unit)
+            text = f"{metric.title}: {value}, {limit} allowed. {metric.words}".strip()
+            found.append(Case(comparison.new.name, metric.name, 0.0, "" if metric.ok else text, output=text))
     return found
 
 
@@ -111,15 +111,15 @@ img { width: 100%; height: auto; display: block; } ul { margin: 6px 0; padding-l
 
 
 def lines(comparison: Comparison, everything: bool = False) -> list[str]:
-    """The comparison for a terminal: verdict, then figures (those beyond their limits, or all)."""
+    """The comparison for a terminal: verdict, then metrics (those beyond their limits, or all)."""
     found = [("OK: " if comparison.ok else "DIFFERS: ") + comparison.headline]
     if comparison.ok and comparison.first_trace is not None:
         found.append(f"  first difference at all: {comparison.first_trace.words}")
-    for figure in comparison.figures:
-        if everything or not figure.ok:
-            mark = " " if figure.ok else "!"
-            value, limit = words.number(figure.value, figure.unit), words.number(figure.limit, figure.unit)
-            found.append(f"  {mark} {figure.title:28} {value:>10}  allowed {limit:>9}  {figure.words}".rstrip())
+    for metric in comparison.metrics:
+        if everything or not metric.ok:
+            mark = " " if metric.ok else "!"
+            value, limit = words.number(metric.value, metric.unit), words.number(metric.limit, metric.unit)
+            found.append(f"  {mark} {metric.title:28} {value:>10}  allowed {limit:>9}  {metric.words}".rstrip())
     if comparison.advice:
         found.append(f"  {comparison.advice}")
     return found + [f"  note: {note}" for note in comparison.notes]
@@ -147,8 +147,8 @@ def html(comparison: Comparison, title: str = "", shown: str = "") -> str:
     title = title or Path(new.name).name
     verdict = "Flies like the golden flight" if comparison.ok else "Does not fly like the golden flight"
     failed = len(comparison.failed)
-    judged = sum(figure.is_judged for figure in comparison.figures)
-    summary = f"{judged - failed} of {judged} figures within tolerance <b>{escape(comparison.tolerance.name)}</b>"
+    judged = sum(metric.is_judged for metric in comparison.metrics)
+    summary = f"{judged - failed} of {judged} metrics within tolerance <b>{escape(comparison.tolerance.name)}</b>"
     first = comparison.first or comparison.first_trace
     label = "First divergence" if comparison.first else "First difference at all, within tolerance"
     parts = [
@@ -159,9 +159,9 @@ def html(comparison: Comparison, title: str = "", shown: str = "") -> str:
         f"golden <code>{escape(golden.name)}</code></p>",
         f'<p><a href="{escape(shown)}">Both flights in one scene</a></p></header>' if shown else "</header>",
         _notes(comparison),
-        "<h2>Figures</h2><section><table><tr><th></th><th>figure</th><th class=n>value</th><th class=n>allowed</th>"
+        "<h2>Metrics</h2><section><table><tr><th></th><th>metric</th><th class=n>value</th><th class=n>allowed</th>"
         "<th></th><th>where</th></tr>",
-        *(_row(figure) for figure in comparison.figures),
+        *(_row(metric) for metric in comparison.metrics),
         "</table></section>",
         _pictures(comparison),
         "<h2>What happened</h2><section><table><tr><th></th><th class=n>golden</th><th class=n>new</th>"
@@ -187,19 +187,19 @@ def _notes(comparison: Comparison) -> str:
     )
 
 
-def _row(figure: Figure) -> str:
-    state, mark = ("", "&#10003;") if figure.ok else ("bad", "&#10007;")
-    if not figure.is_judged:
+def _row(metric: Metric) -> str:
+    state, mark = ("", "&#10003;") if metric.ok else ("bad", "&#10007;")
+    if not metric.is_judged:
         state, mark = "idle", "&middot;"
-    fraction = min(figure.value / figure.limit, 1.0) if figure.limit > 0.0 else float(not figure.ok)
+    fraction = min(metric.value / metric.limit, 1.0) if metric.limit > 0.0 else float(not metric.ok)
     bar = ""
-    if math.isfinite(figure.limit):
+    if math.isfinite(metric.limit):
         bar = f'<span class="bar"><i style="width:{100.0 * fraction:.0f}%"></i></span>'
-    value, limit = words.number(figure.value, figure.unit), words.number(figure.limit, figure.unit)
+    value, limit = words.number(metric.value, metric.unit), words.number(metric.limit, metric.unit)
     return (
-        f'<tr class="{state}"><td class="mark">{mark}</td><td>{escape(figure.title)}</td>'
+        f'<tr class="{state}"><td class="mark">{mark}</td><td>{escape(metric.title)}</td>'
         f'<td class="n value">{value}</td><td class="n">{limit}</td><td>{bar}</td>'
-        f'<td class="where">{escape(figure.words)}</td></tr>'
+        f'<td class="where">{escape(metric.words)}</td></tr>'
     )
 
 
@@ -222,7 +222,7 @@ def _pictures(comparison: Comparison) -> str:
         from . import plots
 
         drawn = [
-            ("The way, from above", plots.plan(comparison)),
+            ("The path, from above", plots.plan(comparison)),
             ("What differs", plots.differing(comparison)),
             ("What was flown", plots.flown(comparison)),
         ]

@@ -46,7 +46,7 @@ class Tolerance:
     "auto": the
     first of these that both flights have."""
     limits: Mapping[str, float]
-    """ "cross_track.max" -> limit in the figure's unit; infinite: reported, not judged."""
+    """ "cross_track.max" -> limit in the metric's unit; infinite: reported, not judged."""
     ignore: tuple[re.Pattern[str], ...]
     """Status texts that match one of these are ignored."""
     numbers: bool
@@ -54,9 +54,9 @@ class Tolerance:
     bits: bool = False
     """Whether the flights must be the same to the last bit."""
 
-    def limit(self, figure: str) -> float:
-        """Limit of a figure such as "cross_track.max", in its unit; infinite: not judged."""
-        return self.limits.get(figure, math.inf)
+    def limit(self, metric: str) -> float:
+        """Limit of a metric such as "cross_track.max", in its unit; infinite: not judged."""
+        return self.limits.get(metric, math.inf)
 
 
 def is_file(given: str | Path) -> bool:

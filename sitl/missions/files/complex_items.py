@@ -156,14 +156,14 @@ def _survey(entry: Node) -> list[MissionItem]:
 
 def _corridor(entry: Node) -> list[MissionItem]:
     style = entry[STYLE]
-    places = [corner.place() for corner in entry["polyline"]]
-    if len(places) < 2:
-        raise entry["polyline"].fail(f"{len(places)} places; a corridor has two or more")
-    plane = Plane(places[0])
+    locations = [corner.location() for corner in entry["polyline"]]
+    if len(locations) < 2:
+        raise entry["polyline"].fail(f"{len(locations)} locations; a corridor has two or more")
+    plane = Plane(locations[0])
     spacing, turnaround = _spacing(style), style.get("TurnAroundDistance", 0.0).number(0.0, FARTHEST)
     width = entry["CorridorWidth"].number(0.0, FARTHEST)
-    _limit(entry, width / spacing * len(places))
-    lines = along_corridor([plane.point(place) for place in places], width, spacing)
+    _limit(entry, width / spacing * len(locations))
+    lines = along_corridor([plane.point(location) for location in locations], width, spacing)
     path = there_and_back(lines, entry.get("EntryPoint", 0).whole(0, 1, 2, 3), turnaround)
     height, frame = _height(style)
     return [_waypoint(plane, point, height, frame, entry) for point in path]
@@ -194,11 +194,11 @@ def _structure(entry: Node) -> list[MissionItem]:
 
 
 def _polygon(entry: Node) -> tuple[Plane, list[Point]]:
-    places = [corner.place() for corner in entry["polygon"]]
-    if len(places) < 3:
-        raise entry["polygon"].fail(f"{len(places)} corners; a polygon has three or more")
-    plane = Plane(places[0])
-    return plane, [plane.point(place) for place in places]
+    locations = [corner.location() for corner in entry["polygon"]]
+    if len(locations) < 3:
+        raise entry["polygon"].fail(f"{len(locations)} corners; a polygon has three or more")
+    plane = Plane(locations[0])
+    return plane, [plane.point(location) for location in locations]
 
 
 def _spacing(style: Node) -> float:
@@ -224,5 +224,5 @@ def _limit(entry: Node, lines: float) -> None:
 
 
 def _waypoint(plane: Plane, point: Point, height: float, frame: int, entry: Node) -> MissionItem:
-    lat, lon = plane.place(point)
+    lat, lon = plane.location(point)
     return make(MavCmd.NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, math.nan, lat, lon, height), 1, entry.where)

@@ -11,12 +11,12 @@ from typing import Any
 from sitl.autopilot.mission import validate
 from sitl.autopilot.mission.item import COMMANDS, NUMBER_COMMANDS, MissionItem
 from sitl.autopilot.mission.mission import Mission
-from sitl.autopilot.mission.validate import HIGHEST, PLACE_FRAMES
+from sitl.autopilot.mission.validate import HIGHEST, LOCATION_FRAMES
 from sitl.core.mavlink import MavAutopilot, MavCmd, MavFrame, MavMissionResult
 from sitl.errors import OptionError
 from sitl.vehicle.kinds import KINDS
 
-from .plane import Place
+from .plane import Location
 
 
 def kind_of_type(vehicle_type: int | None) -> str | None:
@@ -29,7 +29,7 @@ def kind_of_type(vehicle_type: int | None) -> str | None:
 class FenceCircle:
     """A geofence circle."""
 
-    centre: Place
+    centre: Location
     radius: float
     """[m]"""
     inclusion: bool = True
@@ -42,16 +42,16 @@ class FenceCircle:
 class FencePolygon:
     """A geofence polygon."""
 
-    corners: tuple[Place, ...]
+    corners: tuple[Location, ...]
     inclusion: bool = True
     frame: int = MavFrame.GLOBAL_RELATIVE_ALT
 
 
 @dataclass(frozen=True)
 class RallyPoint:
-    """A place to return to instead of home."""
+    """A location to return to instead of home."""
 
-    place: Place
+    place: Location
     height: float
     """[m] in the frame."""
     frame: int = MavFrame.GLOBAL_RELATIVE_ALT
@@ -102,7 +102,7 @@ class MissionFile:
     @property
     def home(self) -> tuple[float, float, float] | None:
         """Planned home: latitude, longitude [deg], altitude above mean sea level [m]; None when the file has none."""
-        if not self.mission.items or self.mission.items[0].no_place:
+        if not self.mission.items or self.mission.items[0].no_location:
             return None
         first = self.mission.items[0]
         return (first.x * 1e-7, first.y * 1e-7, first.z)
@@ -172,20 +172,20 @@ def has_degrees(command: int) -> bool:
 def make(
     command: int, frame: int, values: tuple[float, ...], autocontinue: int, where: str, current: int = 0
 ) -> MissionItem:
-    """An item of its seven parameters (places in degrees).
+    """An item of its seven parameters (locations in degrees).
 
     Raises:
         MissionFileError: says ``where``, which value, and what is allowed.
     """
     p1, p2, p3, p4, x, y, z = values
     if not (math.isfinite(x) and math.isfinite(y)):
-        raise MissionFileError(f"{where}: place {x}, {y} is not a pair of numbers")
+        raise MissionFileError(f"{where}: location {x}, {y} is not a pair of numbers")
     if command not in COMMANDS:
         known = ", ".join(f"{number} {c.name}" for number, c in COMMANDS.items())
         raise MissionFileError(f"{where}: command {command} is not known here; known are {known}")
     for k in range(7):
         if math.isfinite(values[k]) and abs(values[k]) > LARGEST:
-            if k in (4, 5) and COMMANDS[command].has_place:
+            if k in (4, 5) and COMMANDS[command].has_location:
                 raise MissionFileError(
                     f"{where}: {_reason(MavMissionResult.INVALID_PARAM1 + k, command, frame, values)}"
                 )
@@ -198,7 +198,7 @@ def make(
         raise MissionFileError(f"{where}: parameter {k} is {values[k - 1]}: a whole number is needed{_of(command)}")
     item = MissionItem(command, frame, p1, p2, p3, p4, round(x * scale), round(y * scale), z, autocontinue, current)
     result = validate.check(item, COMMANDS)
-    if result == MavMissionResult.ACCEPTED and not COMMANDS[command].has_place:
+    if result == MavMissionResult.ACCEPTED and not COMMANDS[command].has_location:
         result = _numbers(item)
     if result != MavMissionResult.ACCEPTED:
         raise MissionFileError(f"{where}: {_reason(result, command, frame, values)}")
@@ -206,7 +206,7 @@ def make(
 
 
 def _numbers(item: MissionItem) -> int:
-    """Result for parameters 5 to 7 where no place stands: files have numbers there that MAVLink carries."""
+    """Result for parameters 5 to 7 where no location stands: files have numbers there that MAVLink carries."""
     if abs(item.x) > INT32_MAX:
         return MavMissionResult.INVALID_PARAM5_X
     if abs(item.y) > INT32_MAX:
@@ -222,14 +222,14 @@ def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) ->
     """Reason for the refusal of an item, in words."""
     of = _of(command)
     if result == MavMissionResult.UNSUPPORTED_FRAME:
-        known = ", ".join(f"{number} {FRAME_NAMES[number]}" for number in PLACE_FRAMES)
-        return f"frame {frame} is not known for places; known are {known}{of}"
+        known = ", ".join(f"{number} {FRAME_NAMES[number]}" for number in LOCATION_FRAMES)
+        return f"frame {frame} is not known for locations; known are {known}{of}"
     if result == MavMissionResult.ERROR:
         said = "item 0 is home" if int(values[0]) == 0 else "items are numbered from 1, home is 0"
         return f"DO_JUMP to item {values[0]:g} cannot be flown: {said}{of}"
     k = result - MavMissionResult.INVALID_PARAM1
     value = values[k]
-    if not COMMANDS[command].has_place or k < 4:
+    if not COMMANDS[command].has_location or k < 4:
         if math.isfinite(value):
             limit = f"{INT32_MAX * (1e-7 if has_degrees(command) else 1.0):.10g}"
             return f"parameter {k + 1} is {value}: it is within +-{limit}, which MAVLink carries{of}"
@@ -241,19 +241,19 @@ def _reason(result: int, command: int, frame: int, values: tuple[float, ...]) ->
     return f"altitude {value} is not a number of metres within +-{HIGHEST:g}{of}"
 
 
-def degrees(item: MissionItem) -> Place:
-    """Place of an item [deg]."""
+def degrees(item: MissionItem) -> Location:
+    """Location of an item [deg]."""
     return (round(item.x * 1e-7, 8), round(item.y * 1e-7, 8))
 
 
 def numbers(item: MissionItem) -> tuple[float, ...]:
-    """The seven parameters of an item, places in degrees."""
+    """The seven parameters of an item, locations in degrees."""
     x, y = degrees(item) if has_degrees(item.command) else (item.x, item.y)
     return (item.p1, item.p2, item.p3, item.p4, x, y, item.z)
 
 
 def _at(
-    command: int, place: Place, p1: float = 0.0, z: float = 0.0, frame: int = MavFrame.GLOBAL_RELATIVE_ALT
+    command: int, location: Location, p1: float = 0.0, z: float = 0.0, frame: int = MavFrame.GLOBAL_RELATIVE_ALT
 ) -> MissionItem:
-    lat, lon = place
+    lat, lon = location
     return MissionItem(command, frame, float(p1), x=round(lat * 1e7), y=round(lon * 1e7), z=z)

@@ -83,7 +83,7 @@ class Node:
             raise self.fail(f"expected a list of {count} numbers, found {shown(self.value)}")
         return tuple(math.nan if item.value is None else item.number() for item in self)
 
-    def place(self) -> tuple[float, float]:
+    def location(self) -> tuple[float, float]:
         """[latitude, longitude] in degrees; a third number (altitude) is passed over."""
         if not isinstance(self.value, list) or len(self.value) not in (2, 3):
             raise self.fail(f"expected [latitude, longitude], found {shown(self.value)}")

@@ -24,7 +24,7 @@ from sitl.core.mavlink import MavCmd, MavFrame
 
 from .document import FencePolygon, MissionFile, MissionFileError, make
 from .json_reader import shown
-from .plane import Place
+from .plane import Location
 
 LARGEST, LARGEST_TEXT = 16 * 1024 * 1024, 1024 * 1024
 """Of a document, unpacked, and of the text of one element [bytes]."""
@@ -45,7 +45,7 @@ class Shape:
     line: int
     """Where it begins."""
     mode: str = "clampToGround"
-    places: list[tuple[float, float, float]] = field(default_factory=list)
+    locations: list[tuple[float, float, float]] = field(default_factory=list)
     """Latitude, longitude [deg], height [m]."""
     is_hole: bool = False
 
@@ -129,13 +129,13 @@ class Reader:
             if shape is None:
                 self.points += 1
             else:
-                shape.places += [self._place(word.split(","), "longitude,latitude") for word in text.split()]
+                shape.locations += [self._location(word.split(","), "longitude,latitude") for word in text.split()]
         elif tag == "coord" and shape is not None:
-            shape.places.append(self._place(text.split(), "longitude latitude"))
+            shape.locations.append(self._location(text.split(), "longitude latitude"))
         elif tag in LINES or tag == RING:
             self._shape = None
 
-    def _place(self, words: list[str], form: str) -> tuple[float, float, float]:
+    def _location(self, words: list[str], form: str) -> tuple[float, float, float]:
         try:
             lon, lat, height = map(float, (*words, "0")[: max(len(words), 3)])
         except ValueError:
@@ -160,12 +160,12 @@ def parse(data: bytes, name: str = "mission", altitude: float | None = None) -> 
     reader = Reader(name)
     reader.read(data)
     polygons = tuple(_polygon(ring, name) for ring in reader.rings)
-    paths = [line for line in reader.lines if line.places]
+    paths = [line for line in reader.lines if line.locations]
     if len(paths) > 1:
         named = ", ".join(f"{shown(path.name)} (line {path.line})" for path in paths[:8])
         raise MissionFileError(f"{name}: {len(paths)} paths ({named}); a mission is one: save it as a file of its own")
     if not paths and not polygons:
-        raise MissionFileError(f"{name}: no path (LineString, gx:Track) and no polygon; {reader.points} single places")
+        raise MissionFileError(f"{name}: no path (LineString, gx:Track) and no polygon; {reader.points} single points")
     mission = Mission.of(_items(paths[0], name, altitude)) if paths else Mission()
     said = "heights are above the sea; the file does not say how high the ground is (--home LAT,LON,ALT,HEADING)"
     over_sea = any(item.frame == MavFrame.GLOBAL for item in mission.items[1:])
@@ -175,8 +175,8 @@ def parse(data: bytes, name: str = "mission", altitude: float | None = None) -> 
 def _items(path: Shape, name: str, altitude: float | None) -> list[MissionItem]:
     """The path as waypoints, home where it begins."""
     where = f"{name}:{path.line}"
-    if len(path.places) >= MAX_ITEMS - 2:
-        raise MissionFileError(f"{where}: a path of {len(path.places)} places; a mission holds {MAX_ITEMS} items")
+    if len(path.locations) >= MAX_ITEMS - 2:
+        raise MissionFileError(f"{where}: a path of {len(path.locations)} locations; a mission holds {MAX_ITEMS} items")
     frame = FRAMES.get(path.mode)
     if altitude is None and frame is None:
         raise MissionFileError(
@@ -185,16 +185,16 @@ def _items(path: Shape, name: str, altitude: float | None) -> list[MissionItem]:
         )
     if altitude is not None or frame is None:
         frame = MavFrame.GLOBAL_RELATIVE_ALT
-    lat, lon, _ = path.places[0]
+    lat, lon, _ = path.locations[0]
     items = [home_item(round(lat * 1e7), round(lon * 1e7), 0.0)]
-    for lat, lon, height in path.places:
+    for lat, lon, height in path.locations:
         height = height if altitude is None else altitude
         items.append(make(MavCmd.NAV_WAYPOINT, frame, (0.0, 0.0, 0.0, 0.0, lat, lon, height), 1, where))
     return items
 
 
 def _polygon(ring: Shape, name: str) -> FencePolygon:
-    corners: list[Place] = [place[:2] for place in ring.places]
+    corners: list[Location] = [location[:2] for location in ring.locations]
     if len(corners) > 1 and corners[0] == corners[-1]:
         corners.pop()
     if len(corners) < 3:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fences and rally points as lists of places: "QGC WPL" items of them, ``.fen``, ``.poly`` and ``RALLY`` lines.
+"""Fences and rally points as lists of locations: "QGC WPL" items of them, ``.fen``, ``.poly`` and ``RALLY`` lines.
 
 As in pymavlink's loaders (``mavwp.MissionItemProtocol_Fence``, ``MissionItemProtocol_Rally``); ``.poly`` as Mission
 Planner and MAVProxy write it.
@@ -15,7 +15,7 @@ from sitl.autopilot.mission.mission import Mission
 from sitl.core.mavlink import MavCmd, MavFrame
 
 from .document import FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint, degrees
-from .plane import Place
+from .plane import Location
 
 RALLY_WORD = "RALLY"
 RALLY_COLUMNS = 7
@@ -35,11 +35,13 @@ def of_fence(items: list[MissionItem], lines: list[str]) -> MissionFile:
     k = 0
     while k < len(items):
         item = items[k]
-        place = degrees(item)
+        location = degrees(item)
         if item.command == MavCmd.NAV_FENCE_RETURN_POINT:
-            back = (*place, item.z)
+            back = (*location, item.z)
         elif item.command in (MavCmd.NAV_FENCE_CIRCLE_INCLUSION, MavCmd.NAV_FENCE_CIRCLE_EXCLUSION):
-            circles.append(FenceCircle(place, item.p1, item.command == MavCmd.NAV_FENCE_CIRCLE_INCLUSION, item.frame))
+            circles.append(
+                FenceCircle(location, item.p1, item.command == MavCmd.NAV_FENCE_CIRCLE_INCLUSION, item.frame)
+            )
         else:
             count = int(item.p1)
             corners = [i for i in items[k : k + max(count, 1)] if (i.command, i.p1) == (item.command, item.p1)]
@@ -64,25 +66,26 @@ def of_rally(items: list[MissionItem], lines: list[str]) -> MissionFile:
 
 
 def parse_fence(text: str, name: str) -> MissionFile:
-    """A ``.fen``: the place to return to, then the corners of a polygon to stay in, the first of them once more.
+    """A ``.fen``: the location to return to, then the corners of a polygon to stay in, the first of them once more.
 
     Raises:
         MissionFileError: names the line.
     """
-    places = _places(text, name)
-    if len(places) < FEWEST + 2:
+    locations = _locations(text, name)
+    if len(locations) < FEWEST + 2:
         raise MissionFileError(
-            f"{name}: {len(places)} lines; a fence has a place to return to, {FEWEST} or more corners, and the first "
-            "corner once more (a bare polygon is read from a .poly)"
+            f"{name}: {len(locations)} lines; a fence has a location to return to, {FEWEST} or more corners, and the "
+            "first corner once more (a bare polygon is read from a .poly)"
         )
-    (back, _), (first, _), (last, where) = places[0], places[1], places[-1]
+    (back, _), (first, _), (last, where) = locations[0], locations[1], locations[-1]
     if last != first:
         closes = "line 1" if last == back else "no other"
         raise MissionFileError(
-            f"{where}: the last place is that of {closes}: line 1 is where to return to, and the last place closes the "
-            "polygon that begins behind it. Put a place to return to first, or name the file .poly, a bare polygon"
+            f"{where}: the last location is that of {closes}: line 1 is where to return to, and the last location "
+            "closes the polygon that begins behind it. Put a location to return to first, or name the "
+            "file .poly, a bare polygon"
         )
-    corners = tuple(place for place, _ in places[1:-1])
+    corners = tuple(location for location, _ in locations[1:-1])
     return MissionFile(
         Mission(), name, polygons=(FencePolygon(corners, frame=MavFrame.GLOBAL),), breach_return=(*back, 0.0)
     )
@@ -94,12 +97,12 @@ def parse_polygon(text: str, name: str) -> MissionFile:
     Raises:
         MissionFileError: names the line.
     """
-    places = _places(text, name)
-    if len(places) > 1 and places[-1][0] == places[0][0]:
-        places.pop()
-    if len(places) < FEWEST:
-        raise MissionFileError(f"{name}: {len(places)} corners; a polygon has {FEWEST} or more")
-    return MissionFile(Mission(), name, polygons=(FencePolygon(tuple(place for place, _ in places)),))
+    locations = _locations(text, name)
+    if len(locations) > 1 and locations[-1][0] == locations[0][0]:
+        locations.pop()
+    if len(locations) < FEWEST:
+        raise MissionFileError(f"{name}: {len(locations)} corners; a polygon has {FEWEST} or more")
+    return MissionFile(Mission(), name, polygons=(FencePolygon(tuple(location for location, _ in locations)),))
 
 
 def parse_rally(text: str, name: str) -> MissionFile:
@@ -117,7 +120,7 @@ def parse_rally(text: str, name: str) -> MissionFile:
                 "altitude, break altitude, direction, flags"
             )
         values = [_number(word, where) for word in words[1:]]
-        points.append(RallyPoint(_place(values[0], values[1], where), values[2]))
+        points.append(RallyPoint(_location(values[0], values[1], where), values[2]))
         planes = planes or values[3] != 0.0 or values[4] != 0.0
     said = "break altitudes and directions of rally points are for planes and left out"
     return MissionFile(Mission(), name, rally=tuple(points), notes=(said,) if planes else ())
@@ -131,17 +134,17 @@ def _rows(text: str, name: str) -> Iterator[tuple[str, list[str]]]:
             yield f"{name}:{number}", words
 
 
-def _places(text: str, name: str) -> list[tuple[Place, str]]:
+def _locations(text: str, name: str) -> list[tuple[Location, str]]:
     """Lines of latitude and longitude [deg], and where each is."""
     found = []
     for where, words in _rows(text, name):
         if len(words) != 2:
             raise MissionFileError(f"{where}: {' '.join(words)[:60]!r} is not a latitude and a longitude")
-        found.append((_place(_number(words[0], where), _number(words[1], where), where), where))
+        found.append((_location(_number(words[0], where), _number(words[1], where), where), where))
     return found
 
 
-def _place(lat: float, lon: float, where: str) -> Place:
+def _location(lat: float, lon: float, where: str) -> Location:
     if not -90.0 <= lat <= 90.0:
         raise MissionFileError(f"{where}: latitude {lat} is not within -90 .. 90 degrees")
     if not -180.0 <= lon <= 180.0:

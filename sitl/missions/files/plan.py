@@ -142,11 +142,11 @@ def plan_simple(entry: Node) -> MissionItem:
 
 def _circle(entry: Node) -> FenceCircle:
     circle = entry["circle"]
-    return FenceCircle(circle["center"].place(), circle["radius"].number(0.0, FARTHEST), _included(entry))
+    return FenceCircle(circle["center"].location(), circle["radius"].number(0.0, FARTHEST), _included(entry))
 
 
 def _polygon(entry: Node) -> FencePolygon:
-    corners = tuple(corner.place() for corner in entry["polygon"])
+    corners = tuple(corner.location() for corner in entry["polygon"])
     if len(corners) < 3:
         raise entry["polygon"].fail(f"{len(corners)} corners; a polygon has three or more")
     return FencePolygon(corners, _included(entry))
@@ -161,7 +161,7 @@ def _point(entry: Node) -> tuple[float, float, float]:
     if not isinstance(entry.value, list) or len(entry.value) != 3:
         raise entry.fail("expected [latitude, longitude, height]")
     height = list(entry)[2]
-    return (*entry.place(), height.number(-FARTHEST, FARTHEST))
+    return (*entry.location(), height.number(-FARTHEST, FARTHEST))
 
 
 CRUISE_SPEED, HOVER_SPEED = 10.0, 5.0
@@ -225,7 +225,7 @@ def plan_writer_simple(seq: int, item: MissionItem) -> dict[str, Any]:
         "params": [None if math.isnan(v) else v for v in numbers(item)],
         "type": "SimpleItem",
     }
-    if item.command not in COMMANDS or COMMANDS[item.command].has_place:
+    if item.command not in COMMANDS or COMMANDS[item.command].has_location:
         mode = _MODES.get(item.frame, ABSOLUTE_MODE)
         entry = {"AMSLAltAboveTerrain": None, "Altitude": item.z, "AltitudeMode": mode, **entry}
     return entry

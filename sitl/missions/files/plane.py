@@ -8,7 +8,7 @@ import math
 from sitl.core.elementary import hypot
 from sitl.core.geodesy import add_offset, offset_ne
 
-Place = tuple[float, float]
+Location = tuple[float, float]
 """Latitude, longitude [deg]."""
 Point = tuple[float, float]
 """North, east [m]."""
@@ -17,15 +17,15 @@ Point = tuple[float, float]
 class Plane:
     """Flat earth around an origin, as the vehicle's own navigation has it."""
 
-    def __init__(self, origin: Place) -> None:
+    def __init__(self, origin: Location) -> None:
         self._lat, self._lon = origin[0] * 1e7, origin[1] * 1e7
 
-    def point(self, place: Place) -> Point:
-        """Metres of a place."""
-        north, east = offset_ne(self._lat, self._lon, place[0] * 1e7, place[1] * 1e7)
+    def point(self, location: Location) -> Point:
+        """Metres of a location."""
+        north, east = offset_ne(self._lat, self._lon, location[0] * 1e7, location[1] * 1e7)
         return (float(north), float(east))
 
-    def place(self, point: Point) -> Place:
+    def location(self, point: Point) -> Location:
         """Degrees of a point."""
         lat, lon = add_offset(self._lat, self._lon, point[0], point[1])
         return (float(lat) * 1e-7, float(lon) * 1e-7)

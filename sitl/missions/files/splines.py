@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Spline waypoints as waypoints, for vehicles that have no NAV_SPLINE_WAYPOINT (rovers).
 
-The curve from one place to the next is a cubic Hermite spline. At a spline waypoint it goes in the direction from the
-place before to the place after; where it meets a straight leg it goes along that leg; at its very ends straight on.
+The curve from one location to the next is a cubic Hermite spline. At a spline waypoint it goes in the direction from
+the location before to the location after; where it meets a straight leg it goes along that leg; at its very ends
+straight on.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from .plane import Plane
 PIECE = 5.0
 """A curve is cut into pieces of about this length [m], at least two; shorter ones make the vehicle slow."""
 PIECES_MAX = 24
-_PLACES = (MavCmd.NAV_WAYPOINT, MavCmd.NAV_SPLINE_WAYPOINT, MavCmd.NAV_LOITER_TIME, MavCmd.NAV_LOITER_UNLIM)
+_LOCATED = (MavCmd.NAV_WAYPOINT, MavCmd.NAV_SPLINE_WAYPOINT, MavCmd.NAV_LOITER_TIME, MavCmd.NAV_LOITER_UNLIM)
 
 Point = tuple[float, float, float]
 
@@ -30,7 +31,7 @@ def straightened(file: MissionFile) -> MissionFile:
     """The mission with waypoints along its curves; jumps keep their targets.
 
     Raises:
-        MissionFileError: a spline waypoint without a place, or more items than a mission holds.
+        MissionFileError: a spline waypoint without a location, or more items than a mission holds.
     """
     items = file.mission.items
     if not any(item.command == MavCmd.NAV_SPLINE_WAYPOINT for item in items):
@@ -43,10 +44,10 @@ def straightened(file: MissionFile) -> MissionFile:
         if item.command != MavCmd.NAV_SPLINE_WAYPOINT:
             new.append(item)
             continue
-        if item.no_place:
+        if item.no_location:
             raise MissionFileError(f"{file.name}: item {seq}: a spline waypoint needs a latitude and a longitude")
         for point in _curve(items, seq, plane)[:-1]:
-            lat, lon = plane.place(point[:2])
+            lat, lon = plane.location(point[:2])
             new.append(
                 MissionItem(
                     MavCmd.NAV_WAYPOINT, item.frame, p4=item.p4, x=round(lat * 1e7), y=round(lon * 1e7), z=point[2]
@@ -63,10 +64,10 @@ def straightened(file: MissionFile) -> MissionFile:
 
 
 def _curve(items: tuple[MissionItem, ...], seq: int, plane: Plane) -> list[Point]:
-    """Points on the way to a spline waypoint, its own place last."""
+    """Points on the way to a spline waypoint, its own location last."""
     end = _point(items[seq], plane)
     start = _neighbour(items, seq, -1, plane)
-    if start is None:  # its first place: straight there
+    if start is None:  # its first location: straight there
         return [end]
     chord = separation(start, end)
     before, after = _start_direction(items, seq, plane), _end_direction(items, seq, start, plane)
@@ -98,11 +99,11 @@ def _end_direction(items: tuple[MissionItem, ...], seq: int, start: Point, plane
 
 
 def _beside(items: tuple[MissionItem, ...], seq: int, step: int) -> int | None:
-    """The next item with a place of its own in the list, in one direction; another navigation command ends it."""
+    """The next item with a location of its own in the list, in one direction; another navigation command ends it."""
     k = seq + step
     while 0 < k < len(items):
         if items[k].is_nav:
-            return k if items[k].command in _PLACES and not items[k].no_place else None
+            return k if items[k].command in _LOCATED and not items[k].no_location else None
         k += step
     return None
 

@@ -44,7 +44,7 @@ def parse(text: str, name: str = "mission") -> MissionFile:
         raise MissionFileError(f"{name}:1: {_header_refusal(header)}")
     columns = COLUMNS if header == HEADER else OLD_COLUMNS
     items: list[MissionItem] = []
-    places: list[str] = []
+    sources: list[str] = []
     first = 0
     for number, line in enumerate(lines[1:], start=2):
         words = line.split()
@@ -64,18 +64,18 @@ def parse(text: str, name: str = "mission") -> MissionFile:
             command = MavCmd.NAV_WAYPOINT if command == index == 0 else command
         values = tuple(_number(cells[k], f"{where}: {k}") for k in COLUMNS[4:11])
         items.append(make(command, frame, values, autocontinue, where, current))
-        places.append(where)
-    return _file(items, places, first, name)
+        sources.append(where)
+    return _file(items, sources, first, name)
 
 
-def _file(items: list[MissionItem], places: list[str], first: int, name: str) -> MissionFile:
+def _file(items: list[MissionItem], sources: list[str], first: int, name: str) -> MissionFile:
     """What the items are: a mission, a fence, or rally points. Mission Planner puts home before the latter two."""
     listed = items[1:] if len(items) > 1 and items[0].command == MavCmd.NAV_WAYPOINT else items
-    lines = places[len(places) - len(listed) :]
+    lines = sources[len(sources) - len(listed) :]
     for kinds, read in ((FENCE_COMMANDS, of_fence), ((MavCmd.NAV_RALLY_POINT,), of_rally)):
         if listed and all(item.command in kinds for item in listed):
             return replace(read(listed, lines), name=name)
-    for item, where in zip(items, places, strict=True):
+    for item, where in zip(items, sources, strict=True):
         if item.command in (*FENCE_COMMANDS, MavCmd.NAV_RALLY_POINT):
             raise MissionFileError(
                 f"{where}: command {item.command} is of a fence or of rally points, the others are of a mission: "

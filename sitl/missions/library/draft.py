@@ -20,10 +20,10 @@ from ..files.document import Complex
 from ..files.json_reader import Node
 
 LAT, LON, ALT, _ = DEFAULT_HOME
-Place = tuple[float, float]
+Location = tuple[float, float]
 
 
-def degrees(north: float, east: float) -> Place:
+def degrees(north: float, east: float) -> Location:
     """Latitude, longitude [deg] of a position north, east of home [m]."""
     lat, lon = add_offset(round(LAT * 1e7), round(LON * 1e7), north, east)
     return (round(lat) * 1e-7, round(lon) * 1e-7)
@@ -51,7 +51,7 @@ class Draft:
         self,
         command: int,
         *params: float,
-        at: Place | None = None,
+        at: Location | None = None,
         z: float = 0.0,
         frame: int = MavFrame.GLOBAL_RELATIVE_ALT,
     ) -> Draft:
@@ -66,22 +66,30 @@ class Draft:
         return self.add(MavCmd.NAV_TAKEOFF, z=height)
 
     def to(
-        self, *places: tuple[float, ...], z: float = 0.0, wait: float = 0.0, frame: int = MavFrame.GLOBAL_RELATIVE_ALT
+        self,
+        *points: tuple[float, ...],
+        z: float = 0.0,
+        wait: float = 0.0,
+        frame: int = MavFrame.GLOBAL_RELATIVE_ALT,
     ) -> Draft:
         """Waypoints (north, east[, height above home]) [m]."""
-        for place in places:
+        for point in points:
             self.add(
-                MavCmd.NAV_WAYPOINT, wait, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z, frame=frame
+                MavCmd.NAV_WAYPOINT,
+                wait,
+                at=(point[0], point[1]),
+                z=point[2] if len(point) > 2 else z,
+                frame=frame,
             )
         return self
 
-    def curve(self, *places: tuple[float, ...], z: float = 0.0) -> Draft:
+    def curve(self, *points: tuple[float, ...], z: float = 0.0) -> Draft:
         """Spline waypoints (north, east[, height above home]) [m]."""
-        for place in places:
-            self.add(MavCmd.NAV_SPLINE_WAYPOINT, at=(place[0], place[1]), z=place[2] if len(place) > 2 else z)
+        for point in points:
+            self.add(MavCmd.NAV_SPLINE_WAYPOINT, at=(point[0], point[1]), z=point[2] if len(point) > 2 else z)
         return self
 
-    def land(self, at: Place | None = None) -> Draft:
+    def land(self, at: Location | None = None) -> Draft:
         """Land at north, east [m]; None: at the current position."""
         return self.add(MavCmd.NAV_LAND, at=at)
 
@@ -145,7 +153,7 @@ def transects(spacing: float, height: float, turnaround: float = 0.0) -> dict[st
     }
 
 
-def survey(corners: list[Place], angle: float, style: dict[str, Any], entry: int = 0) -> dict[str, Any]:
+def survey(corners: list[Location], angle: float, style: dict[str, Any], entry: int = 0) -> dict[str, Any]:
     """A survey of a polygon with corners north, east of home [m]."""
     return {
         "TransectStyleComplexItem": style,
@@ -159,7 +167,7 @@ def survey(corners: list[Place], angle: float, style: dict[str, Any], entry: int
     }
 
 
-def circle(centre: Place, radius: float, count: int, start_deg: float = 0.0) -> list[Place]:
+def circle(centre: Location, radius: float, count: int, start_deg: float = 0.0) -> list[Location]:
     """Positions on a circle, clockwise from a direction; north, east of home [m]."""
     turns = [math.radians(start_deg + 360.0 * k / count) for k in range(count)]
     return [(centre[0] + radius * cos(a), centre[1] + radius * sin(a)) for a in turns]

@@ -35,7 +35,7 @@ OK, DIFFERS, NO_GOLDEN, FAILED = "ok", "DIFFERS", "NO GOLDEN", "ERROR"
 KEPT, WRITTEN, REPLACED = "kept", "written", "replaced"
 """What was done with golden, when it may be updated."""
 SHOWN = ("position.max", "cross_track.max", "altitude.max", "delay.max", "energy.max")
-"""Figures of the table."""
+"""Metrics of the table."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Result:
     """Simulated time [s]."""
     wall: float = 0.0
     """Wall time [s]."""
-    figures: dict[str, float] = field(default_factory=dict)
+    metrics: dict[str, float] = field(default_factory=dict)
     """``SHOWN`` -> value in its own unit."""
     recording: str = ""
     """Path of the flight's recording, if it was kept."""
@@ -123,8 +123,8 @@ def _judged(
     note = "" if outcome.completed else f"mission not completed: {outcome.reason}"
 
     def result(status: str, words: str = "", comparison: Comparison | None = None) -> Result:
-        figures = {figure.name: figure.value for figure in comparison.figures} if comparison else {}
-        shown = {name: figures[name] for name in SHOWN if name in figures}
+        metrics = {metric.name: metric.value for metric in comparison.metrics} if comparison else {}
+        shown = {name: metrics[name] for name in SHOWN if name in metrics}
         kept = written = ""
         if reports is not None and status in (DIFFERS, NO_GOLDEN):
             folder = Path(reports) / case.name

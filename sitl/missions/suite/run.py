@@ -103,7 +103,7 @@ def head(width: int) -> str:
 
 def line(result: Result, width: int) -> str:
     """Line of a result, with the differences below it."""
-    values = [f"{value:{len(name)}.2f}" for value, name in zip(result.figures.values(), _HEADS, strict=False)]
+    values = [f"{value:{len(name)}.2f}" for value, name in zip(result.metrics.values(), _HEADS, strict=False)]
     values += [" " * len(name) for name in _HEADS[len(values) :]]
     found = f"{result.name:{width}}  {result.status:9}  " + "  ".join(values)
     found += f"  {result.simulated:9.1f}  {result.wall:8.2f}"
@@ -153,7 +153,7 @@ def _page(folder: Path, suite: str, results: Sequence[Result]) -> str:
             name = (
                 f'<a href="{escape(Path(result.report).resolve().relative_to(folder.resolve()).as_posix())}">{name}</a>'
             )
-        values = [f'<td class="n">{value:.2f}</td>' for value in result.figures.values()]
+        values = [f'<td class="n">{value:.2f}</td>' for value in result.metrics.values()]
         values += ["<td></td>"] * (len(_HEADS) - len(values))
         rows.append(
             f'<tr class="{"" if result.ok else "bad"}"><td class="mark">{"&#10003;" if result.ok else "&#10007;"}</td>'

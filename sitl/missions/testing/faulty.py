@@ -113,8 +113,8 @@ class Faulty(Forking):
         share = next((number for number in (thrust, speed, amount) if number is not None), None)
         failures = [Failure(unit, type, instance if motor is None else motor, share, at, until)]
         if unit == WIND:
-            figures = {"SIM_WIND_DIR": direction or 0.0, "SIM_WIND_TURB": turbulence or 0.0}
-            failures += [Failure(name, amount=value, begin=at, end=until) for name, value in figures.items()]
+            parameters = {"SIM_WIND_DIR": direction or 0.0, "SIM_WIND_TURB": turbulence or 0.0}
+            failures += [Failure(name, amount=value, begin=at, end=until) for name, value in parameters.items()]
         assert self.connection.kind is not None
         table = self.connection.kind.firmware.table
         texts = [str(failure.checked(table)) for failure in failures]

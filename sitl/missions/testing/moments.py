@@ -119,7 +119,7 @@ class Forking(client.Client):
         if connection.simulation is not None:
             self.script = connection.endpoint.link = Script(connection.simulation, connection.endpoint.link)
         else:
-            rates = {**RATES_HZ, "MISSION_CURRENT": 10}  # ours tells it without being asked
+            rates = {**RATES_HZ, "MISSION_CURRENT": 10}  # ours reports it without being asked
         super().__init__(connection, name=name, rates=rates)
 
     @property

@@ -37,7 +37,7 @@ PATIENCE_S = 30.0
 WIND = ("SIM_WIND_SPD", "SIM_WIND_DIR", "SIM_WIND_TURB")
 _cores: dict[str, Core] = {}
 compiling: Progress | None = None
-"""Is told when the core of a kind of vehicle must be compiled first."""
+"""Called when the core of a kind of vehicle must be compiled first."""
 
 
 @dataclass(frozen=True)
@@ -155,10 +155,10 @@ def setup(
     params = files.given(params)
     values = values | params
     if wind is not None:
-        figures = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
-        if not 1 <= len(figures) <= 3 or not all(map(math.isfinite, figures)):
+        given = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
+        if not 1 <= len(given) <= 3 or not all(map(math.isfinite, given)):
             raise OptionError(f"wind {wind!r} is neither a speed nor (speed, direction, turbulence)")
-        values.update(zip(WIND, figures))
+        values.update(zip(WIND, given))
     if frame is None:
         frame = KINDS[kind or DEFAULT].default_frame
     elif not isinstance(frame, Airframe):
@@ -175,11 +175,11 @@ def setup(
                 raise files.ParameterError(files.unknown(vehicles.load(frame).kind, strange, table))
             files.check(table, params)
         files.report(table, values)
-    place = tuple(float(x) for x in home) if home is not None else None
-    if place is not None and len(place) != 4:
+    location = tuple(float(x) for x in home) if home is not None else None
+    if location is not None and len(location) != 4:
         raise OptionError(f"home {home!r} is not (latitude, longitude, altitude, heading)")
     return Setup(
-        frame, place, defaults.seed if seed is None else seed, estimator, tuple(sorted(values.items())), world,
+        frame, location, defaults.seed if seed is None else seed, estimator, tuple(sorted(values.items())), world,
         tuple(start) if isinstance(start, list) else start, physics or defaults.physics,
         autopilot or defaults.autopilot, bool(values.sources),
     )  # type: ignore[arg-type]  # fmt: skip

@@ -22,11 +22,11 @@ def assert_twin(log: str | Path, limits: Mapping[str, float], *, frame: str | Ai
         options: as for ``sitl.missions.twin.twin.fly``: flight, seed, wind, change ...
 
     Returns:
-        The twin with all figures.
+        The twin with all metrics.
 
     Raises:
-        AssertionError: a figure is beyond its limit; all such are named, and where model or autopilot differ.
-        OptionError: a limit is of no figure of this flight; there are no limits.
+        AssertionError: a metric is beyond its limit; all such are named, and where model or autopilot differ.
+        OptionError: a limit is of no metric of this flight; there are no limits.
         sitl.missions.twin.flight_log.TwinError, sitl.logs.tlog.LogError: the log has no flight that can be flown again.
     """
     __tracebackhide__ = True
@@ -37,7 +37,7 @@ def assert_twin(log: str | Path, limits: Mapping[str, float], *, frame: str | Ai
     if not limits:
         raise OptionError("assert_twin without limits tests nothing: {'height.rms': 0.5}")
     found = twin.fly(log, frame, **options)
-    beyond = [verdict.words for verdict in judging.judge(found.figures(), limits) if not verdict.ok]
+    beyond = [verdict.words for verdict in judging.judge(found.metrics(), limits) if not verdict.ok]
     if beyond:
         raise AssertionError(
             "\n".join([f"the twin of {log} does not fly like the log:", *(f"  {text}" for text in beyond),

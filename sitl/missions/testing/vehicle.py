@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from typing import Any
 
-from sitl.client import Position as Place
 from sitl.client import Text, px4
 from sitl.client.controls import check_finite
 
@@ -17,11 +16,11 @@ from .missions import MissionFlier
 
 __tracebackhide__ = True
 
-__all__ = ["Copter", "Place", "Rover", "Text", "Vehicle"]
+__all__ = ["Copter", "Rover", "Text", "Vehicle"]
 
 
 class Vehicle(Golden, MissionFlier, Faulty):
-    """What a test does with a vehicle. Times are simulated seconds, places metres from home, heights above home.
+    """What a test does with a vehicle. Times are simulated seconds, positions metres from home, heights above home.
 
     Whatever is awaited in vain raises an AssertionError that says what was seen last, when, and what the vehicle said.
     """
@@ -46,12 +45,12 @@ class Vehicle(Golden, MissionFlier, Faulty):
         """``wait`` for a condition without an argument; ``timeout`` and ``hold`` in simulated seconds."""
         self.wait(lambda _: condition(), timeout, what, last, hold)
 
-    # ------------------------------------------------------------------ places, whose altitude is called height here
+    # ------------------------------------------------------------------ positions, whose altitude is called height here
 
     def set_position(  # type: ignore[override]
         self, north: float, east: float, height: float | None = None, yaw: float | None = None
     ) -> None:
-        """In GUIDED: go to a place from home [m], at a height above home (None: its present one) and a yaw [deg]."""
+        """In GUIDED: go to a position from home [m], at a height above home (None: its present one) and a yaw [deg]."""
         check_finite(height=height)
         super().set_position(north, east, height, yaw)
 
@@ -64,7 +63,7 @@ class Vehicle(Golden, MissionFlier, Faulty):
         timeout: float = 120.0,
         hold: float = 0.0,
     ) -> None:
-        """Until it is at a place from home [m], along the ground and in height each within ``accuracy``."""
+        """Until it is at a position from home [m], along the ground and in height each within ``accuracy``."""
         super().wait_location(north, east, height, accuracy, timeout, hold)
 
     def fly_to(

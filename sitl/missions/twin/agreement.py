@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of agreement of two flights: root mean square of the difference, and variance accounted for."""
+"""Metrics of agreement of two flights: root mean square of the difference, and variance accounted for."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def compare(
         first = np.array([np.argmax(member == k) for k in range(len(windows))])
         difference = difference - difference[first[member]]
         here = logged + difference
-    return _figures(quantity, time, logged, here, difference, member if each else np.zeros(len(time), int))
+    return _metrics(quantity, time, logged, here, difference, member if each else np.zeros(len(time), int))
 
 
 def _members(time: Array, windows: Sequence[Window], now: Stream) -> Array:
@@ -103,7 +103,7 @@ def _at(stream: Stream, time: Array) -> Array:
     return np.stack([np.interp(time, stream.time, column) for column in stream.values.T], 1)
 
 
-def _figures(q: Quantity, time: Array, logged: Array, here: Array, difference: Array, member: Array) -> Agreement:
+def _metrics(q: Quantity, time: Array, logged: Array, here: Array, difference: Array, member: Array) -> Agreement:
     squares = difference * difference
     size = np.sqrt(squares.sum(1)) if q.is_vector else np.abs(difference).max(1)
     rms = math.sqrt(float(squares.sum(1).mean() if q.is_vector else squares.mean()))
@@ -118,10 +118,10 @@ def _figures(q: Quantity, time: Array, logged: Array, here: Array, difference: A
 
 def _variance(values: Array, member: Array) -> float:
     """About the mean of each window, over all columns."""
-    _, place = np.unique(member, return_inverse=True)
-    count = np.bincount(place).astype(float)
+    _, index = np.unique(member, return_inverse=True)
+    count = np.bincount(index).astype(float)
     total = 0.0
     for column in values.T:
-        mean = np.bincount(place, column) / count
-        total += float(np.square(column - mean[place]).mean())
+        mean = np.bincount(index, column) / count
+        total += float(np.square(column - mean[index]).mean())
     return total / values.shape[1]

@@ -36,7 +36,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="exit code 1 when a figure is beyond it: height.rms=0.5, segments.roll_rate.vaf=80 (repeatable)",
+        help="exit code 1 when a metric is beyond it: height.rms=0.5, segments.roll_rate.vaf=80 (repeatable)",
     )
     what_if = parser.add_argument_group("what if: the twin is flown once more, with")
     what_if.add_argument(
@@ -47,7 +47,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_fail_option(what_if)  # type: ignore[arg-type]
     parser.add_argument("--report", type=Path, metavar="FILE.html", help="write a report: one file with all plots")
     parser.add_argument("--log-dir", type=Path, metavar="DIR", help="keep the twins' own logs (.bin) in this folder")
-    add_json_option(parser, "all figures, notes and findings")
+    add_json_option(parser, "all metrics, notes and findings")
     parser.set_defaults(function=run)
 
 
@@ -90,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
             options.log, options.frame, flight=options.flight, seed=options.seed, physics=options.physics,
             change=change, wind=options.logged_wind, segments=not options.no_segments, progress=progress, keep=keep,
         )  # fmt: skip
-    verdicts = limits.judge(found.figures(), wanted)
+    verdicts = limits.judge(found.metrics(), wanted)
     if options.report is not None:
         report.write(found, verdicts, options.report)
     ok = all(verdict.ok for verdict in verdicts)

@@ -58,7 +58,7 @@ _LEAST_SHARE = 0.5
 """A segment of which less is left is not flown: the twin is ahead of it."""
 
 
-class _Heard:
+class _Listener:
     """The vehicle's texts, with the moments at which it said them."""
 
     def __init__(self, simulation: Simulation) -> None:
@@ -76,7 +76,7 @@ class _Heard:
     def reached(self, seq: int) -> None:
         """No text."""
 
-    def commanded(self, fields: Any, frame: int, is_place: bool, sender: Any, result: int) -> None:
+    def commanded(self, fields: Any, frame: int, is_location: bool, sender: Any, result: int) -> None:
         """No text."""
 
 
@@ -144,9 +144,9 @@ class TwinFlight:
         self.opened: list[Window] = []
         """Open segments as they were flown: a twin that was late or early on its mission began them in step with it."""
         self._items = legs.begun_in(log) if segments is not None and not segments.driven else []
-        self._heard = _Heard(simulation)
+        self._listener = _Listener(simulation)
         self._armed_us = self._shift_us = 0
-        self._place = Vec3(0.0, 0.0, 0.0)
+        self._position = Vec3(0.0, 0.0, 0.0)
         self._state = LoggedState(log) if segments is not None else None
         self._logged = [(time, mode_name(log.kind, number)) for time, number, _ in inputs.modes]
 
@@ -158,7 +158,7 @@ class TwinFlight:
         """
         open_dataflash(self.simulation, self.path)
         if self._items:
-            self.simulation.bridge.listeners.append(self._heard)
+            self.simulation.bridge.listeners.append(self._listener)
         self.stand_by()
         self._arm()
         for time_us, act in self._timeline():
@@ -238,7 +238,7 @@ class TwinFlight:
         self._until(TICK_US)
         if not self.station.armed:
             raise TwinError(f"the twin of log {self.log.name!r} cannot be armed{self.station.why()}")
-        self._place = Vec3(*map(float, self.simulation.v.physics.body.pos))
+        self._position = Vec3(*map(float, self.simulation.v.physics.body.pos))
         for fault in self.change.faults:
             self.simulation.fail(fault)
 
@@ -388,7 +388,7 @@ class TwinFlight:
             self._fall_in_step(time)
             time = max(time, self._since_arming_s - 1e-6 * self._shift_us)
         if window.end - time > _LEAST_SHARE * (window.end - window.begin):
-            self._state.put(self.simulation, time, self._place, self.segments.driven)
+            self._state.put(self.simulation, time, self._position, self.segments.driven)
             self.opened.append(Window(time, window.end, 1e-6 * self._shift_us))
 
     @property
@@ -406,7 +406,7 @@ class TwinFlight:
         begins = {one.item: one.time for one in self._items}
         patience = self._since_arming_s + _PATIENCE_S
         while True:
-            texts = ((1e-6 * (at - self._armed_us), text) for at, text in self._heard.texts)
+            texts = ((1e-6 * (at - self._armed_us), text) for at, text in self._listener.texts)
             there = [one for one in legs.begun(texts) if one.item in begins]
             if there:
                 last = there[-1]

@@ -28,7 +28,7 @@ _NAMES = (
 """Messages that are read."""
 _LEAST_S = 3.0
 """A shorter time armed is no flight."""
-_LEAST_WAY_M = 1.0
+_LEAST_MOTION_M = 1.0
 """A vehicle that never came farther from where it was armed did not leave the ground, or did not drive."""
 
 
@@ -42,7 +42,7 @@ class Span(NamedTuple):
     armed: float
     disarmed: float
     is_whole: bool
-    """Whether the log tells of the disarming; else it ends before."""
+    """Whether the log shows the disarming; else it ends before."""
 
     @property
     def length(self) -> float:
@@ -155,10 +155,10 @@ class FlightLog:
             if self.has(name, "Lat", "Lng", "Alt"):
                 table = self.table(name, 0 if name == "GPS" else None)
                 time = self.since_arming(table)
-                place = tuple(self.at_arming(time, table[field]) for field in ("Lat", "Lng", "Alt"))
-                if all(map(math.isfinite, place)) and (place[0] or place[1]):
-                    return (place[0], place[1], place[2], self._heading())
-        raise TwinError(f"log {str(self.path)!r} tells no place (POS, AHR2, GPS): a twin needs one to begin at")
+                location = tuple(self.at_arming(time, table[field]) for field in ("Lat", "Lng", "Alt"))
+                if all(map(math.isfinite, location)) and (location[0] or location[1]):
+                    return (location[0], location[1], location[2], self._heading())
+        raise TwinError(f"log {str(self.path)!r} tells no position (POS, AHR2, GPS): a twin needs one to begin at")
 
     def _heading(self) -> float:
         """At arming [deg]; 0: the log does not say it."""
@@ -204,11 +204,11 @@ class FlightLog:
             raise TwinError(f"log {str(self.path)!r}: flight {self.number} has no positions: the log is damaged there")
         if self.kind == "copter":
             height = -table["PD"][inside]
-            way, what = float(height.max() - height[0]), "left the ground"
+            distance, what = float(height.max() - height[0]), "left the ground"
         else:
             north, east = table["PN"][inside], table["PE"][inside]
-            way, what = float(arrays.hypot(north - north[0], east - east[0]).max()), "drove"
-        if way >= _LEAST_WAY_M:
+            distance, what = float(arrays.hypot(north - north[0], east - east[0]).max()), "drove"
+        if distance >= _LEAST_MOTION_M:
             return ""
         return (
             f"log {str(self.path)!r}: in flight {self.number} of {len(self.flights)} "

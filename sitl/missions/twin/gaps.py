@@ -24,7 +24,7 @@ _SOON_S = 60.0
 _RAISED_US = 50.0
 """A throttle that is so far above its lowest pulse starts a mission by itself."""
 _THROTTLE = 2
-"""Its place among the channels (RCMAP_THROTTLE 3)."""
+"""Its position among the channels (RCMAP_THROTTLE 3)."""
 
 
 def dropped(log: FlightLog) -> int:
@@ -39,13 +39,13 @@ def dropped(log: FlightLog) -> int:
     return round(float(table["Dp"][inside][-1]) - float(log.at_arming(time, table["Dp"])))
 
 
-def untold_start(
+def uncommanded_start(
     log: FlightLog,
     modes: Sequence[tuple[float, str]],
     commands: Sequence[tuple[float, int]],
     sticks: tuple[Array, Array] | None,
 ) -> float | None:
-    """When a copter took off by its mission without a start that the log tells; None: it did not.
+    """When a copter took off by its mission without a start that the log shows; None: it did not.
 
     On the ground AUTO waits for MISSION_START or for the throttle stick.
 
@@ -67,8 +67,8 @@ def untold_start(
     if not begins or begins[-1][1].upper() != _AUTO:
         return None
     auto = begins[-1][0]
-    told = any(number == MavCmd.MISSION_START and at <= lifted[0] for at, number in commands)
-    if told or lifted[0] - max(auto, 0.0) > _SOON_S or _raised(sticks, float(lifted[0])):
+    commanded = any(number == MavCmd.MISSION_START and at <= lifted[0] for at, number in commands)
+    if commanded or lifted[0] - max(auto, 0.0) > _SOON_S or _raised(sticks, float(lifted[0])):
         return None
     return max(auto, 0.0)
 

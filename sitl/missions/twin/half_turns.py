@@ -76,7 +76,7 @@ def turned(course: Stream, begin: float, end: float) -> float:
     return float(after - before)
 
 
-def other_way(course: Stream | None, twin: Stream | None, windows: Sequence[Window]) -> list[HalfTurn]:
+def opposite_turns(course: Stream | None, twin: Stream | None, windows: Sequence[Window]) -> list[HalfTurn]:
     """Half turns of a log's flight that its twin made the other way round, as long as one of the two is at it.
 
     Args:

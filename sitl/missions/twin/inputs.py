@@ -15,9 +15,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services.setpoints import (
+    ACCELERATION_IGNORED,
+    POSITION_IGNORED,
+    VELOCITY_IGNORED,
+    YAWS_IGNORED,
+)
 from sitl.core import elementary_arrays as arrays
 from sitl.core.elementary import atan2, cos, hypot, sin
-from sitl.core.mavlink import MavCmd
+from sitl.core.mavlink import MavCmd, MavFrame, MavResult
 from sitl.logs.dataflash.columns import Table
 from sitl.logs.kind import mode_name
 
@@ -29,22 +35,18 @@ Array = np.ndarray[Any, Any]
 
 _CHOSEN = frozenset((0, 1, 2, 18, 26, 31, 32, 52, 53))
 """MODE.Rsn of modes that a pilot, a ground station or a switch chose; the others are the autopilot's own doing."""
-_ACCEPTED = 0
-_POSITION_IGNORED, _VELOCITY_IGNORED, _ACCELERATION_IGNORED, _YAW_IGNORED = 0x007, 0x038, 0x1C0, 0xC00
 _GUIDED_MASKS = {
-    1: _VELOCITY_IGNORED | _ACCELERATION_IGNORED | _YAW_IGNORED,
-    2: _VELOCITY_IGNORED | _ACCELERATION_IGNORED | _YAW_IGNORED,
-    3: _YAW_IGNORED,
-    4: _POSITION_IGNORED | _YAW_IGNORED,
-    5: _POSITION_IGNORED | _VELOCITY_IGNORED | _YAW_IGNORED,
+    1: VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED,
+    2: VELOCITY_IGNORED | ACCELERATION_IGNORED | YAWS_IGNORED,
+    3: YAWS_IGNORED,
+    4: POSITION_IGNORED | YAWS_IGNORED,
+    5: POSITION_IGNORED | VELOCITY_IGNORED | YAWS_IGNORED,
 }
 """GUIP.Type (ArduCopter's sub-modes of GUIDED) -> type_mask of a set-point. 0 is a take-off, 6 attitudes."""
 _ON_THE_GLOBE = 1e5
 """A GUIP position beyond it is latitude and longitude [m]."""
-_GLOBAL, _ABOVE_HOME = 5, 6
 _METRES_SINCE = (4, 7)
 """Version since which GUIP is in metres, down; before: centimetres, up."""
-_LOCAL_NED = 1
 _LONG_GUIDED_S = 3.0
 _LONG_GAP_S = 0.25
 CHANNELS = 16
@@ -101,7 +103,7 @@ class Inputs:
 
 
 def of(log: FlightLog) -> Inputs:
-    """Everything that a log tells of what was done to its vehicle."""
+    """Everything that a log shows of what was done to its vehicle."""
     found = Inputs()
     found.missions = _missions(log)
     found.modes = _modes(log)
@@ -111,7 +113,7 @@ def of(log: FlightLog) -> Inputs:
     if count := gaps.dropped(log):
         found.notes.append(f"the vehicle could not write {count} messages of the flight into its log (DSF.Dp)")
     commands = [(one.time, one.fields["command"]) for one in found.messages if "command" in one.fields]
-    start = gaps.untold_start(log, gaps.mode_names(log.kind, found.modes), commands, found.sticks)
+    start = gaps.uncommanded_start(log, gaps.mode_names(log.kind, found.modes), commands, found.sticks)
     if start is not None:
         found.messages = _in_time([*found.messages, Message(start + _START_S, "COMMAND_INT", _START)])
         found.notes.append("the log does not tell what began its mission on the ground: the twin is sent MISSION_START")
@@ -205,7 +207,7 @@ def _commands(log: FlightLog, notes: list[str]) -> Iterator[Message]:
             or (command == MavCmd.COMPONENT_ARM_DISARM and row["P1"] == 1.0)
         ):
             continue
-        if int(row.get("Res", _ACCEPTED)) != _ACCEPTED:
+        if int(row.get("Res", MavResult.ACCEPTED)) != MavResult.ACCEPTED:
             refused[command] += 1
             continue
         fields = {
@@ -236,12 +238,12 @@ def _positions(log: FlightLog, notes: list[str]) -> Iterator[Message]:
         if row.get("Terrain", 0.0):
             left += 1
             continue
-        if not mask & _POSITION_IGNORED and abs(row["pX"]) > _ON_THE_GLOBE:
+        if not mask & POSITION_IGNORED and abs(row["pX"]) > _ON_THE_GLOBE:
             on_globe += 1
             yield Message(float(times[k]), "SET_POSITION_TARGET_GLOBAL_INT", _on_the_globe(row, mask, home))
             continue
         fields = {
-            "coordinate_frame": _LOCAL_NED, "type_mask": mask,
+            "coordinate_frame": MavFrame.LOCAL_NED, "type_mask": mask,
             "x": scale * row["pX"] - north, "y": scale * row["pY"] - east, "z": up * scale * row["pZ"] - down,
             "vx": scale * row["vX"], "vy": scale * row["vY"], "vz": up * scale * row["vZ"],
             "afx": scale * row.get("aX", 0.0), "afy": scale * row.get("aY", 0.0),
@@ -251,16 +253,16 @@ def _positions(log: FlightLog, notes: list[str]) -> Iterator[Message]:
     if left:
         notes.append(f"{left} set-points of GUIDED over terrain are left out")
     if on_globe:
-        notes.append(f"{on_globe} set-points of GUIDED are places on the globe, which logs keep to about a metre")
+        notes.append(f"{on_globe} set-points of GUIDED are positions on the globe, which logs keep to about a metre")
 
 
 def _on_the_globe(row: dict[str, float], mask: int, home: float) -> dict[str, Any]:
-    """A set-point whose place is in 1e-7 degrees and centimetres. Whether its altitude is above home or above the sea
-    is not logged: the nearer one is taken."""
+    """A set-point whose position is in 1e-7 degrees and centimetres. Whether its altitude is above home or above the
+    sea is not logged: the nearer one is taken."""
     alt = 0.01 * row["pZ"]
     return {
-        "coordinate_frame": _GLOBAL if abs(alt - home) < abs(alt) else _ABOVE_HOME,
-        "type_mask": mask | _VELOCITY_IGNORED | _ACCELERATION_IGNORED,
+        "coordinate_frame": MavFrame.GLOBAL_INT if abs(alt - home) < abs(alt) else MavFrame.GLOBAL_RELATIVE_ALT_INT,
+        "type_mask": mask | VELOCITY_IGNORED | ACCELERATION_IGNORED,
         "lat_int": int(row["pX"]), "lon_int": int(row["pY"]), "alt": alt,
     }  # fmt: skip
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where model or autopilot differ, told by which figures agree and which do not."""
+"""Where model or autopilot differ, told by which metrics agree and which do not."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def findings(
     model: Sequence[Agreement],
     in_step: Sequence[Agreement] = (),
 ) -> list[str]:
-    """Sentences, the model's first; none: they agree as far as these figures tell.
+    """Sentences, the model's first; none: they agree as far as these metrics show.
 
     Args:
         whole: of the whole flight.
@@ -100,7 +100,7 @@ def findings(
 
 
 def _of_motion(part: Sequence[Agreement], where: str) -> list[str]:
-    """Without open segments errors add up, so model and autopilot are not told apart."""
+    """Without open segments errors add up, so model and autopilot are not distinguished."""
     return [
         f"{one.quantity.title} {where} accounts for {max(one.vaf, 0.0):.0f} % of its variance: "
         f"{_MOTION[one.quantity.name]}"

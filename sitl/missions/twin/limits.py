@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Limits of a twin's figures: ``height.rms=0.5``, ``segments.roll_rate.vaf=80``."""
+"""Limits of a twin's metrics: ``height.rms=0.5``, ``segments.roll_rate.vaf=80``."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import NamedTuple
 from sitl.errors import OptionError, did_you_mean
 
 AT_LEAST = "vaf"
-"""Of this figure a limit is the least value, of the others the greatest size."""
+"""Of this metric a limit is the least value, of the others the greatest size."""
 _KINDS = ("rms", "max", "bias", AT_LEAST)
 
 
 class Verdict(NamedTuple):
-    """A figure and its limit."""
+    """A metric and its limit."""
 
     name: str
     value: float
@@ -55,21 +55,21 @@ def parse(text: str) -> tuple[str, float]:
     return (name if name.rpartition(".")[2] in _KINDS else f"{name}.rms"), limit
 
 
-def judge(figures: Mapping[str, float], limits: Mapping[str, float]) -> list[Verdict]:
-    """Each limit with its figure.
+def judge(metrics: Mapping[str, float], limits: Mapping[str, float]) -> list[Verdict]:
+    """Each limit with its metric.
 
     Raises:
-        OptionError: a limit of something that is no figure of this flight.
+        OptionError: a limit of something that is no metric of this flight.
     """
     found = []
     for given, limit in limits.items():
         name = given if given.rpartition(".")[2] in _KINDS else f"{given}.rms"
-        if name not in figures:
-            known = sorted({figure.rpartition(".")[0] for figure in figures})
-            hint = did_you_mean(name, figures)
+        if name not in metrics:
+            known = sorted({metric.rpartition(".")[0] for metric in metrics})
+            hint = did_you_mean(name, metrics)
             raise OptionError(
-                f"limit {given!r} is of no figure of this flight{hint}; they are .rms, .max, .bias and .vaf of "
+                f"limit {given!r} is of no metric of this flight{hint}; they are .rms, .max, .bias and .vaf of "
                 + ", ".join(known)
             )
-        found.append(Verdict(name, figures[name], float(limit)))
+        found.append(Verdict(name, metrics[name], float(limit)))
     return found

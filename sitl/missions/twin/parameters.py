@@ -20,7 +20,7 @@ _OWN = re.compile(
     r"|GYR|USE|ENABLE|POS|TCAL|FAST|RAW|LOG|TRIM|STILL|BODYFIX)|LOG_|MOT_PWM_M|MAV\d*_|MIS_TOTAL|MNT|NET_|NTF_|OSD|PLND_|PRX|RNGFND|RPM"
     r"|SCHED_|SCR_|SERIAL|SERVO|SIM_|SR\d_|STAT_|SYSID_|TEMP|VISO|VTX|WENC"
 )
-"""Beginnings of names that tell of the vehicle's hardware, calibration, ports and logs,
+"""Beginnings of names that concern the vehicle's hardware, calibration, ports and logs,
 or that cannot be written: the twin has its airframe's."""
 _WORLD = "SIM_"
 _WIND = re.compile(r"SIM_WIND_")

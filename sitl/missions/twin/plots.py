@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of a twin's report: the way from above, quantities over time, open segments."""
+"""Pictures of a twin's report: the path from above, quantities over time, open segments."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _of(agreements: Sequence[Agreement], name: str) -> Agreement | None:
 
 
 def plan(twin: Twin) -> bytes:
-    """The ways from above. PNG bytes."""
+    """The paths from above. PNG bytes."""
     whole, changed = _of(twin.whole, "position"), _of(twin.difference, "position")
     figure = new_figure(_WIDE, 5.5)
     axis = figure.subplots()
@@ -108,7 +108,7 @@ def _legend_above(axis: Any, handles: Sequence[Any], labels: Sequence[str]) -> N
 
 
 def _label(quantity: Quantity) -> str:
-    words = quantity.title.replace(" above the place of arming", "").replace("upward ", "up ")
+    words = quantity.title.replace(" above the position of arming", "").replace("upward ", "up ")
     return f"{words}\n[{quantity.unit}]"
 
 

@@ -41,14 +41,14 @@ _EFFECTS = (
     ("throttle", "mean throttle output", np.mean), ("current", "mean battery current", np.mean),
     ("voltage", "lowest battery voltage", np.min), ("consumed", "charge drawn", lambda x: x[-1, 0]),
 )  # fmt: skip
-"""Quantity, what is told of it, and how it follows from the values."""
+"""Quantity, what is reported of it, and how it follows from the values."""
 
 
 def verdict_of(twin: Twin) -> str:
     """Whether the twin flies as the log's vehicle did, in a sentence."""
     flies, count = "flies" if twin.log.kind == "copter" else "drives", len(twin.differences)
     if not count:
-        return f"The twin {flies} as the log's vehicle did, as far as these figures tell"
+        return f"The twin {flies} as the log's vehicle did, as far as these metrics tell"
     return f"The twin {flies} otherwise than the log's vehicle did: {count} difference{'s' * (count > 1)}"
 
 
@@ -86,7 +86,7 @@ def _vaf(value: float) -> str:
 
 
 def lines(twin: Twin, verdicts: Sequence[Verdict]) -> list[str]:
-    """For a terminal: what was not taken over first, then figures, findings and limits."""
+    """For a terminal: what was not taken over first, then metrics, findings and limits."""
     log = twin.log
     found = [
         f"{log.name}: {log.columns.firmware or log.kind}, flight of {log.span.length:.1f} s; twin on frame {twin.frame}"
@@ -143,11 +143,11 @@ def html(twin: Twin, verdicts: Sequence[Verdict]) -> str:
         "both are aligned by the moment of arming</p>",
         f"<p><b>Changed:</b> {escape(', '.join(twin.change.words))}</p></header>" if twin.changed else "</header>",
         _list("Limits that are not kept", [verdict.words for verdict in failed]),
-        _list("Where model or autopilot differ", twin.findings or ["Nowhere, as far as these figures tell."]),
+        _list("Where model or autopilot differ", twin.findings or ["Nowhere, as far as these metrics tell."]),
         _list("What the twin did otherwise", twin.went),
         _effects(twin),
         *_pictures(twin),
-        "<h2>Figures</h2><section>" + _table(twin) + f'<p class="soft">{_MEANING}</p></section>',
+        "<h2>Metrics</h2><section>" + _table(twin) + f'<p class="soft">{_MEANING}</p></section>',
         _list("What was taken over, and what was not", twin.notes),
     ]
     return (
@@ -210,7 +210,7 @@ def _pictures(twin: Twin) -> Iterable[str]:
     try:
         from . import plots
 
-        drawn = [("The way, from above", plots.plan(twin)), ("The flight over time", plots.flown(twin))]
+        drawn = [("The path, from above", plots.plan(twin)), ("The flight over time", plots.flown(twin))]
         if twin.segments:
             drawn.append(("Open segments: flown on from the logged state", plots.opened(twin)))
     except MissingExtra as error:

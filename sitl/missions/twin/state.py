@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vehicle is put into the state that a log tells of one moment, as far as it tells it."""
+"""A vehicle is put into the state that a log shows of one moment, as far as it shows it."""
 
 from __future__ import annotations
 
@@ -98,13 +98,13 @@ class LoggedState:
 
     # ------------------------------------------------------------------
 
-    def put(self, simulation: Simulation, time: float, place: Vec3, driven: bool = False) -> None:
+    def put(self, simulation: Simulation, time: float, position: Vec3, driven: bool = False) -> None:
         """Put a copter that flies by its true state there.
 
         Args:
             simulation: the vehicle, armed and in the air.
             time: since arming [s].
-            place: where its body was when it was armed.
+            position: where its body was when it was armed.
             driven: its rotors do from now on what ``drive`` says, not what the autopilot wants.
         """
         v: Any = simulation.v
@@ -113,7 +113,7 @@ class LoggedState:
         v.physics.ground.state = GROUND_AIRBORNE  # else a simulation that stands stays on its ground
         body, control = v.physics.body, v.autopilot.control
         motion = np.array(self.motion.at(time))
-        origin = np.array(place)
+        origin = np.array(position)
         wanted = np.concatenate([origin + motion[:3] - self.start, motion[3:]])
         was = body.pos
         follows = self._follow_targets(control, time, wanted)
@@ -172,17 +172,17 @@ class LoggedState:
             return
         v: Any = simulation.v
         physics, params = v.physics, v.autopilot.params.MOT
-        rotors, figures = physics.rotors, physics.airframe
+        rotors, airframe = physics.rotors, physics.airframe
         low, high = (params.PWM_MIN, params.PWM_MAX) if params.PWM_MAX > params.PWM_MIN else (1000.0, 2000.0)
         top = speed_at_full(physics)
-        full = 1.0 if top == 1.0 else float(figures.speed_max)
+        full = 1.0 if top == 1.0 else float(airframe.speed_max)
         outputs = v.autopilot.control.motors.output
         for k, percent in enumerate(self.motors.at(time)):
             rotor = int(outputs[k])
-            if not 0 <= rotor < figures.rotor_count:
+            if not 0 <= rotor < airframe.rotor_count:
                 continue
             control = (low + 0.01 * percent * (high - low) - 1000.0) / 1000.0 * rotors.share[rotor]
-            command = (control - figures.control_min) / (figures.control_max - figures.control_min)
+            command = (control - airframe.control_min) / (airframe.control_max - airframe.control_min)
             rotors.command[rotor] = min(max(command, 0.0), 1.0)
             if at_once:
                 rotors.speed[rotor] = min(rotors.command[rotor] * full, top)

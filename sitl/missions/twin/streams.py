@@ -49,7 +49,7 @@ class Quantity:
     is_asked: bool = False
     """The autopilot's, not the vehicle's: what it asks for."""
     turns: bool = False
-    """Tells of turning: it does not count where the twin turned the other way round."""
+    """Reports turning: it does not count where the twin turned the other way round."""
 
 
 def _fields(name: str, *fields: str, scale: float = 1.0, instance: int | None = None) -> Callable[..., Stream | None]:
@@ -128,16 +128,16 @@ _BATTERY = (
     Quantity("consumed", "charge drawn", "mAh", 1.0, _from_arming(_fields("BAT", "CurrTot", instance=0)),
              adds_up=True),
 )  # fmt: skip
-_PLACE = Quantity(
+_POSITION = Quantity(
     "position", "horizontal position", "m", 0.3, _from_arming(_estimate("PN", "PE")), ("north", "east"),
     is_vector=True, adds_up=True,
 )  # fmt: skip
 _HEADING = Quantity("yaw", "heading", "deg", 2.0, _fields("ATT", "Yaw"), is_angle=True, turns=True)
 
 COPTER = (
-    Quantity("height", "height above the place of arming", "m", 0.3, _from_arming(_estimate("PD"), -1.0),
+    Quantity("height", "height above the position of arming", "m", 0.3, _from_arming(_estimate("PD"), -1.0),
              adds_up=True),
-    _PLACE,
+    _POSITION,
     Quantity("climb", "climb rate", "m/s", 0.15, _estimate("VD", scale=-1.0)),
     Quantity("speed", "ground speed", "m/s", 0.2, _speed),
     Quantity("roll", "roll", "deg", 1.0, _fields("ATT", "Roll")),
@@ -160,7 +160,7 @@ THRUST = Quantity("thrust", "thrust over mass", "m/s^2", 0.3, _fields("IMU", "Ac
 """Of the model alone: unlike the upward acceleration it does not fall when the model leans by the log's outputs."""
 
 ROVER = (
-    _PLACE,
+    _POSITION,
     Quantity("speed", "speed", "m/s", 0.1, _fields("THR", "Speed")),
     _HEADING,
     Quantity("yaw_rate", "turn rate", "deg/s", 2.0, _fields("STER", "TurnRate"), turns=True),

@@ -42,9 +42,9 @@ find that out."""
 MODEL_S = 0.5
 """Length of a segment in which the model alone flies."""
 _ABOVE_M = 1.0
-"""Segments are in the air, at least so high above the place of arming."""
+"""Segments are in the air, at least so high above the position of arming."""
 WHOLE, LEGS, OPEN, MODEL, CHANGED = "", "legs.", "segments.", "model.", "changed."
-"""Beginnings of the names of figures."""
+"""Beginnings of the names of metrics."""
 
 
 @dataclass
@@ -92,8 +92,8 @@ class Twin:
         """Those of the findings that are differences, not what could not be judged."""
         return [text for text in self.findings if not text.startswith(NOT_JUDGED)]
 
-    def figures(self) -> dict[str, float]:
-        """All figures by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
+    def metrics(self) -> dict[str, float]:
+        """All metrics by name: "height.rms", "roll_rate.vaf", "segments.roll_rate.vaf", "model.climb.rms" ..."""
         found: dict[str, float] = {}
         for part, agreements in (
             (WHOLE, self.whole), (LEGS, self.legs), (OPEN, self.segments), (MODEL, self.model),
@@ -111,7 +111,7 @@ class Twin:
             "log": str(self.log.path), "firmware": self.log.columns.firmware, "flight": self.log.number,
             "frame": self.frame, "seconds": self.log.span.length, "aligned": "arming",
             "changed": self.change.words, "notes": self.notes, "twin": self.went,
-            "changed_twin": self.went_changed, "findings": self.findings, "figures": self.figures(),
+            "changed_twin": self.went_changed, "findings": self.findings, "metrics": self.metrics(),
         }  # fmt: skip
 
 
@@ -141,7 +141,7 @@ def fly(
         wind: speed [m/s] and where it came from [deg] in the log's flight; None: as the log's estimator knew it.
         segments: fly open segments, too: of copters on native physics.
         core: of the kind of vehicle, if it is loaded already.
-        progress: is told of each unit that is compiled.
+        progress: called for each unit that is compiled.
         keep: folder for the twins' own logs.
 
     Raises:
@@ -201,7 +201,7 @@ class _Twins:
         found = Twin(self.log, self.airframe.name, flown, changed, self.change, self._notes(), went, went_changed)
         quantities = streams.QUANTITIES[self.log.kind]
         all_of_it, in_step = [Window(0.0, self.log.span.length)], legs.windows(self.log, flown)
-        turns = half_turns.other_way(heading(self.log), heading(flown), in_step or all_of_it)
+        turns = half_turns.opposite_turns(heading(self.log), heading(flown), in_step or all_of_it)
         found.whole = _compared(quantities, self.log, flown, all_of_it, turns)
         found.legs = _compared(quantities, self.log, flown, in_step, turns)
         found.went += legs.late(legs.steps(self.log, flown)) + half_turns.words(turns)
@@ -295,7 +295,7 @@ class _Twins:
 
     def _home(self, params: dict[str, float]) -> Home:
         """Where the twin has to stand so that its estimate at arming is the log's: receivers err, and missions are at
-        places on the globe."""
+        positions on the globe."""
         if self.home is not None:
             return self.home
         logged = self.log.home()
@@ -324,7 +324,7 @@ class _Twins:
         flown, flight = self._flown(name, self.airframe, change, Segments(planned, driven))
         opened = flight.opened
         judged = opened if driven else [one._replace(begin=one.begin + SETTLES_S) for one in opened]
-        turns = [] if driven else half_turns.other_way(heading(self.log), heading(flown), judged)
+        turns = [] if driven else half_turns.opposite_turns(heading(self.log), heading(flown), judged)
         quantities = (*streams.QUANTITIES[self.log.kind], *([streams.THRUST] if driven else []))
         found = _compared(quantities, self.log, flown, judged, turns, each=True)
         return found, opened, turns
@@ -400,4 +400,4 @@ def with_mass(airframe: Airframe, text: str) -> Airframe:
         raise OptionError(
             f"mass {text!r}: a mass [kg] is needed, or what is added to the {was:g} kg of the airframe: +0.5"
         )
-    return replace(airframe, figures={**airframe.figures, "mass": mass})
+    return replace(airframe, properties={**airframe.properties, "mass": mass})

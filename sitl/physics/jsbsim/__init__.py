@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""JSBSim (https://jsbsim.org) as an engine: a vehicle's figures written as a JSBSim aircraft, which JSBSim moves."""
+"""JSBSim (https://jsbsim.org) as an engine: a vehicle's properties written as a JSBSim aircraft, which JSBSim moves."""

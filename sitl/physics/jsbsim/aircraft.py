@@ -54,7 +54,7 @@ class Contact:
             grip = f'<table name="CORNERING_COEFF" type="internal">{data}</table>'
         return (
             f'<contact type="{"BOGEY" if self.is_wheel else "STRUCTURE"}" name="{self.name}">'
-            f"{place(x, y, z)}<static_friction>{self.friction!r}</static_friction>"
+            f"{location(x, y, z)}<static_friction>{self.friction!r}</static_friction>"
             f"<dynamic_friction>{self.friction!r}</dynamic_friction><rolling_friction>0</rolling_friction>"
             f'<spring_coeff unit="LBS/FT">{self.stiffness * FOOT / POUND!r}</spring_coeff>'
             f'<damping_coeff unit="LBS/FT/SEC">{self.damping * FOOT / POUND!r}</damping_coeff>'
@@ -63,8 +63,8 @@ class Contact:
         )
 
 
-def place(x: float, y: float, z: float) -> str:
-    """A place given in the body frame [m] in the structural one."""
+def location(x: float, y: float, z: float) -> str:
+    """A position given in the body frame [m] in the structural one."""
     return f'<location unit="FT"><x>{-x / FOOT!r}</x><y>{y / FOOT!r}</y><z>{-z / FOOT!r}</z></location>'
 
 
@@ -79,11 +79,11 @@ def planet() -> str:
 
 
 def mass_balance(a: Any) -> str:
-    """Mass and inertia of a vehicle's figures."""
+    """Mass and inertia of a vehicle's properties."""
     named = zip(("ixx", "iyy", "izz"), a.inertia, strict=True)
     moments = "".join(f'<{name} unit="SLUG*FT2">{value / SLUG_FOOT2!r}</{name}>' for name, value in named)
     weight = float(a.mass) / SLUG * POUNDS_BY_SLUG
-    origin = place(0.0, 0.0, 0.0).replace("<location", '<location name="CG"')
+    origin = location(0.0, 0.0, 0.0).replace("<location", '<location name="CG"')
     return f'<mass_balance>{moments}<emptywt unit="LBS">{weight!r}</emptywt>{origin}</mass_balance>'
 
 
@@ -91,13 +91,13 @@ def written(a: Any, name: str, span: float, contacts: Iterable[Contact], parts: 
     """The whole document.
 
     Args:
-        a: the vehicle's figures (``physics.airframe`` of a record).
+        a: the vehicle's properties (``physics.airframe`` of a record).
         name: of the aircraft.
         span: the size that turbulence takes it for [m].
         contacts: what touches the ground.
         parts: systems, external reactions and aerodynamics.
     """
-    reference = place(0.0, 0.0, 0.0).replace("<location", '<location name="AERORP"')
+    reference = location(0.0, 0.0, 0.0).replace("<location", '<location name="AERORP"')
     feet = "".join(contact.written() for contact in contacts)
     return (
         f'<?xml version="1.0"?>\n<fdm_config name="{name}" version="2.0" release="BETA">'

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ...core.constants import GRAVITY
-from ...vehicles.figures.copter import THRUST_MOMENTUM
+from ...vehicles.properties.copter import THRUST_MOMENTUM
 from ..native.prepare import decay
 from .aircraft import Contact, written
 from .formula import component, difference, function, greatest, if_less, least, magnitude, product, root, total
@@ -27,7 +27,7 @@ P, Q, R = "velocities/p-rad_sec", "velocities/q-rad_sec", "velocities/r-rad_sec"
 
 
 def document(a: Any, name: str, dt: float) -> str:
-    """The aircraft of a multicopter's figures, for steps of dt [s]."""
+    """The aircraft of a multicopter's properties, for steps of dt [s]."""
     count = int(a.rotor_count)
     inputs = [f"rotor/command{k}" for k in range(1, count + 1)]
     properties = "".join(f'<property value="0">{name}</property>' for name in [*inputs, "battery/voltage", GOES])

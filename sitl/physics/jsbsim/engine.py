@@ -119,7 +119,7 @@ class JsbsimEngine(Engine):
         self.idle_parameters = model.idle_parameters
         self.executive: Any = None
         """JSBSim's FGFDMExec."""
-        self._figures = b""
+        self._airframe = b""
         self._physics = vehicle.v.physics
         self._wind = vehicle.v.physics.wind
         self._write_body = writer(vehicle, "physics.body.pos", 13)
@@ -131,14 +131,14 @@ class JsbsimEngine(Engine):
         self._start()
 
     def _fit(self, anew: bool) -> None:
-        """An aircraft of the vehicle's figures as they are now; ``anew``, in air that nothing has stirred."""
-        figures = bytes(self._physics.airframe._bytes)
-        if figures != self._figures or anew:
+        """An aircraft of the vehicle's properties as they are now; ``anew``, in air that nothing has stirred."""
+        airframe = bytes(self._physics.airframe._bytes)
+        if airframe != self._airframe or anew:
             self._load()
-            self._figures = figures
+            self._airframe = airframe
 
     def _load(self) -> None:
-        """Have JSBSim take the vehicle as its figures are now."""
+        """Have JSBSim take the vehicle as its properties are now."""
         a, model = self._physics.airframe, self.model
         self.frames = model.frames(a)
         self.dt = TICK_S / self.frames
@@ -173,7 +173,7 @@ class JsbsimEngine(Engine):
         return start.Motion((centre.x, centre.y, self._height - centre.z), velocity, euler_of(b.q), b.rates)
 
     def _lever(self, q: Quat, rates: Vec3) -> tuple[Vec3, Vec3]:
-        """From the origin of the body to its centre of mass: place [m] and velocity [m/s], NED."""
+        """From the origin of the body to its centre of mass: position [m] and velocity [m/s], NED."""
         ahead = self.model.ahead
         return rotate(q, Vec3(ahead, 0.0, 0.0)), rotate(q, Vec3(0.0, ahead * rates.z, -(ahead * rates.y)))
 

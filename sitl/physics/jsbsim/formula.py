@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Formulas in JSBSim's XML (https://jsbsim-team.github.io/jsbsim/classJSBSim_1_1FGFunction.html).
 
-A formula is a string of XML; an empty one is zero and vanishes from sums and products, so that figures of zero leave
+A formula is a string of XML; an empty one is zero and vanishes from sums and products, so that properties of zero leave
 nothing to be computed.
 """
 
@@ -126,9 +126,9 @@ def load(text: str, dt: float) -> Any:
     """
     jsbsim = library()
     with TemporaryDirectory(prefix="gym-sitl-jsbsim-") as folder:
-        place = Path(folder) / "aircraft" / NAME
-        place.mkdir(parents=True)
-        (place / f"{NAME}.xml").write_text(text, encoding="utf-8")
+        path = Path(folder) / "aircraft" / NAME
+        path.mkdir(parents=True)
+        (path / f"{NAME}.xml").write_text(text, encoding="utf-8")
         executive = jsbsim.FGFDMExec(folder)
         executive.set_debug_level(0)
         executive.disable_output()

@@ -47,12 +47,12 @@ class VehicleModel(ABC):
         self.vehicle = vehicle
 
     def frames(self, a: Any) -> int:
-        """Frames of JSBSim a tick, of the vehicle's figures."""
+        """Frames of JSBSim a tick, of the vehicle's properties."""
         return 1
 
     @abstractmethod
     def document(self, a: Any, dt: float) -> str:
-        """The aircraft of figures for frames of dt [s]."""
+        """The aircraft of properties for frames of dt [s]."""
 
     def height(self, a: Any) -> float:
         """Of the centre of mass over the ground, standing [m]."""
@@ -82,8 +82,8 @@ class VehicleModel(ABC):
 def writer(vehicle: EngineVehicle, path: str, count: int) -> Callable[..., None]:
     """A function of ``count`` numbers that writes them as f8 from the field at ``path`` on."""
     dtype, memory = vehicle.fleet.dtype, vehicle.fleet.view("u1").data
-    place = vehicle.index * dtype.itemsize + offset(dtype, *path.split("."))
-    return partial(struct.Struct(f"<{count}d").pack_into, memory, place)
+    start = vehicle.index * dtype.itemsize + offset(dtype, *path.split("."))
+    return partial(struct.Struct(f"<{count}d").pack_into, memory, start)
 
 
 FOOT = 0.3048

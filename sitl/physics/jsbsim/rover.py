@@ -8,7 +8,7 @@ from typing import Any
 
 from ...core.constants import TICK_S
 from ...core.vectors import Vec2
-from ...vehicles.figures.rover import STEERING_SKID
+from ...vehicles.properties.rover import STEERING_SKID
 from ..engine import EngineVehicle
 from ..native.rover.steering import curvature
 from . import rover_aircraft

@@ -14,8 +14,8 @@ import math
 from typing import Any, NamedTuple
 
 from ...core.constants import GRAVITY
-from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
-from .aircraft import Contact, place, written
+from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from .aircraft import Contact, location, written
 from .formula import difference, function, limited, product, total
 from .model import FOOT, POUND
 
@@ -45,7 +45,7 @@ class Layout(NamedTuple):
 
 
 def layout(a: Any) -> Layout:
-    """Of a rover's figures.
+    """Of a rover's properties.
 
     A turning circle needs no wheelbase: without one it is that of the car which turns on it with its wheels at the
     steering angle. A skid-steered rover without one is as long as it is wide. Both have their weight in the middle.
@@ -63,7 +63,7 @@ def layout(a: Any) -> Layout:
 
 
 def document(a: Any, name: str, dt: float) -> str:
-    """The aircraft of a rover's figures."""
+    """The aircraft of a rover's properties."""
     at = layout(a)
     names = ("drive/speed1", "drive/speed2")
     inputs = "".join(f'<property value="0">{name}</property>' for name in names)
@@ -107,6 +107,6 @@ def _force(name: str, speed: str, motor: int, mass: float, bound: float, at: tup
     wanted = product(difference(f"drive/speed{motor}", speed), mass / SLIP_TIME)
     formula = product(limited(wanted, bound), 1.0 / POUND)
     return (
-        f'<force name="{name}" frame="BODY">{function(f"force/{name}", formula)}{place(*at)}'
+        f'<force name="{name}" frame="BODY">{function(f"force/{name}", formula)}{location(*at)}'
         "<direction><x>1</x><y>0</y><z>0</z></direction></force>"
     )

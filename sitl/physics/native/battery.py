@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.constants import TICK_S
 from ...core.kernels import law
-from ...vehicles.figures.body import Battery
+from ...vehicles.properties.body import Battery
 from .records import BatteryState
 
 OPEN_CIRCUIT = (0.714, 0.845, 0.869, 0.895, 0.905, 0.919, 0.938, 0.957, 0.976, 0.990, 1.0)
@@ -23,32 +23,32 @@ the thrust."""
 @law
 def open_circuit(charge: float) -> float:
     """Open-circuit voltage, as a share of the full one, at a charge of 0 .. 1."""
-    place = min(max(charge, 0.0), 1.0) * 10.0
-    k = min(int(place), 9)
-    share = OPEN_CIRCUIT[k] + (place - k) * (OPEN_CIRCUIT[k + 1] - OPEN_CIRCUIT[k])
+    index = min(max(charge, 0.0), 1.0) * 10.0
+    k = min(int(index), 9)
+    share = OPEN_CIRCUIT[k] + (index - k) * (OPEN_CIRCUIT[k + 1] - OPEN_CIRCUIT[k])
     if charge < EMPTY:
         share *= max(charge, 0.0) / EMPTY
     return share
 
 
 @law
-def sag(battery: BatteryState, figures: Battery, charge_per_amp: float) -> None:
+def sag(battery: BatteryState, airframe: Battery, charge_per_amp: float) -> None:
     """Of a rover: the inner resistance counts without a capacity, too, as in ArduPilot's simulator."""
     if battery.capacity <= 0.0 and charge_per_amp <= 0.0:
-        full = battery.full_voltage if battery.full_voltage > 0.0 else figures.battery_voltage_full
-        battery.voltage = max(battery.voltage - battery.current * figures.battery_resistance, LEAST * full)
+        full = battery.full_voltage if battery.full_voltage > 0.0 else airframe.battery_voltage_full
+        battery.voltage = max(battery.voltage - battery.current * airframe.battery_resistance, LEAST * full)
 
 
 @law
-def discharge(battery: BatteryState, power: float, figures: Battery, charge_per_amp: float) -> None:
+def discharge(battery: BatteryState, power: float, airframe: Battery, charge_per_amp: float) -> None:
     """Draw the motors' power [W] for one tick; ``charge_per_amp``: loss of charge (of 1) per ampere and tick [1/A]."""
-    full = battery.full_voltage if battery.full_voltage > 0.0 else figures.battery_voltage_full
-    current = figures.avionics_current + power / max(battery.voltage, LEAST * full)
+    full = battery.full_voltage if battery.full_voltage > 0.0 else airframe.battery_voltage_full
+    current = airframe.avionics_current + power / max(battery.voltage, LEAST * full)
     battery.current = current
     if battery.capacity > 0.0:
         charge_per_amp = TICK_S / (3600.0 * battery.capacity)
     if charge_per_amp > 0.0:
-        resistance = figures.battery_resistance + battery.resistance
+        resistance = airframe.battery_resistance + battery.resistance
         battery.charge = max(battery.charge - current * charge_per_amp, 0.0)
         battery.voltage = max(full * open_circuit(battery.charge) - current * resistance, LEAST * full)
     else:  # as ArduPilot's simulator without SIM_BATT_CAP_AH

@@ -36,7 +36,7 @@ def _angle(pulse: int) -> float:
 
 
 @law
-def _way(q: Quat, wanted: Quat) -> Vec3:
+def _rotation(q: Quat, wanted: Quat) -> Vec3:
     """Rotation vector [rad], body, from one attitude to another, the short way."""
     turn = multiply(conjugate(q), wanted)
     sign = -1.0 if turn.w < 0.0 else 1.0
@@ -55,7 +55,7 @@ def wanted_rates(q: Quat, pulses: Ints, time_us: int) -> Vec3:
         return ZERO
     if switch < EVERYWHERE:
         wanted = quat_from_euler(Euler(_angle(first), _angle(second), _angle(third)))
-        return STIFFNESS * _way(q, wanted)
+        return STIFFNESS * _rotation(q, wanted)
     axis, rate = Vec3(first - 1500.0, second - 1500.0, third - 1500.0), TURN_RATE
     if switch < AXIS:
         t = 1e-6 * time_us
@@ -68,7 +68,7 @@ def wanted_rates(q: Quat, pulses: Ints, time_us: int) -> Vec3:
 
 @law
 def turn(body: Body, pulses: Ints, time_us: int) -> None:
-    """One tick on the bench; the place stays."""
+    """One tick on the bench; the position stays."""
     wanted = wanted_rates(body.q, pulses, time_us)
     body.rates += (TICK_S / TIME_CONSTANT) * (wanted - body.rates)
     body.rates_mean = body.rates

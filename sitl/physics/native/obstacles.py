@@ -2,8 +2,8 @@
 """Contact with the solids of a world.
 
 A vehicle's record lists the solids near it, so that it stays one record of a fixed size: a copy of it is the whole
-state. When the vehicle leaves the place for which the list is good, ``wanted`` asks for a new one before the next tick
-(``list_solids``).
+state. When the vehicle leaves the position for which the list is good, ``wanted`` asks for a new one before the next
+tick (``list_solids``).
 
 The vehicle's outline is a row of upright discs along its body between two heights. It does not enter a solid: it is
 pushed out along the solid's normal and loses the velocity into it, without bounce. Sides have no friction; on top of a
@@ -20,9 +20,9 @@ from ...core.constants import GRAVITY, TICK_S
 from ...core.elementary import exp, hypot
 from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
-from ...vehicles.figures.body import Outline
+from ...vehicles.properties.body import Outline
 from ...worlds.contact import Contact, Volume, gather, nearest_of
-from ...worlds.geometry import BOTTOM, SOLID_FIGURES, TOP
+from ...worlds.geometry import BOTTOM, SOLID_COLUMNS, TOP
 from .records import OBSTACLES_MAX, Body, Obstacles
 
 REACH = 30.0
@@ -51,18 +51,18 @@ def list_solids(o: Obstacles, body: Body, solids: Table, floor: float) -> None:
     Args:
         o: the list.
         body: of the vehicle.
-        solids: of the world, shape (n, SOLID_FIGURES), down from z = 0 of its frame.
+        solids: of the world, shape (n, SOLID_COLUMNS), down from z = 0 of its frame.
         floor: height of the floor in the world's frame [m]; the list's rows count from the floor.
     """
-    place, rows = Vec2(body.pos.x, body.pos.y), o.rows
-    listed = gather(solids, place, REACH, rows)
+    position, rows = Vec2(body.pos.x, body.pos.y), o.rows
+    listed = gather(solids, position, REACH, rows)
     for k in range(listed.rows):
         rows[k, TOP] += floor
         rows[k, BOTTOM] += floor
     for k in range(listed.rows, OBSTACLES_MAX):
-        for figure in range(SOLID_FIGURES):
-            rows[k, figure] = 0.0
-    o.count, o.north, o.east, o.complete = listed.rows, place.x, place.y, listed.complete
+        for column in range(SOLID_COLUMNS):
+            rows[k, column] = 0.0
+    o.count, o.north, o.east, o.complete = listed.rows, position.x, position.y, listed.complete
     o.clear = 0.0
     o.wanted = False
 

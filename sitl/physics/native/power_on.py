@@ -14,7 +14,7 @@ from ...core.elementary import cos, sin
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
 from ...vehicles import Airframe, apply
-from ...vehicles.figures.body import Sensors as SensorFigures
+from ...vehicles.properties.body import Sensors as SensorProperties
 from . import atmosphere, wind
 from .records import Physics, SensorState, Vehicle
 from .sensors import barometer, magnetometer, power
@@ -31,7 +31,7 @@ WIND_SETTINGS = (
 
 
 def clear(v: Vehicle[Physics], airframe: Airframe, seed: int) -> None:
-    """Empty physics, sensors, actuators and clock, but for the wind's settings; figures and random numbers start."""
+    """Empty physics, sensors, actuators and clock, but for the wind's settings; properties and random numbers start."""
     w = v.physics.wind
     setting = {name: getattr(w, name) for name in WIND_SETTINGS}
     v.zero("physics", "sensors", "actuators", "time_us", "tick")
@@ -54,7 +54,7 @@ def place(p: Physics, home: Home) -> None:
 
 
 def wake(v: Vehicle[Physics]) -> None:
-    """Battery, wind and air as they are at this place; sensor errors are drawn and first samples taken."""
+    """Battery, wind and air as they are at this position; sensor errors are drawn and first samples taken."""
     p, w = v.physics, v.physics.wind
     p.battery.charge = 1.0
     p.battery.voltage = p.airframe.battery_voltage_full
@@ -65,7 +65,7 @@ def wake(v: Vehicle[Physics]) -> None:
     first_samples(p, v.sensors, v.rng)
 
 
-def draw_errors(s: SensorState, a: SensorFigures, rng: Rng) -> None:
+def draw_errors(s: SensorState, a: SensorProperties, rng: Rng) -> None:
     """Draw what stays from power-on to power-off: turn-on biases, scale errors and where the drifts start."""
     draws = [[random.normal(rng) for _ in range(5)] for _ in range(3)]  # axis by axis
     acc_bias, gyro_bias, acc_scale, gyro_scale, drift = (Vec3(*axes) for axes in zip(*draws, strict=True))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures that follow from those that all airframes have; and how the kinds compute theirs."""
+"""What follows from the properties that all airframes have; and how the kinds compute theirs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ...core.constants import TICK_S
 from ...core.elementary import exp
 from ...core.kernels import law
-from ...vehicles.figures.body import Figures
+from ...vehicles.properties.body import Properties
 from .records import Derived
 from .sensors.imu import WALK_TICKS
 
@@ -56,7 +56,7 @@ def walk_step(random_walk: float, correlation_time: float, dt: float) -> Step:
 
 
 @law
-def prepare_shared(a: Figures, d: Derived) -> None:
+def prepare_shared(a: Properties, d: Derived) -> None:
     """Fill the part of ``d`` that follows from battery and sensors."""
     d.charge_per_amp = 0.0
     if a.battery_capacity > 0.0:

@@ -6,7 +6,7 @@ Scan ``k`` is taken ``k`` / rate seconds after power-on, on the tick at or after
 index 0 is the rightmost, the last one the leftmost. A reading below the least is the least.
 
 What a scan needs besides the vehicle's record is in a record beside it, ``Ranging``: units take its address. A sensor's
-figures and the count of its scans are in the vehicle's record, so a copy of that one is the whole state.
+properties and the count of its scans are in the vehicle's record, so a copy of that one is the whole state.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from ...core.memory import floats_at, ints_at, record_at, table_at
 from ...core.records import Floats, Record, Records, repeat
 from ...core.rng import Rng, normal, uniform
 from ...core.vectors import Vec3
-from ...vehicles.figures.body import Figures
-from ...worlds.geometry import GRID_FIGURES, SOLID_FIGURES, Solids
+from ...vehicles.properties.body import Properties
+from ...worlds.geometry import GRID_NUMBERS, SOLID_COLUMNS, Solids
 from ...worlds.planar import publish_readings
 from ...worlds.raycast import scan_rays, turn_rays
 from .obstacles import list_solids
@@ -36,13 +36,13 @@ SENSORS = 2
 
 
 class Beams(Record):
-    """A sensor's rays, and room to work in; arrays by their addresses."""
+    """A sensor's rays, and memory to work in; arrays by their addresses."""
 
     count: int  # rays; 0: the vehicle has no such sensor
     readings: int  # that are published, of as many rays or more
     rays: int  # unit vectors on the body, FRD, shape (3, count)
-    directions: int  # room for the same, NED, shape (3, count)
-    ranges: int  # room for what they meet [m], shape (count,)
+    directions: int  # memory for the same, NED, shape (3, count)
+    ranges: int  # memory for what they meet [m], shape (count,)
     origin: Vec3  # where they start, NED, down from z = 0 of the world's frame [m]
 
 
@@ -50,9 +50,9 @@ class Ranging(Record):
     """A vehicle's world and its sensors' rays; arrays by their addresses."""
 
     # the world, which vehicles share (``sitl.worlds.geometry.Geometry``)
-    solids: int  # shape (solid_count, SOLID_FIGURES)
+    solids: int  # shape (solid_count, SOLID_COLUMNS)
     solid_count: int
-    grid: int  # shape (GRID_FIGURES,)
+    grid: int  # shape (GRID_NUMBERS,)
     cells: int  # shape (cell_count,)
     cell_count: int
     floor: float  # height of the floor in the world's frame [m]
@@ -63,7 +63,7 @@ class Ranging(Record):
     beams: Records[Beams] = repeat(Beams, SENSORS)
 
 
-class RangerFigures(NamedTuple):
+class RangerProperties(NamedTuple):
     """What a sensor is, and where."""
 
     range_min: float
@@ -73,26 +73,26 @@ class RangerFigures(NamedTuple):
     noise: float
     """Standard deviation of a reading [m]."""
     at: Vec3
-    """Place on the body, FRD [m]."""
+    """Position on the body, FRD [m]."""
 
 
 @law
 def solids_of(ranging: Ranging) -> Solids:
     """The world's solids."""
-    rows = table_at(ranging.solids, ranging.solid_count, SOLID_FIGURES)
-    return Solids(rows, floats_at(ranging.grid, GRID_FIGURES), ints_at(ranging.cells, ranging.cell_count))
+    rows = table_at(ranging.solids, ranging.solid_count, SOLID_COLUMNS)
+    return Solids(rows, floats_at(ranging.grid, GRID_NUMBERS), ints_at(ranging.cells, ranging.cell_count))
 
 
 @law
-def figures_of(a: Figures, number: int) -> RangerFigures:
-    """Figures of a sensor of an airframe."""
+def properties_of(a: Properties, number: int) -> RangerProperties:
+    """Properties of a sensor of an airframe."""
     if number == LIDAR:
-        return RangerFigures(a.lidar_min, a.lidar_max, a.lidar_noise, a.lidar_at)
-    return RangerFigures(a.rangefinder_min, a.rangefinder_max, a.rangefinder_noise, a.rangefinder_at)
+        return RangerProperties(a.lidar_min, a.lidar_max, a.lidar_noise, a.lidar_at)
+    return RangerProperties(a.rangefinder_min, a.rangefinder_max, a.rangefinder_noise, a.rangefinder_at)
 
 
 @law
-def period_us(a: Figures, number: int) -> float:
+def period_us(a: Properties, number: int) -> float:
     """From one scan of a sensor to the next [us]."""
     return 1e6 / (a.lidar_rate if number == LIDAR else a.rangefinder_rate)
 
@@ -104,7 +104,7 @@ def scans_taken(sensors: Sensors, number: int) -> int:
 
 
 @law
-def sensor_due(sensors: Sensors, a: Figures, beams: Beams, number: int) -> int:
+def sensor_due(sensors: Sensors, a: Properties, beams: Beams, number: int) -> int:
     """When a sensor has to measure next [us since power-on]."""
     if beams.count == 0:
         return NEVER
@@ -127,7 +127,7 @@ def aim(body: Body, at: Vec3, floor: float, beams: Beams) -> None:
 
     Args:
         body: position from the origin on the floor.
-        at: place of the sensor on the body, FRD [m].
+        at: position of the sensor on the body, FRD [m].
         floor: its height in the world's frame [m].
         beams: of the sensor.
     """
@@ -138,16 +138,16 @@ def aim(body: Body, at: Vec3, floor: float, beams: Beams) -> None:
 
 
 @law
-def read_ranges(rng: Rng, figures: RangerFigures, ranges: Floats, readings: Floats) -> None:
+def read_ranges(rng: Rng, properties: RangerProperties, ranges: Floats, readings: Floats) -> None:
     """What a sensor reads of the ranges that its rays met [m]; inf: nothing in range."""
-    longest = figures.range_max
+    longest = properties.range_max
     publish_readings(ranges, longest, readings)
     for k in range(readings.shape[0]):
         reading = float(readings[k])
         if reading < longest:
-            if figures.noise > 0.0:
-                reading = min(reading + figures.noise * normal(rng), longest)
-            readings[k] = max(reading, figures.range_min)
+            if properties.noise > 0.0:
+                reading = min(reading + properties.noise * normal(rng), longest)
+            readings[k] = max(reading, properties.range_min)
 
 
 @law
@@ -166,13 +166,13 @@ def read(v: Vehicle[Physics], beams: Beams, number: int) -> None:
     """Write a sensor's readings of the ranges that its rays met."""
     s, a = v.sensors, v.physics.airframe
     readings = s.lidar_ranges[: beams.readings] if number == LIDAR else s.rangefinder_range[: beams.readings]
-    read_ranges(v.rng, figures_of(a, number), floats_at(beams.ranges, beams.count), readings)
+    read_ranges(v.rng, properties_of(a, number), floats_at(beams.ranges, beams.count), readings)
     if v.physics.sensors.range_fault.is_on:
         spoil(v.rng, v.physics.sensors.range_fault, number, readings)
 
 
 @law
-def show_lidar(s: Sensors, a: Figures) -> None:
+def show_lidar(s: Sensors, a: Properties) -> None:
     """Tell the autopilot what its lidar is."""
     s.lidar_samples, s.lidar_fov, s.lidar_min, s.lidar_max = a.lidar_samples, a.lidar_fov, a.lidar_min, a.lidar_max
 
@@ -195,14 +195,14 @@ def finish(v: Vehicle[Physics], beams: Beams, number: int) -> None:
 def cast(v: Vehicle[Physics], r: Ranging, number: int) -> None:
     """Turn a sensor's rays, and find what they meet."""
     a, beams = v.physics.airframe, r.beams[number]
-    figures = figures_of(a, number)
-    aim(v.physics.body, figures.at, r.floor, beams)
+    properties = properties_of(a, number)
+    aim(v.physics.body, properties.at, r.floor, beams)
     directions, ranges = table_at(beams.directions, 3, beams.count), floats_at(beams.ranges, beams.count)
-    scan_rays(solids_of(r), beams.origin, directions, figures.range_max, ranges)
+    scan_rays(solids_of(r), beams.origin, directions, properties.range_max, ranges)
     if r.mover_count > 0:
         origin = Vec3(beams.origin.x, beams.origin.y, beams.origin.z + r.floor)
         others = Others(r.movers, r.mover_count, r.number, v.time_us)
-        meet_rays(others, origin, directions, figures.range_max, ranges)
+        meet_rays(others, origin, directions, properties.range_max, ranges)
 
 
 @unit
@@ -233,7 +233,7 @@ def look_again(v: Vehicle[Physics], r: Ranging) -> None:
 def aim_sensor(fleet: Records[Vehicle[Physics]], i: int, ranging: int, number: int) -> None:
     """The first part of a scan of which an engine casts the rays: turn them."""
     v, r = fleet[i], record_at(Ranging, ranging)
-    aim(v.physics.body, figures_of(v.physics.airframe, number).at, r.floor, r.beams[number])
+    aim(v.physics.body, properties_of(v.physics.airframe, number).at, r.floor, r.beams[number])
 
 
 @unit
@@ -251,4 +251,4 @@ def list_near(fleet: Records[Vehicle[Physics]], i: int, ranging: int) -> None:
 @law
 def list_around(v: Vehicle[Physics], r: Ranging) -> None:
     """The same."""
-    list_solids(v.physics.obstacles, v.physics.body, table_at(r.solids, r.solid_count, SOLID_FIGURES), r.floor)
+    list_solids(v.physics.obstacles, v.physics.body, table_at(r.solids, r.solid_count, SOLID_COLUMNS), r.floor)

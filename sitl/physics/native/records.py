@@ -14,8 +14,8 @@ from ...core.border import Actuators, NarrowVec3, Sensors
 from ...core.records import Float32, FloatRows, Floats, Int32, Ints, Record, Records, Stored, array, repeat
 from ...core.rng import Rng
 from ...core.vectors import Quat, Vec3
-from ...vehicles.figures.body import Figures
-from ...worlds.geometry import SOLID_FIGURES
+from ...vehicles.properties.body import Properties
+from ...worlds.geometry import SOLID_COLUMNS
 
 GROUND_AIRBORNE = 0
 GROUND_STANDING = 1
@@ -24,7 +24,7 @@ GROUND_LYING = 2
 
 
 class Derived(Record):
-    """What follows from the figures (``prepare``), so that a tick needs no exp: what all vehicles have."""
+    """What follows from the properties (``prepare``), so that a tick needs no exp: what all vehicles have."""
 
     charge_per_amp: float  # loss of charge (of 1) per ampere and tick
     acc_noise: float  # standard deviation of one sample [m/s^2]
@@ -120,7 +120,7 @@ class Fix(Record):
 
 
 class Jam(Record):
-    """What a jammed GPS receiver makes of its place."""
+    """What a jammed GPS receiver makes of its position."""
 
     pos: Vec3  # NED, error [m]
     vel: Vec3  # NED [m/s]
@@ -134,7 +134,7 @@ class GpsFault(Record):
 
     is_on: bool
     delay: Int32  # [ticks]; -1: the airframe's
-    satellites: Int32  # that are told; -1: the airframe's
+    satellites: Int32  # that are reported; -1: the airframe's
     lat: Int32  # added [degE7]
     lon: Int32  # added [degE7]
     alt: Float32  # added [m]
@@ -296,7 +296,7 @@ class Obstacles(Record):
     north: float  # where it was gathered, as body.pos [m]
     east: float  # [m]
     complete: float  # every solid nearer to there is in the list [m]
-    rows: FloatRows = array(OBSTACLES_MAX, SOLID_FIGURES)
+    rows: FloatRows = array(OBSTACLES_MAX, SOLID_COLUMNS)
     wanted: bool  # the list no longer does
     looked: Vec3  # where the vehicle was when distances were last worked out [m]
     clear: float  # the nearest solid was at least this far away then [m]
@@ -311,7 +311,7 @@ class Obstacles(Record):
 class Physics(Record):
     """The physics of a vehicle: what all have."""
 
-    airframe: Figures
+    airframe: Properties
     derived: Derived
     place: Place
     body: Body

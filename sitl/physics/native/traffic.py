@@ -22,7 +22,7 @@ from ...core.memory import record_at
 from ...core.records import Floats, Record, array
 from ...core.rng import Rng
 from ...core.vectors import Vec2, Vec3
-from ...vehicles.figures.body import OUTLINE_DISCS
+from ...vehicles.properties.body import OUTLINE_DISCS
 from ...worlds.contact import Contact, Volume
 from ...worlds.planar import Span, to_cylinder
 from .records import Wind

@@ -73,7 +73,7 @@ def touch(v: Any, speed: float) -> None:
     g.state = GROUND_STANDING if upright(q) >= math.cos(float(a.tip_angle)) else GROUND_LYING
 
 
-_PLACE, _HITS_NORMAL, _HITS_FORCE = 5, 7, 9
+_POSITION, _HITS_NORMAL, _HITS_FORCE = 5, 7, 9
 """Columns of pybullet's contacts: where on this body, from the other body to this one, how hard [N]."""
 
 Vector = tuple[float, float, float]
@@ -99,7 +99,7 @@ def hits_report(
             continue
         is_touching = True
         nx, ny, nz = row[_HITS_NORMAL]
-        x, y, z = (at - mid for at, mid in zip(row[_PLACE], centre))
+        x, y, z = (at - mid for at, mid in zip(row[_POSITION], centre))
         vx, vy, vz = velocity[0] + oy * z - oz * y, velocity[1] + oz * x - ox * z, velocity[2] + ox * y - oy * x
         fastest = max(fastest, -(nx * vx + ny * vy + nz * vz))
         motion.contact += Vec3(gain * force * nx, -(gain * force * ny), -(gain * force * nz))

@@ -26,7 +26,7 @@ class CopterBody:
     """The model of a copter, among floor and solids.
 
     Args:
-        figures: of the airframe, as its record has them (``physics.airframe``).
+        airframe: properties, as its record has them (``physics.airframe``).
         world: what is around it; None: a floor.
         floor: height of the floor in the world's frame [m].
 
@@ -34,12 +34,12 @@ class CopterBody:
         MissingExtra: pybullet is not installed.
     """
 
-    def __init__(self, figures: Any, world: World | None, floor: float) -> None:
-        self.substeps = max(int(figures.substeps), 1)
+    def __init__(self, airframe: Any, world: World | None, floor: float) -> None:
+        self.substeps = max(int(airframe.substeps), 1)
         """Steps of Bullet in a tick."""
         self.step_s = TICK_S / self.substeps
-        self.has_hard_feet = sag(float(figures.leg_time_constant)) == 0.0
-        self.model: CopterModel = model(figures)
+        self.has_hard_feet = sag(float(airframe.leg_time_constant)) == 0.0
+        self.model: CopterModel = model(airframe)
         self.client = Client(self.step_s, _ITERATIONS, _RESIDUAL)
         p, id_ = self.client.p, self.client.id
         self.surfaces: Surfaces = build(self.client, world, floor)
@@ -49,7 +49,7 @@ class CopterBody:
         for link in (BODY, LEGS):
             p.changeDynamics(self.number, link, linearDamping=0.0, angularDamping=0.0, physicsClientId=id_)
         self._as_built: int = p.saveState(id_)
-        self.zero = floor + self._resting_height(sag(float(figures.leg_time_constant)))
+        self.zero = floor + self._resting_height(sag(float(airframe.leg_time_constant)))
         """Height of the centre of mass in the world's frame at which the record's position is 0 [m]."""
         self._meet(FLOOR_GROUP | SOLID_GROUP)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A multicopter as a URDF model, made from its figures.
+"""A multicopter as a URDF model, made from its properties.
 
 Frame: forward, left, up; the origin is the centre of mass. Two links: ``body`` has mass, inertia and the rigid outline
 that runs into things; ``legs`` has a foot under each rotor, each on a spring and damper that take up a touch in the
@@ -43,30 +43,30 @@ class CopterModel:
     mass: float
     """[kg]."""
     inertia: Vector
-    """About forward, left, up [kg m^2]. An airframe's published figures need not be those of a real body, which URDF
+    """About forward, left, up [kg m^2]. An airframe's published properties need not be those of a real body, which URDF
     readers insist on, so that they are set after reading."""
     height: float
     """Of the centre of mass over the soles of unloaded legs [m]."""
 
 
-def model(figures: Any) -> CopterModel:
+def model(airframe: Any) -> CopterModel:
     """The model of an airframe.
 
     Args:
-        figures: of a copter: the record ``physics.airframe`` (``sitl.vehicles.figures.copter``).
+        airframe: properties of a copter: the record ``physics.airframe`` (``sitl.vehicles.properties.copter``).
     """
     hubs = [
-        (float(figures.rotor_x[k]), -float(figures.rotor_y[k]), -float(figures.rotor_z[k]))
-        for k in range(int(figures.rotor_count))
+        (float(airframe.rotor_x[k]), -float(airframe.rotor_y[k]), -float(airframe.rotor_z[k]))
+        for k in range(int(airframe.rotor_count))
     ]
-    feet = footing(hubs, float(figures.contact_radius))
-    height = leg_length(feet, float(figures.tip_angle))
-    mass = float(figures.mass)
-    inertia = (figures.inertia.x, figures.inertia.y, figures.inertia.z)
-    outline = _outline(figures, height)
-    body = link("body", mass, inertia, outline, _looks(figures, hubs, height), Contact(_OUTLINE_FRICTION))
+    feet = footing(hubs, float(airframe.contact_radius))
+    height = leg_length(feet, float(airframe.tip_angle))
+    mass = float(airframe.mass)
+    inertia = (airframe.inertia.x, airframe.inertia.y, airframe.inertia.z)
+    outline = _outline(airframe, height)
+    body = link("body", mass, inertia, outline, _looks(airframe, hubs, height), Contact(_OUTLINE_FRICTION))
     soles = [sphere(FOOT_RADIUS, (x, y, FOOT_RADIUS - height)) for x, y in feet]
-    contact = Contact(float(figures.ground_friction), *springs(mass, float(figures.leg_time_constant), len(feet)))
+    contact = Contact(float(airframe.ground_friction), *springs(mass, float(airframe.leg_time_constant), len(feet)))
     legs = link("legs", 0.0, (0.0, 0.0, 0.0), soles, [sole.coloured(_LOOK["foot"]) for sole in soles], contact)
     return CopterModel(document("copter", [body, legs], [("body", "legs")]), mass, inertia, height)
 
@@ -107,24 +107,24 @@ def sag(time_constant: float) -> float:
     return GRAVITY * time_constant * time_constant if time_constant > 1e-4 else 0.0
 
 
-def _outline(figures: Any, height: float) -> list[Any]:
+def _outline(airframe: Any, height: float) -> list[Any]:
     """Upright cylinders that run into things: ``contact_*``, whose heights count from the soles, from the centre of
     mass up: what is lower is legs."""
-    radius = float(figures.contact_radius)
-    top = max(float(figures.contact_top) - height, 0.02)
+    radius = float(airframe.contact_radius)
+    top = max(float(airframe.contact_top) - height, 0.02)
     if radius <= 0.0:
         return []
-    along = [float(figures.contact_along[k]) for k in range(int(figures.contact_discs))]
+    along = [float(airframe.contact_along[k]) for k in range(int(airframe.contact_discs))]
     return [cylinder(radius, top, (x, 0.0, 0.5 * top)) for x in along]
 
 
-def _looks(figures: Any, hubs: list[Vector], height: float) -> list[Any]:
+def _looks(airframe: Any, hubs: list[Vector], height: float) -> list[Any]:
     """What is to be seen of it and nothing else: a hull, arms, discs of rotors (the front ones red), legs."""
     reach = max((math.hypot(x, y) for x, y, _ in hubs), default=0.1)
     hull = box((0.55 * reach, 0.4 * reach, 0.25 * reach), (0.0, 0.0, 0.0)).coloured(_LOOK["body"])
     parts = [hull]
     neighbours = [math.dist(a, b) for a in hubs for b in hubs if a is not b]
-    blade = min(0.48 * min(neighbours, default=2.0 * reach), max(float(figures.contact_radius) - reach, 0.3 * reach))
+    blade = min(0.48 * min(neighbours, default=2.0 * reach), max(float(airframe.contact_radius) - reach, 0.3 * reach))
     for x, y, z in hubs:
         arm = box((math.hypot(x, y), 2.0 * _ARM, _ARM), (0.5 * x, 0.5 * y, 0.5 * z), math.atan2(y, x))
         leg = box((_ARM, _ARM, height), (x, y, -0.5 * height))

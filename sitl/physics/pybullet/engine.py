@@ -32,7 +32,7 @@ _SLOW = 0.05
 _NO_STATE = -1
 _ORIGIN = (0.0, 0.0, 0.0)
 _LINK_FRAME = 1
-_BODY_FIGURES = struct.Struct("<13d")
+_BODY_NUMBERS = struct.Struct("<13d")
 """pos, vel, q, rates of ``physics.body``."""
 _VELOCITY, _VELOCITY_AT = struct.Struct("<3d"), 24
 _WRENCH = struct.Struct("<6d")
@@ -60,17 +60,17 @@ class BulletEngine(Engine):
         self._load = vehicle.laws.load
         self._ground, self._obstacles = vehicle.v.physics.ground, vehicle.v.physics.obstacles
         self._body: CopterBody | None = None
-        self._figures = b""
+        self._airframe = b""
         self._picture: Picture | None = None
 
     @property
     def body(self) -> CopterBody:
-        """The model in its world, as the vehicle's figures are now."""
+        """The model in its world, as the vehicle's properties are now."""
         a = self.vehicle.v.physics.airframe
-        figures = bytes(a._bytes)
-        if self._body is None or figures != self._figures:
+        airframe = bytes(a._bytes)
+        if self._body is None or airframe != self._airframe:
             self.close()
-            self._body, self._figures = CopterBody(a, self.vehicle.world, self.vehicle.floor), figures
+            self._body, self._airframe = CopterBody(a, self.vehicle.world, self.vehicle.floor), airframe
         return self._body
 
     # ------------------------------------------------------------------ going on
@@ -108,13 +108,13 @@ class BulletEngine(Engine):
             rows = p.getContactPoints(number, -1, links, ALL, id_)
             if rows or obstacles.touching or (links == ALL and ground.state != GROUND_AIRBORNE):
                 before = _VELOCITY.unpack_from(memory, body_at + _VELOCITY_AT)
-                figures = (x, -y, zero - z, vx, -vy, -vz, qw, qx, -qy, -qz, roll, -pitch, -yaw)
-                _BODY_FIGURES.pack_into(memory, body_at, *figures)
+                numbers = (x, -y, zero - z, vx, -vy, -vz, qw, qx, -qy, -qz, roll, -pitch, -yaw)
+                _BODY_NUMBERS.pack_into(memory, body_at, *numbers)
                 if links == BODY:
                     rows = p.getContactPoints(number, -1, ALL, ALL, id_)
                 self._touch(body, rows, before, (fx, fy, fz))
             else:
-                _BODY_FIGURES.pack_into(
+                _BODY_NUMBERS.pack_into(
                     memory, body_at, x, -y, zero - z, vx, -vy, -vz, qw, qx, -qy, -qz, roll, -pitch, -yaw
                 )
 
@@ -170,7 +170,7 @@ class BulletEngine(Engine):
         return self._picture.render(*self._pose(), width, height, camera)
 
     def _pose(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Place and attitude that the record says, in Bullet's frame."""
+        """Position and attitude that the record says, in Bullet's frame."""
         b = self.vehicle.v.physics.body
         (north, east, down), (w, x, y, z) = b.pos, b.q
         return (north, -east, self.body.zero - down), (x, -y, -z, w)

@@ -14,7 +14,7 @@ import struct
 from typing import Any, ClassVar
 
 from ...core.constants import GRAVITY, TICK_S
-from ...vehicles.figures.rover import STEERING_FRONT_WHEELS
+from ...vehicles.properties.rover import STEERING_FRONT_WHEELS
 from ..engine import Array, Engine, EngineError, EngineVehicle, offset
 from . import worlds
 from .client import Client, forget, load, save
@@ -61,17 +61,17 @@ class BulletRover(Engine):
         self._forward_at = base + offset(vehicle.fleet.dtype, "physics", "wheels", "forward")
         self._client: Client | None = None
         self._picture: Picture | None = None
-        self._figures = b""
+        self._airframe = b""
 
     # ------------------------------------------------------------------ the model
 
     def _fit(self) -> Client:
-        """The world with a model of the vehicle as its figures are now."""
+        """The world with a model of the vehicle as its properties are now."""
         a = self.vehicle.v.physics.airframe
-        figures = bytes(a._bytes)
-        if self._client is None or figures != self._figures:
+        airframe = bytes(a._bytes)
+        if self._client is None or airframe != self._airframe:
             self.close()
-            self._figures = figures
+            self._airframe = airframe
             self._client = self._built(a)
         return self._client
 
@@ -153,9 +153,9 @@ class BulletRover(Engine):
         p, plan = client.p, self.model.layout
         half, base = 0.5 * plan.track, plan.wheelbase
         bend = math.tan(angle) / base if self._bends else math.sin(angle) * self._scale
-        places = (-math.atan(base * bend / (1.0 + half * bend)), -math.atan(base * bend / (1.0 - half * bend)))
+        angles = (-math.atan(base * bend / (1.0 + half * bend)), -math.atan(base * bend / (1.0 - half * bend)))
         p.setJointMotorControlArray(
-            self._number, self.model.steering, p.POSITION_CONTROL, targetPositions=places, **self._strength
+            self._number, self.model.steering, p.POSITION_CONTROL, targetPositions=angles, **self._strength
         )
 
     def _skid(self, client: Client) -> None:
@@ -246,9 +246,9 @@ class BulletRover(Engine):
         if self._picture is None:
             a, reach = vehicle.v.physics.airframe, self.model.layout.wheelbase
             self._picture = Picture(lambda c: build(c, a, vehicle.floor).body, vehicle.world, vehicle.floor, reach)
-        place, attitude = client.p.getBasePositionAndOrientation(self._number, client.id)
+        position, attitude = client.p.getBasePositionAndOrientation(self._number, client.id)
         joints = {k: client.p.getJointState(self._number, k, client.id)[0] for k in self.model.joints}
-        return self._picture.render(place, attitude, width, height, camera, joints)
+        return self._picture.render(position, attitude, width, height, camera, joints)
 
     def close(self) -> None:
         if self._picture is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rover as a multibody of Bullet, built from the figures of its airframe.
+"""A rover as a multibody of Bullet, built from the properties of its airframe.
 
 A chassis, four wheels on axle joints, two steering joints in front. Tyres are spheres that touch the floor alone: a
 sphere meets a plane in one exact point, so that a wheel rolls smoothly, while a cylinder's set of contact points
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.constants import GRAVITY
-from ...vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
 from .client import Client
 from .wheels import ALONG_Y, Parts, meet, touch_in_one_point
 from .worlds import FLOOR_GROUP, SOLID_GROUP
@@ -42,7 +42,7 @@ LEAST_INERTIA = 0.2
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the parts are, from the figures of an airframe; metres and kilograms."""
+    """Where the parts are, from the properties of an airframe; metres and kilograms."""
 
     wheelbase: float
     track: float
@@ -75,7 +75,7 @@ class Layout:
 
 
 def layout(a: Any) -> Layout:
-    """The layout that figures ``a`` of an airframe (``physics.airframe``) ask for.
+    """The layout that properties ``a`` of an airframe (``physics.airframe``) ask for.
 
     What wheels scrub with skid steering comes from their friction: on the spot the tyres' forces balance about the
     vertical when the yaw rate follows a track that is 1 + (wheelbase / track)^2 times as wide: hence the wheelbase.
@@ -120,7 +120,7 @@ def build(client: Client, a: Any, floor: float) -> Model:
 
     Args:
         client: the world.
-        a: figures of the airframe, in a record.
+        a: properties of the airframe, in a record.
         floor: its height in Bullet's frame [m].
     """
     p, id_, plan, mass = client.p, client.id, layout(a), float(a.mass)

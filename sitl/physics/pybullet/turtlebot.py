@@ -45,18 +45,18 @@ class BulletTurtlebot:
         self._ranges, self._readings = np.empty(lidar.rays), np.empty(lidar.readings)
         self._client: Client | None = None
         self._picture: Picture | None = None
-        self._figures = b""
+        self._airframe = b""
         self._rates = (math.nan, math.nan)
 
     def _fit(self) -> Client:
-        """The world with a model of the robot as its figures are now."""
-        figures = bytes(self.v.figures._bytes)
-        if self._client is None or figures != self._figures:
+        """The world with a model of the robot as its properties are now."""
+        airframe = bytes(self.v.airframe._bytes)
+        if self._client is None or airframe != self._airframe:
             self.close()
-            self._figures, self._client = figures, Client(TICK_S, _ITERATIONS, _RESIDUAL)
+            self._airframe, self._client = airframe, Client(TICK_S, _ITERATIONS, _RESIDUAL)
             filter_by_both(self._client)
             self.surfaces = worlds.build(self._client, self.world, self.world.floor_z)
-            self.model = build(self._client, self.v.figures, self.world.floor_z)
+            self.model = build(self._client, self.v.airframe, self.world.floor_z)
             self._zero = self.world.floor_z + self.model.height
             self._as_built: int = self._client.p.saveState(self._client.id)
             self._rates = (math.nan, math.nan)
@@ -83,11 +83,11 @@ class BulletTurtlebot:
         """Move on by ``ticks`` of 0.01 s under the command in its record."""
         client, v = self._fit(), self.v
         c, b, number = v.command, v.body, self.model.body
-        timeout, has_solids = float(v.figures.command_timeout), bool(self.surfaces.solids)
+        timeout, has_solids = float(v.airframe.command_timeout), bool(self.surfaces.solids)
         p, id_ = client.p, client.id
         for _ in range(ticks):
             is_fresh = 1e-6 * (v.time_us - c.time_us) < timeout
-            self._turn(client, wheel_speeds(v.figures, c.forward, c.turn) if is_fresh else (0.0, 0.0))
+            self._turn(client, wheel_speeds(v.airframe, c.forward, c.turn) if is_fresh else (0.0, 0.0))
             p.stepSimulation(id_)
             v.time_us += TICK_US
             if has_solids and not b.collided:
@@ -98,7 +98,7 @@ class BulletTurtlebot:
 
     def _turn(self, client: Client, speeds: tuple[float, float]) -> None:
         """Rims to speeds [m/s], if they change."""
-        f, p = self.v.figures, client.p
+        f, p = self.v.airframe, client.p
         rates = (speeds[0] / f.wheel_radius_left, speeds[1] / f.wheel_radius_right)
         if rates == self._rates:
             return
@@ -123,7 +123,7 @@ class BulletTurtlebot:
     def scan(self, readings: Any) -> None:
         """Read the lidar into ``readings`` (float32) [m], as ``native.turtlebot.scan``."""
         client, v = self._fit(), self.v
-        b, f = v.body, v.figures
+        b, f = v.body, v.airframe
         c, s = math.cos(b.heading), math.sin(b.heading)
         x, y = self._rays[0], self._rays[1]
         directions = np.stack([c * x - s * y, s * x + c * y, np.zeros_like(x)])
@@ -141,10 +141,10 @@ class BulletTurtlebot:
         """A picture of it in its world, uint8, shape (height, width, 3); see ``Picture``."""
         client, floor = self._fit(), self.world.floor_z
         if self._picture is None:
-            figures = self.v.figures
-            self._picture = Picture(lambda c: build(c, figures, floor).body, self.world, floor, 0.5)
-        place, attitude = client.p.getBasePositionAndOrientation(self.model.body, client.id)
-        return self._picture.render(place, attitude, width, height, camera)
+            airframe = self.v.airframe
+            self._picture = Picture(lambda c: build(c, airframe, floor).body, self.world, floor, 0.5)
+        position, attitude = client.p.getBasePositionAndOrientation(self.model.body, client.id)
+        return self._picture.render(position, attitude, width, height, camera)
 
     def snapshot(self) -> bytes:
         """What the record does not hold. Among solids it goes on as if it had been restored (``client.save``)."""

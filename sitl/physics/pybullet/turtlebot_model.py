@@ -2,7 +2,7 @@
 """A Turtlebot as a multibody of Bullet: a base that stands on two driven wheels and two casters.
 
 Wheels and casters are spheres, which meet the floor in one exact point; wheels are sprung, casters slide without
-friction and are stiff, so that it does not nod. Solids meet the upright cylinder of the airframe. Figures that only
+friction and are stiff, so that it does not nod. Solids meet the upright cylinder of the airframe. Properties that only
 Bullet needs stand here, those of the robot in ``sitl.vehicles.turtlebot``.
 
 Sources: [model] kobuki.urdf.xacro, kobuki_gazebo.urdf.xacro of erlerobot/gym-gazebo; [estimate] this project's.
@@ -28,7 +28,7 @@ ROTOR = 0.25
 """Inertia of both geared motors, as it appears at the rims, by the robot's mass [estimate]."""
 TORQUE = 1.0
 """Of each motor at its wheel [N m] [model]."""
-CASTER_PLACE = 0.115
+CASTER_OFFSET = 0.115
 """Ahead and behind the axle [m] [model]."""
 CASTER_RADIUS = 0.0176
 """[m] [model]."""
@@ -54,15 +54,15 @@ class TurtlebotModel:
     """Joints of the left and the right wheel."""
 
 
-def build(client: Client, figures: Any, floor: float) -> TurtlebotModel:
+def build(client: Client, airframe: Any, floor: float) -> TurtlebotModel:
     """Put a Turtlebot into a world of Bullet, at its origin, nose to x, at rest on its springs.
 
     Args:
         client: the world.
-        figures: of its airframe, in a record.
+        airframe: its properties, in a record.
         floor: its height in Bullet's frame [m].
     """
-    p, id_, f, height = client.p, client.id, figures, CENTRE_HEIGHT
+    p, id_, f, height = client.p, client.id, airframe, CENTRE_HEIGHT
     sag, half = SAG * float(f.wheel_radius), 0.5 * float(f.wheel_separation)
     parts, links = Parts(p), []
     for radius, side in ((float(f.wheel_radius_left), half), (float(f.wheel_radius_right), -half)):
@@ -70,12 +70,12 @@ def build(client: Client, figures: Any, floor: float) -> TurtlebotModel:
         seen = p.createVisualShape(
             p.GEOM_CYLINDER, radius=radius - sag, length=0.02, rgbaColor=(0.1, 0.1, 0.1, 1.0), physicsClientId=id_
         )
-        place = (0.0, side, radius - sag - height)
-        links.append((parts.add(WHEEL_MASS, shape, seen, place, 0, ALONG_Y) - 1, radius, 0.5 - CASTER_LOAD, 1.0))
+        position = (0.0, side, radius - sag - height)
+        links.append((parts.add(WHEEL_MASS, shape, seen, position, 0, ALONG_Y) - 1, radius, 0.5 - CASTER_LOAD, 1.0))
     shape = p.createCollisionShape(p.GEOM_SPHERE, radius=CASTER_RADIUS, physicsClientId=id_)
-    for ahead in (CASTER_PLACE, -CASTER_PLACE):
-        place = (ahead, 0.0, CASTER_RADIUS - sag / STIFFER - height)
-        number = parts.add(0.5 * WHEEL_MASS, shape, -1, place, 0, turns=False) - 1
+    for ahead in (CASTER_OFFSET, -CASTER_OFFSET):
+        position = (ahead, 0.0, CASTER_RADIUS - sag / STIFFER - height)
+        number = parts.add(0.5 * WHEEL_MASS, shape, -1, position, 0, turns=False) - 1
         links.append((number, CASTER_RADIUS, CASTER_LOAD, STIFFER))
     mass = MASS - 3.0 * WHEEL_MASS
     top, bottom, wide = float(f.top), float(f.bottom), float(f.radius)

@@ -20,7 +20,7 @@ Colour = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Shape:
-    """A shape at its place in a link."""
+    """A shape at its position in a link."""
 
     geometry: str
     """The element."""

@@ -35,7 +35,8 @@ class Bearings:
         """Of both [m]."""
 
     def show(self, at: tuple[float, float, float], span: float) -> None:
-        """Draw them south-west of a place of the scene, at its height, for ``span`` metres that are seen around it."""
+        """Draw them south-west of a position of the scene, at its height, for ``span`` metres that are seen around
+        it."""
         x, y, z = at
         length = length_for(span)
         if length != self.length:

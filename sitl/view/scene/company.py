@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Many vehicles in the scene, drawn by instancing: all of one shape are one node, whose places are sent together."""
+"""Many vehicles in the scene, drawn by instancing: all of one shape are one node, whose positions are sent together."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..axes import places, turns
+from ..axes import all_to_scene, turns
 from ..colours import of_ends, of_vehicle
 from ..frame import Company
 from ..shape import DARK, FRONT, Mesh, Piece, Shape, joined, moved, painted
@@ -60,7 +60,7 @@ class CompanyNodes:
 
     def show(self, company: Company) -> None:
         """Draw a moment."""
-        at, q = places(company.pos).astype(np.float32), turns(company.q).astype(np.float32)
+        at, q = all_to_scene(company.pos).astype(np.float32), turns(company.q).astype(np.float32)
         for node, which in self._groups:
             node.batched_positions, node.batched_wxyzs = at[which], q[which]
         for label, (x, y, z), above in zip(self.labels, at[: len(self.labels)].tolist(), self._above, strict=True):

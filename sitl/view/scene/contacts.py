@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any
 
-from ..axes import place
+from ..axes import to_scene
 from ..frame import Frame
 
 _COLOUR = (192, 57, 43)
@@ -15,7 +15,7 @@ _KEPT = 30
 
 
 class Contacts:
-    """Red balls at the places of impacts.
+    """Red balls at the positions of impacts.
 
     Args:
         scene: of the page.
@@ -29,7 +29,7 @@ class Contacts:
         self._number = 0
 
     @property
-    def places(self) -> list[tuple[float, float, float]]:
+    def positions(self) -> list[tuple[float, float, float]]:
         """Of the marks, in the scene's axes [m], oldest first."""
         return [(float(x), float(y), float(z)) for x, y, z in (mark.position for mark in self._marks)]
 
@@ -52,7 +52,7 @@ class Contacts:
         self._number += 1
         name = f"/stage/contacts/{self._number % (_KEPT + 1)}"
         ball = self._scene.add_icosphere(
-            name, radius=self._radius, color=_COLOUR, opacity=0.7, position=place(frame.pos)
+            name, radius=self._radius, color=_COLOUR, opacity=0.7, position=to_scene(frame.pos)
         )
         text = f"{frame.hit_speed:.1f} m/s"
         self._scene.add_label(f"{name}/label", text, anchor="bottom-center", font_screen_scale=0.75)

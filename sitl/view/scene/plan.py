@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..axes import place
+from ..axes import to_scene
 from ..frame import Frame, Mark, Plan, Points
 from ..shape import cylinder
 
@@ -39,11 +39,11 @@ class PlanNodes:
         """Draw a moment."""
         self.home.visible = frame.home is not None
         if frame.home is not None:
-            x, y, _ = place(frame.home)
+            x, y, _ = to_scene(frame.home)
             self.home.position = (x, y, 0.01 * self._size)  # on the ground, whatever the estimator thinks of its height
         if frame.leg != self._leg:
             self._leg = frame.leg
-            ends = np.array([place(end) for end in frame.leg or ()], np.float32)
+            ends = np.array([to_scene(end) for end in frame.leg or ()], np.float32)
             self.leg.points = ends.reshape(-1, 2, 3)
         if frame.plan is not self._shown:
             self._shown = frame.plan
@@ -54,9 +54,9 @@ class PlanNodes:
             node.remove()
         self._nodes = []
         if plan.items:
-            places = np.array([place(mark.place) for mark in plan.items], np.float32)
-            if len(places) > 1:
-                self._lines("/stage/plan/path", np.stack([places[:-1], places[1:]], axis=1), _PATH, 0.02)
+            positions = np.array([to_scene(mark.position) for mark in plan.items], np.float32)
+            if len(positions) > 1:
+                self._lines("/stage/plan/path", np.stack([positions[:-1], positions[1:]], axis=1), _PATH, 0.02)
             self._marks("/stage/plan/item", plan.items, _LEG)
         self._marks("/stage/plan/rally", plan.rally, _RALLY)
         for k, outline in enumerate(plan.fences):
@@ -65,7 +65,7 @@ class PlanNodes:
     def _marks(self, name: str, marks: tuple[Mark, ...], colour: tuple[int, int, int]) -> None:
         scene, size = self._scene, self._size
         for k, mark in enumerate(marks):
-            at = place(mark.place)
+            at = to_scene(mark.position)
             self._nodes += [
                 scene.add_icosphere(f"{name}{k}", radius=0.14 * size, color=colour, position=at),
                 scene.add_label(f"{name}{k}/label", mark.name, anchor="bottom-center", font_screen_scale=0.75),

@@ -10,7 +10,7 @@ import numpy as np
 from ...core.algebra import norm
 from ...core.vectors import Quat, Vec3
 from ...worlds import World
-from ..axes import place
+from ..axes import to_scene
 from ..colours import of_vehicle
 from ..frame import Frame, Points, Stage
 from ..shape import tinted
@@ -73,12 +73,12 @@ class Scene:
         self.estimate.show(frame.estimate_pos, frame.estimate_q or _LEVEL)
         self.set_point.visible = frame.set_point is not None
         if frame.set_point is not None:
-            self.set_point.position = place(frame.set_point)
+            self.set_point.position = to_scene(frame.set_point)
         self._show_wind(frame)
-        self.bearings.show(place(frame.pos), span)
+        self.bearings.show(to_scene(frame.pos), span)
 
     def place_world(self, copies: Points | None) -> None:
-        """Draw the world at other places, shape (n, 3) [m]; None: once, at the origin."""
+        """Draw the world at other positions, shape (n, 3) [m]; None: once, at the origin."""
         if self._entered is None:  # else frames say what is around
             self._surroundings.remove()
             self._surroundings = surroundings.draw(self._scene, self._world, copies)
@@ -107,9 +107,9 @@ class Scene:
         self.estimate = Ghost(self._scene, "/stage/estimate", shape, _ESTIMATE, 0.35)
 
     def _show_wind(self, frame: Frame) -> None:
-        x, y, z = place(frame.pos)
+        x, y, z = to_scene(frame.pos)
         self._wind_node.position = (x, y, z + 1.2 * self._size)
         if norm(frame.wind - self._wind) > 0.05:
             self._wind = frame.wind
-            tip = np.array(place(frame.wind)) * 0.35 * self._size  # a metre a second is about a third of the vehicle
+            tip = np.array(to_scene(frame.wind)) * 0.35 * self._size  # a metre a second is about a third of the vehicle
             self._arrow.points = np.array([[-0.5 * tip, 0.5 * tip]], np.float32)

@@ -31,7 +31,7 @@ def draw(scene: Any, world: World | None, copies: Points | None = None) -> Any:
     Args:
         scene: of the page.
         world: None: a plain.
-        copies: places at which the world stands, shape (n, 3) [m]; None: once, at the origin.
+        copies: positions at which the world stands, shape (n, 3) [m]; None: once, at the origin.
     """
     floor = 0.0 if world is None else world.floor_z
     scene.add_grid(

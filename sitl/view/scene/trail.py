@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The way that a vehicle has come, coloured by its mode or by its speed; its memory is limited."""
+"""The path that a vehicle has come, coloured by its mode or by its speed; its memory is limited."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...core.algebra import norm
-from ..axes import place
+from ..axes import to_scene
 from ..colours import of_ends, of_mode, of_speed
 from ..frame import Frame
 
@@ -47,7 +47,7 @@ class Trail:
         if frame.time_us < self._time_us:
             self.clear()
         self._time_us = frame.time_us
-        x, y, z = place(frame.pos)
+        x, y, z = to_scene(frame.pos)
         here = (x, y, z + self._lift)
         if self._points:
             moved = float(np.linalg.norm(np.subtract(here, self._points[-1])))

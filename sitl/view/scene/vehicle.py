@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..axes import FLIP, about, place, turn
+from ..axes import FLIP, about, to_scene, turn
 from ..frame import Frame
 from ..shape import ROTOR, WHEEL, Shape
 
@@ -29,7 +29,7 @@ class VehicleNodes:
 
     def __init__(self, scene: Any, name: str, shape: Shape) -> None:
         self.body = scene.add_frame(name, show_axes=False)
-        """The vehicle: its place and attitude are the truth."""
+        """The vehicle: its position and attitude are the truth."""
         self._pieces = {}
         for piece in shape.pieces:
             mesh = piece.mesh
@@ -53,7 +53,7 @@ class VehicleNodes:
 
     def show(self, frame: Frame) -> None:
         """Draw a moment."""
-        self.body.position, self.body.wxyz = place(frame.pos), turn(frame.q)
+        self.body.position, self.body.wxyz = to_scene(frame.pos), turn(frame.q)
         if self._rotors:
             self._turn_rotors(frame)
         if self._wheels:
@@ -107,8 +107,8 @@ class Ghost:
                 )  # fmt: skip
 
     def show(self, pos: Any, q: Any) -> None:
-        """Draw it at a place and attitude (NED, body to NED), or not at all (None)."""
+        """Draw it at a position and attitude (NED, body to NED), or not at all (None)."""
         self.body.visible = pos is not None
         if pos is not None:
-            self.body.position = place(pos)
+            self.body.position = to_scene(pos)
             self.body.wxyz = turn(q)

@@ -76,3 +76,10 @@ def turn_to(v: Any, yaw: float) -> None:
     est.euler = est.euler.replace(yaw=yaw)
     est.q = est.q.replace(w=math.cos(yaw / 2), z=math.sin(yaw / 2))
     target.target_q = target.target_q.replace(w=est.q.w, z=est.q.z)
+
+
+def told(v: Any, event: Any) -> list[tuple[float, float]]:
+    """(a, b) of each event of a kind so far."""
+    ring = v.autopilot.events
+    places = [k % 64 for k in range(int(ring.count))]
+    return [(float(ring.a[k]), float(ring.b[k])) for k in places if ring.code[k] == int(event)]

@@ -10,7 +10,7 @@ import pytest
 from sitl.autopilot import failsafe_checks, smart_rtl_path
 from sitl.autopilot.arming_checks import ArmingMethod
 from sitl.autopilot.copter import failsafe, pilot
-from sitl.autopilot.copter.failsafe_actions import NO_WAY_BACK
+from sitl.autopilot.copter.failsafe_actions import NO_RETURN_PATH
 from sitl.autopilot.failsafe_checks import FAILSAFE
 from sitl.autopilot.modes import MODE_REFUSED
 from sitl.autopilot.state import Failsafe
@@ -185,7 +185,7 @@ def test_without_receiver_the_radio_is_lost_and_the_sticks_are_centred(flying):
 def test_without_a_path_smart_rtl_becomes_another_mode_and_that_is_told(flying, action, mode):
     failsafe.act(flying, action, 3, ArmingMethod.RADIO_FAILSAFE)
     assert flying.autopilot.modes.number == mode
-    assert codes(flying)[:2] == [MODE_REFUSED, NO_WAY_BACK]
+    assert codes(flying)[:2] == [MODE_REFUSED, NO_RETURN_PATH]
 
 
 def test_rtl_without_position_becomes_a_landing_that_waits(flying):

@@ -68,7 +68,7 @@ def test_a_good_fix_is_sane_and_passes() -> None:
         ("gps_vel", (-(2**31), 0, 0)),
     ],
 )
-def test_a_fix_with_figures_that_make_no_sense_is_refused(name: str, value) -> None:
+def test_a_fix_with_values_that_make_no_sense_is_refused(name: str, value) -> None:
     sensors = _fix()
     sensors[name] = value
     assert not gps.is_sane(sensors)
@@ -97,7 +97,7 @@ def test_origin_is_set_once(ap) -> None:
 
 def test_yaw_turns_by_the_declination_learnt(ap) -> None:
     ap.ekf.q, ap.ekf.yaw_aligned = IDENTITY, True
-    aiding.place_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(-353632620, 1491652370, 584.0))
+    aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(-353632620, 1491652370, 584.0))
     assert 2 * math.atan2(ap.ekf.q.z, ap.ekf.q.w) == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw == pytest.approx(ap.ekf.declination)
     assert ap.estimate.reset_yaw_count == 1
@@ -105,7 +105,7 @@ def test_yaw_turns_by_the_declination_learnt(ap) -> None:
 
 def test_yaw_stays_where_the_heading_alone_is_fused(ap) -> None:
     ap.ekf.q, ap.ekf.yaw_aligned, ap.ekf.heading_only = IDENTITY, True, True
-    aiding.place_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(-353632620, 1491652370, 584.0))
+    aiding.set_origin(ap.ekf, ap.estimate, ap.events, aiding.Origin(-353632620, 1491652370, 584.0))
     assert math.degrees(ap.ekf.declination) == pytest.approx(12.7, abs=0.3)
     assert tuple(ap.ekf.q) == tuple(IDENTITY)
     assert ap.estimate.reset_yaw_count == 0

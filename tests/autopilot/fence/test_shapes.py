@@ -32,10 +32,10 @@ def placed(*listed: MissionItem) -> FenceState:
     fence, estimate = FenceState(), Estimate()
     items.load(fence, list(items.shapes(listed)))
     assert not fence.is_placed
-    shapes.place(fence, estimate)
+    shapes.use_origin(fence, estimate)
     assert not fence.is_placed  # without an origin no place means anything
     estimate.origin_set, estimate.origin_lat, estimate.origin_lon = True, LAT, LON
-    shapes.place(fence, estimate)
+    shapes.use_origin(fence, estimate)
     assert fence.is_placed
     return fence
 
@@ -98,7 +98,7 @@ def test_another_origin_moves_no_corner_on_the_globe() -> None:
     fence, estimate = placed(*polygon(MavCmd.NAV_FENCE_POLYGON_VERTEX_INCLUSION, *SQUARE)), Estimate()
     place = add_offset(LAT, LON, -5000.0, 400.0)
     estimate.origin_set, estimate.origin_lat, estimate.origin_lon = True, round(place.lat), round(place.lon)
-    shapes.place(fence, estimate)
+    shapes.use_origin(fence, estimate)
     for k, (north, _) in enumerate(SQUARE):
         place = add_offset(estimate.origin_lat, estimate.origin_lon, *shapes.corner_of(fence, 0, k))
         want = add_offset(LAT, LON, *SQUARE[k])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from sitl.autopilot.mission.item import COMMANDS, MissionItem
 from sitl.autopilot.mission.mission import Mission, MissionError
 from sitl.autopilot.mission.storage import stored
-from sitl.autopilot.mission.validate import MAX_ITEMS, PLACE_FRAMES, check, check_all, check_count
+from sitl.autopilot.mission.validate import LOCATION_FRAMES, MAX_ITEMS, check, check_all, check_count
 from sitl.core.mavlink import MavCmd
 
 WP = MissionItem(MavCmd.NAV_WAYPOINT, x=-353632621, y=1491652371, z=10.0)
@@ -67,7 +67,7 @@ def test_check(item: MissionItem, result: int) -> None:
 def test_frames(frame: int) -> None:
     """The frames that ArduPilot takes for places."""
     assert check(WP._replace(frame=frame)) == 0
-    assert frame in PLACE_FRAMES
+    assert frame in LOCATION_FRAMES
 
 
 def test_count() -> None:

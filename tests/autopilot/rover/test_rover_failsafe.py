@@ -199,3 +199,13 @@ def test_a_rover_trusts_no_position_after_four_seconds_of_a_glitch() -> None:
         assert failsafe.is_glitch_long(ekf) == long
     ekf.gps_glitch = False
     assert not failsafe.is_glitch_long(ekf)
+
+
+def test_a_loss_is_acted_upon_after_more_than_fs_timeout() -> None:
+    for late, acted in ((0, False), (1, True)):
+        rover = driving(FS_TIMEOUT=1.5)
+        v, links = rover.v, rover.ap.modes.links
+        failsafe.watch(v, BIT_RADIO, True)
+        v.time_us += 1_500_000 + late
+        failsafe.watch(v, BIT_RADIO, True)
+        assert (links.acted != 0) == acted

@@ -12,7 +12,7 @@ from sitl import vehicles
 from sitl.identify.rover.courses import STEP_S, drive
 
 
-def test_speed_and_curvature_settle_where_the_figures_say() -> None:
+def test_speed_and_curvature_settle_where_the_properties_say() -> None:
     airframe = vehicles.load("erle_rover")
     throttle, steering = np.full((2, 600), 0.8), np.full((2, 600), 0.4)
     courses = drive(airframe.record(), steering, throttle, np.zeros(2), np.zeros(2))

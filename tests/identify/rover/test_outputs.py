@@ -13,7 +13,7 @@ TIME = np.arange(0.0, 2.0, 0.1)
 
 def test_a_ramp_is_a_straight_line_that_is_held_for_a_while() -> None:
     output = Output(TIME, 0.4 * TIME, hold=0.02)
-    assert len(output.places) == 0, "0.04 a sample is no step"
+    assert len(output.indices) == 0, "0.04 a sample is no step"
     assert output.at(np.array([0.55]), 0.01) == pytest.approx([0.4 * 0.54]), "half of what is held late"
 
 
@@ -29,4 +29,4 @@ def test_a_step_happens_at_its_onset() -> None:
 
 
 def test_what_changes_before_and_after_too_is_no_step() -> None:
-    assert len(Output(TIME, np.clip(3.0 * (TIME - 0.5), 0.0, 1.0), hold=0.0).places) == 0
+    assert len(Output(TIME, np.clip(3.0 * (TIME - 0.5), 0.0, 1.0), hold=0.0).indices) == 0

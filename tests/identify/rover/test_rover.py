@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An airframe from a log of a rover whose figures are known; what a log cannot tell is said."""
+"""An airframe from a log of a rover whose properties are known; what a log cannot tell is said."""
 
 from __future__ import annotations
 
@@ -60,17 +60,17 @@ def found(driven):
     return identify(driven, mass=882.0)
 
 
-def test_figures_contain_the_truth_and_others_say_why_not(found) -> None:
+def test_estimates_contain_the_truth_and_others_say_why_not(found) -> None:
     known = expected(vehicles.load("erle_rover"))
     for name in (
         "speed_by_throttle", "speed_by_throttle_back", "top_speed", "speed_lag", "turning_radius", "steering_gain",
         "steering_trim", "rear_axle", "avionics_current", "battery_resistance",
     ):  # fmt: skip
-        figure = found[name]
-        assert figure.low <= known[name] <= figure.high, f"{figure}, truth {known[name]}"
+        estimate = found[name]
+        assert estimate.low <= known[name] <= estimate.high, f"{estimate}, truth {known[name]}"
     assert found["turning_radius"].relative < 0.05 and found["speed_lag"].relative < 0.15
     assert "the limit was not reached: tyres held" in found["grip"].reason
-    assert all(figure.is_observed or figure.reason for figure in found.figures)
+    assert all(estimate.is_observed or estimate.reason for estimate in found.estimates)
     assert "battery_capacity: not observable in this log: " in found.table()
 
 
@@ -83,7 +83,7 @@ def test_the_airframe_is_a_file_that_drives(found, tmp_path) -> None:
         assert answers[name] == pytest.approx(found[name].value, rel=0.01), name
     low, high = mine.intervals["speed_max"]
     assert (low, high) == pytest.approx((found["speed_by_throttle"].low, found["speed_by_throttle"].high))
-    assert set(mine.intervals) <= set(mine.figures) and "contact_radius" not in mine.intervals
+    assert set(mine.intervals) <= set(mine.properties) and "contact_radius" not in mine.intervals
     assert "identified, by steering_gain" in out.read_text()
     names = [change.name for change in airframe_plan(out).changes]
     assert "least speed_max" in names and "drawn within the intervals" in names
@@ -103,8 +103,8 @@ def test_a_mass_that_the_battery_contradicts_is_doubted(found) -> None:
 @pytest.mark.parametrize(("held", "grip"), [(0.3, 1.0), (5.8, 5.8)])
 def test_the_airframes_tyres_hold_at_least_what_the_logs_held(found, held, grip) -> None:
     said = dataclasses.replace(found["grip"], least=held)
-    others = (figure for figure in found.figures if figure.name != "grip")
-    assert dataclasses.replace(found, figures=(*others, said)).airframe().value("grip") == grip
+    others = (estimate for estimate in found.estimates if estimate.name != "grip")
+    assert dataclasses.replace(found, estimates=(*others, said)).airframe().value("grip") == grip
     assert 0.0 < found["grip"].least < 1.0, "what this log held is less than the shipped airframe's"
 
 
@@ -112,8 +112,8 @@ def test_the_airframes_tyres_hold_at_least_what_the_logs_held(found, held, grip)
 def test_tyres_that_slide_tell_their_grip(tmp_path) -> None:
     airframe = vehicles.load("erle_rover").changed(grip=0.06)
     drive(airframe, tmp_path / "slippery.bin")
-    figure = identify(tmp_path / "slippery.bin")["grip"]
-    assert figure.low < 0.06 < figure.high and figure.relative < 0.3, str(figure)
+    estimate = identify(tmp_path / "slippery.bin")["grip"]
+    assert estimate.low < 0.06 < estimate.high and estimate.relative < 0.3, str(estimate)
 
 
 @pytest.mark.slow
@@ -121,8 +121,10 @@ def test_motors_that_give_all_they_have_tell_it(tmp_path) -> None:
     drive("erle_rover", tmp_path / "reversals.bin", reversals=6)
     found, known = identify(tmp_path / "reversals.bin"), expected(vehicles.load("erle_rover"))
     for name in ("drive_accel", "brake_accel"):
-        figure = found[name]
-        assert figure.low < known[name] < figure.high and figure.relative < 0.1, f"{figure}, truth {known[name]}"
+        estimate = found[name]
+        assert estimate.low < known[name] < estimate.high and estimate.relative < 0.1, (
+            f"{estimate}, truth {known[name]}"
+        )
     assert found.airframe().value("drive_accel") == found["drive_accel"].value
 
 
@@ -132,8 +134,8 @@ def test_a_skidding_rover_has_a_track_and_no_wheels_that_turn(tmp_path) -> None:
     found = identify(tmp_path / "skid.bin")
     known = expected(vehicles.load("skid_rover"))
     for name in ("turning_track", "pivot_rate", "speed_lag", "drive_accel"):
-        figure = found[name]
-        assert figure.low <= known[name] <= figure.high, f"{figure}, truth {known[name]}"
+        estimate = found[name]
+        assert estimate.low <= known[name] <= estimate.high, f"{estimate}, truth {known[name]}"
     mine = found.airframe()
     assert mine.value("steering_model") == vehicles.load("skid_rover").value("steering_model")
     with pytest.raises(KeyError):

@@ -56,14 +56,14 @@ def test_without_matplotlib_it_says_what_is_missing(
     assert "<img" not in text
 
 
-def test_junit_has_a_case_for_each_figure(differing: Comparison, tmp_path: Path) -> None:
+def test_junit_has_a_case_for_each_metric(differing: Comparison, tmp_path: Path) -> None:
     report.report_write(differing, tmp_path)
     suite = xml.parse(tmp_path / report.JUNIT).getroot().find("testsuite")
     assert suite is not None
     cases = suite.findall("testcase")
-    assert len(cases) == sum(figure.is_judged for figure in differing.figures)
+    assert len(cases) == sum(metric.is_judged for metric in differing.metrics)
     bad = {case.get("name") for case in cases if case.find("failure") is not None}
-    assert bad == {figure.name for figure in differing.failed}
+    assert bad == {metric.name for metric in differing.failed}
     assert suite.get("failures") == str(len(bad))
 
 

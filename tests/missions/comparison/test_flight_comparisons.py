@@ -23,7 +23,7 @@ def golden(squares: Path) -> Flight:
 
 
 def failed(comparison: Comparison) -> set[str]:
-    return {figure.name for figure in comparison.failed}
+    return {metric.name for metric in comparison.failed}
 
 
 def test_the_same_flight_is_the_same_to_the_last_digit(golden: Flight, tmp_path: Path) -> None:
@@ -139,7 +139,7 @@ def test_a_lost_item_a_new_mode_and_a_late_text_are_named(golden: Flight) -> Non
     late = [(t + 0.5 * (text == "Disarming motors"), severity, text) for t, severity, text in track.texts]
     found = compare(golden, replace(golden, track=replace(track, items=items, modes=modes, texts=late)))
     assert failed(found) == {"items.order", "modes.order", "texts.time"}
-    words = {figure.name: figure.words for figure in found.figures}
+    words = {metric.name: metric.words for metric in found.metrics}
     assert "item 2 is missing" in words["items.order"]
     assert "mode LOITER is new" in words["modes.order"]
     assert "'Disarming motors' comes 0.50 s later" in words["texts.time"]
@@ -192,4 +192,4 @@ def test_a_tolerance_without_limits_judges_nothing(golden: Flight, tmp_path: Pat
     nothing |= {name: {"time": False} for name in ("items", "modes", "texts")}
     found = compare(golden, other, nothing)
     assert found.ok
-    assert not any(figure.is_judged for figure in found.figures)
+    assert not any(metric.is_judged for metric in found.metrics)

@@ -174,7 +174,7 @@ def places(draft: Draft) -> list[tuple[float, float]]:
     items = straightened(draft.file()).mission.items
     assert all(item.command != MavCmd.NAV_SPLINE_WAYPOINT for item in items)
     return [
-        PLANE.point((i.x * 1e-7, i.y * 1e-7)) for i in items if i.command == MavCmd.NAV_WAYPOINT and not i.no_place
+        PLANE.point((i.x * 1e-7, i.y * 1e-7)) for i in items if i.command == MavCmd.NAV_WAYPOINT and not i.no_location
     ][1:]
 
 

@@ -146,7 +146,7 @@ def test_null_is_keep_the_heading_or_nothing() -> None:
     picture = entry(command=2000, params=[0, 0, 1, None, None, None, None])
     found = plan.parse(text(entry(params=[0, 0, 0, None, None, None, 10]), picture)).mission.items
     assert math.isnan(found[1].p4)
-    assert found[1].no_place
+    assert found[1].no_location
     assert found[2].p4 == 0.0
 
 
@@ -242,8 +242,8 @@ def test_ground_station_text() -> None:
         ("QGC WPL 110\n" + ROW0.replace("-35.0", "-95.0"), r"m:2: latitude -95.0 is not within -90 .. 90"),
         ("QGC WPL 110\n" + ROW0.replace("149.0", "181"), r"m:2: longitude 181.0 is not within -180 .. 180"),
         ("QGC WPL 110\n" + ROW0.replace("584.0", "nan"), r"m:2: altitude nan is not a number of metres"),
-        ("QGC WPL 110\n" + ROW0.replace("-35.0", "nan"), r"m:2: place nan, 149.0 is not a pair"),
-        ("QGC WPL 110\n" + ROW0.replace("-35.0", "1e400"), r"m:2: place inf"),
+        ("QGC WPL 110\n" + ROW0.replace("-35.0", "nan"), r"m:2: location nan, 149.0 is not a pair"),
+        ("QGC WPL 110\n" + ROW0.replace("-35.0", "1e400"), r"m:2: location inf"),
         ("QGC WPL 110\n" + ROW0.replace("\t16\t0\t", "\t16\tinf\t"), r"m:2: parameter 1 is inf: a finite number"),
         ("QGC WPL 110\n" + ROW0.replace("\t16\t", "\t9\t"), r"m:2: command 9 is not known here; known are 16 WP, "),
         ("QGC WPL 110\n" + ROW0.replace("\t0\t16\t", "\t7\t16\t"), r"m:2: frame 7 is not known.*3 relative"),

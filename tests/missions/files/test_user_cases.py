@@ -39,7 +39,9 @@ def test_an_old_format_says_what_to_do() -> None:
 
 
 def test_a_fence_without_a_place_to_return_to_says_what_to_do() -> None:
-    with pytest.raises(MissionFileError, match=r"old_fence\.fen:5: the last place is that of line 1.*Put a place to"):
+    with pytest.raises(
+        MissionFileError, match=r"old_fence\.fen:5: the last location is that of line 1.*Put a location to"
+    ):
         load(CASES / "old_fence.fen")
 
 

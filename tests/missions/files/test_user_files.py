@@ -128,8 +128,8 @@ def test_rally_lines(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        ("a.fen", CORNERS + CORNERS[: CORNERS.index("\n")], r"a\.fen:5: the last place is that of line 1.*\.poly"),
-        ("a.fen", "1 2\n" + CORNERS, r"a\.fen:5: the last place is that of no other"),
+        ("a.fen", CORNERS + CORNERS[: CORNERS.index("\n")], r"a\.fen:5: the last location is that of line 1.*\.poly"),
+        ("a.fen", "1 2\n" + CORNERS, r"a\.fen:5: the last location is that of no other"),
         ("a.fen", "1 2\n3 4\n", r"a\.fen: 2 lines; a fence has"),
         ("a.fen", "1 2\n3\n", r"a\.fen:2: '3' is not a latitude and a longitude"),
         ("a.poly", "1 2\n3 4\n1 2\n", r"a\.poly: 2 corners; a polygon has 3 or more"),

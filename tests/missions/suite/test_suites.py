@@ -256,4 +256,4 @@ def test_processes_give_what_one_gives(folder: Path) -> None:
     assert set(alone.values()) == {WRITTEN}
     together = list(run(cases, jobs=2))
     assert [result.status for result in together] == [OK, OK]
-    assert all(value == 0.0 for result in together for value in result.figures.values())
+    assert all(value == 0.0 for result in together for value in result.metrics.values())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of agreement, by hand: root mean square, variance accounted for, windows; and their limits."""
+"""Metrics of agreement, by hand: root mean square, variance accounted for, windows; and their limits."""
 
 from __future__ import annotations
 
@@ -65,14 +65,14 @@ def test_segments_count_each_by_itself() -> None:
 
 
 def test_limits() -> None:
-    figures = {"height.rms": 0.4, "height.max": 2.0, "height.bias": -0.3, "height.vaf": 70.0, "roll.vaf": math.nan}
+    metrics = {"height.rms": 0.4, "height.max": 2.0, "height.bias": -0.3, "height.vaf": 70.0, "roll.vaf": math.nan}
     wanted = dict(limits.parse(text) for text in ("height=0.5", "height.max=1", "height.bias=0.2", "height.vaf=80"))
-    assert [(v.name, v.ok) for v in limits.judge(figures, wanted)] == [
+    assert [(v.name, v.ok) for v in limits.judge(metrics, wanted)] == [
         ("height.rms", True), ("height.max", False), ("height.bias", False), ("height.vaf", False)
     ]  # fmt: skip
-    (untold,) = limits.judge(figures, {"roll.vaf": 80.0})
+    (untold,) = limits.judge(metrics, {"roll.vaf": 80.0})
     assert not untold.ok and "hardly moved" in untold.words
-    with pytest.raises(OptionError, match=r"limit 'heigt' is of no figure of this flight; did you mean 'height.rms'"):
-        limits.judge(figures, {"heigt": 1.0})
+    with pytest.raises(OptionError, match=r"limit 'heigt' is of no metric of this flight; did you mean 'height.rms'"):
+        limits.judge(metrics, {"heigt": 1.0})
     with pytest.raises(OptionError, match="is not NAME=VALUE"):
         limits.parse("height")

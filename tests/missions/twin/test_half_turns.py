@@ -34,7 +34,7 @@ def test_half_turns_are_those_of_about_180_degrees() -> None:
 
 @pytest.mark.parametrize(("by", "here", "told"), [(180.0, -180.0, True), (180.0, 180.0, False), (90.0, -90.0, False)])
 def test_only_a_half_turn_that_the_twin_makes_the_other_way_is_told(by: float, here: float, told: bool) -> None:
-    found = half_turns.other_way(course((10.0, by)), course((10.0, here)), ALL_OF_IT)
+    found = half_turns.opposite_turns(course((10.0, by)), course((10.0, here)), ALL_OF_IT)
     assert bool(found) == told
     assert ["the other way round than the log's vehicle (at 10 s)" in text for text in half_turns.words(found)] == (
         [True] if told else []
@@ -43,9 +43,9 @@ def test_only_a_half_turn_that_the_twin_makes_the_other_way_is_told(by: float, h
 
 def test_a_twin_that_is_late_is_given_the_time_of_both_turns() -> None:
     late = [Window(0.0, 60.0, 3.0)]
-    (found,) = half_turns.other_way(course((10.0, 180.0)), course((13.0, -180.0)), late)
+    (found,) = half_turns.opposite_turns(course((10.0, 180.0)), course((13.0, -180.0)), late)
     assert found.begin == pytest.approx(9.5, abs=0.2) and found.end == pytest.approx(17.5, abs=0.2)
-    assert half_turns.other_way(course((10.0, 180.0)), None, late) == []
+    assert half_turns.opposite_turns(course((10.0, 180.0)), None, late) == []
 
 
 def test_windows_are_cut_around_a_turn_and_open_segments_left_out() -> None:

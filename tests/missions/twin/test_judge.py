@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What figures of agreement say of model and autopilot."""
+"""What metrics of agreement say of model and autopilot."""
 
 from __future__ import annotations
 

@@ -50,6 +50,6 @@ def test_the_twin_of_a_mission_is_compared_item_by_item(own_log: Path, own_twin:
     found = windows(log, own_twin.flown)
     assert all(one.end <= after.begin + 1e-9 for one, after in pairwise(found))
     assert sum(one.end - one.begin for one in found) > 0.9 * log.span.length
-    figures = own_twin.figures()
+    metrics = own_twin.metrics()
     for name in ("roll_rate", "pitch_rate", "position", "roll", "climb"):  # the twin is 0.09 s early from item 3 on
-        assert figures[f"legs.{name}.rms"] < 0.75 * figures[f"{name}.rms"], name
+        assert metrics[f"legs.{name}.rms"] < 0.75 * metrics[f"{name}.rms"], name

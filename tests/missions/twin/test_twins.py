@@ -23,26 +23,26 @@ from tests.missions.twin.conftest import FRAME, SEED, cut
 
 
 def test_the_twin_of_our_own_flight_lies_on_it(own_twin: Twin) -> None:
-    figures = own_twin.figures()
-    assert figures["height.rms"] < 0.1 and figures["position.rms"] < 0.2 and figures["yaw.rms"] < 2.5
+    metrics = own_twin.metrics()
+    assert metrics["height.rms"] < 0.1 and metrics["position.rms"] < 0.2 and metrics["yaw.rms"] < 2.5
     for name in ("climb", "speed", "roll", "pitch", "pitch_rate", "throttle", "motors"):
-        assert figures[f"{name}.vaf"] > 95.0, name
+        assert metrics[f"{name}.vaf"] > 95.0, name
     assert own_twin.findings == [] and own_twin.went == []
 
 
 def test_open_segments_begin_in_the_logged_state(own_twin: Twin) -> None:
-    figures = own_twin.figures()
+    metrics = own_twin.metrics()
     assert len(own_twin.begins) >= 5
     for name in ("height", "position", "roll", "pitch", "yaw"):
-        assert figures[f"segments.{name}.vaf"] > 95.0, name
-    assert figures["segments.yaw_rate.vaf"] > 90.0 and figures["segments.height.rms"] < 0.05
+        assert metrics[f"segments.{name}.vaf"] > 95.0, name
+    assert metrics["segments.yaw_rate.vaf"] > 90.0 and metrics["segments.height.rms"] < 0.05
     for name in ("acceleration", "thrust"):
-        assert abs(figures[f"model.{name}.bias"]) < 0.05  # the log's motor outputs hold the same vehicle
+        assert abs(metrics[f"model.{name}.bias"]) < 0.05  # the log's motor outputs hold the same vehicle
 
 
 def test_a_segment_begins_in_the_logged_state_wherever_the_twin_is(own_log: Path, core: Core, tmp_path: Path) -> None:
     found = twin.fly(own_log, FRAME, seed=SEED, wind=(8.0, 90.0), core=core, keep=tmp_path)  # the log has no wind
-    assert found.figures()["pitch.rms"] > 1.5
+    assert found.metrics()["pitch.rms"] > 1.5
     logged, flown = (log.table("ATT") for log in (found.log, FlightLog(tmp_path / "segments.bin")))
     begins = np.array(found.begins) + found.log.span.armed
     shifts = np.array([window.shift for window in found.opened])
@@ -54,8 +54,8 @@ def test_a_segment_begins_in_the_logged_state_wherever_the_twin_is(own_log: Path
 
 
 def test_another_seed_errs_as_receivers_do(own_log: Path, core: Core) -> None:
-    figures = twin.fly(own_log, FRAME, seed=SEED + 1, segments=False, core=core).figures()
-    assert figures["height.rms"] < 0.5 and 0.01 < figures["position.rms"] < 1.0 and figures["pitch.vaf"] > 90.0
+    metrics = twin.fly(own_log, FRAME, seed=SEED + 1, segments=False, core=core).metrics()
+    assert metrics["height.rms"] < 0.5 and 0.01 < metrics["position.rms"] < 1.0 and metrics["pitch.vaf"] > 90.0
 
 
 def test_a_twin_that_does_not_leave_the_ground_has_open_segments(own_log: Path, core: Core) -> None:
@@ -63,13 +63,13 @@ def test_a_twin_that_does_not_leave_the_ground_has_open_segments(own_log: Path, 
     found = twin.fly(own_log, heavy, core=core)
     assert found.findings[0].startswith("the twin never left the ground")
     assert any("more down than the vehicle did" in text for text in found.findings)
-    assert found.figures()["model.thrust.bias"] < -5.0 and not any("throttle" in text for text in found.findings)
+    assert found.metrics()["model.thrust.bias"] < -5.0 and not any("throttle" in text for text in found.findings)
 
 
 def test_another_airframe_is_a_misfit(own_log: Path, core: Core) -> None:
     found = twin.fly(own_log, "erle_copter", core=core)
-    figures = found.figures()
-    assert figures["throttle.bias"] < -1.0 and figures["model.acceleration.bias"] > 0.3
+    metrics = found.metrics()
+    assert metrics["throttle.bias"] < -1.0 and metrics["model.acceleration.bias"] > 0.3
     assert any(text.startswith("model: mean throttle output") for text in found.findings)
     assert any("more up than the vehicle did" in text for text in found.findings)
     assert "The twin flies otherwise than the log's vehicle did" in report.verdict_of(found)
@@ -79,9 +79,9 @@ def test_another_airframe_is_a_misfit(own_log: Path, core: Core) -> None:
 def test_what_if(own_log: Path, own_twin: Twin, core: Core) -> None:
     change = Change({"WPNAV_SPEED": 150.0}, (6.0, 270.0), (), "+0.5")
     found = twin.fly(own_log, FRAME, seed=SEED, change=change, segments=False, core=core)
-    assert found.figures()["height.rms"] == own_twin.figures()["height.rms"]  # the twin stays what it was
-    figures = found.figures()
-    assert figures["changed.throttle.bias"] > 3.0 and figures["changed.position.max"] > 1.0
+    assert found.metrics()["height.rms"] == own_twin.metrics()["height.rms"]  # the twin stays what it was
+    metrics = found.metrics()
+    assert metrics["changed.throttle.bias"] > 3.0 and metrics["changed.position.max"] > 1.0
     told = {what: (before, after) for what, _, before, after in report.effects(found)}
     assert told["mean throttle output"][1] > told["mean throttle output"][0] + 3.0
     assert 1.4 < told["greatest speed"][1] < 1.6 < told["greatest speed"][0], "it flies at WPNAV_SPEED"
@@ -92,8 +92,8 @@ def test_what_if(own_log: Path, own_twin: Twin, core: Core) -> None:
 def test_what_if_a_motor_fails_in_flight(own_log: Path, core: Core) -> None:
     change = Change(faults=("motor:1=0@12",))  # 12 s after arming
     found = twin.fly(own_log, FRAME, seed=SEED, change=change, segments=False, core=core)
-    figures = found.figures()
-    assert figures["changed.roll.max"] > 30.0 and figures["height.rms"] < 0.05
+    metrics = found.metrics()
+    assert metrics["changed.roll.max"] > 30.0 and metrics["height.rms"] < 0.05
     one = next(one for one in found.difference if one.quantity.name == "roll")
     before = one.time < 11.9
     assert abs(one.flown - one.logged)[before].max() < 0.2
@@ -102,15 +102,15 @@ def test_what_if_a_motor_fails_in_flight(own_log: Path, core: Core) -> None:
 def test_a_log_that_ends_in_the_air_is_compared_up_to_there(own_log: Path, tmp_path: Path, core: Core) -> None:
     found = twin.fly(cut(own_log, tmp_path / "half.bin", 0.6), FRAME, seed=SEED, segments=False, core=core)
     assert any("while armed: it is compared up to there" in note for note in found.notes)
-    assert found.figures()["height.rms"] < 0.05
+    assert found.metrics()["height.rms"] < 0.05
 
 
 def test_the_report_is_one_file_with_all_that_matters(own_twin: Twin, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
-    report.write(own_twin, limits.judge(own_twin.figures(), {"height.rms": 1e-6}), page)
+    report.write(own_twin, limits.judge(own_twin.metrics(), {"height.rms": 1e-6}), page)
     text = page.read_text()
     assert "0 of 1 limits are kept" in text and "height.rms is" in text and text.count("data:image/png") == 3
-    verdict = "The twin flies as the log&#x27;s vehicle did, as far as these figures tell"
+    verdict = "The twin flies as the log&#x27;s vehicle did, as far as these metrics tell"
     assert 0 < text.index(verdict) < text.index("What was taken over"), "the verdict is first"
     assert "http" not in text and "<script" not in text and 'src="data:' in text
 
@@ -123,7 +123,7 @@ def test_the_command_says_by_its_exit_code_whether_limits_are_kept(
     assert "ok: roll.vaf is" in capsys.readouterr().out
     assert main([*words, "--limit", "height=1e-6", "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
-    assert not found["ok"] and found["figures"]["height.rms"] < 0.1 and found["beyond_limits"]
+    assert not found["ok"] and found["metrics"]["height.rms"] < 0.1 and found["beyond_limits"]
 
 
 @pytest.mark.parametrize(

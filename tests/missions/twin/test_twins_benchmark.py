@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of docs/twin.md: a row for each log and twin, with what the twin's figures say."""
+"""The tables of docs/twin.md: a row for each log and twin, with what the twin's metrics say."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from sitl.missions.twin.twin import Twin
 from tests.missions.twin.conftest import FRAME, SEED
 
 
-def test_a_row_has_the_figures_of_its_twin(own_twin: Twin) -> None:
+def test_a_row_has_the_metrics_of_its_twin(own_twin: Twin) -> None:
     head, rule, row = twins.table("copter", [(twins.Row("square", FRAME, FRAME, SEED), own_twin)])
     cells = [cell.strip() for cell in row.strip("|").split("|")]
     assert head.count("|") == rule.count("|") == row.count("|")
     assert cells[:3] == [
         f"square, {own_twin.log.span.length:.0f} s", "`ardupilot_quad`, seed 3", f"`{FRAME}`, seed {SEED}",
     ]  # fmt: skip
-    figures = own_twin.figures()
-    assert cells[3] == f"{figures['height.rms']:.2g}"
-    assert cells[6] == ", ".join(f"{figures[f'{axis}_rate.vaf']:.0f}" for axis in ("roll", "pitch", "yaw"))
+    metrics = own_twin.metrics()
+    assert cells[3] == f"{metrics['height.rms']:.2g}"
+    assert cells[6] == ", ".join(f"{metrics[f'{axis}_rate.vaf']:.0f}" for axis in ("roll", "pitch", "yaw"))
 
 
 @pytest.mark.slow

@@ -33,7 +33,7 @@ def test_rests_quietly(frame: str) -> None:
 
 
 def hover_control(b: Any) -> float:
-    """Control that carries the weight, by the airframe's own figures."""
+    """Control that carries the weight, by the airframe's own properties."""
     a = b.p.airframe
     share = a.mass * 9.80665 / int(a.rotor_count)
     if a.thrust_model == 0:

@@ -93,7 +93,7 @@ def test_says_nothing_and_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_figures_count() -> None:
+def test_properties_count() -> None:
     b = Bench("erle_copter")
     heavy = Bench(b.simulation.airframe.changed(mass=3.0))
     for one in (b, heavy):
@@ -102,7 +102,7 @@ def test_figures_count() -> None:
     assert abs(heavy.body.pos[2]) < 0.01
 
 
-def test_a_snapshot_brings_its_figures() -> None:
+def test_a_snapshot_brings_its_properties() -> None:
     heavy, light = Bench("erle_copter"), Bench("erle_copter")
     heavy.p.airframe.mass = 3.0
     heavy.engine.place()

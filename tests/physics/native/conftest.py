@@ -61,8 +61,8 @@ class Rover(Record):
 class Rig:
     """One vehicle, its fleet array, and shortcuts."""
 
-    def __init__(self, frame: str = "ardupilot_quad", seed: int = 1, heading: float = 0.0, **figures: Any):
-        self.airframe = vehicles.load(frame).changed(**figures)
+    def __init__(self, frame: str = "ardupilot_quad", seed: int = 1, heading: float = 0.0, **properties: Any):
+        self.airframe = vehicles.load(frame).changed(**properties)
         copter = self.airframe.kind == "copter"
         self._record = Copter if copter else Rover
         self._step = (copter_step if copter else rover_step).step

@@ -130,14 +130,14 @@ def test_standard_density(altitude, expected):
 
 def test_a_rover_without_a_capacity_sags_under_load() -> None:
     """ArduPilot's simulator: 0.7 V at 50 A."""
-    figures = SimpleNamespace(battery_voltage_full=12.6, battery_resistance=0.7 / 50.0)
-    assert vehicles.load("ardupilot_rover").figures["battery_resistance"] == figures.battery_resistance
+    properties = SimpleNamespace(battery_voltage_full=12.6, battery_resistance=0.7 / 50.0)
+    assert vehicles.load("ardupilot_rover").properties["battery_resistance"] == properties.battery_resistance
     state = BatteryState()
     state.voltage, state.current, state.capacity = 12.6, 13.7, 0.0
-    battery.sag(state, figures, 0.0)
+    battery.sag(state, properties, 0.0)
     assert state.voltage == pytest.approx(12.6 - 0.014 * 13.7)
-    battery.sag(state, figures, 1e-6)
+    battery.sag(state, properties, 1e-6)
     assert state.voltage == pytest.approx(12.6 - 0.014 * 13.7), "with a capacity ``discharge`` has it"
     state.current = 1e6
-    battery.sag(state, figures, 0.0)
+    battery.sag(state, properties, 0.0)
     assert state.voltage == pytest.approx(1.26)

@@ -15,7 +15,7 @@ from sitl.core.vectors import Vec3
 from sitl.physics.native.copter import vibration
 from sitl.simulation import Simulation
 from sitl.vehicle.copter import apply_sim_parameters
-from sitl.vehicles.figures.copter import THRUST_MOMENTUM
+from sitl.vehicles.properties.copter import THRUST_MOMENTUM
 
 TICKS = 400
 
@@ -26,13 +26,13 @@ def shown(name: str, speeds: tuple[float, ...] = (0.4, 0.4, 0.6, 0.6), **values:
     for parameter, value in {"SIM_VIB_MOT_MAX": 100.0, **values}.items():
         setattr(v.autopilot.params, parameter, value)
     apply_sim_parameters(v)
-    rotors, figures = v.physics.rotors, v.physics.airframe
-    rotors.speed[:4] = (1.0 if figures.thrust_model == THRUST_MOMENTUM else figures.speed_max) * np.array(speeds)
+    rotors, properties = v.physics.rotors, v.physics.airframe
+    rotors.speed[:4] = (1.0 if properties.thrust_model == THRUST_MOMENTUM else properties.speed_max) * np.array(speeds)
     found = []
     for _ in range(TICKS):
         setattr(v.sensors, name, Vec3(0.0, 0.0, 0.0))
         if rotors.shakes:
-            vibration.shake(rotors, v.sensors, figures)
+            vibration.shake(rotors, v.sensors, properties)
         found.append(getattr(v.sensors, name))
     assert all(each.x == each.y == each.z for each in found)
     return np.array([each.x for each in found])

@@ -105,8 +105,8 @@ def test_mean_rates_turn_the_attitude(rig):
     assert abs(float(r.p.body.rates[0])) > 0.05
 
 
-def spin_about_the_third_axis(rig, **figures):
-    r = rig("ardupilot_quad", angular_damping=0.0, momentum_drag=0.0, noise_scale=0.0, **figures)
+def spin_about_the_third_axis(rig, **properties):
+    r = rig("ardupilot_quad", angular_damping=0.0, momentum_drag=0.0, noise_scale=0.0, **properties)
     r.fly()
     r.p.body.rates = Vec3(4.0, 0.0, 2.0)
     r.move(20)

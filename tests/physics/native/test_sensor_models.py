@@ -11,7 +11,7 @@ from sitl.core.vectors import Vec3
 from sitl.physics.native.records import Body, Derived, GpsReceiver, SensorState
 from sitl.physics.native.sensors import barometer, gps, imu, magnetometer
 from sitl.physics.native.tick import Clock
-from sitl.vehicles.figures.body import Sensors
+from sitl.vehicles.properties.body import Sensors
 
 
 def samples(rig, sample, field, count):

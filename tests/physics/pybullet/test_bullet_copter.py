@@ -116,7 +116,7 @@ def test_same_bits_on_every_repeat() -> None:
     assert by_dice(other, 800, 3) == flown, "a second power-on leaves nothing of the first"
 
 
-def test_figures_may_change_until_power_on() -> None:
+def test_properties_may_change_until_power_on() -> None:
     engine = copter()
     a = engine.vehicle.v.physics.airframe
     a.mass, a.leg_time_constant = 2.0 * a.mass, 0.01

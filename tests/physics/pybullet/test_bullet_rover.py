@@ -38,8 +38,10 @@ ICE = World("ice", (), START, friction=0.05)
 class Rover:
     """A rover with steering or left side on the first control, throttle or right side on the second: -1 .. 1."""
 
-    def __init__(self, frame: str, world: str | World | None = None, physics: str = "pybullet", **figures: Any) -> None:
-        airframe = vehicles.load(frame).changed(noise_scale=0.0, **figures)
+    def __init__(
+        self, frame: str, world: str | World | None = None, physics: str = "pybullet", **properties: Any
+    ) -> None:
+        airframe = vehicles.load(frame).changed(noise_scale=0.0, **properties)
         self.fleet = fleet = RoverRecord.fleet(1)
         self.v = RoverRecord.of(fleet, 0)
         init(self.v, airframe, HOME, 1)
@@ -250,7 +252,7 @@ def test_snapshot_of_something_else_is_refused() -> None:
 
 
 def test_layouts() -> None:
-    """Parts of the vehicle from the airframe's figures."""
+    """Parts of the vehicle from the airframe's properties."""
     erle = layout(Rover("erle_rover").v.physics.airframe)
     assert erle.origin == approx(0.0, abs=1e-12) and sum(erle.load(k) for k in range(4)) == approx(1.0)
     skid = layout(Rover("skid_rover").v.physics.airframe)

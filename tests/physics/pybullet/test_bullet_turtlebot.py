@@ -138,9 +138,9 @@ def test_snapshots_of_others_are_refused() -> None:
     assert robots.pose() == before
 
 
-def test_figures_are_of_one_robot() -> None:
+def test_properties_are_of_one_robot() -> None:
     robots = BulletTurtlebots(OPEN, 2)
-    robots.set_figure(1, "wheel_radius_left", 0.037)
+    robots.set_property(1, "wheel_radius_left", 0.037)
     drive(robots, 2.0, 0.3, 0.0)
     assert robots.pose(1)[3] < 2.0 * robots.pose(0)[3] < 0.0
 

@@ -16,19 +16,19 @@ from sitl.physics.native.prepare import prepare_shared
 from sitl.physics.native.sensors.sense import sense
 from sitl.physics.native.tick import Clock
 from sitl.vehicles import Airframe, sensor_sets
-from sitl.vehicles.figures import body
-from sitl.vehicles.figures.body import Battery, Body, Outline, Ranging, Sensors
-from sitl.vehicles.figures.figure import figure, figures
+from sitl.vehicles.properties import body
+from sitl.vehicles.properties.body import Battery, Body, Outline, Ranging, Sensors
+from sitl.vehicles.properties.property import described, properties
 
 
 class Motor(Record):
     """What drives it."""
 
-    speed_max: float = figure("m/s", "at full throttle", 0.1, 50.0)
+    speed_max: float = described("m/s", "at full throttle", 0.1, 50.0)
 
 
-class Figures(body.Figures, Body, Battery, Sensors, Outline, Ranging, Motor):
-    """All figures of a boat."""
+class Properties(body.Properties, Body, Battery, Sensors, Outline, Ranging, Motor):
+    """All properties of a boat."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,8 +36,8 @@ class BoatAirframe(Airframe):
     """A boat as data."""
 
     kind: ClassVar[str] = "boat"
-    known = figures(Figures)
-    dtype = Figures.dtype
+    known = properties(Properties)
+    dtype = Properties.dtype
 
 
 class Hull(Record):
@@ -49,7 +49,7 @@ class Hull(Record):
 class Physics(records.Physics):
     """The physics of a boat."""
 
-    airframe: Figures
+    airframe: Properties
     hull: Hull
 
 
@@ -81,7 +81,7 @@ def init(v: Any, airframe: BoatAirframe, home: Home, seed: int) -> None:
 AIRFRAME = BoatAirframe(
     name="dinghy",
     description="A dinghy with an electric motor",
-    figures={
+    properties={
         "mass": 80.0,
         "inertia": (10.0, 40.0, 45.0),
         "speed_max": 4.0,

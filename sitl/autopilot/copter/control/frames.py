@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Arrangements of motors (FRAME_CLASS, FRAME_TYPE) under ArduPilot's numbers, with its numbering and directions.
 
-Source: https://ardupilot.org/copter/docs/connect-escs-and-motors.html. Places and directions are data here; from them
-follow the parts of roll, pitch and yaw that each motor takes (as ArduPilot's: at most one half each) and the order of
-the motor test (clockwise from the front).
+Source: https://ardupilot.org/copter/docs/connect-escs-and-motors.html. Positions and directions are data here; from
+them follow the parts of roll, pitch and yaw that each motor takes (as ArduPilot's: at most one half each) and the order
+of the motor test (clockwise from the front).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Motor(NamedTuple):
     """One motor."""
 
     forward: float
-    """Place, in any unit that all motors of a frame share."""
+    """Position, in any unit that all motors of a frame share."""
     right: float
     yaw: float
     """Its part of yaw: positive when it turns counter-clockwise."""
@@ -43,10 +43,10 @@ Frame = tuple[Motor, ...]
 def _ring(angles: tuple[float, ...], turns: str, yaw: tuple[float, ...] = ()) -> Frame:
     """Motors on a circle at angles clockwise from the front [deg]; turns: + counter-clockwise, - clockwise."""
     points = tuple((cos(math.radians(angle)), sin(math.radians(angle))) for angle in angles)
-    return _places(points, turns, yaw)
+    return _positions(points, turns, yaw)
 
 
-def _places(points: tuple[tuple[float, float], ...], turns: str, yaw: tuple[float, ...] = ()) -> Frame:
+def _positions(points: tuple[tuple[float, float], ...], turns: str, yaw: tuple[float, ...] = ()) -> Frame:
     """Motors at (forward, right)."""
     parts = yaw or (1.0,) * len(points)
     signs = [1.0 if turn == "+" else -1.0 for turn in turns]
@@ -68,22 +68,22 @@ FRAMES: dict[tuple[int, int], Frame] = {
     (QUAD, BF_X_REV): _ring((135, 45, -135, -45), "+--+"),
     (QUAD, DJI_X): _ring((45, -45, -135, 135), "+-+-"),
     (QUAD, CW_X): _ring((45, 135, -135, -45), "+-+-"),
-    (QUAD, Y4): _places(((1, 1), (-1, 0), (-1, 0), (1, -1)), "+-+-"),
+    (QUAD, Y4): _positions(((1, 1), (-1, 0), (-1, 0), (1, -1)), "+-+-"),
     (HEXA, PLUS): _ring((0, 180, -120, 60, -60, 120), "-+-++-"),
     (HEXA, X): _ring((90, -90, -30, 150, 30, -150), "-+-++-"),
-    (HEXA, H): _places(((0, 1), (0, -1), (1, -1), (-1, 1), (1, 1), (-1, -1)), "-+-++-"),
+    (HEXA, H): _positions(((0, 1), (0, -1), (1, -1), (-1, 1), (1, 1), (-1, -1)), "-+-++-"),
     (HEXA, DJI_X): _ring((30, -30, -90, -150, 150, 90), "+-+-+-"),
     (HEXA, CW_X): _ring((30, 90, 150, -150, -90, -30), "+-+-+-"),
     (OCTA, PLUS): _ring((0, 180, 45, 135, -45, -135, -90, 90), "--++++--"),
     (OCTA, X): _ring((22.5, -157.5, 67.5, 157.5, -22.5, -112.5, -67.5, 112.5), "--++++--"),
-    (OCTA, V): _places(
+    (OCTA, V): _positions(
         ((0.34, -0.83), (-0.32, 0.67), (-0.32, -0.67), (-1, 0.5), (1, -1), (0.34, 0.83), (1, 1), (-1, -0.5)),
         "--++++--",
     ),
-    (OCTA, H): _places(
+    (OCTA, H): _positions(
         ((1, 1), (-1, -1), (_THIRD, 1), (-1, 1), (1, -1), (-_THIRD, -1), (_THIRD, -1), (-_THIRD, 1)), "--++++--"
     ),
-    (OCTA, I_TYPE): _places(
+    (OCTA, I_TYPE): _positions(
         ((-1, -_THIRD), (1, _THIRD), (-1, -1), (1, -_THIRD), (-1, _THIRD), (1, 1), (-1, 1), (1, -1)), "--++++--"
     ),
     (OCTA, DJI_X): _ring((22.5, -22.5, -67.5, -112.5, -157.5, 157.5, 112.5, 67.5), "+-+-+-+-"),

@@ -23,11 +23,11 @@ def input_pos_ned(ne: PositionState, d: AltitudeState, target: Vec3) -> None:
         return
     advance_ne(ne)
     advance_d(d)
-    way = target - with_down(ne.pos_desired, d.pos_desired)
-    length = norm(way)
+    offset = target - with_down(ne.pos_desired, d.pos_desired)
+    length = norm(offset)
     speed_ne, speed_d = 0.0, 0.0
     if length > 1e-9:
-        unit = way / length
+        unit = offset / length
         speed = kinematic_limit(unit, ne.speed_max, d.speed_up, d.speed_down)
         speed_ne = speed * math.sqrt(unit.x * unit.x + unit.y * unit.y)
         speed_d = speed * abs(unit.z)

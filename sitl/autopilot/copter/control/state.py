@@ -111,7 +111,7 @@ class VibrationState(Record):
     """Vibration that biases the vertical acceleration (vibration.py), and the height's own rate of change."""
 
     found: bool  # height is controlled by that rate, and with other gains
-    since_us: int  # since when the estimate tells of it; 0 it does not
+    since_us: int  # since when the estimate reports it; 0 it does not
     good_us: int  # since when it no longer does, while ``found``; 0 it does
     # complementary filter, down positive
     pos: float  # [m]
@@ -158,7 +158,7 @@ class MotorsState(Record):
     loss_ticks: int  # for which thrust seemed to be lost
     learns_at_rest: bool  # hover throttle is learnt only while the path stands still, not while it is slow
     yaw_trim: float  # size of the yaw rate loop's integrator, low-passed
-    yaw_trim_reported_us: int  # when that was last told to be large
+    yaw_trim_reported_us: int  # when that was last reported to be large
     voltage_ratio: float  # resting voltage over MOT_BAT_VOLT_MAX, filtered; 1 when not compensated
     lift_max: float  # thrust at full throttle at that voltage, 1 at MOT_BAT_VOLT_MAX
     compensation_gain: float  # of thrust demands for voltage and air density

@@ -38,7 +38,7 @@ _ARM = 1
 _TAKE_OFF_ALONE = 2  # without a raised throttle
 _NO_PILOT_YAW = 128
 
-# LAND: on the way to the place, then going down
+# LAND: on the way to the position, then going down
 FLYING = 0
 DESCENDING = 1
 
@@ -231,7 +231,7 @@ def report_circle(nav: CopterNav, events: Events, time_us: int) -> None:
 
 @law
 def run_land(v: Vehicle) -> bool:
-    """One tick of the land command: to the place at the present height, then down; whether it is done."""
+    """One tick of the land command: to the position at the present height, then down; whether it is done."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     land.finish(v)
@@ -256,8 +256,8 @@ def is_guided(modes: Modes) -> bool:
     return modes.number == guided.GUIDED or (modes.number == AUTO and modes.auto.submode == kinds.GUIDED)
 
 
-def is_on_a_way(nav: CopterNav) -> bool:
-    """Whether the command under way follows a path to a place that it has not reached."""
+def is_on_a_path(nav: CopterNav) -> bool:
+    """Whether the command under way follows a path to a position that it has not reached."""
     return nav.command_kind in (kinds.WAYPOINT, kinds.LOITER_UNLIMITED, kinds.LOITER_TIME) and not nav.reached
 
 

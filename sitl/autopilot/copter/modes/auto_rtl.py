@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """AUTO_RTL: AUTO jumps to the nearest return path of the mission, or else to its nearest landing sequence.
 
-AUTO flies it: AUTO_RTL is what clients are told meanwhile (``modes.shown``), until the mission leaves that part.
+AUTO flies it: AUTO_RTL is what clients are sent meanwhile (``modes.shown``), until the mission leaves that part.
 ``set_mode.go_back`` enters it, ``mission/returning.py`` looks for the part.
 """
 

@@ -122,10 +122,10 @@ def turn_at(yaw: AutoYaw, rate: float, target: AttitudeState, est: Estimate) -> 
 
 
 @law
-def look_at(yaw: AutoYaw, place: Vec3, target: AttitudeState, est: Estimate) -> None:
+def look_at(yaw: AutoYaw, position: Vec3, target: AttitudeState, est: Estimate) -> None:
     """Keep the nose on a point, NED [m]."""
     set_mode(yaw, ROI, target, est)
-    yaw.roi = place
+    yaw.roi = position
 
 
 @law

@@ -2,9 +2,9 @@
 """AUTOTUNE: twitches one axis after the other, and finds its gains (AUTOTUNE_*).
 
 Entered in flight. The sticks interrupt it, and fly it with the gains from before; between twitches it leans back to its
-place. Disarmed on the ground with the gains found, or while it tries them, it keeps them; left before, or disarmed in
-the air, it does not. A switch (180) or entering it again tries them. What a twitch is, is in ``autotune_twitch``; what
-it tells, in ``autotune_rules``.
+position. Disarmed on the ground with the gains found, or while it tries them, it keeps them; left before, or disarmed
+in the air, it does not. A switch (180) or entering it again tries them. What a twitch is, is in ``autotune_twitch``;
+what it reports, in ``autotune_rules``.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _TEXTS = {
     gains.OVERRIDDEN: "pilot overrides active", gains.RESTORED: "original gains restored",
     gains.INCOMPLETE: "must be complete to test gains", gains.D_LIMIT: "Min Rate D limit reached",
 }  # fmt: skip
-_FAILURES = {rules.NO_ROOM: "Twitch Size", rules.NO_D: "Rate D Gain", rules.NO_P: "Rate P Gain"}
+_FAILURES = {rules.TWITCH_AT_LEAST: "Twitch Size", rules.NO_D: "Rate D Gain", rules.NO_P: "Rate P Gain"}
 _SEVERITIES = {
     gains.COMPLETE: MavSeverity.NOTICE,
     gains.SUCCESS: MavSeverity.NOTICE,
@@ -180,7 +180,7 @@ def start(v: Vehicle) -> int:
 
 @law
 def stay_here(v: Vehicle) -> None:
-    """The present place and heading are held."""
+    """The present position and heading are held."""
     t, est = v.autopilot.modes.autotune, v.autopilot.estimate
     t.place, t.heading = horizontal(est.pos), est.yaw
 
@@ -269,7 +269,7 @@ def is_overridden(v: Vehicle, climb: float, flies: bool) -> bool:
 
 @law
 def hold(v: Vehicle) -> attitude.Lean:
-    """Lean back to the place, by the distance. Far off, turn so that the axis being tuned leans little."""
+    """Lean back to the position, by the distance. Far off, turn so that the axis being tuned leans little."""
     est, t = v.autopilot.estimate, v.autopilot.modes.autotune
     away = horizontal(est.pos) - t.place
     distance = norm2(away)
@@ -361,8 +361,8 @@ def fail(v: Vehicle, why: int) -> None:
 def conclude(v: Vehicle) -> None:
     """The tick after a twitch: another gain, and another step or axis when enough of them succeeded."""
     t = v.autopilot.modes.autotune
-    if t.came_to == rules.NO_ROOM:
-        fail(v, rules.NO_ROOM)
+    if t.came_to == rules.TWITCH_AT_LEAST:
+        fail(v, rules.TWITCH_AT_LEAST)
         return
     if t.came_to == rules.MEASURED:
         learn(v)
@@ -373,7 +373,7 @@ def conclude(v: Vehicle) -> None:
 
 @law
 def change_gains(v: Vehicle) -> int:
-    """Change the step's gain by what the twitch told; what that came to."""
+    """Change the step's gain by what the twitch showed; what that came to."""
     p = v.autopilot.params.AUTOTUNE
     t, aggr = v.autopilot.modes.autotune, p.AGGR
     g = gains.found(t, t.axis)

@@ -25,7 +25,7 @@ PAUSED = 6  # the mode was left before its end; the parameters hold those from b
 
 AUTOTUNE_DID = Event(63)  # a: what, b: a number of it; its words are in ``autotune``
 
-# What it tells (AUTOTUNE_DID)
+# What it reports (AUTOTUNE_DID)
 STARTED, STOPPED, PROGRESS, COMPLETE, SUCCESS, FAILURE, OVERRIDDEN, TRIES, SAVED, RESTORED, INCOMPLETE, D_LIMIT = range(
     12
 )
@@ -39,7 +39,7 @@ TWITCHING_I = 0.01
 
 @law
 def report(v: Vehicle, did: int, number: float) -> None:
-    """Tell what it did."""
+    """Report what it did."""
     emit(v.autopilot.events, v.time_us, AUTOTUNE_DID, float(did), number)
 
 

@@ -18,7 +18,7 @@ from .state import AutotuneState, AxisGains
 RATE_D_UP, RATE_D_DOWN, RATE_P_UP, ANGLE_P_DOWN, ANGLE_P_UP = 0, 1, 2, 4, 5
 
 # What a twitch comes to
-GOES_ON, MEASURED, TOO_LARGE, NO_ROOM = 0, 1, 2, 3
+GOES_ON, MEASURED, TOO_LARGE, TWITCH_AT_LEAST = 0, 1, 2, 3
 
 # What a change of gains comes to
 CHANGED, D_AT_LIMIT, NO_D, NO_P = 0, 1, 2, 3
@@ -72,7 +72,7 @@ def judge_rate(t: AutotuneState, rate: float, angle: float, goal: float, angle_l
     if rate > t.rate_min:
         return MEASURED
     if t.scale <= _SCALE_MIN:
-        return NO_ROOM
+        return TWITCH_AT_LEAST
     t.scale *= 0.9
     return TOO_LARGE
 

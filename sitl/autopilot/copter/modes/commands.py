@@ -81,11 +81,11 @@ def condition_yaw(ap: Autopilot, turn: Turn) -> int:
     return CommandResult.OK
 
 
-def set_roi(ap: Autopilot, place: Vec3) -> int:
+def set_roi(ap: Autopilot, position: Vec3) -> int:
     """Keep the nose on a point, NED [m]."""
-    if not is_usable_vector(place):
+    if not is_usable_vector(position):
         return CommandResult.NOT_FINITE
-    auto_yaw.look_at(ap.modes.auto_yaw, place, ap.control.attitude, ap.estimate)
+    auto_yaw.look_at(ap.modes.auto_yaw, position, ap.control.attitude, ap.estimate)
     return CommandResult.OK
 
 
@@ -121,8 +121,8 @@ def set_paused(modes: Modes, paused: bool) -> int:
     """MAV_CMD_DO_PAUSE_CONTINUE in GUIDED and AUTO: stop and hold, or go on; GUIDED_NOGPS takes it and flies on."""
     if modes.number in (GUIDED, GUIDED_NOGPS):
         modes.guided.paused = paused
-    elif modes.number == AUTO and paused and not auto.is_on_a_way(modes.nav):
-        return CommandResult.NOT_ON_A_WAY
+    elif modes.number == AUTO and paused and not auto.is_on_a_path(modes.nav):
+        return CommandResult.NOT_ON_A_PATH
     elif modes.number == AUTO:
         modes.nav.paused = paused
     else:

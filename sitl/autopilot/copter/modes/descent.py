@@ -40,7 +40,7 @@ def begin(modes: Modes, time_us: int, control: Control, est: Estimate, p: Parame
 def descend(modes: Modes, height: float, landed_maybe: bool, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of a landing with position control from ``height`` above home [m].
 
-    The sticks move the landing place (LAND_REPOSITION).
+    The sticks move the landing position (LAND_REPOSITION).
     """
     vel = stick_velocity(modes.pilot, est.yaw, p)
     if landed_maybe:

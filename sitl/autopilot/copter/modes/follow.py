@@ -43,11 +43,11 @@ def start(v: Vehicle) -> int:
 @law
 def look(yaw: AutoYaw, lead: FollowState, pos: Vec3, behaviour: int) -> None:
     """Point the nose as FOLL_YAW_BEHAVE says; where that says nothing, it stays; ``pos``: the vehicle's [m]."""
-    way = horizontal(lead.pos - pos) if behaviour == _FACE_LEAD else horizontal(lead.vel)
+    direction = horizontal(lead.pos - pos) if behaviour == _FACE_LEAD else horizontal(lead.vel)
     if behaviour == _AS_LEAD:
         auto_yaw.follow_angle(yaw, lead.heading, lead.heading_rate)
-    elif behaviour in (_FACE_LEAD, _ALONG) and norm2(way) > 1.0:
-        auto_yaw.follow_angle(yaw, atan2(way.y, way.x), 0.0)
+    elif behaviour in (_FACE_LEAD, _ALONG) and norm2(direction) > 1.0:
+        auto_yaw.follow_angle(yaw, atan2(direction.y, direction.x), 0.0)
 
 
 @law
@@ -63,9 +63,9 @@ def run(v: Vehicle) -> None:
     if lead_motion.follow(lead, p.FOLL, est.pos, v.time_us, DT):
         if lead_motion.keep_distance(lead, p.FOLL, est.pos):
             emit(ap.events, v.time_us, FOLLOW_OFFSET, p.FOLL.OFS_TYPE, 0.0)
-        place, vel, acc = lead.pos + lead_motion.offset(lead, p.FOLL), lead.vel, lead.acc
-        position.input_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(place), horizontal(vel), horizontal(acc)))
-        altitude.input_pos_vel_accel_d(control.pos_d, Motion(place.z, vel.z, acc.z))
+        pos, vel, acc = lead.pos + lead_motion.offset(lead, p.FOLL), lead.vel, lead.acc
+        position.input_pos_vel_accel_ne(control.pos_ne, Motion2(horizontal(pos), horizontal(vel), horizontal(acc)))
+        altitude.input_pos_vel_accel_d(control.pos_d, Motion(pos.z, vel.z, acc.z))
         look(ap.modes.auto_yaw, lead, est.pos, int(p.FOLL.YAW_BEHAVE))
     else:
         ground.brake(control)

@@ -22,7 +22,7 @@ DISARMED = arming_checks.DISARMED.saying(MavSeverity.INFO, "Disarming motors")
 
 @law
 def is_grounded(arming: Arming) -> bool:
-    """Disarmed, not told to fly since arming, or landed."""
+    """Disarmed, not commanded to fly since arming, or landed."""
     return not arming.armed or not arming.auto_armed or arming.landed
 
 

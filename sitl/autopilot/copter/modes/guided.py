@@ -92,7 +92,7 @@ def is_stale(guided: GuidedState, time_us: int, timeout: float) -> bool:
 
 @law
 def note_timeout(guided: GuidedState, stale: bool, events: Events, time_us: int) -> None:
-    """Tell the shell, once, that a set-point of a kind that times out is too old."""
+    """Report to the shell, once, that a set-point of a kind that times out is too old."""
     if stale and not guided.timed_out:
         emit(events, time_us, GUIDED_TIMEOUT, float(guided.submode), 0.0)
     guided.timed_out = stale

@@ -53,7 +53,7 @@ def refusal(modes: Modes, usable: bool, yaw: YawSetpoint) -> int:
 
 @law
 def is_beyond_fence(ap: Autopilot, pos: Vec3) -> bool:
-    """Whether a place, NED [m] from the origin, is beyond a fence that is on."""
+    """Whether a position, NED [m] from the origin, is beyond a fence that is on."""
     fence = ap.params.FENCE
     return ap.fence.on != 0 and not allows(ap.fence, ap.home, pos, fence, fence.ALT_MAX, fence.ALT_MIN)
 

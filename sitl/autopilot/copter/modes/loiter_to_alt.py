@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AUTO's LOITER_TO_ALT: to the place, then up or down to its height, where the sticks may move it as in a landing."""
+"""AUTO's LOITER_TO_ALT: to the position, then up or down to its height, where the sticks may move it as in a
+landing."""
 
 from __future__ import annotations
 

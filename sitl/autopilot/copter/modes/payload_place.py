@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""AUTO's PAYLOAD_PLACE: to the place at the present height, down until the load stands, release, up again.
+"""AUTO's PAYLOAD_PLACE: to the position at the present height, down until the load stands, release, up again.
 
 The load stands when the descent needs less thrust than before: below PLDP_THRESH times the least of its first two
 seconds, for half a second. Then the gripper opens, and after PLDP_DELAY the vehicle climbs to where the descent began.
@@ -75,85 +75,85 @@ def run(v: Vehicle) -> bool:
     """One tick; whether the load is placed and the vehicle up again."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
-    place = modes.payload_place
+    payload = modes.payload_place
     if ground.is_grounded(ap.arming):
         ground.rest(ap.arming.armed, control, est, p)
         return False
     control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
-    if ap.arming.landed_maybe and place.stage == DESCENDING:
+    if ap.arming.landed_maybe and payload.stage == DESCENDING:
         say(ap.events, v.time_us, LANDED, 0.0)
-        place.stage = RELEASING
-    if place.gripper == OPEN:
-        note_open(place, ap.events, v.time_us, control.pos_d.pos_desired)
-    if place.stage == FLYING and modes.nav.reached:
+        payload.stage = RELEASING
+    if payload.gripper == OPEN:
+        note_open(payload, ap.events, v.time_us, control.pos_d.pos_desired)
+    if payload.stage == FLYING and modes.nav.reached:
         start_descent(v)
-    if place.stage == FLYING:
+    if payload.stage == FLYING:
         waypoint.advance(modes.nav, control, est, p, v.time_us)
         ground.fly(modes.auto_yaw, control, est, p)
         return False
-    if place.stage == STARTING:
-        begin_descent(place, v.time_us, control.pos_d.pos_desired, p)
-    if place.stage == DESCENDING:
+    if payload.stage == STARTING:
+        begin_descent(payload, v.time_us, control.pos_d.pos_desired, p)
+    if payload.stage == DESCENDING:
         watch_descent(v)
-    elif place.stage >= RELEASING:
+    elif payload.stage >= RELEASING:
         release(v)
     fly(v)
-    return place.stage == DONE
+    return payload.stage == DONE
 
 
 @law
 def say(events: Events, time_us: int, did: int, number: float) -> None:
-    """Tell the shell."""
+    """Report to the shell."""
     emit(events, time_us, PAYLOAD_PLACE_DID, float(did), number)
 
 
 @law
-def note_open(place: PayloadPlaceState, events: Events, time_us: int, d: float) -> None:
+def note_open(payload: PayloadPlaceState, events: Events, time_us: int, d: float) -> None:
     """The gripper is open already: the load is gone; ``d``: height wanted, NED [m]."""
-    if place.stage == FLYING or place.stage == STARTING:
+    if payload.stage == FLYING or payload.stage == STARTING:
         say(events, time_us, ABORTED, 0.0)
-        place.start_d = d
-        place.stage = DONE
-    elif place.stage == DESCENDING:
+        payload.start_d = d
+        payload.stage = DONE
+    elif payload.stage == DESCENDING:
         say(events, time_us, BY_HAND, 0.0)
-        place.stage = RELEASING
+        payload.stage = RELEASING
 
 
 @law
-def begin_descent(place: PayloadPlaceState, time_us: int, d: float, p: Parameters) -> None:
+def begin_descent(payload: PayloadPlaceState, time_us: int, d: float, p: Parameters) -> None:
     """Down from a height wanted, NED [m]."""
-    place.established_us = time_us
-    place.start_d = d
+    payload.established_us = time_us
+    payload.start_d = d
     wanted = p.PLDP.SPEED_DN if p.PLDP.SPEED_DN > 0.0 else abs(p.LAND.SPEED) * 0.01
-    place.speed = min(wanted, abs(p.WPNAV.SPEED_DN) * 0.01)
-    place.thrust = 1.0
-    place.stage = DESCENDING
+    payload.speed = min(wanted, abs(p.WPNAV.SPEED_DN) * 0.01)
+    payload.thrust = 1.0
+    payload.stage = DESCENDING
 
 
 @law
 def watch_descent(v: Vehicle) -> None:
     """Learn the thrust of a steady descent, then look for less: the load stands."""
     ap, time_us = v.autopilot, v.time_us
-    place, path, p = ap.modes.payload_place, ap.control.pos_d, ap.params.PLDP
+    payload, path, p = ap.modes.payload_place, ap.control.pos_d, ap.params.PLDP
     thrust = ap.control.attitude.throttle_in
-    if place.limit > 0.0 and path.pos_desired - place.start_d > place.limit:
+    if payload.limit > 0.0 and path.pos_desired - payload.start_d > payload.limit:
         say(ap.events, time_us, AT_LIMIT, 0.0)
-        place.stage = CLIMB_STARTS
-    elif path.vel_desired < STEADY * place.speed:
-        place.established_us = time_us
-    elif time_us - place.established_us < LEARNS_US:
-        place.thrust = min(place.thrust, thrust)
-        place.placed_us = time_us
-    elif thrust > p.THRESH * place.thrust:
-        place.placed_us = time_us
+        payload.stage = CLIMB_STARTS
+    elif path.vel_desired < STEADY * payload.speed:
+        payload.established_us = time_us
+    elif time_us - payload.established_us < LEARNS_US:
+        payload.thrust = min(payload.thrust, thrust)
+        payload.placed_us = time_us
+    elif thrust > p.THRESH * payload.thrust:
+        payload.placed_us = time_us
     elif p.RNG_MAX > 0.0 and v.sensors.rangefinder_count == 0:
         say(ap.events, time_us, NO_RANGE, 0.0)
-        place.stage = CLIMB_STARTS
+        payload.stage = CLIMB_STARTS
     elif p.RNG_MAX > 0.0 and is_high(v, p.RNG_MAX):
-        place.placed_us = time_us
-    elif time_us - place.placed_us > PLACED_US:
-        say(ap.events, time_us, PLACED, p.THRESH * place.thrust)
-        place.stage = RELEASING
+        payload.placed_us = time_us
+    elif time_us - payload.placed_us > PLACED_US:
+        say(ap.events, time_us, PLACED, p.THRESH * payload.thrust)
+        payload.stage = RELEASING
 
 
 @law
@@ -168,26 +168,26 @@ def is_high(v: Vehicle, limit: float) -> bool:
 def release(v: Vehicle) -> None:
     """One tick from the load's touch-down on: open the gripper, wait, climb."""
     ap, time_us = v.autopilot, v.time_us
-    place, path = ap.modes.payload_place, ap.control.pos_d
-    if place.stage == RELEASING:
+    payload, path = ap.modes.payload_place, ap.control.pos_d
+    if payload.stage == RELEASING:
         altitude_start.init_d_no_descent(ap.control, ap.estimate, ap.params)
-        if place.gripper == NO_GRIPPER:
-            place.stage = WAITING
+        if payload.gripper == NO_GRIPPER:
+            payload.stage = WAITING
         else:
             say(ap.events, time_us, RELEASED, 0.0)
             ask_to_open(ap.modes.nav, ap.events, time_us)
-            place.stage = OPENING
+            payload.stage = OPENING
         return
-    if place.stage == OPENING and place.gripper != HOLDS:
-        place.stage = WAITING
-    if place.stage == WAITING and time_us - place.placed_us >= PLACED_US + int(ap.params.PLDP.DELAY * 1e6):
-        place.stage = CLIMB_STARTS
-    if place.stage == CLIMB_STARTS:
-        place.stage = CLIMBING
-    if place.stage == CLIMBING:
+    if payload.stage == OPENING and payload.gripper != HOLDS:
+        payload.stage = WAITING
+    if payload.stage == WAITING and time_us - payload.placed_us >= PLACED_US + int(ap.params.PLDP.DELAY * 1e6):
+        payload.stage = CLIMB_STARTS
+    if payload.stage == CLIMB_STARTS:
+        payload.stage = CLIMBING
+    if payload.stage == CLIMBING:
         speed = ARRIVING * path.speed_up
-        if path.pos_desired <= place.start_d + 0.5 * speed * speed / path.accel_max:
-            place.stage = DONE
+        if path.pos_desired <= payload.start_d + 0.5 * speed * speed / path.accel_max:
+            payload.stage = DONE
 
 
 @law
@@ -198,14 +198,14 @@ def ask_to_open(nav: Nav, events: Events, time_us: int) -> None:
 
 @law
 def fly(v: Vehicle) -> None:
-    """Position controllers of this tick: over the place, down, at rest, or up."""
+    """Position controllers of this tick: over the position, down, at rest, or up."""
     ap = v.autopilot
-    place, path = ap.modes.payload_place, ap.control.pos_d
-    precision_land.hold_place(v, descent.stick_velocity(ap.modes.pilot, ap.estimate.yaw, ap.params))
-    if place.stage <= DESCENDING:
-        altitude.land_at_rate_d(path, place.speed, True)
-    elif place.stage < CLIMBING:
+    payload, path = ap.modes.payload_place, ap.control.pos_d
+    precision_land.hold_position(v, descent.stick_velocity(ap.modes.pilot, ap.estimate.yaw, ap.params))
+    if payload.stage <= DESCENDING:
+        altitude.land_at_rate_d(path, payload.speed, True)
+    elif payload.stage < CLIMBING:
         altitude.land_at_rate_d(path, 0.0, False)
     else:
-        altitude.input_pos_vel_accel_d(path, Motion(place.start_d, 0.0, 0.0))
+        altitude.input_pos_vel_accel_d(path, Motion(payload.start_d, 0.0, 0.0))
     ground.fly(ap.modes.auto_yaw, ap.control, ap.estimate, ap.params)

@@ -8,7 +8,7 @@ from ....core.kernels import law
 from ....core.vectors import Vec2, Vec3
 from ...control.shaping import Motion, Motion2
 from ...events import Events, emit
-from ...landing_target.estimator import distance, target_place
+from ...landing_target.estimator import distance, target_position
 from ...landing_target.state import (
     FOUND,
     LANDING_TARGET_DID,
@@ -96,9 +96,9 @@ def choose(land: LandState, t: LandingTarget, pos: Vec3, events: Events, time_us
             land.stage = CLIMBING
             emit(events, time_us, LANDING_TARGET_DID, float(SAID_RETRY), 0.0)
     elif land.stage == CLIMBING:
-        if is_near(pos, place_to_try(land, t, p)):
+        if is_near(pos, position_to_try(land, t, p)):
             land.stage = RETURNING
-    elif land.stage == RETURNING and is_near(pos, place_to_try(land, t, p)):
+    elif land.stage == RETURNING and is_near(pos, position_to_try(land, t, p)):
         emit(events, time_us, LANDING_TARGET_DID, float(SAID_RETRIED), 0.0)
         return give_up(land, events, time_us, p)
     return TRY_AGAIN if land.stage == CLIMBING or land.stage == RETURNING else give_up(land, events, time_us, p)
@@ -114,16 +114,16 @@ def give_up(land: LandState, events: Events, time_us: int, p: PrecisionLanding) 
 
 
 @law
-def place_to_try(land: LandState, t: LandingTarget, p: PrecisionLanding) -> Vec3:
+def position_to_try(land: LandState, t: LandingTarget, p: PrecisionLanding) -> Vec3:
     """Where to look for the target again, from the origin [m]."""
     over = t.seen_from if p.RET_BEHAVE == 0.0 else t.last_place
     return with_down(horizontal(over), t.seen_from.z - (RETRY_CLIMB if land.stage == CLIMBING else 0.0))
 
 
 @law
-def is_near(pos: Vec3, place: Vec3) -> bool:
-    """Whether a vehicle at ``pos`` is at a place [m]."""
-    away = place - pos
+def is_near(pos: Vec3, goal: Vec3) -> bool:
+    """Whether a vehicle at ``pos`` is at a position [m]."""
+    away = goal - pos
     return away.x * away.x + away.y * away.y + away.z * away.z < NEAR * NEAR
 
 
@@ -131,9 +131,9 @@ def is_near(pos: Vec3, place: Vec3) -> bool:
 def fly_back(v: Vehicle) -> None:
     """One tick of the way to where the target was seen."""
     ap = v.autopilot
-    place = place_to_try(ap.modes.land, ap.landing_target, ap.params.PLND)
-    position.input_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(place), ZERO2, ZERO2))
-    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(place.z, 0.0, 0.0))
+    goal = position_to_try(ap.modes.land, ap.landing_target, ap.params.PLND)
+    position.input_pos_vel_accel_ne(ap.control.pos_ne, Motion2(horizontal(goal), ZERO2, ZERO2))
+    altitude.input_pos_vel_accel_d(ap.control.pos_d, Motion(goal.z, 0.0, 0.0))
     ground.fly(ap.modes.auto_yaw, ap.control, ap.estimate, ap.params)
 
 
@@ -145,7 +145,7 @@ def follow(v: Vehicle, sticks: Vec2, height: float, stay: bool) -> None:
     """
     ap = v.autopilot
     modes, control, est, t = ap.modes, ap.control, ap.estimate, ap.landing_target
-    on_target = hold_place(v, sticks)
+    on_target = hold_position(v, sticks)
     if on_target and not stay and not modes.land.pause:
         near_ground = height < descent.height_low(ap.params.LAND) or ap.arming.landed_maybe
         rate = descent.sink_rate(height, control.pos_d, ap.params.LAND, ap.params.PSC.POSZ_P)
@@ -158,7 +158,7 @@ def follow(v: Vehicle, sticks: Vec2, height: float, stay: bool) -> None:
 
 
 @law
-def hold_place(v: Vehicle, sticks: Vec2) -> bool:
+def hold_position(v: Vehicle, sticks: Vec2) -> bool:
     """One tick over the target while it is seen, else where it is; whether it is over the target.
 
     ``sticks``: velocity that they ask for [m/s].
@@ -179,7 +179,7 @@ def hold_place(v: Vehicle, sticks: Vec2) -> bool:
 def target_motion(t: LandingTarget, est: Estimate, p: PrecisionLanding) -> Motion2:
     """Where the target is and how it moves, from the origin; one that is not said to move stands."""
     vel = t.closing + horizontal(est.vel) if has_option(p, _MOVES) else ZERO2
-    return Motion2(target_place(t, est), vel, ZERO2)
+    return Motion2(target_position(t, est), vel, ZERO2)
 
 
 @law

@@ -124,7 +124,7 @@ def keep_below(rtl: RtlState, top_d: float, d: float) -> None:
 def return_height(height: float, least: float, distance: float, p: Rtl) -> float:
     """Height of the way back from a height and a distance, all above home [m]; never below the present one.
 
-    RTL_ALT, RTL_CLIMB_MIN, RTL_CONE_SLOPE; ``least``: of the place to return to.
+    RTL_ALT, RTL_CLIMB_MIN, RTL_CONE_SLOPE; ``least``: of the position to return to.
     """
     height_min = max(_CLIMB_MIN, height + max(p.CLIMB_MIN * 0.01, 0.0))
     target = max(max(p.ALT * 0.01, least), height_min)
@@ -148,7 +148,7 @@ def run(v: Vehicle) -> None:
     if heeds_yaw_stick(ap.modes.rtl.state, ap.params):
         auto_yaw.follow_pilot(ap.modes, ap.control.attitude, ap.estimate)
     if not run_end(v):
-        run_way(ap.modes, ap.events, v.time_us, ap.control, ap.estimate, ap.params)
+        run_return(ap.modes, ap.events, v.time_us, ap.control, ap.estimate, ap.params)
 
 
 @law
@@ -172,7 +172,7 @@ def run_end(v: Vehicle) -> bool:
 
 
 @law
-def run_way(modes: Modes, events: Events, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
+def run_return(modes: Modes, events: Events, time_us: int, control: Control, est: Estimate, p: Parameters) -> None:
     """One tick of the climb, the way home and the wait there."""
     rtl, nav = modes.rtl, modes.nav
     reached = False

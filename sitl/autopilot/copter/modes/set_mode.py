@@ -63,7 +63,7 @@ def refusal(number: int, modes: Modes, arming: Arming, estimate: Estimate, p: Pa
 def request(v: Vehicle, number: int, reason: int) -> int:
     """Change to a mode. Returns ACCEPTED (0; also when already there) or the cause (``autopilot.modes``).
 
-    A change is told to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number,
+    A change is reported to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number,
     cause) with nothing changed.
     """
     if number == AUTO_RTL:
@@ -102,25 +102,25 @@ def change(v: Vehicle, number: int, reason: int) -> int:
 
 
 @law
-def go_back(v: Vehicle, way: int, reason: int) -> int:
-    """AUTO_RTL: go on in AUTO at the mission's part that brings the vehicle back (``way``: BEST, BY_LANDING, BY_PATH).
+def go_back(v: Vehicle, how: int, reason: int) -> int:
+    """AUTO_RTL: go on in AUTO at the mission's part that brings the vehicle back (``how``: BEST, BY_LANDING, BY_PATH).
 
     Returns what ``request`` does. The shell looks for the part.
     """
     ap = v.autopilot
     modes = ap.modes
     flies_mission = modes.number == AUTO
-    if way == BEST and modes.shown == AUTO_RTL:
+    if how == BEST and modes.shown == AUTO_RTL:
         return ModeResult.ACCEPTED
-    if way != BY_LANDING and modes.nav.mission_part != OUTWARD:
+    if how != BY_LANDING and modes.nav.mission_part != OUTWARD:
         emit(ap.events, v.time_us, RETURN_ACTIVE, float(modes.nav.mission_part), 0.0)
-    elif may_go_back(modes, way):
-        emit_and_return(ap.events, v.time_us, RETURN_WANTED, float(way), 1.0 if flies_mission else 0.0)
+    elif may_go_back(modes, how):
+        emit_and_return(ap.events, v.time_us, RETURN_WANTED, float(how), 1.0 if flies_mission else 0.0)
     else:
         cause: int = ModeResult.NO_RETURN
-        if way == BY_LANDING:
+        if how == BY_LANDING:
             cause = ModeResult.NO_LANDING
-        elif way == BY_PATH:
+        elif how == BY_PATH:
             cause = ModeResult.NO_PATH
         emit(ap.events, v.time_us, MODE_REFUSED, float(AUTO_RTL), float(cause))
         return cause
@@ -135,9 +135,9 @@ def go_back(v: Vehicle, way: int, reason: int) -> int:
 
 
 @law
-def may_go_back(modes: Modes, way: int) -> bool:
+def may_go_back(modes: Modes, how: int) -> bool:
     """Whether the mission has such a part."""
-    return (way != BY_LANDING and modes.mission_returns) or (way != BY_PATH and modes.mission_lands)
+    return (how != BY_LANDING and modes.mission_returns) or (how != BY_PATH and modes.mission_lands)
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """SMART_RTL: flies home along its recorded path, without loops, then lands (or stays at RTL_ALT_FINAL).
 
-``smart_rtl_path`` keeps the way. A point leaves it when it is reached: left on the way, the mode goes on from there.
+``smart_rtl_path`` keeps the path. A point leaves it when it is reached: left on the way, the mode goes on from there.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FOLLOW = 12
 PRE_LAND = 13
 
 _ABOVE_HOME = 2.0
-"""The way ends so high above its first point [m] (ArduPilot's)."""
+"""The path ends so high above its first point [m] (ArduPilot's)."""
 _NO_PILOT_YAW = 4
 """SRTL_OPTIONS: the yaw stick does nothing."""
 
@@ -36,11 +36,11 @@ _NO_PILOT_YAW = 4
 def record(v: Vehicle) -> None:
     """Three times a second: the path begins with the first position, and grows while armed, unless on the way back."""
     ap = v.autopilot
-    path, place, known, p = ap.modes.path, ap.estimate.pos, ap.estimate.position_ok, ap.params.SRTL
+    path, pos, known, p = ap.modes.path, ap.estimate.pos, ap.estimate.position_ok, ap.params.SRTL
     if not path.home_saved and known:
-        smart_rtl_path.begin(path, place, True, v.time_us, p)
+        smart_rtl_path.begin(path, pos, True, v.time_us, p)
     if ap.arming.armed and ap.modes.number != SMART_RTL:
-        smart_rtl_path.record(path, place, known, ap.events, v.time_us, p)
+        smart_rtl_path.record(path, pos, known, ap.events, v.time_us, p)
 
 
 @law
@@ -64,8 +64,8 @@ def start(v: Vehicle) -> int:
 @law
 def target(path: PathState, k: int) -> Vec3:
     """Where to fly for point ``k`` of the path, NED [m]: there, but over the first one."""
-    place = smart_rtl_path.point(path, k)
-    return place if k > 0 else Vec3(place.x, place.y, place.z - _ABOVE_HOME)
+    pos = smart_rtl_path.point(path, k)
+    return pos if k > 0 else Vec3(pos.x, pos.y, pos.z - _ABOVE_HOME)
 
 
 @law
@@ -86,11 +86,11 @@ def run(v: Vehicle) -> None:
     if (int(ap.params.SRTL.OPTIONS) & _NO_PILOT_YAW) == 0:
         auto_yaw.follow_pilot(ap.modes, ap.control.attitude, ap.estimate)
     if not rtl.run_end(v):
-        run_way(v)
+        run_return(v)
 
 
 @law
-def run_way(v: Vehicle) -> None:
+def run_return(v: Vehicle) -> None:
     """One tick on the way home."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params

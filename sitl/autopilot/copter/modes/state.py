@@ -240,7 +240,7 @@ class LandState(Record):
     with_position: bool
     pause: bool  # wait 4 s before descending, after a failsafe
     # on a target (precision_land.py)
-    repositioned: bool  # the sticks have moved the vehicle: they choose the place
+    repositioned: bool  # the sticks have moved the vehicle: they choose the position
     stage: int  # DESCENDING, CLIMBING, RETURNING, GIVEN_UP
     since_us: int  # when it gave up
     tries: int  # again, so far
@@ -252,7 +252,7 @@ class AutoState(Record):
     submode: int  # auto.py
     started: bool  # by MISSION_START, or by raising the throttle
     command: int  # count of the command that is begun (nav.command_count)
-    land_state: int  # 0 flying to the place, 1 descending
+    land_state: int  # 0 flying to the position, 1 descending
 
 
 class PayloadPlaceState(Record):

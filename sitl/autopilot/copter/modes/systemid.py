@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""SYSTEMID: STABILIZE, or holding its place, with an added chirp, for system identification (SID_*).
+"""SYSTEMID: STABILIZE, or holding its position, with an added chirp, for system identification (SID_*).
 
 SID_AXIS says what the chirp is added to: 1 to 3 the roll, pitch [deg] and turn rate [deg/s] that the sticks ask for,
 4 to 6 the same without feed-forward, 7 to 9 the body rates asked for [deg/s], 10 to 12 the motors' demands and 13 the
@@ -44,7 +44,7 @@ MOTORS_ROLL, MOTORS_YAW = 10, 12
 THROTTLE = 13
 POSITION_RIGHT, POSITION_FORWARD, VELOCITY_RIGHT, VELOCITY_FORWARD, SPEED_RIGHT, SPEED_FORWARD = range(14, 20)
 
-# What it tells (SYSTEM_ID_DID)
+# What it reports (SYSTEM_ID_DID)
 STARTED = 0  # and the axis
 FINISHED = 1
 LANDED = 2
@@ -162,7 +162,7 @@ def value(c: Chirp, t: float) -> float:
 
 @law
 def report(v: Vehicle, did: int, number: float) -> None:
-    """Tell what it did."""
+    """Report what it did."""
     emit(v.autopilot.events, v.time_us, SYSTEM_ID_DID, float(did), number)
 
 
@@ -234,7 +234,7 @@ def run(v: Vehicle) -> None:
     state, axis = ap.modes.systemid, int(ap.params.SID.AXIS)
     state.value = sample(v)
     if state.holds_place:
-        run_in_place(v, axis, state.value)
+        run_at_position(v, axis, state.value)
     else:
         run_by_hand(v, axis, state.value)
     if state.testing and ap.control.tick % SAMPLE_TICKS == 0:
@@ -280,32 +280,32 @@ def along(axis: int, size: float) -> Vec3:
 
 
 @law
-def run_in_place(v: Vehicle, axis: int, added: float) -> None:
-    """One tick of holding a place, with ``added`` to what is measured or asked for; the sticks turn and climb."""
+def run_at_position(v: Vehicle, axis: int, added: float) -> None:
+    """One tick of holding a position, with ``added`` to what is measured or asked for; the sticks turn and climb."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params
     is_forward = axis in (POSITION_FORWARD, VELOCITY_FORWARD, SPEED_FORWARD)
     push = turned(Vec2(added, 0.0) if is_forward else Vec2(0.0, added), est.yaw)
     control.motors.desired_spool = DesiredSpoolState.THROTTLE_UNLIMITED
-    place = control.pos_ne
-    place.disturbed = axis <= VELOCITY_FORWARD
+    path = control.pos_ne
+    path.disturbed = axis <= VELOCITY_FORWARD
     zero = Vec2(0.0, 0.0)
-    place.disturbance_pos = push if axis <= POSITION_FORWARD else zero
-    place.disturbance_vel = push if axis >= VELOCITY_RIGHT else zero
+    path.disturbance_pos = push if axis <= POSITION_FORWARD else zero
+    path.disturbance_vel = push if axis >= VELOCITY_RIGHT else zero
     state = modes.systemid
     follow_speed(state, zero if axis < SPEED_RIGHT else push)
-    position.set_pos_vel_accel_ne(place, Motion2(state.place, state.vel, state.acc))
+    position.set_pos_vel_accel_ne(path, Motion2(state.place, state.vel, state.acc))
     position.update_ne(control, est, p)
     alt_hold.set_limits(control.pos_d, p)
     altitude.input_vel_accel_d(control.pos_d, -alt_hold.climb_rate(modes, ap.rc, control.pos_d, p), 0.0)
     altitude.update_d(control, est, p)
-    thrust = position.thrust_vector(place)
+    thrust = position.thrust_vector(path)
     attitude.input_thrust_vector_heading_rate(control, est, p, thrust, modes.pilot.yaw_rate)
 
 
 @law
 def follow_speed(state: SystemIdState, vel: Vec2) -> None:
-    """The place moves with a velocity [m/s]."""
+    """The position moves with a velocity [m/s]."""
     state.place += vel * DT
     state.acc = (vel - state.vel) / DT
     state.vel = vel

@@ -184,7 +184,7 @@ def fly(v: Vehicle, stage: int) -> None:
 
 @law
 def pass_on(v: Vehicle) -> None:
-    """Stopped over a place: ask for the next mode, once."""
+    """Stopped over a position: ask for the next mode, once."""
     ap = v.autopilot
     state, error = ap.modes.throw, ap.control.pos_ne.pos_error
     if not state.passed_on and norm2(Vec2(error.x, error.y)) < _NEAR:

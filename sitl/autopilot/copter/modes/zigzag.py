@@ -74,15 +74,15 @@ def start(v: Vehicle) -> int:
 
 
 @law
-def place_on_line(state: ZigZagState, point: int, here: Vec2) -> Vec2:
-    """The place nearest to ``here`` on the line through a point, NE [m]."""
+def position_on_line(state: ZigZagState, point: int, here: Vec2) -> Vec2:
+    """The position nearest to ``here`` on the line through a point, NE [m]."""
     along = state.b - state.a
     away = here - (state.a if point == A else state.b)
     return here - along * (dot2(away, along) / dot2(along, along))
 
 
 @law
-def place_beside(state: ZigZagState, here: Vec2, heading: float, distance: float) -> Vec2:
+def position_beside(state: ZigZagState, here: Vec2, heading: float, distance: float) -> Vec2:
     """``distance`` [m] from ``here``, at right angles to A .. B, on the side that a heading [rad] points to."""
     along = state.b - state.a
     side = Vec2(-along.y, along.x) * (distance / norm2(along))
@@ -93,7 +93,7 @@ def place_beside(state: ZigZagState, here: Vec2, heading: float, distance: float
 
 @law
 def here(v: Vehicle) -> Vec2:
-    """Where the way begins, NE [m]: where the last one ended, or the vehicle can stop."""
+    """Where the line begins, NE [m]: where the last one ended, or the vehicle can stop."""
     ap = v.autopilot
     if ap.modes.zigzag.stage == BY_ITSELF and ap.modes.nav.reached:
         return Vec2(ap.modes.nav.target.x, ap.modes.nav.target.y)
@@ -101,8 +101,8 @@ def here(v: Vehicle) -> Vec2:
 
 
 @law
-def fly_to(v: Vehicle, place: Vec2, did: int) -> None:
-    """Set off to a place, NE [m], at the present height; tell what it ``did``."""
+def fly_to(v: Vehicle, goal: Vec2, did: int) -> None:
+    """Set off to a position, NE [m], at the present height; report what it ``did``."""
     modes = v.autopilot.modes
     state, nav = modes.zigzag, modes.nav
     height_d = nav.target.z
@@ -113,7 +113,7 @@ def fly_to(v: Vehicle, place: Vec2, did: int) -> None:
     state.stage = BY_ITSELF
     state.reached_us = 0
     emit(v.autopilot.events, v.time_us, ZIGZAG_DID, float(did), float(state.line if state.sweeping else 0))
-    request_leg(nav, v.autopilot.events, v.time_us, with_down(place, height_d))
+    request_leg(nav, v.autopilot.events, v.time_us, with_down(goal, height_d))
 
 
 @law
@@ -122,7 +122,7 @@ def go_to(v: Vehicle, point: int) -> None:
     state = v.autopilot.modes.zigzag
     state.point = point
     state.sideways = False
-    fly_to(v, place_on_line(state, point, here(v)), GOES_TO + point)
+    fly_to(v, position_on_line(state, point, here(v)), GOES_TO + point)
 
 
 @law
@@ -132,18 +132,18 @@ def go_sideways(v: Vehicle) -> None:
     state, direction = ap.modes.zigzag, int(constrain(p.DIRECTION, 0.0, 3.0))
     state.sideways = True
     heading = ap.estimate.yaw + 0.5 * math.pi * direction
-    place = place_beside(state, here(v), heading, constrain(p.SIDE_DIST, 0.1, 100.0))
-    fly_to(v, place, GOES_SIDEWAYS + direction)
+    goal = position_beside(state, here(v), heading, constrain(p.SIDE_DIST, 0.1, 100.0))
+    fly_to(v, goal, GOES_SIDEWAYS + direction)
 
 
 @law
 def store(v: Vehicle, point: int) -> None:
     """Store a point where the vehicle can stop; with both the stage ends."""
-    state, place = v.autopilot.modes.zigzag, here(v)
+    state, goal = v.autopilot.modes.zigzag, here(v)
     if point == A:
-        state.a, state.has_a = place, True
+        state.a, state.has_a = goal, True
     else:
-        state.b, state.has_b = place, True
+        state.b, state.has_b = goal, True
     emit(v.autopilot.events, v.time_us, ZIGZAG_DID, float(STORED + point), 0.0)
     if state.has_a and state.has_b and norm2(state.b - state.a) > 0.0:
         state.stage = BY_STICKS
@@ -198,7 +198,7 @@ def suspend(v: Vehicle) -> None:
 
 @law
 def arrive(v: Vehicle) -> None:
-    """At the end of a way, after ZIGZ_WP_DELAY: give back, or go on with the sweep."""
+    """At the end of a line, after ZIGZ_WP_DELAY: give back, or go on with the sweep."""
     ap, p = v.autopilot, v.autopilot.params.ZIGZ
     state = ap.modes.zigzag
     if state.reached_us == 0:
@@ -221,13 +221,13 @@ def run(v: Vehicle) -> None:
     if ap.modes.zigzag.stage == BY_ITSELF and ground.is_grounded(ap.arming):
         give_back(v)
     if ap.modes.zigzag.stage == BY_ITSELF:
-        run_way(v)
+        run_line(v)
     else:
         loiter.run(v)
 
 
 @law
-def run_way(v: Vehicle) -> None:
+def run_line(v: Vehicle) -> None:
     """One tick of flying by itself; the yaw stick turns it."""
     ap = v.autopilot
     modes, control, est, p = ap.modes, ap.control, ap.estimate, ap.params

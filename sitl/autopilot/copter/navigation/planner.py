@@ -81,24 +81,26 @@ def rest_of_rise(leg: Leg) -> list[Phase]:
 
 
 class Following(NamedTuple):
-    """What comes after the path under way without a stop; ``place`` None: nothing."""
+    """What comes after the path under way without a stop; ``position`` None: nothing."""
 
-    place: Vec3 | None = None
+    position: Vec3 | None = None
     is_spline: bool = False
     after: Vec3 | None = None
-    """Place after that one, likewise."""
+    """Position after that one, likewise."""
     after_is_spline: bool = False
 
     def slope_from(self, origin: Vec3, corner: Vec3) -> Vec3:
         """Slope of a curve from ``origin`` at its end ``corner``: to what follows, or parallel to the line past it."""
-        if self.place is None:
+        if self.position is None:
             return ZERO
-        return self.place - (origin if self.is_spline else corner)
+        return self.position - (origin if self.is_spline else corner)
 
     def next_slope(self, corner: Vec3) -> Vec3:
-        """Slope at the end of the curve from ``corner`` to ``place``."""
+        """Slope at the end of the curve from ``corner`` to ``position``."""
         return (
-            ZERO if self.place is None else Following(self.after, self.after_is_spline).slope_from(corner, self.place)
+            ZERO
+            if self.position is None
+            else Following(self.after, self.after_is_spline).slope_from(corner, self.position)
         )
 
 
@@ -251,14 +253,14 @@ class CopterPlanner(Planner[Autopilot]):
 
     def entry_speed(self, ap: Autopilot, corner: Vec3, leaving: Vec3, following: Following) -> float:
         """Greatest speed [m/s] at ``corner``, in the direction ``leaving``, with which what follows can be flown."""
-        if following.place is None or norm(leaving) == 0.0 or separation(following.place, corner) < SHORTEST:
+        if following.position is None or norm(leaving) == 0.0 or separation(following.position, corner) < SHORTEST:
             return 0.0
         if following.is_spline:
             curve = Spline()
-            spline_curve.lay(curve, corner, following.place, leaving, following.next_slope(corner))
+            spline_curve.lay(curve, corner, following.position, leaving, following.next_slope(corner))
             spline_curve.set_limits(curve, self.spline_limits(ap), 0.0)
             return curve.allowed[0]
-        away = following.place - corner
+        away = following.position - corner
         return self.speed_at_ends(ap, away / norm(away), norm(away))
 
     def speed_at_ends(self, ap: Autopilot, unit: Vec3, length: float) -> float:
@@ -280,7 +282,7 @@ class CopterPlanner(Planner[Autopilot]):
             super()._replan(ap, leg)
             return
         if leg.turn_out - leg.turn_in < SLOWING_S and max(leg.a[: leg.segments]) < wanted.acceleration:
-            return  # nothing can be cut short, and there is no room for slowing down
+            return  # nothing can be cut short, and there is no space for slowing down
         left, last = leg.length - now.pos, min(end_speed(leg), wanted.speed)
         try:
             profile = plan_slower(left, wanted, State(0.0, now.vel, now.acc), rise, last)

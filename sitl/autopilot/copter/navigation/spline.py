@@ -25,7 +25,7 @@ _NO_SLOPE = 1e-3
 
 
 @law
-def place(s: Spline, u: float) -> Vec3:
+def position(s: Spline, u: float) -> Vec3:
     """Point of the curve at ``u`` (0 its origin, 1 its end), NED [m]."""
     return s.origin + (s.slope + (s.square + s.cube * u) * u) * u
 
@@ -76,7 +76,7 @@ def speed_allowed(s: Spline) -> float:
 @law
 def change_speed(s: Spline, accel: float, dt: float) -> None:
     """Speed of the target after ``dt`` [s]: as fast as the curve allows and its end can be come to by ``accel``."""
-    left = s.end - place(s, s.u)
+    left = s.end - position(s, s.u)
     wanted = min(speed_allowed(s), math.sqrt(s.end_speed * s.end_speed + 2.0 * accel * norm(left)))
     s.speed = constrain(wanted, s.speed - _BRAKE * accel * dt, s.speed + accel * dt)
 
@@ -104,7 +104,7 @@ def move(nav: CopterNav, dt: float, accel_ne: float, accel_d: float) -> bool:
     change_speed(s, along_axes(direction(s, s.u), accel_ne, accel_d, accel_d), dt)
     step(s, dt)
     unit = direction(s, s.u)
-    nav.pos = place(s, s.u)
+    nav.pos = position(s, s.u)
     nav.vel = unit * s.speed
     nav.acc = unit * ((s.speed - before) / dt) if dt > 0.0 else ZERO
     length = norm(slope(s, s.u))

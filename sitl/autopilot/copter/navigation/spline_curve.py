@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ....core.algebra import ZERO, dot, norm
 from ....core.sums import separation
 from ....core.vectors import Vec3
-from .spline import along_axes, bend, direction, place, slope
+from .spline import along_axes, bend, direction, position, slope
 from .state import SPLINE_PARTS, Spline
 
 _LONGEST = 4.0
@@ -47,8 +47,8 @@ def set_limits(s: Spline, limits: SplineLimits, end_speed: float) -> None:
     for k in range(SPLINE_PARTS - 1, -1, -1):
         unit = direction(s, marks[k])
         accel = along_axes(unit, limits.accel_ne, limits.accel_d, limits.accel_d)
-        way = separation(place(s, marks[k]), place(s, marks[k + 1]))
-        allowed[k] = min(allowed[k], math.sqrt(allowed[k + 1] * allowed[k + 1] + 2.0 * accel * way))
+        distance = separation(position(s, marks[k]), position(s, marks[k + 1]))
+        allowed[k] = min(allowed[k], math.sqrt(allowed[k + 1] * allowed[k + 1] + 2.0 * accel * distance))
     s.allowed[:] = allowed
 
 

@@ -42,7 +42,7 @@ class CopterNav(Nav):
     circle_top_rate: float  # signed, wanted [rad/s]
     circle_acc: float  # [rad/s^2]
     circle_running: bool  # false: still on the way to the edge
-    circle_reported: int  # number of the circle that was told last
+    circle_reported: int  # number of the circle that was reported last
     over_ground: bool  # legs, targets and positions along them are above the ground: down 0 is the ground
     ground_lost: bool  # and how high it is below is not known
     ground_d: float  # what is added to them; follows the ground, within the limits of climbs and descents [m]

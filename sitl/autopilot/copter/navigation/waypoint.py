@@ -158,9 +158,9 @@ def over_ground(nav: CopterNav, path: Motion) -> Motion:
 
 
 @law
-def from_origin(nav: CopterNav, place: Vec3) -> Vec3:
-    """A place on the way, NED from the origin [m]: its height may be above the ground."""
-    return Vec3(place.x, place.y, place.z + nav.ground_d) if nav.over_ground else place
+def from_origin(nav: CopterNav, point: Vec3) -> Vec3:
+    """A position on the way, NED from the origin [m]: its height may be above the ground."""
+    return Vec3(point.x, point.y, point.z + nav.ground_d) if nav.over_ground else point
 
 
 @law

@@ -188,7 +188,7 @@ class SystemId(ParameterGroup):
         0,
         19,
         "",
-        "Added to: 1-3 lean, turn; 4-6 the same, no feed-forward; 7-9 rates; 10-13 motors; 14-19 place; 0: refused",
+        "Added to: 1-3 lean, turn; 4-6 the same, no feed-forward; 7-9 rates; 10-13 motors; 14-19 position; 0: refused",
         INT8,
     )
     MAGNITUDE: float = param(15.0, -1000.0, 1000.0, "", "Size of the chirp, in the unit of its axis")
@@ -212,7 +212,7 @@ class ZigZag(ParameterGroup):
     """ZIGZ_: ZIGZAG."""
 
     AUTO_ENABLE: float = param(0, 0, 1, "", "1: function 83 of a switch sweeps from line to line", INT8)
-    WP_DELAY: float = param(0, 0, 127, "s", "Wait at the end of each way", INT8)
+    WP_DELAY: float = param(0, 0, 127, "s", "Wait at the end of each line", INT8)
     SIDE_DIST: float = param(4.0, 0.1, 100.0, "m", "Distance of the lines of a sweep")
     DIRECTION: float = param(0, 0, 3, "", "Side of a sweep: 0 forward, 1 right, 2 backward, 3 left of the nose", INT8)
     LINE_NUM: float = param(0, -1, 32767, "", "Lines of a sweep; 0: one way sideways only, -1: no end", INT16)

@@ -152,7 +152,7 @@ def run_command(v: Vehicle) -> None:
 
 @law
 def has_arrived(nav: RoverNav) -> bool:
-    """Whether the command under way has just come to its place, where it may wait."""
+    """Whether the command under way has just come to its position, where it may wait."""
     return not nav.completed and nav.command_kind in LEGS and nav.since_us == 0 and waypoint.reached(nav)
 
 
@@ -160,7 +160,7 @@ def has_arrived(nav: RoverNav) -> bool:
 def is_done(modes: Modes, time_us: int, pos: Vec2, radius: float) -> bool:
     """Whether the command under way is complete, at ``pos`` [m]; one that could not begin is.
 
-    Guided within the mission is within ``radius`` [m] of its place, or at its limit.
+    Guided within the mission is within ``radius`` [m] of its position, or at its limit.
     """
     nav, submode = modes.nav, modes.auto.submode
     kind = nav.command_kind
@@ -174,8 +174,8 @@ def is_done(modes: Modes, time_us: int, pos: Vec2, radius: float) -> bool:
     if submode == RETURNING:
         return waypoint.reached(nav)
     if submode == GUIDED_IN_MISSION:
-        at_place = nav.has_place and norm2(horizontal(nav.target) - pos) <= radius
-        return at_place or guided.is_at_limit(modes.guided, time_us, pos)
+        at_position = nav.has_place and norm2(horizontal(nav.target) - pos) <= radius
+        return at_position or guided.is_at_limit(modes.guided, time_us, pos)
     if submode == TURNING:
         return modes.auto.heading_reached
     return True

@@ -2,7 +2,7 @@
 """CIRCLE: drives around a point (CIRC_RADIUS, CIRC_SPEED, CIRC_DIR); missions use it for LOITER_TURNS.
 
 First to the edge, then after a target that runs along it. When the vehicle falls behind, the target waits and both get
-slower by a fifth. CIRCLE_ADAPTED tells what a vehicle's limits changed.
+slower by a fifth. CIRCLE_ADAPTED reports what a vehicle's limits changed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ..control.steering import lat_accel_max
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import drive
-from .mode import PLACE_ON_CIRCLE, Destination, RoverMode
+from .mode import POSITION_ON_CIRCLE, Destination, RoverMode
 from .state import CircleState, Modes
 
 CIRCLE = 9
@@ -81,7 +81,7 @@ def set_speed(circle: CircleState, events: Events, time_us: int, wanted: float, 
 
 @law
 def acceleration(params: Parameters) -> float:
-    """Of the target along its way [m/s^2] (WP_ACCEL within ATC_ACCEL_MAX and ATC_DECEL_MAX)."""
+    """Of the target along the circle [m/s^2] (WP_ACCEL within ATC_ACCEL_MAX and ATC_DECEL_MAX)."""
     limit = min(params.ATC.ACCEL_MAX, speed.decel_max(params.ATC))
     if limit <= 0.0:
         limit = DEFAULT_ACCEL
@@ -234,7 +234,7 @@ def change_speed(v: Vehicle, wanted: float) -> bool:
 @law
 def destination(modes: Modes) -> Destination:
     """The target that goes round."""
-    return Destination(PLACE_ON_CIRCLE, modes.circle.target)
+    return Destination(POSITION_ON_CIRCLE, modes.circle.target)
 
 
 MODE = RoverMode(

@@ -11,14 +11,14 @@ from ....core.mavlink import MavSeverity
 from ....core.scalars import constrain
 from ....core.vectors import Vec2
 from ...events import Event, emit
-from ...landing_target.estimator import target_place
+from ...landing_target.estimator import target_position
 from ...modes import ModeResult
 from ..control import position, speed
 from ..control.steering import lat_accel_max
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import drive
-from .mode import PLACE_TO_STAY, Destination, RoverMode
+from .mode import POSITION_TO_HOLD, Destination, RoverMode
 from .state import Modes
 
 DOCK = 8
@@ -34,7 +34,7 @@ DOCK_DID = Event(62, MavSeverity.NOTICE, _TEXTS)
 BACK = 4
 """PLND_ORIENT of a sensor that looks back: the vehicle docks in reverse."""
 LAST_PART = 3.0
-"""So near [m] the dock must be seen, and the way is straight."""
+"""So near [m] the dock must be seen, and the path is straight."""
 SLOWEST = 0.5
 """A vehicle that is not in line with the dock is no slower than this [m/s]."""
 ASIDE_MAX = 0.2
@@ -69,7 +69,7 @@ def run(v: Vehicle) -> None:
     ap = v.autopilot
     dock, t, control, p = ap.modes.dock, ap.landing_target, ap.control, ap.params
     if t.acquired:
-        dock.place = target_place(t, ap.estimate)
+        dock.place = target_position(t, ap.estimate)
     away = dock.place - horizontal(ap.estimate.pos)
     if not dock.done and ap.estimate.position_ok:
         dock.distance = norm2(away)
@@ -109,7 +109,7 @@ def slowed(wanted: float, aside: float, distance: float) -> float:
 @law
 def destination(modes: Modes) -> Destination:
     """The dock."""
-    return Destination(PLACE_TO_STAY, modes.dock.place)
+    return Destination(POSITION_TO_HOLD, modes.dock.place)
 
 
 MODE = RoverMode(

@@ -17,12 +17,12 @@ from ..navigation import waypoint
 from ..parameters import Parameters
 from ..state import Vehicle
 from . import drive
-from .mode import PLACE_TO_STAY, Destination, RoverMode
+from .mode import POSITION_TO_HOLD, Destination, RoverMode
 from .state import LoiterState, Modes
 
 LOITER = 5
 
-EITHER_WAY, FORWARDS, BACKWARDS = 0, 1, 2
+EITHER_DIRECTION, FORWARDS, BACKWARDS = 0, 1, 2
 """LOIT_TYPE"""
 
 
@@ -43,14 +43,14 @@ def start(v: Vehicle) -> int:
 
 @law
 def aim(loiter: LoiterState, pos: Vec2, yaw: float, params: Parameters) -> None:
-    """Heading and speed back to the place for a vehicle at ``pos`` [m], from beyond LOIT_RADIUS."""
+    """Heading and speed back to the position for a vehicle at ``pos`` [m], from beyond LOIT_RADIUS."""
     p = params.LOIT
     wanted = min((loiter.distance - p.RADIUS) * p.SPEED_GAIN, params.WP.SPEED)
-    way = loiter.place - pos
-    heading = atan2(way.y, way.x)
+    offset = loiter.place - pos
+    heading = atan2(offset.y, offset.x)
     error = wrap_pi(heading - yaw)
     behind = abs(error) > 0.5 * math.pi
-    if p.TYPE == BACKWARDS or (behind and p.TYPE == EITHER_WAY):
+    if p.TYPE == BACKWARDS or (behind and p.TYPE == EITHER_DIRECTION):
         heading = wrap_pi(heading + math.pi)
         error = wrap_pi(heading - yaw)
         wanted = -wanted
@@ -76,8 +76,8 @@ def run(v: Vehicle) -> None:
 
 @law
 def destination(modes: Modes) -> Destination:
-    """The place to stay at."""
-    return Destination(PLACE_TO_STAY, modes.loiter.place)
+    """The position to stay at."""
+    return Destination(POSITION_TO_HOLD, modes.loiter.place)
 
 
 MODE = RoverMode(

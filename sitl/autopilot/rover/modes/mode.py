@@ -14,7 +14,7 @@ from ...modes import Mode
 from ..state import Vehicle
 from .state import Modes
 
-NO_PLACE, END_OF_PATH, PLACE_TO_STAY, PLACE_ON_CIRCLE = 0, 1, 2, 3
+NO_DESTINATION, END_OF_PATH, POSITION_TO_HOLD, POSITION_ON_CIRCLE = 0, 1, 2, 3
 """Kinds of destination."""
 
 
@@ -22,13 +22,13 @@ class Destination(NamedTuple):
     """Where a mode drives to."""
 
     kind: int
-    place: Vec2  # NE [m]
+    position: Vec2  # NE [m]
 
 
 @law
 def no_destination(modes: Modes) -> Destination:
-    """Of a mode that drives to no place."""
-    return Destination(NO_PLACE, Vec2(0.0, 0.0))
+    """Of a mode that drives to no position."""
+    return Destination(NO_DESTINATION, Vec2(0.0, 0.0))
 
 
 @law

@@ -24,7 +24,7 @@ SPEED_MAX = 1e7
 
 
 def enter_first(v: Vehicle) -> None:
-    """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a place, home, a mission)."""
+    """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a position, home, a mission)."""
     modes = v.autopilot.modes
     number = int(v.autopilot.params.INITIAL_MODE)
     possible = table.is_known(number) and table.start(number, v) == ModeResult.ACCEPTED
@@ -52,7 +52,7 @@ def refusal(number: int, free: bool, speed_known: bool, skid: bool) -> int:
 def request(v: Vehicle, number: int, reason: int) -> int:
     """Change to a mode. Returns ACCEPTED (0; also when already there) or the cause (``autopilot.modes``).
 
-    A change is told to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number, cause) with
+    A change is reported to the shell as MODE_CHANGED (number, reason), a refusal as MODE_REFUSED (number, cause) with
     nothing changed.
     """
     ap = v.autopilot
@@ -88,10 +88,10 @@ def refusal_texts(number: int, cause: int) -> list[str]:
     return all_modes.refusal_texts(number, cause, failed)
 
 
-def _told(v: Any, number: float, cause: float) -> list[Text]:
+def _texts(v: Any, number: float, cause: float) -> list[Text]:
     said = refusal_texts(int(number), int(cause))
     mild = said if cause == ModeResult.GCS_BLOCKED else said[:1] if cause == ModeResult.NO_MISSION else []
     return [Text(MavSeverity.NOTICE if text in mild else MavSeverity.WARNING, text) for text in said]
 
 
-MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_told)
+MODE_REFUSED = all_modes.MODE_REFUSED.saying(says=_texts)

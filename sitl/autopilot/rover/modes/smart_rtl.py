@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """SMART_RTL: drives home along its recorded path, without loops.
 
-``smart_rtl_path`` keeps the way.
+``smart_rtl_path`` keeps the path.
 """
 
 from __future__ import annotations
@@ -56,12 +56,12 @@ def drive_on(path: PathState, nav: RoverNav, events: Events, time_us: int) -> bo
     """Drive on to the last point of the path, through it when there is one behind it; False when none is left."""
     if path.points == 0:
         return False
-    place = smart_rtl_path.point(path, path.points - 1)
+    point = smart_rtl_path.point(path, path.points - 1)
     smart_rtl_path.drop_last(path)
     if path.points > 0:
-        request_legs(nav, events, time_us, place, smart_rtl_path.point(path, path.points - 1))
+        request_legs(nav, events, time_us, point, smart_rtl_path.point(path, path.points - 1))
     else:
-        request_leg(nav, events, time_us, place)
+        request_leg(nav, events, time_us, point)
     return True
 
 

@@ -41,7 +41,7 @@ class LoiterState(Record):
     place: Vec2  # [m]
     heading: float  # [rad]
     speed: float  # [m/s]
-    distance: float  # to the place [m]
+    distance: float  # to the position [m]
 
 
 class CircleState(Record):

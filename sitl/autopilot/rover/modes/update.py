@@ -124,11 +124,11 @@ def check_slowly(v: Vehicle) -> None:
 @law
 def keep_path(modes: Modes, estimate: Estimate, events: Events, time_us: int, params: SmartRtl) -> None:
     """Three times a second: the path of SMART_RTL begins with the first position, and grows unless on the way back."""
-    place, position_ok = with_down(horizontal(estimate.pos), 0.0), estimate.position_ok
+    pos, position_ok = with_down(horizontal(estimate.pos), 0.0), estimate.position_ok
     if not modes.path.home_saved and position_ok:
-        smart_rtl_path.begin(modes.path, place, True, time_us, params)
+        smart_rtl_path.begin(modes.path, pos, True, time_us, params)
     if modes.number != SMART_RTL:
-        smart_rtl_path.record(modes.path, place, position_ok, events, time_us, params)
+        smart_rtl_path.record(modes.path, pos, position_ok, events, time_us, params)
 
 
 @law
@@ -139,10 +139,10 @@ def is_away(pos: Vec3, home_pos: Vec3) -> bool:
 
 
 @law
-def follow_home(place: HomeState, estimate: Estimate, armed: bool) -> None:
+def follow_home(state: HomeState, estimate: Estimate, armed: bool) -> None:
     """Once a second: home is set with the first position; disarmed it moves with the vehicle, unless locked."""
-    if not place.is_set:
-        home.set_first(place, estimate)
-    elif not (armed or place.locked) and estimate.position_ok:
-        if is_away(estimate.pos, place.pos):
-            home.set_here(place, estimate)
+    if not state.is_set:
+        home.set_first(state, estimate)
+    elif not (armed or state.locked) and estimate.position_ok:
+        if is_away(estimate.pos, state.pos):
+            home.set_here(state, estimate)

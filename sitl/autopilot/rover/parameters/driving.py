@@ -27,7 +27,7 @@ class Dock(ParameterGroup):
 
     SPEED: float = param(0.0, 0.0, 100.0, "m/s", "Greatest speed; 0: WP_SPEED")
     DIR: float = param(-1.0, -1.0, 360.0, "deg", "Heading in which the dock is entered; -1: none is wanted")
-    HDG_CORR_EN: float = param(0, 0, 1, "", "1: the way bends onto the line through the dock at DOCK_DIR", INT8)
+    HDG_CORR_EN: float = param(0, 0, 1, "", "1: the path bends onto the line through the dock at DOCK_DIR", INT8)
     HDG_CORR_WT: float = param(0.75, 0.0, 1.0, "", "How soon: aims so far before the dock, as a share of the distance")
     STOP_DIST: float = param(0.3, 0.0, 2.0, "m", "Stops so far from the dock")
 
@@ -36,9 +36,9 @@ class Loiter(ParameterGroup):
     """LOIT_: LOITER."""
 
     TYPE: float = param(
-        0, 0, 2, "", "Returns to its place: 0 forwards or backwards, 1 always forwards, 2 always backwards", INT8
+        0, 0, 2, "", "Returns to its position: 0 forwards or backwards, 1 always forwards, 2 always backwards", INT8
     )
-    RADIUS: float = param(2.0, 0.0, 20.0, "m", "Drifts so far from its place before it returns")
+    RADIUS: float = param(2.0, 0.0, 20.0, "m", "Drifts so far from its position before it returns")
     SPEED_GAIN: float = param(0.5, 0.0, 5.0, "1/s", "Speed of the return for each metre beyond LOIT_RADIUS")
 
 

@@ -7,7 +7,7 @@ import math
 
 from ....core.border import Sensors
 from ....core.kernels import law
-from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
+from ....vehicles.properties.copter import THRUST_MOMENTUM, Properties
 from .state import Rotors
 
 PERIOD_TICKS = 20
@@ -16,18 +16,18 @@ _RPM = 60.0 / (2.0 * math.pi)  # of 1 rad/s
 
 
 @law
-def sample(rotors: Rotors, sensors: Sensors, figures: Figures, armed: bool, time_us: int) -> None:
+def sample(rotors: Rotors, sensors: Sensors, airframe: Properties, armed: bool, time_us: int) -> None:
     """Write the speeds of all rotors; nothing without telemetry.
 
     The momentum model has no speeds: there a rotor turns ``rotors.rpm_max`` at full command. Controllers of armed
-    motors tell ``rotors.rpm_armed`` at least.
+    motors report ``rotors.rpm_armed`` at least.
     """
     if not rotors.telemetry:
         return
-    factor = rotors.rpm_max if figures.thrust_model == THRUST_MOMENTUM else _RPM
-    for k in range(figures.rotor_count):
+    factor = rotors.rpm_max if airframe.thrust_model == THRUST_MOMENTUM else _RPM
+    for k in range(airframe.rotor_count):
         rpm = factor * rotors.speed[k]
         sensors.esc_rpm[k] = max(rpm, rotors.rpm_armed) if armed else rpm
-    sensors.esc_motors = figures.rotor_count
+    sensors.esc_motors = airframe.rotor_count
     sensors.esc_time_us = time_us
     sensors.esc_count += 1

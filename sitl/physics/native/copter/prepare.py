@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures that follow from a multicopter's figures; call again after changing any of them in the record."""
+"""What follows from a multicopter's properties; call again after changing any of them in the record."""
 
 from __future__ import annotations
 
 from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.vectors import Vec3
-from ....vehicles.figures.copter import Figures
+from ....vehicles.properties.copter import Properties
 from ..prepare import decay, prepare_shared
 from .state import Derived
 
 
 @law
-def prepare(a: Figures, d: Derived) -> None:
-    """Fill ``d`` from the airframe's figures."""
+def prepare(a: Properties, d: Derived) -> None:
+    """Fill ``d`` from the airframe's properties."""
     dt = TICK_S / max(a.substeps, 1)
     d.dt = dt
     d.inverse_mass = 1.0 / a.mass

@@ -17,7 +17,7 @@ from ....core.algebra import ZERO
 from ....core.kernels import law
 from ....core.records import Floats
 from ....core.vectors import Vec3
-from ....vehicles.figures.copter import THRUST_MOMENTUM, Figures
+from ....vehicles.properties.copter import THRUST_MOMENTUM, Properties
 from ..body import Wrench
 from ..records import Air
 from .state import Derived, Rotors
@@ -33,13 +33,13 @@ class Flow(NamedTuple):
 
 
 @law
-def command(rotors: Rotors, controls: Floats, figures: Figures, derived: Derived) -> None:
+def command(rotors: Rotors, controls: Floats, airframe: Properties, derived: Derived) -> None:
     """Take over the actuator controls [0 .. 1] as rotor commands; called once a tick."""
     step, stuck = derived.command_step, rotors.stuck
-    for k in range(figures.rotor_count):
+    for k in range(airframe.rotor_count):
         if stuck != 0 and stuck >> k & 1:
             continue
-        c = (float(controls[k]) * rotors.share[k] - figures.control_min) * derived.control_scale
+        c = (float(controls[k]) * rotors.share[k] - airframe.control_min) * derived.control_scale
         if not c > 0.0:  # also for NaN
             c = 0.0
         elif c > 1.0:
@@ -51,31 +51,31 @@ def command(rotors: Rotors, controls: Floats, figures: Figures, derived: Derived
 
 
 @law
-def lag(rotors: Rotors, figures: Figures, derived: Derived, voltage: float) -> float:
+def lag(rotors: Rotors, airframe: Properties, derived: Derived, voltage: float) -> float:
     """Let the rotor speeds follow the commands for a substep at a battery voltage [V]; returns the yaw torque [N m] of
     spinning up.
     """
     top = 1.0
-    if figures.thrust_model != THRUST_MOMENTUM:
-        top = figures.speed_max
+    if airframe.thrust_model != THRUST_MOMENTUM:
+        top = airframe.speed_max
     limit = top
     if derived.speed_per_volt > 0.0:
         limit = min(top, derived.speed_per_volt * voltage)
     spin_up = 0.0
-    for k in range(figures.rotor_count):
+    for k in range(airframe.rotor_count):
         target = min(rotors.command[k] * top, limit)
         before = rotors.speed[k]
         error = before - target
         after = target + error * (derived.decay_up if error < 0.0 else derived.decay_down)
         rotors.speed[k] = after
-        spin_up += figures.rotor_direction[k] * (after - before)
-    return spin_up * figures.rotor_inertia / derived.dt
+        spin_up += airframe.rotor_direction[k] * (after - before)
+    return spin_up * airframe.rotor_inertia / derived.dt
 
 
 @law
-def hub(figures: Figures, k: int) -> Vec3:
+def hub(airframe: Properties, k: int) -> Vec3:
     """Where rotor ``k`` is, FRD [m]."""
-    return Vec3(figures.rotor_x[k], figures.rotor_y[k], figures.rotor_z[k])
+    return Vec3(airframe.rotor_x[k], airframe.rotor_y[k], airframe.rotor_z[k])
 
 
 @law
@@ -90,18 +90,18 @@ def velocity_at(at: Vec3, flow: Flow) -> Vec3:
 
 
 @law
-def speed_squared_wrench(rotors: Rotors, figures: Figures, flow: Flow) -> Wrench:
+def speed_squared_wrench(rotors: Rotors, airframe: Properties, flow: Flow) -> Wrench:
     """What the rotors do by RotorS' model."""
-    k_moment, k_roll = figures.moment_coefficient, figures.rolling_moment
+    k_moment, k_roll = airframe.moment_coefficient, airframe.rolling_moment
     force, torque = ZERO, ZERO
     momentum, shaft = 0.0, 0.0
-    for k in range(figures.rotor_count):
-        w, direction, at = rotors.speed[k], figures.rotor_direction[k], hub(figures, k)
-        thrust = figures.thrust_coefficient * w * w
+    for k in range(airframe.rotor_count):
+        w, direction, at = rotors.speed[k], airframe.rotor_direction[k], hub(airframe, k)
+        thrust = airframe.thrust_coefficient * w * w
         rotors.thrust[k] = thrust
         air = velocity_at(at, flow)
-        drag_x = -figures.rotor_drag * w * air.x
-        drag_y = -figures.rotor_drag * w * air.y
+        drag_x = -airframe.rotor_drag * w * air.x
+        drag_y = -airframe.rotor_drag * w * air.y
         force += Vec3(drag_x, drag_y, -thrust)
         torque += Vec3(
             -at.y * thrust - at.z * drag_y - k_roll * w * air.x,
@@ -111,22 +111,22 @@ def speed_squared_wrench(rotors: Rotors, figures: Figures, flow: Flow) -> Wrench
         momentum += direction * w
         shaft += k_moment * thrust * w
     # Gyroscopic torque: a counter-clockwise rotor's momentum points up, so that the sum is (0, 0, -h).
-    h = momentum * figures.rotor_inertia
-    rotors.power = shaft / figures.efficiency
+    h = momentum * airframe.rotor_inertia
+    rotors.power = shaft / airframe.efficiency
     return Wrench(force, Vec3(torque.x + flow.rates.y * h, torque.y - flow.rates.x * h, torque.z))
 
 
 @law
-def momentum_wrench(rotors: Rotors, figures: Figures, flow: Flow, air: Air, outflow: float) -> Wrench:
+def momentum_wrench(rotors: Rotors, airframe: Properties, flow: Flow, air: Air, outflow: float) -> Wrench:
     """What the rotors do by the momentum model; ``outflow``: its speed at command 1 [m/s]."""
-    expo = figures.thrust_expo
-    half_flow = 0.5 * air.density * figures.outflow_area
+    expo = airframe.thrust_expo
+    half_flow = 0.5 * air.density * airframe.outflow_area
     outflow2 = outflow * outflow
-    k_drag = figures.momentum_drag * air.density_root * math.sqrt(figures.disc_area)
+    k_drag = airframe.momentum_drag * air.density_root * math.sqrt(airframe.disc_area)
     force, torque = ZERO, ZERO
     total = 0.0
-    for k in range(figures.rotor_count):
-        c, at = rotors.speed[k], hub(figures, k)
+    for k in range(airframe.rotor_count):
+        c, at = rotors.speed[k], hub(airframe, k)
         hub_air = velocity_at(at, flow)
         inflow = max(-hub_air.z, 0.0)
         thrust = half_flow * (outflow2 * c * (1.0 - expo + expo * c) - inflow * inflow)
@@ -139,8 +139,8 @@ def momentum_wrench(rotors: Rotors, figures: Figures, flow: Flow, air: Air, outf
         torque += Vec3(
             -at.y * axial - at.z * drag_y,
             at.x * axial + at.z * drag_x,
-            figures.rotor_direction[k] * figures.yaw_lever * thrust * c + at.x * drag_y - at.y * drag_x,
+            airframe.rotor_direction[k] * airframe.yaw_lever * thrust * c + at.x * drag_y - at.y * drag_x,
         )
         total += abs(thrust)
-    rotors.power = total * figures.power_by_thrust
+    rotors.power = total * airframe.power_by_thrust
     return Wrench(force, torque)

@@ -5,19 +5,19 @@ from __future__ import annotations
 
 from ....core.records import Float32, Floats, Int32, Record, array
 from ....core.vectors import Vec3
-from ....vehicles.figures.copter import ROTORS_MAX, Figures
+from ....vehicles.properties.copter import ROTORS_MAX, Properties
 from .. import records as shared
 
 
 class Derived(shared.Derived):
-    """What follows from the figures (``prepare``)."""
+    """What follows from the properties (``prepare``)."""
 
     dt: float  # substep [s]
     inverse_mass: float  # [1/kg]
     inverse_inertia: Vec3  # about body x, y, z [1/(kg m^2)]
     control_scale: float  # 1 / (control_max - control_min)
     command_step: float  # largest change of command a tick
-    motor_lag: float  # time constant of all rotors in place of the figures' [s]; 0: theirs
+    motor_lag: float  # time constant of all rotors in place of the properties' [s]; 0: theirs
     decay_up: float  # what is left of a speed error after a substep
     decay_down: float
     speed_per_volt: float  # speed_max / speed_voltage [rad/s/V], 0 without limit
@@ -38,7 +38,7 @@ class Rotors(Record):
     thrust: Floats = array(ROTORS_MAX)  # [N]
     share: Floats = array(ROTORS_MAX)  # of their controls that is left (SIM_ENGINE_FAIL)
     stuck: int  # bits of those whose command stays (SIM_ENGINE_STUCK)
-    telemetry: bool  # speed controllers tell speeds
+    telemetry: bool  # speed controllers report speeds
     rpm_armed: float  # they tell so much at least while armed
     rpm_max: float  # of a rotor at full command, where the model has no speeds
     power: float  # taken from the battery by all [W]
@@ -73,7 +73,7 @@ class Shove(Record):
 class Physics(shared.Physics):
     """The physics of a copter."""
 
-    airframe: Figures
+    airframe: Properties
     derived: Derived
     ground: Ground
     rotors: Rotors

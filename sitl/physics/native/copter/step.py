@@ -38,15 +38,15 @@ def begin(v: Vehicle[Physics]) -> None:
 @law
 def substep(p: Physics, wrench: Wrench, time_us: int) -> Vec3:
     """Advance the body by a substep; returns its specific force [m/s^2], body frame."""
-    body, ground, figures, inverse_mass, dt = p.body, p.ground, p.airframe, p.derived.inverse_mass, p.derived.dt
+    body, ground, airframe, inverse_mass, dt = p.body, p.ground, p.airframe, p.derived.inverse_mass, p.derived.dt
     acc = inverse_mass * wrench.force
     stands = ground.state == GROUND_STANDING
     if stands and lifts_off(body.q, wrench.force, inverse_mass):
         ground.state = GROUND_AIRBORNE
     if ground.state != GROUND_AIRBORNE:
-        return rest(body, acc, stands, p.downward.ground_d, figures, dt)
-    fly(body, wrench, Inertia(figures.inertia, p.derived.inverse_inertia, inverse_mass), dt)
-    touch(body, ground, p.downward.ground_d, figures, time_us)
+        return rest(body, acc, stands, p.downward.ground_d, airframe, dt)
+    fly(body, wrench, Inertia(airframe.inertia, p.derived.inverse_inertia, inverse_mass), dt)
+    touch(body, ground, p.downward.ground_d, airframe, time_us)
     return acc
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rotors and lean that give a multicopter in the air the acceleration that it has, with other figures, wind or speed.
+"""Rotors and lean that give a multicopter in the air the acceleration it has, with other properties, wind or speed.
 
 The forces are balanced exactly: thrust holds weight and drag. Torques are left to the rate loops: what wind does to
 rotors above or below the centre is new to them for a moment.
@@ -14,7 +14,7 @@ from ....core.algebra import ZERO, conjugate, cross, dot, multiply, norm, normal
 from ....core.kernels import law
 from ....core.records import Floats
 from ....core.vectors import Quat, Vec3
-from ....vehicles.figures.copter import THRUST_MOMENTUM
+from ....vehicles.properties.copter import THRUST_MOMENTUM
 from ..body import Wrench
 from .rotors import Flow, momentum_wrench, speed_squared_wrench
 from .state import Physics
@@ -38,11 +38,11 @@ class Trim(NamedTuple):
 @law
 def rotors_wrench(p: Physics, flow: Flow) -> Wrench:
     """What the rotors do at their present speeds."""
-    figures = p.airframe
-    if figures.thrust_model == THRUST_MOMENTUM:
-        outflow = figures.outflow_speed_max * p.battery.voltage * p.derived.voltage_scale
-        return momentum_wrench(p.rotors, figures, flow, p.air, outflow)
-    return speed_squared_wrench(p.rotors, figures, flow)
+    airframe = p.airframe
+    if airframe.thrust_model == THRUST_MOMENTUM:
+        outflow = airframe.outflow_speed_max * p.battery.voltage * p.derived.voltage_scale
+        return momentum_wrench(p.rotors, airframe, flow, p.air, outflow)
+    return speed_squared_wrench(p.rotors, airframe, flow)
 
 
 @law
@@ -55,27 +55,27 @@ def arc(a: Vec3, b: Vec3) -> Quat:
 @law
 def speed_at_full(p: Physics) -> float:
     """A rotor's speed at command 1, at this voltage."""
-    figures = p.airframe
-    if figures.thrust_model == THRUST_MOMENTUM:
+    airframe = p.airframe
+    if airframe.thrust_model == THRUST_MOMENTUM:
         return 1.0
     if p.derived.speed_per_volt > 0.0:
-        return min(figures.speed_max, p.derived.speed_per_volt * p.battery.voltage)
-    return figures.speed_max
+        return min(airframe.speed_max, p.derived.speed_per_volt * p.battery.voltage)
+    return airframe.speed_max
 
 
 @law
 def balance(p: Physics, wanted: Vec3) -> Trim:
     """Turn the body and set the rotors' speeds for a specific force NED [m/s^2]; the wind is the steady one."""
-    b, rotors, figures = p.body, p.rotors, p.airframe
+    b, rotors, airframe = p.body, p.rotors, p.airframe
     before, up = b.q, Vec3(0.0, 0.0, -1.0)
     air = b.vel - p.wind.steady
     for _ in range(_STEPS):
         flow = Flow(rotate_inverse(b.q, air), ZERO)
         made = rotors_wrench(p, flow)
-        force = add_air(made, 0.0, flow, figures, p.air.density).force
+        force = add_air(made, 0.0, flow, airframe, p.air.density).force
         thrust = -made.force.z
         drag = rotate(b.q, Vec3(force.x, force.y, force.z + thrust))
-        needed = figures.mass * wanted - drag
+        needed = airframe.mass * wanted - drag
         size = norm(needed)
         if not (thrust > 0.0 and size > 0.0):
             return Trim(Quat(1.0, 0.0, 0.0, 0.0), False)
@@ -85,11 +85,11 @@ def balance(p: Physics, wanted: Vec3) -> Trim:
             return Trim(Quat(1.0, 0.0, 0.0, 0.0), False)
         b.q = normalise(multiply(arc(axis, direction), b.q))
         k = math.sqrt(size / thrust)
-        for rotor in range(figures.rotor_count):
+        for rotor in range(airframe.rotor_count):
             rotors.speed[rotor] *= k
     b.specific_force = rotate_inverse(b.q, wanted)
     full, holds = speed_at_full(p), True
-    for rotor in range(figures.rotor_count):
+    for rotor in range(airframe.rotor_count):
         holds = holds and rotors.speed[rotor] <= RESERVE * rotors.share[rotor] * full
     return Trim(multiply(b.q, conjugate(before)), holds)
 
@@ -97,9 +97,9 @@ def balance(p: Physics, wanted: Vec3) -> Trim:
 @law
 def command_speeds(p: Physics, controls: Floats) -> None:
     """Commands and actuator controls that keep the rotors' speeds."""
-    figures, rotors = p.airframe, p.rotors
-    top = 1.0 if figures.thrust_model == THRUST_MOMENTUM else figures.speed_max
-    for k in range(figures.rotor_count):
+    airframe, rotors = p.airframe, p.rotors
+    top = 1.0 if airframe.thrust_model == THRUST_MOMENTUM else airframe.speed_max
+    for k in range(airframe.rotor_count):
         rotors.command[k] = rotors.speed[k] / top
-        made = rotors.command[k] * (figures.control_max - figures.control_min) + figures.control_min
+        made = rotors.command[k] * (airframe.control_max - airframe.control_min) + airframe.control_min
         controls[k] = made / rotors.share[k] if rotors.share[k] > 0.0 else 0.0

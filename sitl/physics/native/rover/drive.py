@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ....core.constants import TICK_S
 from ....core.kernels import law
-from ....vehicles.figures.rover import Figures
+from ....vehicles.properties.rover import Properties
 from .state import Derived
 
 _PER_S = 1.0 / TICK_S
@@ -51,13 +51,13 @@ def commanded(control: float, scale: float) -> float:
 
 
 @law
-def run(before: float, command: float, figures: Figures, derived: Derived) -> Drive:
+def run(before: float, command: float, airframe: Properties, derived: Derived) -> Drive:
     """A motor follows its command for a tick, from a rolling speed [m/s]."""
-    target = command * figures.speed_max
+    target = command * airframe.speed_max
     step, loss = derived.speed_step, derived.rolling_step
     after = min(max(target + (before - target) * derived.speed_decay, before - step), before + step)
     pull = (after - before) * _PER_S * target
-    power = max(pull, 0.0) * derived.power_by_accel + abs(command) * figures.power_full
+    power = max(pull, 0.0) * derived.power_by_accel + abs(command) * airframe.power_full
     return Drive(after - min(max(after, -loss), loss), power)
 
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures that follow from a rover's figures; call again after changing any of them in the record."""
+"""What follows from a rover's properties; call again after changing any of them in the record."""
 
 from __future__ import annotations
 
 from ....core.constants import GRAVITY, TICK_S
 from ....core.elementary import sin
 from ....core.kernels import law
-from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Figures
+from ....vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Properties
 from ..prepare import decay, prepare_shared, whole_ticks
 from .state import Derived
 
@@ -21,7 +21,7 @@ def _step(rate: float) -> float:
 
 
 @law
-def yaw_acceleration(a: Figures) -> float:
+def yaw_acceleration(a: Properties) -> float:
     """Greatest yaw acceleration [rad/s^2] that the tyres can give.
 
     Front wheels: the side force of the front axle about the centre of mass, which is (1 - front_load) of the
@@ -38,8 +38,8 @@ def yaw_acceleration(a: Figures) -> float:
 
 
 @law
-def prepare(a: Figures, d: Derived) -> None:
-    """Fill ``d`` from the airframe's figures."""
+def prepare(a: Properties, d: Derived) -> None:
+    """Fill ``d`` from the airframe's properties."""
     d.control_scale = 1.0 / a.control_full
     lag = d.motor_lag if d.motor_lag > 0.0 else a.time_constant
     d.speed_decay = decay(lag, TICK_S)
@@ -57,7 +57,7 @@ def prepare(a: Figures, d: Derived) -> None:
         d.circle_scale = 2.0 / (a.turning_diameter * sin(a.steering_angle))
     else:
         d.inverse_track = 1.0 / (a.track * a.track_slip)
-    d.bend, d.bend_angle = 0.0, 0.0  # straight on, whatever the figures
+    d.bend, d.bend_angle = 0.0, 0.0  # straight on, whatever the properties
     d.power_by_accel = 0.0
     if a.efficiency > 0.0:
         d.power_by_accel = a.mass / a.efficiency

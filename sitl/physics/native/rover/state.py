@@ -5,16 +5,16 @@ from __future__ import annotations
 
 from ....core.records import Floats, Int32, Record, array
 from ....core.vectors import Vec2
-from ....vehicles.figures.rover import Figures
+from ....vehicles.properties.rover import Properties
 from .. import records as shared
 
 
 class Derived(shared.Derived):
-    """What follows from the figures (``prepare``), so that a tick divides little."""
+    """What follows from the properties (``prepare``), so that a tick divides little."""
 
     control_scale: float  # 1 / control_full
-    motor_lag: float  # time constant of the motors in place of the figures' [s]; 0: theirs
-    servo_rate: float  # of the steering servo in place of the figures' [rad/s]; 0: theirs
+    motor_lag: float  # time constant of the motors in place of the properties' [s]; 0: theirs
+    servo_rate: float  # of the steering servo in place of the properties' [rad/s]; 0: theirs
     speed_decay: float  # what is left of a wheel-speed error after a tick
     speed_step: float  # largest change of wheel speed a tick that the motors give [m/s]
     rolling_step: float  # speed that rolling resistance takes off a tick [m/s]
@@ -70,6 +70,6 @@ class Wheels(Record):
 class Physics(shared.Physics):
     """The physics of a rover."""
 
-    airframe: Figures
+    airframe: Properties
     derived: Derived
     wheels: Wheels

@@ -7,7 +7,7 @@ import math
 
 from ....core.elementary import sin, tan
 from ....core.kernels import law
-from ....vehicles.figures.rover import STEERING_FRONT_WHEELS, Figures
+from ....vehicles.properties.rover import STEERING_FRONT_WHEELS, Properties
 from .state import SERVO_RING, Derived, SteeringServo
 
 
@@ -37,18 +37,18 @@ def followed(servo: SteeringServo, command: float) -> float:
 
 
 @law
-def curvature(angle: float, figures: Figures, derived: Derived) -> float:
+def curvature(angle: float, airframe: Properties, derived: Derived) -> float:
     """1 / radius [1/m] of the driven axle's path that the front wheels' angle [rad] asks for, right positive."""
-    if figures.steering_model == STEERING_FRONT_WHEELS:
+    if airframe.steering_model == STEERING_FRONT_WHEELS:
         return tan(angle) * derived.inverse_wheelbase
     return sin(angle) * derived.circle_scale
 
 
 @law
-def bend(angle: float, figures: Figures, derived: Derived) -> float:
+def bend(angle: float, airframe: Properties, derived: Derived) -> float:
     """The same; kept while the wheels keep their angle, since tangent and sine cost a good part of a rover's tick."""
     if angle != derived.bend_angle:
-        derived.bend, derived.bend_angle = curvature(angle, figures, derived), angle
+        derived.bend, derived.bend_angle = curvature(angle, airframe, derived), angle
     return derived.bend
 
 

@@ -7,7 +7,7 @@ from ....core.constants import TICK_S, TICK_US
 from ....core.kernels import inline_unit, law
 from ....core.records import Floats, Records
 from ....core.vectors import Vec2
-from ....vehicles.figures.rover import STEERING_SKID, Figures
+from ....vehicles.properties.rover import STEERING_SKID, Properties
 from .. import battery, bench, obstacles
 from ..records import Body, Vehicle
 from ..sensors.sense import sense
@@ -25,44 +25,44 @@ THROTTLE_OUTPUT = 2
 
 
 @law
-def drive(wheels: Wheels, figures: Figures, derived: Derived, controls: Floats) -> None:
+def drive(wheels: Wheels, airframe: Properties, derived: Derived, controls: Floats) -> None:
     """Let motors and steering follow the actuator controls [-1 .. 1] for a tick."""
     first = commanded(float(controls[STEERING_OUTPUT]), derived.control_scale)
     second = commanded(float(controls[THROTTLE_OUTPUT]), derived.control_scale)
     if wheels.is_faulty:
         first = wheels.held.x if wheels.stuck & 1 << STEERING_OUTPUT else first * wheels.share.x
         second = wheels.held.y if wheels.stuck & 1 << THROTTLE_OUTPUT else second * wheels.share.y
-    if figures.steering_model == STEERING_SKID:
-        left = run(wheels.speed.x, first, figures, derived)
-        right = run(wheels.speed.y, second, figures, derived)
+    if airframe.steering_model == STEERING_SKID:
+        left = run(wheels.speed.x, first, airframe, derived)
+        right = run(wheels.speed.y, second, airframe, derived)
         wheels.speed = Vec2(left.speed, right.speed)
         wheels.power = 0.5 * (left.power + right.power)
     else:
         if wheels.servo.is_slow:
             first = followed(wheels.servo, first)
-        wheels.angle = approach(wheels.angle, first * figures.steering_angle, derived.steering_step)
-        axle = run(wheels.speed.x, second, figures, derived)
+        wheels.angle = approach(wheels.angle, first * airframe.steering_angle, derived.steering_step)
+        axle = run(wheels.speed.x, second, airframe, derived)
         wheels.speed = Vec2(axle.speed, wheels.speed.y)
         wheels.power = axle.power
 
 
 @law
-def move(wheels: Wheels, body: Body, figures: Figures, derived: Derived, controls: Floats) -> None:
+def move(wheels: Wheels, body: Body, airframe: Properties, derived: Derived, controls: Floats) -> None:
     """Advance motors, wheels and body by one tick under the actuator controls [-1 .. 1]."""
-    drive(wheels, figures, derived, controls)
+    drive(wheels, airframe, derived, controls)
     before, left, right = wheels.forward, wheels.speed.x, wheels.speed.y
-    skids = figures.steering_model == STEERING_SKID
+    skids = airframe.steering_model == STEERING_SKID
     pull = grip_along(before, 0.5 * (left + right) if skids else left, derived.drive_grip)
     wheels.forward = pull.speed
     if skids:
         wanted = (left - right) * derived.inverse_track
     else:
-        wanted = pull.speed * bend(wheels.angle, figures, derived)
+        wanted = pull.speed * bend(wheels.angle, airframe, derived)
     held = grip_across(wanted, pull.speed, pull.accel, derived.grip)
     yaw_rate = approach(body.rates.z, held, derived.yaw_step)
-    roll(body, Course(before, pull.speed, yaw_rate), figures.rear_axle)
+    roll(body, Course(before, pull.speed, yaw_rate), airframe.rear_axle)
     if not skids:
-        differ = 0.5 * figures.track * body.rates_mean.z  # the outer wheel rolls further
+        differ = 0.5 * airframe.track * body.rates_mean.z  # the outer wheel rolls further
         left, right = left + differ, left - differ
     wheels.distance += TICK_S * Vec2(left, right)
 

@@ -8,7 +8,7 @@ from ....core.border import Sensors
 from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.rng import Rng, normal
-from ....vehicles.figures.body import Sensors as SensorFigures
+from ....vehicles.properties.body import Sensors as SensorProperties
 from ..atmosphere import pressure, temperature
 from ..records import BARO_RING, BaroFault, Derived, Physics, SensorState
 
@@ -19,7 +19,7 @@ LEAST = 100.0
 
 
 @law
-def pressure_error(s: SensorState, a: SensorFigures, d: Derived, rng: Rng) -> float:
+def pressure_error(s: SensorState, a: SensorProperties, d: Derived, rng: Rng) -> float:
     """Drift and noise of a sample [Pa]."""
     s.baro_drift = d.baro_drift_decay * s.baro_drift + d.baro_drift_step * normal(rng)
     return a.noise_scale * (a.baro_drift * s.baro_drift + a.baro_noise * normal(rng))

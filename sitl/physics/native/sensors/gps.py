@@ -19,7 +19,7 @@ from ....core.kernels import law
 from ....core.mavlink import GpsFixType
 from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
-from ....vehicles.figures.body import Sensors as SensorFigures
+from ....vehicles.properties.body import Sensors as SensorProperties
 from ..records import GPS_RING, Body, Derived, Fix, GpsFault, GpsReceiver, Physics, Place
 from ..tick import Clock
 
@@ -31,8 +31,8 @@ EXACT = 0.02
 
 JAM_SILENT_TICKS, JAM_SILENT_MORE_TICKS = 400, 2000
 JAM_CHANGES = 0.3
-"""Chance that a figure of a jammed receiver changes from fix to fix."""
-JAM_PLACE, JAM_SPEED = 500.0, 150.0
+"""Chance that a number of a jammed receiver changes from fix to fix."""
+JAM_POSITION, JAM_SPEED = 500.0, 150.0
 """Standard deviations of each axis [m, m/s]."""
 JAM_SATELLITES, LEAST_SATELLITES = 17, 4
 JAM_DOP = 60000.0
@@ -57,7 +57,7 @@ def _axes(horizontal: float, vertical: float) -> Vec3:
 
 
 @law
-def measure(r: GpsReceiver, body: Body, a: SensorFigures, d: Derived, rng: Rng) -> Measured:
+def measure(r: GpsReceiver, body: Body, a: SensorProperties, d: Derived, rng: Rng) -> Measured:
     """Position and velocity with drift and noise."""
     scale = a.noise_scale
     r.drift = d.gps_drift_decay * r.drift + d.gps_drift_step * normal_vector(rng)
@@ -85,7 +85,7 @@ def send(r: GpsReceiver, place: Place, found: Measured, due: int, fix_type: int)
 def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
     """A jammed receiver's next fix, as ArduPilot's simulator has it: its type.
 
-    At first nothing is received for one to six seconds; then satellites come and go, and place, speed and dilutions
+    At first nothing is received for one to six seconds; then satellites come and go, and position, speed and dilutions
     jump now and again.
     """
     if r.jam_end == 0:
@@ -94,7 +94,7 @@ def drift_jammed(r: GpsReceiver, tick: int, rng: Rng) -> int:
         return GpsFixType.NO_FIX
     jam = r.jam
     if uniform(rng) < JAM_CHANGES:
-        jam.pos = JAM_PLACE * normal_vector(rng)
+        jam.pos = JAM_POSITION * normal_vector(rng)
     if uniform(rng) < JAM_CHANGES:
         jam.vel = JAM_SPEED * normal_vector(rng)
     if uniform(rng) < JAM_CHANGES:
@@ -143,7 +143,7 @@ def take(p: Physics, r: GpsReceiver, tick: int, rng: Rng) -> None:
 
 
 @law
-def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, figures: SensorFigures) -> None:
+def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, airframe: SensorProperties) -> None:
     """Hand the oldest fix to the reader when its time has come."""
     if r.tail == r.head:
         return
@@ -157,9 +157,9 @@ def deliver(r: GpsReceiver, shown: GpsReading, now: Clock, figures: SensorFigure
     if fix.type >= GpsFixType.FIX_3D:
         shown.gps_lat, shown.gps_lon, shown.gps_alt = fix.lat, fix.lon, fix.alt
         shown.gps_vel = fix.vel
-        shown.gps_eph = _nearest(100.0 * figures.gps_hdop)
-        shown.gps_epv = _nearest(100.0 * figures.gps_vdop)
-        shown.gps_satellites = int(figures.gps_satellites)
+        shown.gps_eph = _nearest(100.0 * airframe.gps_hdop)
+        shown.gps_epv = _nearest(100.0 * airframe.gps_vdop)
+        shown.gps_satellites = int(airframe.gps_satellites)
         if r.fault.is_on and r.fault.satellites >= 0:
             shown.gps_satellites = r.fault.satellites
         if fix.jammed:

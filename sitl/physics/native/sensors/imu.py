@@ -13,7 +13,7 @@ from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.rng import Rng, normal, normal_vectors
 from ....core.vectors import Vec3
-from ....vehicles.figures.body import Figures
+from ....vehicles.properties.body import Properties
 from ..records import Derived, Physics, SensorState
 from .imu_faults import Sample, saturate, show
 
@@ -52,7 +52,7 @@ def walk(s: SensorState, d: Derived, rng: Rng) -> None:
 
 
 @law
-def drift(s: SensorState, a: Figures, tick: int) -> None:
+def drift(s: SensorState, a: Properties, tick: int) -> None:
     """The steady part of the same step of the gyro's bias."""
     if a.gyro_drift_speed == 0.0:
         return

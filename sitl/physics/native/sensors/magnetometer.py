@@ -8,16 +8,16 @@ from ....core.border import Sensors
 from ....core.kernels import law
 from ....core.rng import Rng, normal_vector
 from ....core.vectors import Quat, Vec3
-from ....vehicles.figures.body import Sensors as SensorFigures
+from ....vehicles.properties.body import Sensors as SensorProperties
 from ..records import Iron, Physics
 
 
 @law
-def measure_field(q: Quat, field: Vec3, figures: SensorFigures, rng: Rng) -> Vec3:
+def measure_field(q: Quat, field: Vec3, airframe: SensorProperties, rng: Rng) -> Vec3:
     """Field [gauss] that a sensor at attitude ``q`` shows, body frame; ``field``: NED."""
-    scale = figures.noise_scale
-    noise = scale * figures.mag_noise
-    return rotate_inverse(q, field) + scale * figures.mag_offset + noise * normal_vector(rng)
+    scale = airframe.noise_scale
+    noise = scale * airframe.mag_noise
+    return rotate_inverse(q, field) + scale * airframe.mag_offset + noise * normal_vector(rng)
 
 
 @law

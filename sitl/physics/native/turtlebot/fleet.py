@@ -11,7 +11,7 @@ from ....core.kernels import law
 from ....core.memory import floats_at, ints_at, table_at
 from ....core.records import Records
 from ....core.vectors import Vec2
-from ....worlds.geometry import GRID_FIGURES, SOLID_FIGURES, Solids
+from ....worlds.geometry import GRID_NUMBERS, SOLID_COLUMNS, Solids
 from .scan import Beams, add_noise, scan
 from .state import TICK_US, Turtlebot
 from .step import commanded, move
@@ -55,15 +55,15 @@ def advance_one(v: Turtlebot, command: Vec2, ticks: int, solids: Solids) -> None
             c = v.command
             c.forward, c.turn, c.time_us = command.x, command.y, v.time_us
     for _ in range(ticks):
-        move(v.body, v.figures, commanded(v.figures, v.command, v.time_us), solids.rows)
+        move(v.body, v.airframe, commanded(v.airframe, v.command, v.time_us), solids.rows)
         v.time_us += TICK_US
 
 
 @law
 def look(v: Turtlebot, solids: Solids, beams: Beams, readings: NarrowLine) -> None:
     """Read one robot's lidar."""
-    scan(v.body, v.figures, solids, beams, readings)
-    add_noise(readings, v.figures, v.rng)
+    scan(v.body, v.airframe, solids, beams, readings)
+    add_noise(readings, v.airframe, v.rng)
 
 
 SOLIDS, SOLID_COUNT, GRID, CELLS, CELL_COUNT = 0, 1, 2, 3, 4
@@ -77,8 +77,8 @@ def advance_in_worlds(
     """The same for robots that are each in a world of their own; ``worlds``: a row a robot, shape (n, 5)."""
     for i in range(orders.ticks.shape[0]):
         if orders.ticks[i] >= 0:
-            rows = table_at(worlds[i, SOLIDS], worlds[i, SOLID_COUNT], SOLID_FIGURES)
-            grid, cells = floats_at(worlds[i, GRID], GRID_FIGURES), ints_at(worlds[i, CELLS], worlds[i, CELL_COUNT])
+            rows = table_at(worlds[i, SOLIDS], worlds[i, SOLID_COUNT], SOLID_COLUMNS)
+            grid, cells = floats_at(worlds[i, GRID], GRID_NUMBERS), ints_at(worlds[i, CELLS], worlds[i, CELL_COUNT])
             solids = Solids(rows, grid, cells)
             advance_one(fleet[i], Vec2(orders.commands[i, 0], orders.commands[i, 1]), orders.ticks[i], solids)
             look(fleet[i], solids, beams, readings[i])

@@ -11,7 +11,7 @@ _LONG_AGO = -(10**15)
 
 
 def place(v: Turtlebot, north: float, east: float, down: float, heading: float, seed: int) -> None:
-    """Put it at a place, at rest; figures stay, everything else begins anew.
+    """Put it at a position, at rest; properties stay, everything else begins anew.
 
     Args:
         v: view of one record.

@@ -10,7 +10,7 @@ from ....core.elementary import sincos
 from ....core.kernels import law
 from ....core.rng import Rng, normal
 from ....core.vectors import Vec3
-from ....vehicles.turtlebot import Figures
+from ....vehicles.turtlebot import Properties
 from ....worlds.geometry import Solids
 from ....worlds.planar import publish_readings
 from ....worlds.raycast import scan_rays
@@ -18,18 +18,18 @@ from .state import Body
 
 
 class Beams(NamedTuple):
-    """The rays of a lidar, and room to work in."""
+    """The rays of a lidar, and memory to work in."""
 
     rays: Table
     """Unit vectors on the body, FRD, shape (3, rays)."""
     directions: Table
-    """Room, shape (3, rays)."""
+    """Memory, shape (3, rays)."""
     ranges: Line
-    """Room, shape (rays,)."""
+    """Memory, shape (rays,)."""
 
 
 @law
-def scan(b: Body, f: Figures, solids: Solids, beams: Beams, readings: NarrowLine) -> None:
+def scan(b: Body, f: Properties, solids: Solids, beams: Beams, readings: NarrowLine) -> None:
     """Read the lidar of a body in a world into ``readings``, float32 as the original's messages.
 
     ``readings``: shape (readings,) [m], from right to left; inf: nothing within the range.
@@ -45,7 +45,7 @@ def scan(b: Body, f: Figures, solids: Solids, beams: Beams, readings: NarrowLine
 
 
 @law
-def add_noise(readings: NarrowLine, f: Figures, rng: Rng) -> None:
+def add_noise(readings: NarrowLine, f: Properties, rng: Rng) -> None:
     """Add the lidar's noise to what it reads [m]."""
     if f.range_noise > 0.0:
         for k in range(readings.shape[0]):

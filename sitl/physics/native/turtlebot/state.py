@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Record of a Turtlebot: everything that changes, and the figures it drives with. A fleet is an array of it."""
+"""Record of a Turtlebot: everything that changes, and the properties it drives with. A fleet is an array of it."""
 
 from __future__ import annotations
 
 from ....core.records import Record
 from ....core.rng import Rng
-from ....vehicles.turtlebot import Figures
+from ....vehicles.turtlebot import Properties
 
 TICK_US = 10_000
 """Physics step [us], as the original's."""
@@ -37,7 +37,7 @@ class Turtlebot(Record):
     """A whole Turtlebot."""
 
     time_us: int  # since it was placed
-    figures: Figures
+    airframe: Properties
     command: Command
     body: Body
     rng: Rng

@@ -15,7 +15,7 @@ from ....core.elementary import sincos
 from ....core.kernels import inlined, law
 from ....core.scalars import TWO_PI
 from ....core.vectors import Vec2
-from ....vehicles.turtlebot import Figures
+from ....vehicles.turtlebot import Properties
 from ....worlds.contact import Volume, nearest_of
 from .state import TICK_S, Body, Command
 
@@ -30,7 +30,7 @@ class WheelSpeeds(NamedTuple):
 
 
 @inlined
-def wheel_speeds(f: Figures, forward: float, turn: float) -> WheelSpeeds:
+def wheel_speeds(f: Properties, forward: float, turn: float) -> WheelSpeeds:
     """What the wheels do for a forward speed [m/s] and a turn rate [rad/s], counter-clockwise.
 
     Each wheel is limited on its own. The drive assumes one radius; the true ones differ.
@@ -43,15 +43,15 @@ def wheel_speeds(f: Figures, forward: float, turn: float) -> WheelSpeeds:
 
 
 @law
-def free_distance(f: Figures, floor: float, solids: Table, place: Vec2) -> float:
-    """Distance [m] from the robot's cylinder, were its axis at a place (north, east [m]) of a floor (down [m]), to the
-    nearest solid; negative inside of one.
+def free_distance(f: Properties, floor: float, solids: Table, position: Vec2) -> float:
+    """Distance [m] from the robot's cylinder, were its axis at a position (north, east [m]) of a floor (down [m]), to
+    the nearest solid; negative inside of one.
     """
-    return nearest_of(solids, solids.shape[0], Volume(place, floor - f.top, floor - f.bottom, f.radius)).distance
+    return nearest_of(solids, solids.shape[0], Volume(position, floor - f.top, floor - f.bottom, f.radius)).distance
 
 
 @inlined
-def commanded(f: Figures, c: Command, time_us: int) -> WheelSpeeds:
+def commanded(f: Properties, c: Command, time_us: int) -> WheelSpeeds:
     """What the wheels do now: a command holds until its time-out."""
     if 1e-6 * (time_us - c.time_us) < f.command_timeout:
         return wheel_speeds(f, c.forward, c.turn)
@@ -59,7 +59,7 @@ def commanded(f: Figures, c: Command, time_us: int) -> WheelSpeeds:
 
 
 @inlined
-def move(b: Body, f: Figures, wheels: WheelSpeeds, solids: Table) -> None:
+def move(b: Body, f: Properties, wheels: WheelSpeeds, solids: Table) -> None:
     """Move on by ``TICK_US``. A move that would bring the robot into a solid does not happen; it still turns.
 
     ``solids``: rows of a world's ``Geometry``.

@@ -238,3 +238,16 @@ def test_bad_numbers_never_reach_the_motors(give, bad, ap, actuators):
     output(ap, actuators)
     assert all(1150 <= p <= 1950 for p in actuators.pwm[:4])
     assert all(math.isfinite(c) for c in actuators.controls[:4])
+
+
+def test_who_relaxes_begins_with_its_present_rates_and_without_a_memory():
+    ap = make_autopilot()
+    arm(ap)
+    loops = (ap.control.rate.roll, ap.control.rate.pitch, ap.control.rate.yaw)
+    for loop in loops:
+        loop.started, loop.integrator = True, 0.3
+    ap.estimate.rates = Vec3(0.1, -0.2, 0.3)
+    ap.control.attitude.thrust_error_angle = 0.5
+    attitude.relax(ap.control, ap.estimate)
+    assert [(bool(loop.started), float(loop.integrator)) for loop in loops] == [(False, 0.0)] * 3
+    assert ap.control.attitude.rate_target == Vec3(0.1, -0.2, 0.3) and ap.control.attitude.thrust_error_angle == 0.0

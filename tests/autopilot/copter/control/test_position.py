@@ -361,3 +361,32 @@ def test_the_velocity_integrator_of_altitude_does_not_wind_up(blocked, error, gr
     c = AltitudeState()
     altitude.control_vertical(c, Motion(error, 0.0, 0.0), blocked, WITH_I)
     assert (c.vel.integrator != 0.0) is grows
+
+
+def test_a_position_that_is_no_number_asks_for_no_velocity(ap):
+    control = spooled(ap).control.pos_ne
+    control.pos_desired = Vec2(3.0, -4.0)
+    assert norm2(position.control_position(control, Vec2(0.0, 0.0), 1.0)) > 1.0
+    assert position.control_position(control, Vec2(math.nan, 0.0), 1.0) == REST
+    assert control.pos_error == REST
+
+
+def test_a_path_that_is_no_number_lets_the_copter_stop(ap):
+    control = spooled(ap).control.pos_d
+    altitude.set_pos_vel_accel_d(control, Motion(-5.0, 1.0, 0.5))
+    assert (control.pos_desired, control.vel_desired, control.accel_desired) == (-5.0, 1.0, 0.5)
+    speed = [1.0]
+    for _ in range(1200):
+        altitude.set_pos_vel_accel_d(control, Motion(-5.0, math.nan, 0.0))
+        speed.append(float(control.vel_desired))
+    assert min(speed) > -0.05 and max(speed) < 1.5 and abs(speed[-1]) < 1e-3
+
+
+@pytest.mark.parametrize("speed", (0.5, 5.0))
+def test_the_path_waits_for_a_copter_that_may_correct_only_slowly(ap, speed):
+    control = spooled(ap).control.pos_ne
+    control.correction_speed, control.correction_accel = speed, 2.5
+    control.pos_desired = Vec2(30.0, 40.0)
+    velocity = position.control_position(control, REST, 1.0)
+    assert norm2(velocity) == pytest.approx(speed) and velocity.x == pytest.approx(0.6 * speed)
+    assert norm2(control.pos_desired) == norm2(control.pos_error) < 50.0

@@ -18,11 +18,11 @@ from sitl.autopilot.copter.modes.autotune_rules import (
     ENOUGH,
     NO_D,
     NO_P,
-    NO_ROOM,
     RATE_D_DOWN,
     RATE_D_UP,
     RATE_P_UP,
     TOO_LARGE,
+    TWITCH_AT_LEAST,
 )
 from sitl.autopilot.copter.modes.state import AutotuneState
 from sitl.vehicle.copter import Copter
@@ -120,5 +120,5 @@ def test_a_twitch_that_turns_too_far_is_made_smaller_until_there_is_no_room() ->
     t = AutotuneState()
     t.scale, t.rate_max, t.rate_min = 1.0, 1.0, 1.0
     came_to = [autotune_rules.judge_rate(t, 1.0, 0.3, 2.0, 0.26, 0.075) for _ in range(17)]
-    assert came_to == 16 * [TOO_LARGE] + [NO_ROOM]
+    assert came_to == 16 * [TOO_LARGE] + [TWITCH_AT_LEAST]
     assert t.scale == pytest.approx(0.9**16)

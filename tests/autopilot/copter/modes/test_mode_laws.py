@@ -467,7 +467,7 @@ def test_zigzag_flies_parallel_to_its_points_onto_the_line(point: int) -> None:
     state = ZigZagState()
     state.a, state.b = Vec2(0.0, 0.0), Vec2(3.0, 4.0)
     here = Vec2(-2.0, 7.0)
-    place = zigzag.place_on_line(state, point, here)
+    place = zigzag.position_on_line(state, point, here)
     along, across = Vec2(0.6, 0.8), Vec2(-0.8, 0.6)
     assert dot2(place - here, across) == pytest.approx(0.0)
     assert dot2(place - (state.a if point == zigzag.A else state.b), along) == pytest.approx(0.0)
@@ -477,7 +477,7 @@ def test_zigzag_flies_parallel_to_its_points_onto_the_line(point: int) -> None:
 def test_zigzag_steps_aside_at_right_angles_towards_the_heading(heading: float) -> None:
     state = ZigZagState()
     state.a, state.b = Vec2(1.0, 2.0), Vec2(4.0, 6.0)
-    step = zigzag.place_beside(state, Vec2(5.0, 5.0), heading, 3.0) - Vec2(5.0, 5.0)
+    step = zigzag.position_beside(state, Vec2(5.0, 5.0), heading, 3.0) - Vec2(5.0, 5.0)
     assert math.hypot(*step) == pytest.approx(3.0) and dot2(step, state.b - state.a) == pytest.approx(0.0)
     assert step.x * math.cos(heading) + step.y * math.sin(heading) >= -1e-12
 

@@ -33,11 +33,11 @@ ON_FLOOR = 0.12
 
 
 @law
-def distance_of(state: Table, i: int, places: Table, row: int, axes: Line) -> float:
-    """Distance of robot ``i`` from a place [m]."""
-    x = axes[0] * (places[row, 0] - state[i, 0])
-    y = axes[1] * (places[row, 1] - state[i, 1])
-    z = axes[2] * (places[row, 2] - state[i, 2])
+def distance_of(state: Table, i: int, positions: Table, row: int, axes: Line) -> float:
+    """Distance of robot ``i`` from a position [m]."""
+    x = axes[0] * (positions[row, 0] - state[i, 0])
+    y = axes[1] * (positions[row, 1] - state[i, 1])
+    z = axes[2] * (positions[row, 2] - state[i, 2])
     return math.sqrt(x * x + y * y + z * z)
 
 
@@ -53,27 +53,29 @@ def nearness(distance: float, scale: float, half: float) -> float:
 
 
 @law
-def write_ways(pose: Table, places: Table, at: IntLine, per_robot: int, count: int, out: Table, first: int) -> None:
-    """Write the ways from each robot to its next places; after the last place comes the last again.
+def write_offsets(
+    pose: Table, positions: Table, at: IntLine, per_robot: int, count: int, out: Table, first: int
+) -> None:
+    """Write the offsets from each robot to its next targets; after the last target comes the last again.
 
     Args:
         pose: x, y, z [m], yaw [rad], shape (count, 4).
-        places: x, y, z [m] of all robots' places, one robot after another, shape (count * per_robot, 3).
-        at: number of each robot's present place, shape (count,).
-        per_robot: places of a robot.
-        count: number of places that are told.
-        out: forward, left, up [m] of each robot's heading, one place after another, shape (robots, columns).
+        positions: x, y, z [m] of all robots' positions, one robot after another, shape (count * per_robot, 3).
+        at: number of each robot's present target, shape (count,).
+        per_robot: positions of a robot.
+        count: number of targets that are written.
+        out: forward, left, up [m] of each robot's heading, one target after another, shape (robots, columns).
         first: column of the first one.
     """
     for i in range(out.shape[0]):
         s, c = sincos(pose[i, 3])
         for k in range(count):
             row = i * per_robot + min(at[i] + k, per_robot - 1)
-            x, y = places[row, 0] - pose[i, 0], places[row, 1] - pose[i, 1]
+            x, y = positions[row, 0] - pose[i, 0], positions[row, 1] - pose[i, 1]
             to = first + 3 * k
             out[i, to] = x * c + y * s
             out[i, to + 1] = y * c - x * s
-            out[i, to + 2] = places[row, 2] - pose[i, 2]
+            out[i, to + 2] = positions[row, 2] - pose[i, 2]
 
 
 class Beginning(NamedTuple):
@@ -127,7 +129,7 @@ class Outcome(NamedTuple):
     """What a task's own rule judges of a step, a row a robot."""
 
     crashed: Flags
-    """Robots whose terms are told as 0."""
+    """Robots whose terms are written as 0."""
     success: Flags
     """Written."""
     rewards: Line
@@ -178,7 +180,7 @@ def end_step(by: Outside, state: Table, success: Flags, rewards: Line, terminate
         ends.reached[i] = success[i] and not ends.crashed[i]
 
 
-write_ways_to = Kernel(write_ways)
+write_offsets_to = Kernel(write_offsets)
 _begin, _end = Kernel(begin_step), Kernel(end_step)
 
 
@@ -190,8 +192,8 @@ class Extent(NamedTuple):
     """Where an episode ends."""
 
 
-class PlacesTask(Task):
-    """Base of tasks with target positions ("places"); subclasses draw them and judge steps.
+class TargetTask(Task):
+    """Base of tasks with target positions; subclasses draw them and judge steps.
 
     Distances of robots that do not fly, and whether they are in the arena, are judged in x and y: their heights are
     barometric, and drift by metres.
@@ -218,7 +220,7 @@ class PlacesTask(Task):
         self._given, self._reach, self.out_reward = arena, reach, out_reward
         self.out_ends, self.floor_ends = bool(out_ends), bool(floor_ends)
         self._fixed: Floats | None = None
-        """Places of one world that are the same in every episode [m]; the arena holds them. None: they are drawn."""
+        """Positions of one world that are the same in every episode [m]; the arena holds them. None: they are drawn."""
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
@@ -233,10 +235,10 @@ class PlacesTask(Task):
         self._floor = np.zeros(count)
         for index in range(count):
             self._settle(index)
-        self.places = np.zeros((count, self.per_robot, 3))
-        """x, y, z of each robot's places [m], shape (count, per_robot, 3)."""
+        self.positions = np.zeros((count, self.per_robot, 3))
+        """x, y, z of each robot's positions [m], shape (count, per_robot, 3)."""
         self.at = np.zeros(count, np.int64)
-        """Number of each robot's present place, shape (count,)."""
+        """Number of each robot's present target, shape (count,)."""
         self.success = np.zeros(count, np.bool_)
         """Whether each robot has done the task, shape (count,)."""
         self._table: Floats = np.zeros((count, 8))
@@ -250,7 +252,7 @@ class PlacesTask(Task):
 
     def _link(self) -> None:
         """Views of arrays: a copy of the task has its own."""
-        self._spots, self._per_robot = self.places.reshape(-1, 3), self.places.shape[1]
+        self._spots, self._per_robot = self.positions.reshape(-1, 3), self.positions.shape[1]
         self.paid: dict[str, Floats] = dict(zip(self._paid_names, self._paid))
         if self.out_ends:
             self._ends = self._ends._replace(paid=self._paid[-1])
@@ -291,7 +293,7 @@ class PlacesTask(Task):
         return Extent(arena, self._bounded(limits, world))
 
     def _fixed_in(self, world: World) -> Floats | None:
-        """Places that are the same in every episode in a world [m], shape (n, 3); None: they are drawn."""
+        """Positions that are the same in every episode in a world [m], shape (n, 3); None: they are drawn."""
         return self._fixed
 
     def _bounded(self, limits: Arena, world: World) -> Arena:
@@ -313,49 +315,50 @@ class PlacesTask(Task):
         return self._extents(world_of(self._robot, 0)).limits
 
     def _held(self, index: int) -> int:
-        """How many places one robot has."""
+        """How many positions one robot has."""
         return self.per_robot
 
     @property
     @abstractmethod
     def per_robot(self) -> int:
-        """Places of an episode."""
+        """Positions of an episode."""
 
     @property
     def targets(self) -> Floats:
-        """x, y, z of each robot's present place [m], shape (count, 3)."""
+        """x, y, z of each robot's present target [m], shape (count, 3)."""
         if self._per_robot == 1:
-            return self.places[:, 0]
-        out: Floats = self.places[np.arange(len(self.at)), np.minimum(self.at, self._per_robot - 1)]
+            return self.positions[:, 0]
+        out: Floats = self.positions[np.arange(len(self.at)), np.minimum(self.at, self._per_robot - 1)]
         return out
 
     def achieved(self) -> Floats:
         """x, y, z of each robot, where it believes to be [m], shape (count, 3)."""
         return self._robot.pose[:, :3]
 
-    def ways(self, count: int) -> Floats:
-        """Ways to the next ``count`` places: forward, left, up [m] of the robot's heading, shape (robots, count, 3)."""
-        return self.ways_from(self._from(), count)
+    def offsets(self, count: int) -> Floats:
+        """Offsets to the next ``count`` positions: forward, left, up [m] of the robot's heading, shape (robots, count,
+        3)."""
+        return self.offsets_from(self._from(), count)
 
     def _from(self) -> Floats:
-        """Poses from which ways are told: x, y, z [m], yaw [rad] and maybe more, shape (robots, 4 or more)."""
+        """Poses from which offsets are counted: x, y, z [m], yaw [rad] and maybe more, shape (robots, 4 or more)."""
         found: Floats = self._robot.state if arrays_stay(self._robot) else self._robot.pose  # type: ignore[attr-defined]
         return found
 
-    def ways_writer(self, count: int, out: Floats, first: int) -> Callable[[], object] | None:
-        """A function that writes ``ways`` into columns of a table, from the first one on, shape (robots, n). None: a
-        subclass has ways of its own."""
-        if not all(stands_for(self, "_write_ways", own) for own in ("ways", "ways_from", "_from")):
+    def offsets_writer(self, count: int, out: Floats, first: int) -> Callable[[], object] | None:
+        """A function that writes ``offsets`` into columns of a table, from the first one on, shape (robots, n). None: a
+        subclass has offsets of its own."""
+        if not all(stands_for(self, "_write_offsets", own) for own in ("offsets", "offsets_from", "_from")):
             return None
-        return lambda: self._write_ways(np.ascontiguousarray(self._from()), count, out, first)
+        return lambda: self._write_offsets(np.ascontiguousarray(self._from()), count, out, first)
 
-    def _write_ways(self, pose: Floats, count: int, out: Floats, first: int) -> None:
-        write_ways_to.unchecked()(pose, self._spots, self.at, self._per_robot, count, out, first)
+    def _write_offsets(self, pose: Floats, count: int, out: Floats, first: int) -> None:
+        write_offsets_to.unchecked()(pose, self._spots, self.at, self._per_robot, count, out, first)
 
-    def ways_from(self, pose: Floats, count: int) -> Floats:
+    def offsets_from(self, pose: Floats, count: int) -> Floats:
         """The same from other poses: x, y, z [m], yaw [rad], shape (robots, 4)."""
         out = np.empty((len(self.at), 3 * count))
-        self._write_ways(np.ascontiguousarray(pose, np.float64), count, out, 0)
+        self._write_offsets(np.ascontiguousarray(pose, np.float64), count, out, 0)
         return out.reshape(len(out), count, 3)
 
     def judge(self, step: Step, rewards: Floats, terminated: npt.NDArray[np.bool_]) -> None:
@@ -394,14 +397,14 @@ class PlacesTask(Task):
 
     def memory(self, index: int) -> Any:
         """See ``Task``."""
-        return self.places[index, : self._held(index)].copy(), int(self.at[index]), bool(self.success[index])
+        return self.positions[index, : self._held(index)].copy(), int(self.at[index]), bool(self.success[index])
 
     def recall(self, index: int, memory: Any) -> None:
         """See ``Task``."""
         if not isinstance(memory, tuple) or len(memory) < 3 or np.shape(memory[0]) != (self._held(index), 3):
             raise EnvOptionError("snapshot cannot be restored: it is of another task")
-        self.places[index] = memory[0][-1]
-        self.places[index, : self._held(index)], self.at[index], self.success[index] = memory[:3]
+        self.positions[index] = memory[0][-1]
+        self.positions[index, : self._held(index)], self.at[index], self.success[index] = memory[:3]
 
 
 def checked_far(task: Task, far: float) -> float:

@@ -46,9 +46,9 @@ def thinned(path, to, name, each):
     return written(to, kept)
 
 
-def test_figures_that_telemetry_tells_hold_the_truth_as_the_vehicles_own_log_does(told, flown) -> None:
+def test_estimates_that_telemetry_tells_hold_the_truth_as_the_vehicles_own_log_does(told, flown) -> None:
     own, airframe = identify(flown), vehicles.load("erle_copter")
-    known = Copter(airframe, own.logs[0].parameters, own.logs[0].conditions).figures()
+    known = Copter(airframe, own.logs[0].parameters, own.logs[0].conditions).properties()
     for name in ("hover_output", "drag_mcoef"):
         assert told[name].low < known[name] < told[name].high, f"{told[name]}, truth {known[name]}"
     assert told["battery_resistance"].low < airframe.value("battery_resistance") < told["battery_resistance"].high
@@ -59,8 +59,8 @@ def test_figures_that_telemetry_tells_hold_the_truth_as_the_vehicles_own_log_doe
     assert told["hover_output"].data.endswith("s of hover: SERVO_OUTPUT_RAW, RAW_IMU, LOCAL_POSITION_NED")
 
 
-def test_every_other_figure_says_why_telemetry_does_not_tell_it(told) -> None:
-    assert all(figure.is_observed or figure.reason for figure in told.figures)
+def test_every_other_estimate_says_why_telemetry_does_not_tell_it(told) -> None:
+    assert all(estimate.is_observed or estimate.reason for estimate in told.estimates)
     assert "no output of the rate controllers (RATE), and attitudes are needed at 20 Hz: ATTITUDE at 4 Hz" in (
         told["roll_effectiveness"].reason
     )

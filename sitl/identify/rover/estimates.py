@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a rover from its logs. What a log cannot tell is said with the reason."""
+"""Properties of a rover from its logs. What a log cannot show is said with the reason."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.constants import GRAVITY
 from ..board import CAPACITY, resistance, vibration
-from ..figure import NORMAL_95, Figure, Sought
+from ..estimate import NORMAL_95, Estimate, Sought
 from ..flight import FlightLog
 from ..regression import GUSTS_S, least_squares
 from ..sensors import sensors
@@ -54,7 +54,7 @@ _SHARES = {
 those below."""
 _FLOORS = {"speed_lag": 0.01, "rolling_resistance": 0.001, "steering_trim": 0.003, "steering_time": 0.008,
            "side_difference": 0.002, "rear_axle": 0.01}  # fmt: skip
-"""The same in the figure's unit."""
+"""The same in the property's unit."""
 _MOST_RELATIVE = 0.3
 _MOST = {
     "rolling_resistance": 0.004,
@@ -63,7 +63,7 @@ _MOST = {
     "steering_time": 0.05,
     "rear_axle": 0.1,
 }
-"""Greatest half of an interval in the figure's unit, where the value may be 0."""
+"""Greatest half of an interval in the property's unit, where the value may be 0."""
 _LEAST_S = 20.0
 _BACKWARD_S = 5.0
 _FULL = 0.8
@@ -74,8 +74,8 @@ _TURNED = 0.1
 """Steering outputs that spread by less tell no turning."""
 
 
-def figures(logs: Sequence[FlightLog]) -> list[Figure]:
-    """All figures of a rover that these logs tell, and the others with the reason."""
+def estimates(logs: Sequence[FlightLog]) -> list[Estimate]:
+    """All properties of a rover that these logs show, and the others with the reason."""
     data = stretches(logs)
     if isinstance(data, str):
         found = [sought.hidden(data) for sought in _all(None)]
@@ -107,8 +107,8 @@ def _too_little(data: Stretches) -> str:
     return "" if seconds >= _LEAST_S else f"it drove for {seconds:.0f} s; {_LEAST_S:.0f} s are needed"
 
 
-def _made(sought: Sought, fit: DriveFit, value: float, error: float) -> Figure:
-    """A figure with what is added to its interval, or too uncertain."""
+def _made(sought: Sought, fit: DriveFit, value: float, error: float) -> Estimate:
+    """A property with what is added to its interval, or too uncertain."""
     name = sought.name
     half = float(np.linalg.norm([NORMAL_95 * error, _SHARES.get(name, 0.0) * value, _FLOORS.get(name, 0.0)]))
     if not math.isfinite(half) or half > max(_MOST_RELATIVE * abs(value), _MOST.get(name, 0.0)):
@@ -120,7 +120,7 @@ def _made(sought: Sought, fit: DriveFit, value: float, error: float) -> Figure:
 _MAY_BE_NEGATIVE = ("steering_trim", "side_difference", "rear_axle")
 
 
-def _drive(fit: DriveFit) -> list[Figure]:
+def _drive(fit: DriveFit) -> list[Estimate]:
     data = fit.data
     back_s = float((data.speed.value < -0.2 * abs(data.speed.value).max()).mean()) * data.seconds
     forward_s = float((data.speed.value > 0.2 * abs(data.speed.value).max()).mean()) * data.seconds
@@ -142,16 +142,18 @@ def _throttle(data: Stretches) -> tuple[Array, ...]:
 
 
 def _both(
-    fit: DriveFit, sought: tuple[Sought, Sought], name: str, seconds: float, most: float, way: str
-) -> list[Figure]:
+    fit: DriveFit, sought: tuple[Sought, Sought], name: str, seconds: float, most: float, direction: str
+) -> list[Estimate]:
     """Speed without load, and at full throttle, one way."""
     if seconds < _BACKWARD_S:
-        return [one.hidden(f"it drove {way} for {seconds:.0f} s; {_BACKWARD_S:.0f} s are needed") for one in sought]
+        return [
+            one.hidden(f"it drove {direction} for {seconds:.0f} s; {_BACKWARD_S:.0f} s are needed") for one in sought
+        ]
     free = _made(sought[0], fit, *fit.interval(name))
     if most < _FULL:
         return [
             free,
-            sought[1].hidden(f"throttle {way} reached {100.0 * most:.0f} %; {100.0 * _FULL:.0f} % are needed"),
+            sought[1].hidden(f"throttle {direction} reached {100.0 * most:.0f} %; {100.0 * _FULL:.0f} % are needed"),
         ]
     return [free, _made(sought[1], fit, *fit.of(lambda model: model.value(name) - model.value("loss")))]
 
@@ -161,7 +163,7 @@ def _accelerations(fit: DriveFit) -> Array:
     return np.diff(speed, axis=1, prepend=fit.data.start_speed[:, None]) / STEP_S
 
 
-def _motors(fit: DriveFit) -> Figure:
+def _motors(fit: DriveFit) -> Estimate:
     if "weakness" not in fit.names:
         most = float(abs(_accelerations(fit)[:, 1:]).max())
         return MOTORS.hidden(f"the motors gave all that was asked for, {most:.1f} m/s^2 at most")
@@ -169,7 +171,7 @@ def _motors(fit: DriveFit) -> Figure:
     return _made(MOTORS, fit, 1.0 / value, error / value**2)
 
 
-def _brake(fit: DriveFit) -> Figure:
+def _brake(fit: DriveFit) -> Estimate:
     """What the accelerometer showed while the motors braked with all they have."""
     data, accel = fit.data, _accelerations(fit)
     speed = fit.courses.speed
@@ -186,7 +188,7 @@ def _brake(fit: DriveFit) -> Figure:
     return _made(BRAKE, fit, float(mean.value[0]), float(mean.error[0]))
 
 
-def _steering(fit: DriveFit) -> list[Figure]:
+def _steering(fit: DriveFit) -> list[Estimate]:
     first, _ = fit.data.inputs()
     if float(first.std()) < _TURNED:
         reason = f"the steering output spread by {first.std():.2f}; {_TURNED:g} are needed"
@@ -210,14 +212,14 @@ def gain(model: Model) -> float:
     return bend * (angle / math.tan(angle) if model.value("shape") >= 0.0 else angle / math.sin(angle))
 
 
-def _servo(fit: DriveFit) -> Figure:
+def _servo(fit: DriveFit) -> Estimate:
     if "servo" not in fit.names:
-        steps = sum(len(pair[0].places) for pair in fit.data.outputs)
+        steps = sum(len(pair[0].indices) for pair in fit.data.outputs)
         return SERVO.hidden(f"the wheels followed at once, as far as {steps} steps of the steering output tell")
     return _made(SERVO, fit, *fit.interval("servo"))
 
 
-def _skid(fit: DriveFit) -> list[Figure]:
+def _skid(fit: DriveFit) -> list[Estimate]:
     first, second = fit.data.inputs()
     spread = float(np.std(first - second))
     if spread < _TURNED:
@@ -237,7 +239,7 @@ def _skid(fit: DriveFit) -> list[Figure]:
     ]
 
 
-def _grip(fit: DriveFit) -> Figure:
+def _grip(fit: DriveFit) -> Estimate:
     if "slip" in fit.names:
         value, error = fit.interval("slip")
         if value * _MOST_GRIP < 1.0:
@@ -249,7 +251,7 @@ def _grip(fit: DriveFit) -> Figure:
     return GRIP.hidden(f"the limit was not reached: tyres held {most:.1f} m/s^2, {held:.2f} of the weight", least=held)
 
 
-def _axle(fit: DriveFit) -> Figure:
+def _axle(fit: DriveFit) -> Estimate:
     """Velocity to the right by yaw rate, besides a heading that is off, and one that is late or early."""
     data = fit.data
     turn, along, aside = data.aside.of(fit.courses.yaw_rate), data.aside.of(fit.courses.speed), data.aside.value
@@ -267,7 +269,7 @@ def _axle(fit: DriveFit) -> Figure:
     return _made(AXLE, fit, float(found.value[0]), float(found.error[0]))
 
 
-def _voltage(logs: Sequence[FlightLog]) -> Figure:
+def _voltage(logs: Sequence[FlightLog]) -> Estimate:
     """Which the number of cells follows from."""
     most = []
     for log in logs:

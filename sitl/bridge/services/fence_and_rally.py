@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lists of places besides the mission: fences and rally points, how many fit, and how they get into the record."""
+"""Lists of locations besides the mission: fences and rally points, how many fit, and how they get into the record."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NO_POINT = MissionItem(MavCmd.NAV_RALLY_POINT, MavFrame.GLOBAL, autocontinue=0)
 
 
 def most_fence_items(vehicle: Any) -> int:
-    """How many items a list of fences may have: BRD_SD_FENCE gives as much room as the record has."""
+    """How many items a list of fences may have: BRD_SD_FENCE gives as much space as the record has."""
     if _on_card(vehicle):
         return CORNERS
     return vehicle.firmware.fence_bytes // CORNER_BYTES
@@ -35,12 +35,12 @@ def _on_card(vehicle: Any) -> bool:
 
 
 def as_fence(item: MissionItem) -> MissionItem:
-    """A fence's item as it is kept and sent back: its place, and its number of corners or radius."""
+    """A fence's item as it is kept and sent back: its location, and its number of corners or radius."""
     return MissionItem(item.command, MavFrame.GLOBAL, p1=item.p1, x=item.x, y=item.y, autocontinue=item.autocontinue)
 
 
 def as_rally_point(item: MissionItem) -> MissionItem:
-    """A rally point as it is kept and sent back: its place, at whole metres."""
+    """A rally point as it is kept and sent back: its location, at whole metres."""
     return MissionItem(
         MavCmd.NAV_RALLY_POINT, item.frame, x=item.x, y=item.y, z=float(int(item.z)), autocontinue=item.autocontinue
     )

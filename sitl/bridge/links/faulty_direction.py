@@ -23,17 +23,17 @@ FULL_S, LOST_S = 0.25, 4.0
 """With frames for so long in wait, telemetry is held back; with so much, frames are lost [s]."""
 _COMMAND_INT, _COMMAND_ACK = 75, 77
 _COMMAND_AT = {_COMMAND_INT: 28, _COMMAND_ACK: 0}
-"""Place of the command's number in the payload."""
+"""Offset of the command's number in the payload."""
 CLOCK_COMMANDS = (31010, 31011)
 """Grants of time and new seeds (services/commands.py), which no radio carries: they pass unharmed."""
 
 
-class WayState(NamedTuple):
-    """What a way needs to go on from a snapshot."""
+class DirectionState(NamedTuple):
+    """What a direction needs to go on from a snapshot."""
 
     faults: LinkFaults
     generator: bytes
-    under_way: tuple[tuple[int, int, bytes], ...]
+    in_flight: tuple[tuple[int, int, bytes], ...]
     sent: int
     free_us: int
     last_us: int
@@ -41,12 +41,12 @@ class WayState(NamedTuple):
     passes: bool
 
 
-class FaultyWay:
+class FaultyDirection:
     """Frames from one end of a link to the other.
 
     Args:
-        faults: what happens to them; may be changed while frames are under way.
-        stream: number of its random numbers, which no other way has.
+        faults: what happens to them; may be changed while frames are in flight.
+        stream: number of its random numbers, which no other direction has.
     """
 
     def __init__(self, faults: LinkFaults, stream: int = 0) -> None:
@@ -57,7 +57,7 @@ class FaultyWay:
         """Whether telemetry should wait."""
         self._rng = rng.Rng()
         rng.seed(self._rng, (faults.seed << 32) + stream)
-        self._under_way: list[tuple[int, int, bytes]] = []
+        self._in_flight: list[tuple[int, int, bytes]] = []
         """Heap of (time of arrival [us], number, frame)."""
         self._sent = 0
         self._free_us = self._last_us = 0
@@ -66,13 +66,13 @@ class FaultyWay:
 
     @property
     def due_us(self) -> int:
-        """When the next frame arrives, simulated time since the start [us]; NEVER: none is under way."""
-        return self._under_way[0][0] if self._under_way else NEVER
+        """When the next frame arrives, simulated time since the start [us]; NEVER: none is in flight."""
+        return self._in_flight[0][0] if self._in_flight else NEVER
 
     @property
     def is_idle(self) -> bool:
-        """Whether nothing is under way, and nothing will happen to later frames."""
-        return self.faults == NONE and not self._under_way and not self._rest
+        """Whether nothing is in flight, and nothing will happen to later frames."""
+        return self.faults == NONE and not self._in_flight and not self._rest
 
     def carry(self, frames: Iterable[bytes], now_us: int) -> list[bytes]:
         """Send frames at a simulated time since the start [us]; gives those that arrive at once, with earlier ones."""
@@ -91,8 +91,8 @@ class FaultyWay:
     def arrived(self, now_us: int) -> list[bytes]:
         """Frames that have arrived by now, in order."""
         out: list[bytes] = []
-        while self._under_way and self._under_way[0][0] <= now_us:
-            out.append(heapq.heappop(self._under_way)[2])
+        while self._in_flight and self._in_flight[0][0] <= now_us:
+            out.append(heapq.heappop(self._in_flight)[2])
         self.is_full = self._free_us - now_us > FULL_S * 1e6
         return out
 
@@ -120,7 +120,7 @@ class FaultyWay:
             self._arrive(frame, max(sent_us + self._delay_us(), now_us))
 
     def _arrive(self, frame: bytes, due_us: int) -> None:
-        heapq.heappush(self._under_way, (due_us, self._sent, frame))
+        heapq.heappush(self._in_flight, (due_us, self._sent, frame))
         self._sent += 1
 
     def _happens(self, share: float) -> bool:
@@ -144,40 +144,40 @@ class FaultyWay:
                 return bytes(bits)
             bits[at >> 3] ^= 1 << (at & 7)
 
-    def snapshot(self) -> WayState:
-        """Frames under way, and what becomes of later ones."""
-        return WayState(
-            self.faults, bytes(self._rng._bytes), tuple(self._under_way), self._sent, self._free_us, self._last_us,
+    def snapshot(self) -> DirectionState:
+        """Frames in flight, and what becomes of later ones."""
+        return DirectionState(
+            self.faults, bytes(self._rng._bytes), tuple(self._in_flight), self._sent, self._free_us, self._last_us,
             self._rest, self.passes,
         )  # fmt: skip
 
     @classmethod
-    def restored(cls, state: WayState) -> FaultyWay:
-        """The way as it was."""
-        way = cls(state.faults)
-        way._rng._bytes[:] = state.generator
-        way._under_way, way._sent = list(state.under_way), state.sent
-        way._free_us, way._last_us, way._rest, way.passes = state[4:]
-        return way
+    def restored(cls, state: DirectionState) -> FaultyDirection:
+        """The direction as it was."""
+        direction = cls(state.faults)
+        direction._rng._bytes[:] = state.generator
+        direction._in_flight, direction._sent = list(state.in_flight), state.sent
+        direction._free_us, direction._last_us, direction._rest, direction.passes = state[4:]
+        return direction
 
 
-class Ways(NamedTuple):
+class Directions(NamedTuple):
     """Both directions of one client's link."""
 
-    to_vehicle: FaultyWay
-    to_client: FaultyWay
+    to_vehicle: FaultyDirection
+    to_client: FaultyDirection
 
     @property
     def due_us(self) -> int:
         """When the next frame arrives at either end [us]."""
-        return min(way.due_us for way in self)
+        return min(direction.due_us for direction in self)
 
     def hold(self, passes: bool) -> None:
         """Whether the client's frames pass unharmed, because it has not pushed a clock that stands."""
-        for way in self:
-            way.passes = passes
+        for direction in self:
+            direction.passes = passes
 
-    def snapshot(self) -> tuple[WayState, WayState]:
+    def snapshot(self) -> tuple[DirectionState, DirectionState]:
         """Of both."""
         return self.to_vehicle.snapshot(), self.to_client.snapshot()
 

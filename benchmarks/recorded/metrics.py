@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a flight: when something was so, how far, how fast; ours beside ArduPilot's."""
+"""Metrics of a flight: when something was so, how far, how fast; ours beside ArduPilot's."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ ROLL, PITCH, YAW = (COLUMNS.index(c) for c in ("roll", "pitch", "yaw"))
 
 
 @dataclass
-class Figure:
-    """One figure of a flight, ours and ArduPilot's."""
+class Metric:
+    """One metric of a flight, ours and ArduPilot's."""
 
     name: str
     unit: str
@@ -76,9 +76,9 @@ def shown(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.2f}"
 
 
-def table(found: list[Figure]) -> str:
-    """The figures as Markdown."""
-    lines = ["| figure | unit | ours | ArduPilot | difference |", "|---|---|---|---|---|"]
+def table(found: list[Metric]) -> str:
+    """The metrics as Markdown."""
+    lines = ["| metric | unit | ours | ArduPilot | difference |", "|---|---|---|---|---|"]
     for f in found:
         theirs, percent = "", ""
         if f.theirs:

@@ -23,7 +23,7 @@ class ExtensionError(SitlError, ValueError):
     """A part of another package that cannot be taken; the message says which, and why."""
 
 
-class Places:
+class Extensions:
     """The parts of one kind.
 
     Args:
@@ -35,36 +35,36 @@ class Places:
         self.variable, self.noun = variable, noun
         self._read: set[str] = set()
 
-    def add(self, owner: str, place: str) -> None:
+    def add(self, owner: str, reference: str) -> None:
         """Keep a part for ``owner``, which must not have asked for its parts yet.
 
         Raises:
-            ExtensionError: too late, or ``place`` does not say where it is.
+            ExtensionError: too late, or ``reference`` does not say where it is.
         """
         name = owner.split(".")[0]
         if name in self._read:
             raise ExtensionError(
-                f"{self.noun} {place}: too late, the {name} firmware is loaded; register it before anything imports "
-                f'that, or set {self.variable}="{owner}={place}" in the environment'
+                f"{self.noun} {reference}: too late, the {name} firmware is loaded; register it before anything "
+                f'imports that, or set {self.variable}="{owner}={reference}" in the environment'
             )
-        if not re.fullmatch(r"[\w.]+:\w+", place):
-            raise ExtensionError(f'{self.noun} {place!r}: where it is must be written as "package.module:NAME"')
+        if not re.fullmatch(r"[\w.]+:\w+", reference):
+            raise ExtensionError(f'{self.noun} {reference!r}: where it is must be written as "package.module:NAME"')
         known = os.environ.get(self.variable, "").split()
-        if f"{owner}={place}" not in known:
-            os.environ[self.variable] = " ".join((*known, f"{owner}={place}"))
+        if f"{owner}={reference}" not in known:
+            os.environ[self.variable] = " ".join((*known, f"{owner}={reference}"))
 
     def of(self, owner: str) -> Iterator[tuple[str, str, object]]:
-        """(key, place, part) of each part of ``owner``; the key is what stands behind a dot: "copter.TOY" -> "TOY".
+        """(key, reference, part) of each part of ``owner``; the key is what stands behind a dot: "copter.TOY" -> "TOY".
 
         Raises:
             ExtensionError: one cannot be imported.
         """
         self._read.add(owner)
         for entry in os.environ.get(self.variable, "").split():
-            whose, _, place = entry.partition("=")
+            whose, _, reference = entry.partition("=")
             name, _, key = whose.partition(".")
             if name == owner:
-                yield key, place, self._load(place)
+                yield key, reference, self._load(reference)
 
     def join(self, owner: str, record: type[R], base: type) -> type[R]:
         """``record`` of ``owner`` with its parts of other packages as fields behind its own, by their keys.
@@ -78,20 +78,20 @@ class Places:
             ExtensionError: one cannot be imported, is no such class, or has a name that is taken.
         """
         found: dict[str, type] = {}
-        for key, place, part in self.of(owner):
+        for key, reference, part in self.of(owner):
             if not (isinstance(part, type) and issubclass(part, base)):
-                raise ExtensionError(f"{self.noun} {place}: {part!r} is no {base.__name__}")
+                raise ExtensionError(f"{self.noun} {reference}: {part!r} is no {base.__name__}")
             if key in record.fields or key in found:
-                raise ExtensionError(f"{self.noun} {place}: the {owner} has a {self.noun} {key} already")
+                raise ExtensionError(f"{self.noun} {reference}: the {owner} has a {self.noun} {key} already")
             found[key] = part
         if not found:
             return record
         members = {"__annotations__": found, "__module__": record.__module__, "__doc__": record.__doc__}
         return type(record.__name__, (record,), members)
 
-    def _load(self, place: str) -> object:
-        module, _, name = place.partition(":")
+    def _load(self, reference: str) -> object:
+        module, _, name = reference.partition(":")
         try:
             return getattr(importlib.import_module(module), name)
         except (ImportError, AttributeError, ValueError) as error:
-            raise ExtensionError(f"{self.noun} {place}: {error}") from error
+            raise ExtensionError(f"{self.noun} {reference}: {error}") from error

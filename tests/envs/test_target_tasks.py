@@ -283,3 +283,20 @@ def test_a_box_of_ones_own_gives_way_to_another_set_point():
     assert env.action_space.shape == (3,) and env.session.action.columns == [0, 1, 2]
     env = gym.make("sitl/CopterReachGoal-v0", setpoint="attitude").unwrapped
     assert env.action_space.shape == (4,) and env.session.action.setpoint.name == "attitude"
+
+
+def test_observed_targets_are_written_by_the_tasks_own_writer(monkeypatch):
+    """It is found by its name: with another one observations are the same, and slower."""
+    made = []
+    whole = Hold.offsets_writer
+
+    def counted(task, *given):
+        made.append(whole(task, *given))
+        return made[-1]
+
+    monkeypatch.setattr(Hold, "offsets_writer", counted)
+    env = gym.make(HOVER)
+    env.reset(seed=0)
+    env.step(env.action_space.sample())
+    env.close()
+    assert made and None not in made

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One figure that was looked for in logs: its value with an interval, or why the logs do not tell it."""
+"""One property that was looked for in logs: its value with an interval, or why the logs do not show it."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def silent(what: str) -> None:
 
 
 @dataclass(frozen=True)
-class Figure:
-    """A figure, observed or not.
+class Estimate:
+    """A property, observed or not.
 
     Args:
-        name: of the figure.
+        name: of the property.
         unit: "" for a number without one.
         meaning: what it is.
         value: the estimate; nan: not observable.
@@ -44,7 +44,7 @@ class Figure:
 
     @property
     def is_observed(self) -> bool:
-        """Whether the logs tell it."""
+        """Whether the logs show it."""
         return math.isfinite(self.value)
 
     @property
@@ -66,21 +66,23 @@ class Figure:
 
 @dataclass(frozen=True)
 class Sought:
-    """A figure by name, unit and meaning, before the logs were looked at."""
+    """A property by name, unit and meaning, before the logs were looked at."""
 
     name: str
     unit: str
     meaning: str
 
-    def found(self, value: float, error: float, data: str) -> Figure:
+    def found(self, value: float, error: float, data: str) -> Estimate:
         """Observed, with its standard error."""
         half = NORMAL_95 * error
-        return Figure(self.name, self.unit, self.meaning, float(value), float(value - half), float(value + half), data)
+        return Estimate(
+            self.name, self.unit, self.meaning, float(value), float(value - half), float(value + half), data
+        )
 
-    def between(self, value: float, low: float, high: float, data: str) -> Figure:
+    def between(self, value: float, low: float, high: float, data: str) -> Estimate:
         """Observed, with an interval."""
-        return Figure(self.name, self.unit, self.meaning, float(value), float(low), float(high), data)
+        return Estimate(self.name, self.unit, self.meaning, float(value), float(low), float(high), data)
 
-    def hidden(self, reason: str, least: float = math.nan) -> Figure:
+    def hidden(self, reason: str, least: float = math.nan) -> Estimate:
         """Not observable, but at least so much."""
-        return Figure(self.name, self.unit, self.meaning, reason=reason, least=least)
+        return Estimate(self.name, self.unit, self.meaning, reason=reason, least=least)

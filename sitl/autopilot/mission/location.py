@@ -20,19 +20,19 @@ def down(ap: Autopilot, item: MissionItem) -> float:
 
 
 def point(ap: Autopilot, item: MissionItem, default: Vec3) -> Vec3:
-    """Place of an item; latitude and longitude zero, or altitude zero, take the default's (as ArduPilot does)."""
+    """Location of an item; latitude and longitude zero, or altitude zero, take the default's (as ArduPilot does)."""
     north, east = default.x, default.y
-    if not item.no_place:
+    if not item.no_location:
         north, east = offset_ne(ap.estimate.origin_lat, ap.estimate.origin_lon, item.x, item.y)
     return Vec3(north, east, default.z if item.z == 0.0 else down(ap, item))
 
 
 def set_home(ap: Autopilot, item: MissionItem) -> None:
-    """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no place), else to the item's place."""
+    """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no location), else to the item's location."""
     home, estimate = ap.home, ap.estimate
     if not estimate.origin_set:
         return
-    if item.p1 == 1.0 or (item.no_place and item.z == 0.0):
+    if item.p1 == 1.0 or (item.no_location and item.z == 0.0):
         home.pos = estimate.pos
         lat, lon = add_offset(estimate.origin_lat, estimate.origin_lon, home.pos.x, home.pos.y)
     else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Places on the globe to NED metres from the estimator's origin."""
+"""Locations on the globe to NED metres from the estimator's origin."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ LAT_MAX, LON_MAX = 900_000_000, 1_800_000_000
 """[degE7]"""
 
 
-class LocalPlace(NamedTuple):
-    """A place on the globe, as the autopilot sees it."""
+class LocalPosition(NamedTuple):
+    """A location on the globe, as the autopilot sees it."""
 
     is_known: bool  # False before there is an origin, and for what is not on the globe
     pos: Vec3  # NED from the origin [m]
@@ -39,23 +39,23 @@ def home_alt(ap: Autopilot) -> float:
 
 
 @law
-def local_place(ap: Autopilot, lat: int, lon: int, z: float, frame: int) -> LocalPlace:
-    """NED of a place [degE7, m in a MAV_FRAME]; terrain frames as where the ground is flat."""
+def local_position(ap: Autopilot, lat: int, lon: int, z: float, frame: int) -> LocalPosition:
+    """NED of a location [degE7, m in a MAV_FRAME]; terrain frames as where the ground is flat."""
     estimate = ap.estimate
     if not (estimate.origin_set and abs(lat) <= LAT_MAX and abs(lon) <= LON_MAX and finite(z)):
-        return LocalPlace(False, ZERO)
+        return LocalPosition(False, ZERO)
     ne = offset_ne(estimate.origin_lat, estimate.origin_lon, lat, lon)
     alt = z if frame in FRAMES_AMSL else home_alt(ap) + z
     return over_origin(estimate, ne.x, ne.y, alt)
 
 
 @law
-def over_origin(estimate: Estimate, north: float, east: float, alt: float) -> LocalPlace:
+def over_origin(estimate: Estimate, north: float, east: float, alt: float) -> LocalPosition:
     """NED of a point at ``alt`` [m above sea level], ``north`` and ``east`` [m] of the origin."""
-    return LocalPlace(estimate.origin_set, Vec3(north, east, estimate.origin_alt - alt))
+    return LocalPosition(estimate.origin_set, Vec3(north, east, estimate.origin_alt - alt))
 
 
-class Places:
+class Locations:
     """The same for services: reads origin and home from the record whenever it is asked."""
 
     def __init__(self, autopilot: Autopilot, ground: Callable[[int, int], float | None]) -> None:
@@ -67,13 +67,13 @@ class Places:
         return home_alt(self._autopilot)
 
     def ned(self, lat: int, lon: int, z: float, frame: int) -> Vector | None:
-        """NED [m] of a place [degE7, m in a MAV_FRAME]; None before there is an origin, off the globe, and above ground
-        whose height is not known."""
+        """NED [m] of a location [degE7, m in a MAV_FRAME]; None before there is an origin, off the globe, and above
+        ground whose height is not known."""
         rise = self._ground(lat, lon) if frame in FRAMES_TERRAIN else 0.0
-        return None if rise is None else _vector(local_place(self._autopilot, lat, lon, z + rise, frame))
+        return None if rise is None else _vector(local_position(self._autopilot, lat, lon, z + rise, frame))
 
     def alt(self, lat: int, lon: int, z: float, frame: int) -> float | None:
-        """Altitude [m above sea level] of a place [degE7, m in a MAV_FRAME]; None above ground whose height is not
+        """Altitude [m above sea level] of a location [degE7, m in a MAV_FRAME]; None above ground whose height is not
         known."""
         if frame in FRAMES_AMSL:
             return z
@@ -85,6 +85,6 @@ class Places:
         return _vector(over_origin(self._autopilot.estimate, north, east, alt))
 
 
-def _vector(place: LocalPlace) -> Vector | None:
-    pos = place.pos
-    return (pos.x, pos.y, pos.z) if place.is_known else None
+def _vector(position: LocalPosition) -> Vector | None:
+    pos = position.pos
+    return (pos.x, pos.y, pos.z) if position.is_known else None

@@ -20,12 +20,12 @@ from .starts import ReachableCells
 from .worlds import PerWorld
 
 CLEARANCE = 1.0
-"""A route keeps so far away from cells where the robot has no room, if there is a way [m]."""
+"""A route keeps so far away from cells where the robot has no clearance, if there is a path [m]."""
 BESIDE = 5.0
 """A metre along the edge of such cells costs 1 + this; the excess falls with the square of the distance, to 0 at
 ``CLEARANCE``."""
 CELLS = 20_000
-"""About so many cells has the grid: a way to one goal is found in some milliseconds."""
+"""About so many cells has the grid: a path to one goal is found in some milliseconds."""
 
 
 UNKNOWN = 1 << 62
@@ -33,7 +33,7 @@ UNKNOWN = 1 << 62
 
 
 class Around(NamedTuple):
-    """Where a place lies in a robot's grid."""
+    """Where a position lies in a robot's grid."""
 
     at: int
     """Number of the cell before it along both axes."""
@@ -44,7 +44,7 @@ class Around(NamedTuple):
 
 @law
 def around(grids: Table, k: int, x: float, y: float) -> Around:
-    """Where x, y [m] lies in the grid of robot ``k``; places outside count as at its edge."""
+    """Where x, y [m] lies in the grid of robot ``k``; positions outside count as at its edge."""
     rows, columns, cell = int(grids[k, 0]), int(grids[k, 1]), grids[k, 4]
     row = min(max((x - grids[k, 2]) / cell, 0.0), rows - 1.0)
     column = min(max((y - grids[k, 3]) / cell, 0.0), columns - 1.0)
@@ -54,7 +54,7 @@ def around(grids: Table, k: int, x: float, y: float) -> Around:
 
 @law
 def length_at(fields: NarrowTable, k: int, columns: int, here: Around) -> float:
-    """Length of the way of robot ``k`` from a place, between the middles of cells in proportion [m]."""
+    """Length of the path of robot ``k`` from a position, between the middles of cells in proportion [m]."""
     at, u, v = here.at, here.u, here.v
     below = (1.0 - v) * float(fields[k, at]) + v * float(fields[k, at + 1])
     above = (1.0 - v) * float(fields[k, at + columns]) + v * float(fields[k, at + columns + 1])
@@ -62,11 +62,11 @@ def length_at(fields: NarrowTable, k: int, columns: int, here: Around) -> float:
 
 
 @law
-def read_ways(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None:
-    """Read the length of the way of each robot.
+def read_lengths(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None:
+    """Read the length of the path of each robot.
 
     Args:
-        fields: lengths [m] of each robot's ways, row after row of its grid, shape (count, rows * columns or more).
+        fields: lengths [m] of each robot's paths, row after row of its grid, shape (count, rows * columns or more).
         grids: of each robot, shape (count, 5): rows, columns, x, y of the middle of the first cell [m], side of a
             cell [m].
         pose: x, y [m] and more, shape (count, 2 or more).
@@ -77,17 +77,17 @@ def read_ways(fields: NarrowTable, grids: Table, pose: Table, out: Line) -> None
 
 
 @law
-def follow_ways(
+def follow_paths(
     routes: NarrowTable, fields: NarrowTable, grids: Table, pose: Table, ahead: float, out: Table, first: int
 ) -> None:
     """Write to where each robot's route leads next: down the field of its costs, in steps of half a cell.
 
     Args:
         routes: costs of each robot's routes, as ``fields`` has lengths.
-        fields, grids: see ``read_ways``.
+        fields, grids: see ``read_lengths``.
         pose: x, y, z [m], yaw [rad] and more, shape (count, 4 or more).
-        ahead: how far along the way [m].
-        out: forward, left of the robot's heading, and the length of the shortest way [m], shape (count, columns).
+        ahead: how far along the path [m].
+        out: forward, left of the robot's heading, and the length of the shortest path [m], shape (count, columns).
         first: column of the first one.
     """
     for k in range(out.shape[0]):
@@ -102,7 +102,7 @@ def follow_ways(
             down, right = (1.0 - v) * (c - a) + v * (d - b), (1.0 - u) * (b - a) + u * (d - c)
             slope = math.sqrt(down * down + right * right)
             if not 0.0 < slope < math.inf:
-                break  # as far from the goal along two ways, or none leads from here
+                break  # as far from the goal along two paths, or none leads from here
             far = min(step, ahead - gone)
             x, y, gone = x - far * down / slope, y - far * right / slope, gone + far
             here = around(grids, k, x, y)
@@ -151,10 +151,10 @@ def spread(down: IntTable, right: IntTable, squares: IntTable) -> None:
 def write_lengths(
     field: Line, nearest: IntTable, beside: Table, more: float, cell: float, out: NarrowTable, k: int
 ) -> None:
-    """Write the lengths of ways to the goal of robot ``k``.
+    """Write the lengths of paths to the goal of robot ``k``.
 
     Args:
-        field: costs of ways, in cells, as ``march`` writes them.
+        field: costs of paths, in cells, as ``march`` writes them.
         nearest: number of the nearest free cell of each cell in ``field``, shape (rows, columns).
         beside: how far it is [cells].
         more: how far the goal is from its nearest free cell [cells].
@@ -171,17 +171,17 @@ def write_lengths(
 _march = Kernel(march)
 _write = Kernel(write_lengths)
 _spread = Kernel(spread)
-_read = Kernel(read_ways)
-_follow = Kernel(follow_ways)
+_read = Kernel(read_lengths)
+_follow = Kernel(follow_paths)
 
 
 class Ground(NamedTuple):
     """A world's grid, seen from above."""
 
     free: Floats
-    """1 where a way can lead, row after row, with an edge of zeros; shape ((rows + 2) * (columns + 2),)."""
+    """1 where a path can lead, row after row, with an edge of zeros; shape ((rows + 2) * (columns + 2),)."""
     costs: Floats
-    """The same of the cost of a cell of a route, which keeps away from solids where there is room."""
+    """The same of the cost of a cell of a route, which keeps away from solids where there is space."""
     nearest: npt.NDArray[np.int64]
     """Number among these of the nearest free cell of each cell, shape (rows, columns)."""
     beside: Floats
@@ -192,11 +192,11 @@ class Ground(NamedTuple):
     """Side of a cell [m]."""
 
 
-class FreeWays:
-    """Lengths of the shortest free ways of robots to their goals, seen from above.
+class ShortestPaths:
+    """Lengths of the shortest free paths of robots to their goals, seen from above.
 
-    A way is free where the robot's volume has room at the height of its start, with the margin of random places
-    (``starts.ReachableCells``). Of places without that room the way begins at the nearest one with room.
+    A path is free where the robot's volume fits at the height of its start, with the margin of random positions
+    (``starts.ReachableCells``). From positions where it does not fit, the path begins at the nearest one where it does.
 
     Args:
         robot: robots whose worlds, start and volume are used.
@@ -219,8 +219,10 @@ class FreeWays:
         found = ReachableCells(self._robot, self._crash_range, CELLS, world)
         free = np.zeros(found.shape, np.bool_)
         free[found.cells[:, 0], found.cells[:, 1]] = True
-        room = np.minimum(found.cell * _nearest(~free)[1] / CLEARANCE, 1.0) if not free.all() else np.ones(free.shape)
-        lack = 1.0 - room
+        clearance = np.ones(free.shape)
+        if not free.all():
+            clearance = np.minimum(found.cell * _nearest(~free)[1] / CLEARANCE, 1.0)
+        lack = 1.0 - clearance
         costs = np.where(free, 1.0 + BESIDE * lack * lack, 0.0)
         nearest, beside = _nearest(free)
         i, j = np.divmod(nearest, free.shape[1])
@@ -264,12 +266,12 @@ class FreeWays:
         return fields
 
     def lengths(self, pose: Floats) -> Floats:
-        """Length of each robot's way from a pose (x, y, ...) [m], shape (count,); the array is used again."""
+        """Length of each robot's path from a pose (x, y, ...) [m], shape (count,); the array is used again."""
         _read.unchecked()(self._fields, self._grids, np.ascontiguousarray(pose), self._out)
         return self._out
 
     def follow(self, pose: Floats, ahead: float, out: Floats, first: int = 0) -> None:
-        """Write to where each robot's route leads from a pose, ``ahead`` [m] along it; see ``follow_ways``."""
+        """Write to where each robot's route leads from a pose, ``ahead`` [m] along it; see ``follow_paths``."""
         assert self._routes is not None
         _follow.unchecked()(self._routes, self._fields, self._grids, np.ascontiguousarray(pose), ahead, out, first)
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from sitl.core.algebra import ZERO2
-from sitl.envs import free_ways
-from sitl.envs.free_ways import FreeWays
+from sitl.envs import shortest_paths
 from sitl.envs.options import EnvOptionError
 from sitl.envs.parts import Route
+from sitl.envs.shortest_paths import ShortestPaths
 from sitl.envs.targets.among import Among
 from sitl.worlds.contact import Volume
 from sitl.worlds.making import wall
@@ -42,7 +42,7 @@ def robot_in(solids, count=2, start=(-5.0, -5.0, 0.0)):
 
 
 def test_the_way_leads_round_the_end_of_a_wall():
-    ways = FreeWays(robot_in(TEE))
+    ways = ShortestPaths(robot_in(TEE))
     ways.aim(0, 5.0, -5.0)
     ways.aim(1, -5.0, 5.0)
     around, straight = ways.lengths(np.array([[-5.0, -5.0], [-5.0, -5.0]])).tolist()
@@ -53,7 +53,7 @@ def test_the_way_leads_round_the_end_of_a_wall():
 
 
 def test_without_solids_between_it_is_the_straight_distance():
-    ways = FreeWays(robot_in(TEE[1:], count=1))
+    ways = ShortestPaths(robot_in(TEE[1:], count=1))
     ways.aim(0, 3.0, 4.0)
     rng = np.random.default_rng(0)
     for x, y in rng.uniform(-9.0, 9.0, (50, 2)):
@@ -61,7 +61,7 @@ def test_without_solids_between_it_is_the_straight_distance():
 
 
 def test_it_falls_towards_the_goal_from_everywhere():
-    ways = FreeWays(robot_in(TEE, count=1))
+    ways = ShortestPaths(robot_in(TEE, count=1))
     ways.aim(0, 5.0, -5.0)
     place, step = np.array([-5.0, -5.0]), 0.1
     for _ in range(400):
@@ -74,7 +74,7 @@ def test_it_falls_towards_the_goal_from_everywhere():
 
 
 def test_places_without_room_are_as_far_as_the_nearest_with_room():
-    ways = FreeWays(robot_in(TEE, count=1))
+    ways = ShortestPaths(robot_in(TEE, count=1))
     ways.aim(0, -5.0, -5.0)
     beside, inside = (float(ways.lengths(np.array([[x, -5.0]]))[0]) for x in (-1.0, -0.3))
     assert inside == pytest.approx(beside + 0.7, abs=0.15)
@@ -83,7 +83,7 @@ def test_places_without_room_are_as_far_as_the_nearest_with_room():
 
 
 def planned(solids, *goal):
-    ways = FreeWays(robot_in(solids))
+    ways = ShortestPaths(robot_in(solids))
     ways.plan_routes()
     for index in range(2):
         ways.aim(index, *goal)
@@ -102,7 +102,7 @@ def test_the_nearest_free_cell_is_found(size: tuple[int, int], share: float) -> 
     rng = np.random.default_rng(3)
     free = rng.random(size) < share
     free[0, 0] = True
-    nearest, distance = free_ways._nearest(free)
+    nearest, distance = shortest_paths._nearest(free)
     places, cells = np.argwhere(free), np.argwhere(np.ones(size, np.bool_))
     squares = ((cells[:, None] - places) ** 2).sum(axis=2)
     i, j = np.divmod(nearest.ravel(), size[1])
@@ -157,7 +157,7 @@ def test_the_observation_is_told_from_the_estimate(robots):
     task, robot = many.unwrapped.session.task, many.unwrapped.session.robot
     expected = np.zeros((robots, 3))
     for _ in range(3):
-        task._ways.follow(robot.state, 2.0, expected)
+        task._paths.follow(robot.state, 2.0, expected)
         assert np.array_equal(seen[:, 3:], expected.astype(np.float32))
         assert not np.allclose(robot.state[:, :2], robot.true_state()[:, :2], atol=0.01)
         seen, *_ = many.step(np.tile(np.array([0.8, 0.3], np.float32), (robots, 1)))
@@ -195,11 +195,11 @@ def test_a_step_pays_what_the_free_way_is_shorter():
     with make() as env:
         env.reset(seed=3)
         task = env.unwrapped.session.task
-        before = float(task._ways.lengths(task._robot.pose)[0])
+        before = float(task._paths.lengths(task._robot.pose)[0])
         assert before >= float(task._distance[0]) - 0.5
         for _ in range(5):
             *_, terminated, _, info = env.step(np.array([0.5, 0.0], np.float32))
-            now = float(task._ways.lengths(task._robot.pose)[0])
+            now = float(task._paths.lengths(task._robot.pose)[0])
             assert not terminated and info["reward_progress"] == pytest.approx(before - now, abs=1e-9)
             before = now
 

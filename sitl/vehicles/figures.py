@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Old name of ``sitl.vehicles.properties``: airframes in Python of version 0.1 import their constants from it."""
+
+from __future__ import annotations
+
+import sys
+
+from ..deprecation import warn
+from .properties import body, copter, rover
+
+warn("sitl.vehicles.figures", since="0.2", removed_in="0.4", instead="sitl.vehicles.properties")
+for _module in (body, copter, rover):
+    sys.modules[_module.__name__.replace("properties", "figures")] = _module
