@@ -87,11 +87,28 @@ def load_entry(
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
     try:
         with quick(ENTRY):
-            function = compile_entry(vars(module)[ENTRY])
+            try:
+                function = compile_entry(vars(module)[ENTRY])
+            except Exception:
+                if not _forget(folder):
+                    raise
+                function = compile_entry(vars(module)[ENTRY])
     finally:
         numba.config.CACHE_DIR = before
     (folder / _BUILT).touch()
     return function
+
+
+def _forget(folder: Path) -> bool:
+    """Delete what Numba has noted of machine code in ``folder``; whether there was any.
+
+    Numba keeps types of arguments as pickles, which name the modules of their classes: a version that has moved a
+    class cannot read them, although the code is the same. A file that is damaged cannot be read, either.
+    """
+    noted = list(folder.rglob("*.nbi"))
+    for file in noted:
+        file.unlink(missing_ok=True)
+    return bool(noted)
 
 
 def cannot_write(folder: Path, error: OSError) -> BuildError:
