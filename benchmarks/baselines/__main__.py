@@ -80,7 +80,8 @@ def _main(options: argparse.Namespace) -> int:
     for name in found.references.check({entry.plain: entry.playing() for entry in found.chosen}):
         _say(f"{name}: its environment has changed; earlier results are out of date")
     if options.prune:
-        _say(f"{found.records.prune(chosen, found.wanted_keys())} results were out of date, and are deleted")
+        wanted = (*found.wanted_keys(), *(curve.key for curve in defaults.wanted(found)))
+        _say(f"{found.records.prune(chosen, wanted)} results were out of date, and are deleted")
     if options.plan:
         _plan(found, options.jobs)
         return 0

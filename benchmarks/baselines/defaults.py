@@ -82,11 +82,15 @@ def curve_of(found: Campaign, entry: Entry, algorithm: str) -> Curve:
     return Curve(entry.name, entry.env, algorithm, found.references.digest(entry.plain), steps)
 
 
-def missing(found: Campaign) -> list[Curve]:
-    """Curves that are not there: PPO of all ids first."""
+def wanted(found: Campaign) -> list[Curve]:
+    """All curves: PPO of all ids first."""
     plain = [entry for entry in found.chosen if not entry.is_variant]
-    curves = [curve_of(found, entry, algorithms_of(entry.name)[k]) for k in (0, 1) for entry in plain]
-    return [curve for curve in curves if curve.key not in found.records]
+    return [curve_of(found, entry, algorithms_of(entry.name)[k]) for k in (0, 1) for entry in plain]
+
+
+def missing(found: Campaign) -> list[Curve]:
+    """Those that are not there."""
+    return [curve for curve in wanted(found) if curve.key not in found.records]
 
 
 def do(curve: Curve, send_progress: SendProgress, stopped: Stopped) -> bool | None:

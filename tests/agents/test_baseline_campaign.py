@@ -402,8 +402,18 @@ def test_default_settings_have_a_curve_for_each_algorithm(tmp_path):
         "kind": "default", "key": curves[0].key, "name": "copter-hover", "what": "ppo", "seed": 0, "learnt": True,
         "curve": [(20480, 30.0, 0.5, 1.0), (40960, 72.0, 0.95, 2.0)],
     })  # fmt: skip
-    assert defaults.missing(found) == curves[1:]
+    assert defaults.missing(found) == curves[1:] and curves[0] in defaults.wanted(found)
     assert defaults.table_rows(found) == [("`sitl/CopterHover-v1`", "**95 % after 40,960 steps, 1.2 min**", "")]
+
+
+def test_curves_are_not_out_of_date_because_no_training_wants_them(few, tmp_path):
+    found = made(tmp_path)
+    curve = defaults.wanted(found)[0]
+    for key in (curve.key, "old"):
+        found.records.add({"kind": "default", "key": key, "name": NAME, "what": "ppo", "seed": 0})
+    words = [NAME, "--plan", "--prune", "--seeds", "1", "--results", str(tmp_path / "results")]
+    assert main([*words, "--runs", str(tmp_path / "runs")]) == 0
+    assert [one["key"] for one in Records(tmp_path / "results").all()] == [defaults.wanted(made(tmp_path))[0].key]
 
 
 def test_the_plan_lists_and_makes_nothing(few, tmp_path, capsys):
