@@ -98,7 +98,7 @@ def with_kept_digests(names: list[str]) -> list[str]:
 
 def record(path: Path, names: list[str], jobs: int) -> int:
     """Fly, and put the digests into the file that the repository keeps; returns how many could not be flown."""
-    flown = fly_all(names, jobs)
+    flown = fly_all(with_kept_digests(names), jobs)
     before = kept.load(path) if path.exists() else {}
     there = {name: flight for name, flight in before.items() if name in flights()}
     now = {name: kept.keep(digests) for name, digests in flown.items() if "error" not in digests}
@@ -110,7 +110,7 @@ def record(path: Path, names: list[str], jobs: int) -> int:
 
 def check(path: Path, names: list[str], jobs: int) -> list[str]:
     """Fly; what differs from the digests that the repository keeps, in words."""
-    flown = fly_all(names, jobs)
+    flown = fly_all(with_kept_digests(names), jobs)
     found = [f"{name}: it cannot be flown: {each['error']}" for name, each in flown.items() if "error" in each]
     now = {name: kept.keep(each) for name, each in flown.items() if "error" not in each}
     found += kept.differences(kept.load(path), now)
