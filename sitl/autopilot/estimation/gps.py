@@ -23,7 +23,7 @@ from ..params.parameters import Parameters
 from ..params.without_gps import Sources
 from ..state import Estimate, Sensors
 from . import doubt, height, noise, sources
-from .aiding import Origin, fix_ne, reset_to_fix, set_origin, start_using, stop_using
+from .aiding import Origin, fix_ne, reset_to_fix, start_using, stop_using, write_origin
 from .fusion import NIS_GPS_POSITION, NIS_GPS_VELOCITY, correct, gate_ratio, innovate_position, innovate_state
 from .height import Height
 from .history import past_at
@@ -307,7 +307,7 @@ def fuse(
     if not ekf.field_known and ekf.yaw_aligned and (ekf.gps_fixes > 1 or not ekf.heading_only):
         learn_field(ekf, estimate, fix.gps_lat, fix.gps_lon)
     if has_held(ekf) and not estimate.origin_set and ekf.yaw_aligned:
-        set_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
+        write_origin(ekf, estimate, log, Origin(fix.gps_lat, fix.gps_lon, ekf.gps_alt_filter))
         if is_source:
             ekf.absolute = False  # until now: positions of another system, from where that began to count
     learn_bias(ekf)
