@@ -210,3 +210,24 @@ def test_home_is_told_where_there_is_one(bench: Bench) -> None:
     assert bench.command(410) == FAILED
     bench.vehicle.locate()
     assert bench.command(410) == ACCEPTED
+
+
+@pytest.mark.parametrize(
+    ("params", "result"),
+    [
+        ((0, 0, 0, 0), FAILED),  # where it is: nobody knows
+        ((0, 0, 47.0, 8.0), ACCEPTED), ((0, 0, 90.0, 180.0), ACCEPTED), ((0, 0, -90.0, -180.0), ACCEPTED),
+        ((0, 0, 90.1, 8.0), FAILED), ((0, 0, 47.0, 180.1), FAILED), ((0, 0, 0.0, 8.0), ACCEPTED),
+        ((0, 7, 47.0, 8.0), ACCEPTED), ((0, 8, 47.0, 8.0), FAILED), ((0, -1, 47.0, 8.0), FAILED),
+    ],
+)  # fmt: skip
+def test_compasses_by_a_heading_need_a_location(bench: Bench, params: Any, result: int) -> None:
+    assert bench.command(42006, *params) == result
+
+
+@pytest.mark.parametrize(("mask", "found"), [(0, (True, True, True)), (2, (False, True, False))])
+def test_compasses_by_a_heading_are_those_of_the_mask(bench: Bench, mask: int, found: tuple[bool, ...]) -> None:
+    """One that shows nothing is off by all of the field."""
+    assert bench.command(42006, 90, mask, 47.0, 8.0) == ACCEPTED
+    offsets = [bench.vehicle.parameters[f"COMPASS_OFS{n}_Z"] for n in ("", "2", "3")]
+    assert tuple(abs(offset) > 300.0 for offset in offsets) == found
