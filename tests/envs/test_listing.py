@@ -15,7 +15,8 @@ from sitl.envs import listing
 from sitl.errors import OptionError
 
 ROW = {
-    "id": "sitl/CopterHover-v1", "aim": "Hover.", "robot": "erle_copter", "world": "open", "task": "Hold", "step_s": 0.05,
+    "id": "sitl/CopterHover-v1", "aim": "Hover.", "robot": "erle_copter", "world": "open", "task": "Hold",
+    "step_s": 0.05,
     "max_episode_steps": 200, "observation_space": "Box((3,), float32)", "observation": ["a", "b", "c"],
     "action_space": "Discrete(2)", "action": ["up", "down"], "setpoint": "velocity",
 }  # fmt: skip
