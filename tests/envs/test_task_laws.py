@@ -62,7 +62,7 @@ def test_crashes_are_near_readings_and_touches(scan: Any, touched: int, ends: bo
     """A reading of 0 is none, as in the paper's code; 0.2 m is not below 0.2 m."""
     out = flags(1, 1)
     scans = np.array([scan, (9.0, 9.0)], np.float32)
-    assert count_crashes(scans, np.float32(0.2), np.array([touched, 0]), ends, out) == int(crashed)
+    assert count_crashes(scans, float(np.float32(0.2)), np.array([touched, 0]), ends, out) == int(crashed)
     assert out.tolist() == [crashed, False]
 
 
