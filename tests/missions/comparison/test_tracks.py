@@ -281,3 +281,14 @@ def test_a_track_ends_where_it_may_be_no_longer(core: Core, monkeypatch: pytest.
     track = observer.track()
     simulation.close()
     assert track.t[-1] - track.t[0] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("ahead", [0.05, -0.05, 0.15, -0.15])
+def test_matches_lie_between_samples_on_either_side(ahead: float) -> None:
+    """At 2 m/s, and 0.2 m from sample to sample: who is 5 cm ahead of a sample is a fortieth of a second early."""
+    golden, new = straight(20.0), moved(straight(20.0), slice(1, 2), (ahead,))
+    found = match(new, golden)
+    on_the_way = slice(5, 90)
+    assert found.delay[on_the_way] == pytest.approx(-ahead / 2.0, abs=1e-6)
+    assert found.cross[on_the_way] == pytest.approx(0.0, abs=1e-6)
+    assert (found.index[on_the_way] - np.arange(201)[on_the_way]) == pytest.approx(ahead / 0.2, abs=1e-6)
