@@ -3,25 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from sitl.missions.tlog_replay.extract import Script, extract
-from sitl.missions.tlog_replay.log import Log
+from sitl.missions.tlog_replay.extract import Script
 from sitl.missions.tlog_replay.steps import Send, Upload
-from tests.missions.tlog_replay.conftest import frame, write
+from tests.missions.tlog_replay.conftest import Extract, frame
 
 Rows = list[tuple[float, bytes]]
-Extract = Callable[..., Script]
-NO_POSITION = "the log has no position of the vehicle: it starts at the default home"
-NO_COMMANDS = "the log has no commands: modes, arming and mission are taken from what the vehicle says of itself"
-
-
-def beat(time: float, armed: bool = False, mode: int = 0) -> tuple[float, bytes]:
-    return time, frame("HEARTBEAT", type=2, autopilot=3, base_mode=128 * armed, custom_mode=mode)
 
 
 def gcs(time: float, name: str, **fields: Any) -> tuple[float, bytes]:
@@ -38,19 +28,6 @@ def command(time: float, number: int, **fields: Any) -> tuple[float, bytes]:
 
 def item(time: float, seq: int, number: int = 16, **fields: Any) -> tuple[float, bytes]:
     return gcs(time, "MISSION_ITEM_INT", seq=seq, frame=3, command=number, x=seq, **fields)
-
-
-MODE = command(0.5, 176, param1=1.0, param2=4.0)
-"""With it the log has commands: nothing is taken from what the vehicle says."""
-
-
-@pytest.fixture
-def script(tmp_path: Path) -> Extract:
-    def of(*rows: tuple[float, bytes], begins: tuple[tuple[float, bytes], ...] = (beat(0.0), MODE)) -> Script:
-        made = sorted((*begins, *rows), key=lambda row: row[0])
-        return extract(Log(write(tmp_path / "made.tlog", made)))
-
-    return of
 
 
 def messages(found: Script) -> list[Send]:

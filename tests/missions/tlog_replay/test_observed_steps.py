@@ -9,21 +9,11 @@ from typing import Any
 import pytest
 
 from sitl.missions.tlog_replay.extract import Script
-from tests.missions.tlog_replay.test_extracted_steps import (
-    MODE,
-    NO_COMMANDS,
-    NO_POSITION,
-    Extract,
-    Rows,
-    beat,
-    command,
-    gcs,
-    messages,
-    said,
-    script,  # noqa: F401 (a fixture)
-    sent,
-    uploads,
-)
+from tests.missions.tlog_replay.conftest import MODE, Extract, beat
+from tests.missions.tlog_replay.test_extracted_steps import Rows, command, gcs, messages, said, sent, uploads
+
+NO_POSITION = "the log has no position of the vehicle: it starts at the default home"
+NO_COMMANDS = "the log has no commands: modes, arming and mission are taken from what the vehicle says of itself"
 
 
 def observed(script: Extract, *rows: tuple[float, bytes]) -> Script:
