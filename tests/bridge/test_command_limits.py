@@ -231,3 +231,13 @@ def test_compasses_by_a_heading_are_those_of_the_mask(bench: Bench, mask: int, f
     assert bench.command(42006, 90, mask, 47.0, 8.0) == ACCEPTED
     offsets = [bench.vehicle.parameters[f"COMPASS_OFS{n}_Z"] for n in ("", "2", "3")]
     assert tuple(abs(offset) > 300.0 for offset in offsets) == found
+
+
+@pytest.mark.parametrize(
+    ("frame", "z", "result"),
+    [(0, NAN, FAILED), (5, NAN, FAILED), (0, 10.0, DENIED), (0, 0.0, DENIED), (3, NAN, DENIED), (6, NAN, DENIED)],
+)
+def test_an_external_position_has_no_altitude(located: Bench, frame: int, z: float, result: int) -> None:
+    """MAV_CMD_EXTERNAL_POSITION_ESTIMATE; the estimator has a receiver, and does not take it."""
+    assert command_int(located, 43003, frame, *HERE, z) == result
+    assert located.autopilot.calls == []

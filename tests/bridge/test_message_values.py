@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fields of telemetry by MAVLink's units, each with a value of its own, and where they are not known."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from sitl.bridge.telemetry import fence, motion, sensors, status
+from sitl.bridge.telemetry.high_latency import FAILURES, failures
+from sitl.core.mavlink import MavSysStatus
+from sitl.core.vectors import Euler, Quat, Vec3
+from sitl.vehicle.copter import Copter
+from tests.bridge.fakes import Bench
+from tests.bridge.test_telemetry_laws import HOME, says
+
+
+@pytest.fixture
+def v() -> Any:
+    """12.345678 s after boot, 10 m up, 100 m north and 200 m east of an origin."""
+    found: Any = Copter()
+    found.time_us = 12_345_678
+    estimate, home = found.autopilot.estimate, found.autopilot.home
+    estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = HOME
+    estimate.origin_set = True
+    estimate.pos, estimate.vel = Vec3(100.0, 200.0, -10.0), Vec3(3.0, -4.0, 0.5)
+    estimate.euler = Euler(0.1, -0.2, 1.5)
+    home.lat, home.lon, home.alt, home.is_set = *HOME[:2], HOME[2] + 1.0, True
+    home.pos = Vec3(1.0, 2.0, -1.0)
+    return found
+
+
+def test_positions_on_the_globe(v: Any) -> None:
+    m = says(motion.global_position_int, v)
+    assert (m.alt, m.relative_alt) == (594_000, 9_000)
+    assert (m.vx, m.vy, m.vz, m.hdg, m.time_boot_ms) == (300, -400, 50, 8594, 12_345)
+    v.autopilot.home.is_set = False
+    assert says(motion.global_position_int, v).relative_alt == 0
+    v.autopilot.estimate.origin_set = False
+    v.autopilot.estimate.status_flags = motion.POS_HORIZ_REL
+    m = says(motion.global_position_int, v)
+    assert (m.lat, m.lon, m.alt, m.relative_alt) == (0, 0, 0, 10_000), "above where it began"
+
+
+def test_positions_from_the_origin_are_told_where_there_is_one(v: Any) -> None:
+    m = says(motion.local_position_ned, v)
+    assert (m.x, m.y, m.z, m.vx, m.vy, m.vz, m.time_boot_ms) == (100.0, 200.0, -10.0, 3.0, -4.0, 0.5, 12_345)
+    v.autopilot.estimate.origin_set = False
+    assert says(motion.local_position_ned, v) is None
+    v.autopilot.estimate.status_flags = motion.POS_HORIZ_REL
+    assert says(motion.local_position_ned, v) is not None
+
+
+@pytest.mark.parametrize(("throttle", "percent"), [(0.0, 0), (0.494, 49), (0.495, 50), (1.0, 100), (-0.5, 50)])
+def test_the_head_up_display(v: Any, throttle: float, percent: int) -> None:
+    from sitl.bridge.copter import telemetry
+
+    m = says(telemetry.vfr_hud, v)
+    assert (m.groundspeed, m.airspeed, m.alt, m.climb, m.heading) == (5.0, 5.0, 594.0, -0.5, 85)
+    hud: Any = type("Hud", (), {})()
+    motion.vfr_hud(hud, v, throttle)
+    assert hud.throttle == percent
+
+
+def test_home_and_origin(v: Any) -> None:
+    m = says(motion.home_position, v)
+    assert (m.latitude, m.longitude, m.altitude, m.x, m.y, m.z) == (*HOME[:2], 585_000, 1.0, 2.0, -1.0)
+    assert all(map(math.isnan, m.q)) and m.time_usec == 12_345_678
+    m = says(motion.gps_global_origin, v)
+    assert (m.latitude, m.longitude, m.altitude, m.time_usec) == (*HOME[:2], 584_000, 12_345_678)
+    v.autopilot.home.is_set = v.autopilot.estimate.origin_set = False
+    assert says(motion.home_position, v) is None is says(motion.gps_global_origin, v)
+
+
+@pytest.mark.parametrize("second", [False, True])
+def test_a_receivers_fix(v: Any, second: bool) -> None:
+    s = v.sensors.gps2 if second else v.sensors
+    s.gps_time_us, s.gps_lat, s.gps_lon, s.gps_alt = 12_000_000, 10, -20, 30_000
+    s.gps_fix, s.gps_satellites, s.gps_eph, s.gps_epv = 4, 12, 121, 200
+    s.gps_vel = Vec3(0.0, -250.0, 999.0)
+    v.autopilot.params["GPS2_TYPE"] = 1.0
+    law = motion.gps2_raw if second else motion.gps_raw_int
+    m = says(law, v)
+    assert (m.fix_type, m.lat, m.lon, m.alt, m.alt_ellipsoid) == (4, 10, -20, 30_000, 30_000)
+    assert (m.vel, m.cog, m.satellites_visible, m.eph, m.epv) == (250, 27_000, 12, 121, 200)
+    assert m.h_acc == round(motion.ACCURACY_OF_HDOP * 121) and m.v_acc == round(motion.ACCURACY_OF_VDOP * 200)
+    assert m.vel_acc == 0
+    s.gps_eph, s.gps_satellites = motion.USUAL_HDOP + 1000, 300
+    m = says(law, v)
+    assert (m.vel_acc, m.satellites_visible) == (800, 255)
+    s.gps_fix = 1
+    m = says(law, v)
+    assert (m.fix_type, m.eph, m.epv, m.h_acc, m.v_acc, m.vel_acc) == (1, 65535, 65535, 0, 0, 0)
+    v.autopilot.params["GPS2_TYPE"] = 0.0
+    assert says(motion.gps2_raw, v) is None
+
+
+def test_attitudes(v: Any) -> None:
+    estimate = v.autopilot.estimate
+    m = says(motion.ahrs2, v)
+    assert (m.roll, m.pitch, m.yaw, m.altitude) == pytest.approx((0.1, -0.2, 1.5, 594.0)) and m.lng > HOME[1]
+    estimate.q, estimate.rates, estimate.gyro_bias = (
+        Quat(0.5, -0.5, 0.25, 0.75),
+        Vec3(1.0, 2.0, 3.0),
+        Vec3(0.1, -0.2, 0.3),
+    )
+    m = says(motion.attitude_quaternion, v)
+    assert (m.q1, m.q2, m.q3, m.q4, m.rollspeed, m.pitchspeed, m.yawspeed) == (0.5, -0.5, 0.25, 0.75, 1.0, 2.0, 3.0)
+    m = says(motion.ahrs, v)
+    assert (m.omegaIx, m.omegaIy, m.omegaIz) == pytest.approx((-0.1, 0.2, -0.3))
+
+
+# ---------------------------------------------------------------- sensors
+
+
+def shaken(v: Any) -> Any:
+    c = v.autopilot.calibrated
+    c.acc, c.gyro, c.mag = Vec3(0.0, 9.80665, -19.6133), Vec3(0.1, -0.2, 0.3), Vec3(0.25, -0.5, 0.125)
+    c.acc2, c.gyro2 = Vec3(9.80665, 0.0, 0.0), Vec3(1.0, 2.0, 3.0)
+    v.sensors.temperature, v.sensors.abs_pressure, v.sensors.abs_pressure2 = 21.5, 1013.25, 900.0
+    return v
+
+
+@pytest.mark.parametrize("law", [sensors.raw_imu, sensors.scaled_imu])
+def test_imus_are_thousandths(v: Any, law: Any) -> None:
+    """mG, mrad/s, mgauss, hundredths of a degree Celsius."""
+    m = says(law, shaken(v))
+    assert (m.xacc, m.yacc, m.zacc) == (0, 1000, -2000) and (m.xmag, m.ymag, m.zmag) == (250, -500, 125)
+    assert (m.xgyro, m.ygyro, m.zgyro, m.temperature) == (100, -200, 300, 2150)
+
+
+def test_the_second_imu_is_the_first_where_they_do_not_differ(v: Any) -> None:
+    assert says(sensors.scaled_imu2, shaken(v)).yacc == 1000
+    v.sensors.imu_state = sensors.IMUS_DIFFER
+    m = says(sensors.scaled_imu2, v)
+    assert (m.xacc, m.yacc, m.xgyro, m.zgyro) == (1000, 0, 1000, 3000)
+
+
+def test_pressures(v: Any) -> None:
+    m = says(sensors.highres_imu, shaken(v))
+    assert (m.abs_pressure, m.pressure_alt, m.temperature) == (1013.25, 0.0, 21.5)
+    assert (m.yacc, m.zgyro, m.xmag) == pytest.approx((9.80665, 0.3, 0.25))
+    assert m.fields_updated == 0x1FFF & ~(1 << 10), "all but the differential pressure"
+    v.sensors.abs_pressure = 898.746
+    assert says(sensors.highres_imu, v).pressure_alt == pytest.approx(1000.0, abs=0.5), "the standard atmosphere"
+    v.sensors.abs_pressure = -1.0
+    assert says(sensors.highres_imu, v).pressure_alt == 0.0
+    m = says(sensors.scaled_pressure, v)
+    assert (m.press_abs, m.temperature) == (-1.0, 2150)
+    assert says(sensors.scaled_pressure2, v).press_abs == -1.0
+    v.sensors.baro_state = sensors.BAROS_DIFFER
+    assert says(sensors.scaled_pressure2, v).press_abs == 900.0
+    v.sensors.baro_state = sensors.ONE_BARO
+    assert says(sensors.scaled_pressure2, v) is None
+
+
+def test_clipping_counts_by_imu(v: Any) -> None:
+    v.autopilot.vibration.clips, v.autopilot.vibration.more_clips = 3, 2
+    m = says(sensors.vibration, v)
+    assert (m.clipping_0, m.clipping_1, m.clipping_2, m.time_usec) == (3, 5, 0, 12_345_678)
+
+
+# ---------------------------------------------------------------- status
+
+
+@pytest.mark.parametrize(
+    ("monitor", "voltage", "current", "consumed", "energy"),
+    [(0.0, 65535, -1, -1, -1), (3.0, 12_600, -1, -1, -1), (4.0, 12_600, 1234, 1500, 720), (2.0, 65535, -1, -1, -1)],
+)
+def test_what_the_monitor_of_the_battery_measures(
+    v: Any, monitor: float, voltage: int, current: int, consumed: int, energy: int
+) -> None:
+    battery = v.autopilot.battery
+    v.autopilot.params["BATT_MONITOR"] = monitor
+    battery.voltage, battery.current, battery.consumed_mah, battery.consumed_wh = 12.6, 12.34, 1500.4, 20.0
+    battery.remaining_pct = 74.9
+    m = says(status.battery_status, v)
+    assert m.voltages[0] == voltage and set(m.voltages[1:]) == {65535} and m.temperature == 32767
+    assert (m.current_battery, m.current_consumed, m.energy_consumed, m.battery_remaining) == (
+        current,
+        consumed,
+        energy,
+        74,
+    )
+
+
+@pytest.mark.parametrize(
+    ("level", "healthy", "state"),
+    [(0, True, 1), (0, False, 6), (1, True, 2), (1, False, 2), (2, True, 3), (2, False, 3)],
+)
+def test_states_of_charge(level: int, healthy: bool, state: int) -> None:
+    assert status.charge_state(level, healthy) == state
+
+
+def test_the_filters_report(v: Any) -> None:
+    estimate = v.autopilot.estimate
+    estimate.variance_vel, estimate.variance_pos, estimate.variance_hgt, estimate.variance_mag = 0.125, 0.25, 0.5, 0.75
+    estimate.status_flags = 0x1033F
+    m = says(status.ekf_status_report, v)
+    assert (m.velocity_variance, m.pos_horiz_variance, m.pos_vert_variance, m.compass_variance) == (
+        0.125,
+        0.25,
+        0.5,
+        0.75,
+    )
+    assert m.flags == 0x033F and m.terrain_alt_variance == 0.0
+
+
+@pytest.mark.parametrize(
+    ("total", "running", "paused", "state"),
+    [(0.0, 0, False, 1), (1.0, 1, False, 1), (2.0, 0, False, 2), (2.0, 1, False, 3), (2.0, 2, False, 5),
+     (2.0, 2, True, 5), (2.0, 1, True, 4), (2.0, 0, True, 4)],
+)  # fmt: skip
+@pytest.mark.parametrize("mode", [3, 4])
+def test_states_of_a_mission(v: Any, total: float, running: int, paused: bool, state: int, mode: int) -> None:
+    """MISSION_STATE; home, item 0, is no mission, and does not count."""
+    modes: Any = v.autopilot.modes
+    v.autopilot.params["MIS_TOTAL"], modes.nav.mission_current, modes.nav.mission_state, modes.number = (
+        total,
+        7,
+        running,
+        mode,
+    )
+    found: Any = type("Current", (), {})()
+    status.mission_current(found, v, 3, paused)
+    assert (found.seq, found.total) == (7, max(int(total) - 1, 0)) and found.mission_state == state
+    assert found.mission_mode == int(mode == 3)
+
+
+def test_boards_and_clocks(v: Any) -> None:
+    assert says(status.power_status, v).Vcc == 5000
+    assert (says(status.meminfo, v).freemem, says(status.meminfo, v).freemem32) == (65535, 524288)
+    assert says(status.timesync, v).ts1 == 12_345_678_001 and says(status.timesync, v).tc1 == 0
+    assert says(status.available_modes_monitor, v).seq == 0
+
+
+# ---------------------------------------------------------------- fences, slow links
+
+
+@pytest.mark.parametrize(("breached", "kind"), [(0, 0), (8, 1), (1, 2), (2, 3), (4, 3), (9, 1), (3, 2), (6, 3)])
+def test_kinds_of_breaches(breached: int, kind: int) -> None:
+    """FENCE_TYPE: 1 highest, 2 circle, 4 polygons, 8 lowest; FENCE_BREACH: 1 below, 2 above, 3 outside."""
+    assert fence.breach_type(breached) == kind
+
+
+def test_a_fence_that_is_on_tells_of_its_breaches(v: Any) -> None:
+    found = v.autopilot.fence
+    assert says(fence.fence_status, v) is None
+    found.on, found.breached, found.breaches, found.breach_us = 1, 2, 65537, 9_876_543
+    m = says(fence.fence_status, v)
+    assert (m.breach_status, m.breach_type, m.breach_count, m.breach_time, m.breach_mitigation) == (1, 3, 1, 9_876, 1)
+    found.breached = 0
+    assert says(fence.fence_status, v).breach_status == 0
+
+
+@pytest.mark.parametrize("sensor", sorted(FAILURES))
+def test_what_is_not_healthy_has_its_bit(sensor: int) -> None:
+    """HL_FAILURE_FLAG."""
+    everything = sum(FAILURES)
+    assert failures(everything) == 0 and failures(everything & ~sensor) == FAILURES[MavSysStatus(sensor)]
+    assert failures(0) == sum(set(FAILURES.values())) and len(set(FAILURES.values())) == len(FAILURES)
+
+
+def test_a_slow_link_has_coarse_numbers() -> None:
+    bench = Bench()
+    bench.vehicle.locate()
+    ap = bench.vehicle.v.autopilot
+    ap.estimate.vel, ap.estimate.pos = Vec3(3.0, -4.0, 0.0), Vec3(0.0, 0.0, -10.5)
+    ap.estimate.euler = Euler(0.0, 0.0, 1.5)
+    ap.battery.remaining_pct, ap.modes.nav.mission_current, ap.arming.armed = 42.9, 7, True
+    bench.vehicle.v.time_us = 9_876_543
+    (m,) = bench.telemetry("HIGH_LATENCY2")
+    assert (m.groundspeed, m.airspeed, m.heading, m.altitude) == (25, 25, 42, 594)
+    assert (m.battery, m.wp_num, m.timestamp, m.autopilot, m.type) == (42, 7, 9_876, 3, 2)
+    assert m.custom0 < 0 and m.temperature_air == -128, "base_mode with its highest bit; no airspeed sensor"
+    bench.vehicle.parameters.update({"ARSPD_ENABLE": 1.0, "ARSPD_TYPE": 1.0})
+    bench.vehicle.v.sensors.temperature = 21.9
+    assert bench.telemetry("HIGH_LATENCY2")[0].temperature_air == 21
