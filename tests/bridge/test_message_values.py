@@ -8,11 +8,16 @@ from typing import Any
 
 import pytest
 
+from sitl.bridge.copter import telemetry as copter
+from sitl.bridge.rover import telemetry as rover
 from sitl.bridge.telemetry import fence, motion, sensors, status
+from sitl.bridge.telemetry.builder import compiled
 from sitl.bridge.telemetry.high_latency import FAILURES, failures
+from sitl.bridge.wire.choose import message_of
 from sitl.core.mavlink import MavSysStatus
 from sitl.core.vectors import Euler, Quat, Vec3
 from sitl.vehicle.copter import Copter
+from sitl.vehicle.rover import Rover
 from tests.bridge.fakes import Bench
 from tests.bridge.test_telemetry_laws import HOME, says
 
@@ -55,9 +60,7 @@ def test_positions_from_the_origin_are_told_where_there_is_one(v: Any) -> None:
 
 @pytest.mark.parametrize(("throttle", "percent"), [(0.0, 0), (0.494, 49), (0.495, 50), (1.0, 100), (-0.5, 50)])
 def test_the_head_up_display(v: Any, throttle: float, percent: int) -> None:
-    from sitl.bridge.copter import telemetry
-
-    m = says(telemetry.vfr_hud, v)
+    m = says(copter.vfr_hud, v)
     assert (m.groundspeed, m.airspeed, m.alt, m.climb, m.heading) == (5.0, 5.0, 594.0, -0.5, 85)
     hud: Any = type("Hud", (), {})()
     motion.vfr_hud(hud, v, throttle)
@@ -110,6 +113,33 @@ def test_attitudes(v: Any) -> None:
     assert (m.q1, m.q2, m.q3, m.q4, m.rollspeed, m.pitchspeed, m.yawspeed) == (0.5, -0.5, 0.25, 0.75, 1.0, 2.0, 3.0)
     m = says(motion.ahrs, v)
     assert (m.omegaIx, m.omegaIy, m.omegaIz) == pytest.approx((-0.1, 0.2, -0.3))
+
+
+PARTS = {"OPTICAL_FLOW", "GPS2_RAW", "DISTANCE_SENSOR", "RANGEFINDER", "OBSTACLE_DISTANCE", "DEBUG_FLOAT_ARRAY"}
+"""Of what may be fitted."""
+ASKED_FOR = {"FENCE_STATUS", "PID_TUNING", "POSITION_TARGET_GLOBAL_INT"}
+"""While a fence is on, loops are chosen, or there is a target."""
+
+
+@pytest.mark.parametrize(
+    ("record", "module", "silent"),
+    [
+        (Copter, copter, {"POSITION_TARGET_LOCAL_NED", "RPM", "ESC_TELEMETRY_1_TO_4", "ESC_TELEMETRY_5_TO_8"}),
+        (Rover, rover, {"NAV_CONTROLLER_OUTPUT", "WHEEL_DISTANCE"}),
+    ],
+)
+def test_a_vehicle_that_knows_where_it_is_tells_all_but_of_what_it_lacks(record: Any, module: Any, silent: Any) -> None:
+    made: Any = record()
+    made.time_us = 12_345_678
+    estimate = made.autopilot.estimate
+    estimate.origin_lat, estimate.origin_lon, estimate.origin_alt = HOME
+    assert {"LOCAL_POSITION_NED", "GPS_GLOBAL_ORIGIN", "HOME_POSITION"} <= unsaid(made, module)
+    estimate.origin_set = made.autopilot.home.is_set = True
+    assert unsaid(made, module) == PARTS | ASKED_FOR | silent
+
+
+def unsaid(v: Any, module: Any) -> set[str]:
+    return {message_of(law).kind.name for law in compiled(module.MESSAGES) if says(law, v) is None}
 
 
 # ---------------------------------------------------------------- sensors
@@ -224,7 +254,7 @@ def test_states_of_a_mission(v: Any, total: float, running: int, paused: bool, s
         mode,
     )
     found: Any = type("Current", (), {})()
-    status.mission_current(found, v, 3, paused)
+    assert status.mission_current(found, v, 3, paused) is True
     assert (found.seq, found.total) == (7, max(int(total) - 1, 0)) and found.mission_state == state
     assert found.mission_mode == int(mode == 3)
 
