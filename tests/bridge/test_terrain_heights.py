@@ -112,3 +112,27 @@ def test_arming_sets_home_on_the_ground(most: float, home_above: float, offset: 
     t.was_known, t.offset = False, 1.0
     service(bench).armed()
     assert t.offset == 1.0
+
+
+def test_a_snapshot_keeps_what_was_known() -> None:
+    bench = Ground()
+    learn(bench)
+    bench.run(1.0)
+    state = service(bench).snapshot()
+    bench.vehicle.parameters["TERRAIN_SPACING"] = 50.0
+    service(bench).look()
+    assert service(bench).height(*HOME[:2]) is None, "heights of another grid are of no use"
+    bench.vehicle.parameters["TERRAIN_SPACING"] = 100.0
+    service(bench).restore(state)
+    assert service(bench).height(*HOME[:2]) == 600.0
+    assert service(bench).snapshot() == state
+
+
+def test_a_snapshot_of_before_knows_nothing() -> None:
+    bench = Ground()
+    state = service(bench).snapshot()
+    learn(bench)
+    bench.run(1.0)
+    assert service(bench).height(*HOME[:2]) == 600.0
+    service(bench).restore(state)
+    assert service(bench).height(*HOME[:2]) is None
