@@ -26,7 +26,7 @@ from sitl.agents.tabular.settings import Settings
 from sitl.autopilot.params import docs
 from sitl.bridge.links.faults import OPTIONS
 from sitl.cli import parser
-from sitl.cli.commands import COMMANDS
+from sitl.cli.command_list import COMMANDS
 from sitl.core import compile as compiler
 from sitl.envs.costs import COSTS
 from sitl.envs.observations import OBSERVATIONS

@@ -24,7 +24,7 @@ from ..params.estimator import Ekf3
 from ..state import Estimate
 from . import noise
 from .covariance import clear
-from .events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
+from .estimator_events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
 from .fusion import NIS_MAGNETOMETER, Innovation, clear_row, correct, gate_ratio, innovate
 from .magnetometer import (
     FUSE_SAMPLES,
