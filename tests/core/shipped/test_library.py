@@ -78,8 +78,8 @@ BUILD = """
 import sys
 from pathlib import Path
 import toy
-from sitl.core.shipped import build, targets
-chosen = [t for t in targets.TARGETS if t.name in sys.argv[2].split(",")]
+from sitl.core.shipped import build, target_machines
+chosen = [t for t in target_machines.TARGETS if t.name in sys.argv[2].split(",")]
 build.build(build.pieces({"toy.Pair": [toy.entry]}, ["toy"]), Path(sys.argv[1]), chosen)
 """
 
