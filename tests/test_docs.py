@@ -193,8 +193,8 @@ def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> N
         "autopilot.estimation.update.advance_bank",
         "autopilot.estimation.update.run_second",
         "autopilot.estimation.update.update",
-        f"autopilot.{name}.modes.update.update",
-        f"autopilot.{name}.control.update.update",
+        f"autopilot.{name}.modes.decisions.update",
+        f"autopilot.{name}.control.control_step.update",
         f"vehicle.{name}.advance",
     ]
 

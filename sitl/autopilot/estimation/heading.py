@@ -46,7 +46,7 @@ STEP = 0.0125
 is the parameter times the root of this."""
 LONGEST = 0.1
 """Noise grows for so long at most from one fusion to the next [s]."""
-TIED = 0.8
+TIED = 0.6
 """What a fusion leaves of the covariance of yaw with all other states. The receiver is more exact than
 EK3_VELNE_M_NSE and EK3_POSNE_M_NSE say (noise.py): yaw would be learnt sooner from accelerations than by ArduPilot."""
 MAX_INNOVATION = 0.5

@@ -21,7 +21,7 @@ def test_each_message_is_declared_once() -> None:
         firmware_profile.load(kind)
     for module in ("services", "telemetry"):
         importlib.import_module(f"sitl.bridge.{module}")
-    for module in ("compiled", "reports", "telemetry"):
+    for module in ("compiled", "reports", "last_messages"):
         importlib.import_module(f"sitl.envs.mavlink.{module}")
     declared: dict[str, list[str]] = {}
     for found in classes(Message):

@@ -50,7 +50,7 @@ def arm(ap: Any, throttle: float = 0.35) -> None:
 
 
 def output(ap: Any, actuators: Any) -> None:
-    """What ``control.update`` does after the modes, on records that are not inside a vehicle."""
+    """What ``control.control_step`` does after the modes, on records that are not inside a vehicle."""
     drive(ap, actuators, 0)
 
 

@@ -86,8 +86,8 @@ def set_motion(v: Any, heading: float, speed: float, turn_rate: float) -> None:
 
 
 def finish(v: Any) -> None:
-    """The end of a period, after the mode: ``control.update``, with the speed that was sensed at its start; time goes
-    on."""
+    """The end of a period, after the mode: ``control.control_step``, with the speed that was sensed at its start; time
+    goes on."""
     sense(v)
     control_step.update([v], 0)
     v.time_us += PERIOD_US
