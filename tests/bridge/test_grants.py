@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.services.commands import Grants
+from sitl.bridge.services.command_protocol import Grants
 from tests.bridge.fakes import Bench, Client
 
 GRANT, RESEED = 31010, 31011

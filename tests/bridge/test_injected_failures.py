@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.client import Client
 from sitl.simulation import Core, Simulation
 

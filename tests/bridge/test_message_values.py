@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.copter import telemetry as copter
-from sitl.bridge.rover import telemetry as rover
+from sitl.bridge.copter import status_messages as copter
+from sitl.bridge.rover import status_messages as rover
 from sitl.bridge.telemetry import motion, sensors
 from sitl.bridge.telemetry.builder import compiled
 from sitl.bridge.wire.choose import message_of

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sitl.autopilot.state import Estimate
-from sitl.bridge.services.setpoints import (
+from sitl.bridge.services.setpoint_messages import (
     SetPositionTargetGlobalInt,
     SetPositionTargetLocalNed,
     global_target,

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.telemetry import fence, status
+from sitl.bridge.telemetry import fence_status, status
 from sitl.bridge.telemetry.high_latency import FAILURES, failures
 from sitl.core.mavlink import MavSysStatus
 from sitl.core.vectors import Euler, Vec3
@@ -98,17 +98,17 @@ def test_boards_and_clocks(v: Any) -> None:
 @pytest.mark.parametrize(("breached", "kind"), [(0, 0), (8, 1), (1, 2), (2, 3), (4, 3), (9, 1), (3, 2), (6, 3)])
 def test_kinds_of_breaches(breached: int, kind: int) -> None:
     """FENCE_TYPE: 1 highest, 2 circle, 4 polygons, 8 lowest; FENCE_BREACH: 1 below, 2 above, 3 outside."""
-    assert fence.breach_type(breached) == kind
+    assert fence_status.breach_type(breached) == kind
 
 
 def test_a_fence_that_is_on_tells_of_its_breaches(v: Any) -> None:
     found = v.autopilot.fence
-    assert says(fence.fence_status, v) is None
+    assert says(fence_status.fence_status, v) is None
     found.on, found.breached, found.breaches, found.breach_us = 1, 2, 65537, 9_876_543
-    m = says(fence.fence_status, v)
+    m = says(fence_status.fence_status, v)
     assert (m.breach_status, m.breach_type, m.breach_count, m.breach_time, m.breach_mitigation) == (1, 3, 1, 9_876, 1)
     found.breached = 0
-    assert says(fence.fence_status, v).breach_status == 0
+    assert says(fence_status.fence_status, v).breach_status == 0
 
 
 @pytest.mark.parametrize("sensor", sorted(FAILURES))

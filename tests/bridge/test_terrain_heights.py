@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.terrain.grid import PARTS, block_of
-from sitl.bridge.services.terrain import TerrainService
+from sitl.bridge.services.terrain_protocol import TerrainService
 from tests.bridge.fakes import HOME, Bench, mavlink
 from tests.bridge.test_terrain import Ground
 

@@ -12,10 +12,10 @@ import pytest
 from sitl.bridge.dialect import message
 from sitl.core.algebra import euler_of
 from sitl.core.vectors import Quat
-from sitl.envs.mavlink import setpoints
+from sitl.envs.mavlink import target_messages
 from sitl.envs.mavlink.betaflight import Hold
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from sitl.envs.mavlink.reports import ACCELERATION, BATTERY, LANDED, RANGE, REPORTED, WIND, note_report, show_report
-from sitl.envs.mavlink.telemetry import StepTelemetry
 
 POSITION, VELOCITY, ACCELERATIONS, YAW, YAW_RATE = 0o7, 0o7 << 3, 0o7 << 6, 1 << 10, 1 << 11
 """Bits of POSITION_TARGET_TYPEMASK: what does not count."""
@@ -36,7 +36,7 @@ def told(table: Any, name: str, row: tuple[float, ...], inbox: StepTelemetry, or
     return found
 
 
-@pytest.mark.parametrize("table", [setpoints.COPTER, setpoints.ROVER])
+@pytest.mark.parametrize("table", [target_messages.COPTER, target_messages.ROVER])
 def test_velocities_go_along_the_heading(inbox: StepTelemetry, table: Any) -> None:
     """MAV_FRAME_BODY_OFFSET_NED: forward, right, down; ours are forward, left, up, counter-clockwise."""
     m = told(table, "velocity", (1.0, 0.5, 0.25, 0.3), inbox)
@@ -45,18 +45,18 @@ def test_velocities_go_along_the_heading(inbox: StepTelemetry, table: Any) -> No
 
 
 def test_accelerations_too(inbox: StepTelemetry) -> None:
-    m = told(setpoints.COPTER, "acceleration", (1.0, 0.5, 0.25, 0.3), inbox)
+    m = told(target_messages.COPTER, "acceleration", (1.0, 0.5, 0.25, 0.3), inbox)
     assert (m.afx, m.afy, m.afz, m.yaw_rate) == pytest.approx((1.0, -0.5, -0.25, -0.3))
     assert (m.coordinate_frame, m.type_mask) == (9, POSITION | VELOCITY | YAW)
 
 
 def test_positions_are_from_the_vehicles_origin(inbox: StepTelemetry) -> None:
     """x of a world is north, y west, z up; yaw 0 looks north and grows counter-clockwise."""
-    m = told(setpoints.COPTER, "position", (3.0, 2.0, 1.5, 0.5), inbox, (1.0, 4.0, -2.0))
+    m = told(target_messages.COPTER, "position", (3.0, 2.0, 1.5, 0.5), inbox, (1.0, 4.0, -2.0))
     assert (m.x, m.y, m.z) == pytest.approx((2.0, -6.0, 0.5))
     assert math.cos(m.yaw + 0.5) == pytest.approx(1.0)
     assert (m.coordinate_frame, m.type_mask) == (1, VELOCITY | ACCELERATIONS | YAW_RATE)
-    m = told(setpoints.ROVER, "position", (3.0, 2.0, 1.5, 0.5), inbox)
+    m = told(target_messages.ROVER, "position", (3.0, 2.0, 1.5, 0.5), inbox)
     assert (m.x, m.y) == pytest.approx((3.0, -2.0))
     assert (m.coordinate_frame, m.type_mask) == (1, VELOCITY | ACCELERATIONS | YAW | YAW_RATE)
 
@@ -64,25 +64,25 @@ def test_positions_are_from_the_vehicles_origin(inbox: StepTelemetry) -> None:
 @pytest.mark.parametrize(("name", "value", "thrust"), [("attitude", 0.5, 0.75), ("attitude", -1.0, 0.0),
                                                        ("attitude", 0.0, 0.5), ("thrust", 0.6, 0.6)])  # fmt: skip
 def test_leans_keep_the_heading(inbox: StepTelemetry, name: str, value: float, thrust: float) -> None:
-    m = told(setpoints.COPTER, name, (0.1, -0.2, 0.3, value), inbox)
+    m = told(target_messages.COPTER, name, (0.1, -0.2, 0.3, value), inbox)
     assert euler_of(Quat(*m.q)) == pytest.approx((0.1, -0.2, math.pi / 2), abs=1e-6)
     assert (m.body_yaw_rate, m.thrust, m.type_mask) == pytest.approx((-0.3, thrust, 0))
 
 
 def test_rates_come_without_an_attitude(inbox: StepTelemetry) -> None:
-    m = told(setpoints.COPTER, "rates", (0.1, -0.2, 0.3, 0.6), inbox)
+    m = told(target_messages.COPTER, "rates", (0.1, -0.2, 0.3, 0.6), inbox)
     assert (m.body_roll_rate, m.body_pitch_rate, m.body_yaw_rate) == pytest.approx((0.1, -0.2, -0.3))
     assert m.thrust == pytest.approx(0.6) and m.type_mask == 128 and m.q == (1.0, 0.0, 0.0, 0.0)
 
 
 def test_a_car_turns_and_drives(inbox: StepTelemetry) -> None:
-    m = told(setpoints.ROVER, "attitude", (0.0, 0.0, 0.3, -0.4), inbox)
+    m = told(target_messages.ROVER, "attitude", (0.0, 0.0, 0.3, -0.4), inbox)
     assert (m.body_yaw_rate, m.thrust, m.type_mask) == pytest.approx((-0.3, -0.4, 1 | 2 | 128))
 
 
 def test_pulses_are_whole(inbox: StepTelemetry) -> None:
     for name in ("rc", "loiter"):
-        m = told(setpoints.COPTER, name, (1500.4, 1499.6, 0.0, 2000.0, 1100.0, 0.0, 0.0, 1900.0), inbox)
+        m = told(target_messages.COPTER, name, (1500.4, 1499.6, 0.0, 2000.0, 1100.0, 0.0, 0.0, 1900.0), inbox)
         assert [getattr(m, f"chan{k}_raw") for k in range(1, 9)] == [1500, 1500, 0, 2000, 1100, 0, 0, 1900]
         assert (m.chan9_raw, m.chan18_raw, m.target_component) == (0, 0, 1)
 

@@ -19,7 +19,7 @@ from sitl.envs.judge import write_errors
 from sitl.envs.observations import digits_of
 from sitl.envs.parts import write_directions, write_headings
 from sitl.envs.pictures import write_poses
-from sitl.envs.robots.truth import write_true_reports, write_truth
+from sitl.envs.robots.true_state import write_true_reports, write_truth
 from sitl.envs.session import write_crash_rewards
 from sitl.envs.starts import Grid, flood, mark_free
 from sitl.worlds import World

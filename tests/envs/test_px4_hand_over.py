@@ -14,7 +14,7 @@ import pytest
 
 from sitl.core.mavlink import MavResult
 from sitl.envs.mavlink import px4
-from sitl.envs.mavlink.telemetry import StepTelemetry
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from sitl.errors import NotReadyError
 
 ACCEPTED, DENIED = MavResult.ACCEPTED, MavResult.DENIED

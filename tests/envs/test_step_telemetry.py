@@ -11,7 +11,7 @@ import pytest
 
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
-from sitl.envs.mavlink.telemetry import PART, SCAN, SECTORS, StepTelemetry
+from sitl.envs.mavlink.last_messages import PART, SCAN, SECTORS, StepTelemetry
 
 
 def frame(title: str, system: int = 1, component: int = 1, **fields: Any) -> bytes:

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from sitl.core.mavlink import MavLandedState, MavResult
+from sitl.envs.mavlink.last_messages import GLOBAL, LANDED_STATE, StepTelemetry
 from sitl.envs.mavlink.preparation import has_landed, height_above_home, last_texts, not_ready, until
 from sitl.envs.mavlink.reports import LANDED
-from sitl.envs.mavlink.telemetry import GLOBAL, LANDED_STATE, StepTelemetry
 from sitl.errors import NotReadyError
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.logs.tlog import LogError
-from sitl.missions.twin import gaps, parameters
+from sitl.missions.twin import gaps, taken_parameters
 from sitl.missions.twin.flight_log import FlightLog, TwinError
 from tests.missions.twin.conftest import FORMATS, Log
 
@@ -104,8 +104,8 @@ def test_times_that_go_back_are_left_out(written: Log) -> None:
 # ---------------------------------------------------------------- parameters
 
 
-def taken(path: Any) -> parameters.Taken:
-    return parameters.taken(FlightLog(path), FIRMWARE.table)
+def taken(path: Any) -> taken_parameters.Taken:
+    return taken_parameters.taken(FlightLog(path), FIRMWARE.table)
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ import pytest
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.missions.twin.agreement import Window
-from sitl.missions.twin.flight import Change, Segments, TwinFlight
 from sitl.missions.twin.flight_log import FlightLog
 from sitl.missions.twin.inputs import Inputs, Message, Mode, Wind
+from sitl.missions.twin.log_flight import Change, Segments, TwinFlight
 from sitl.simulation import Core, Simulation
 from tests.missions.twin.conftest import FORMATS, Log
 
