@@ -201,6 +201,17 @@ def test_a_heartbeat_late_is_no_delay_where_the_log_is_coarse() -> None:
     assert measure(pair(track, late))["delay"].max == pytest.approx(0.7, abs=0.01)
 
 
+@pytest.mark.parametrize("late, noted", [(0.1, True), (2.0, True), (2.1, False), (3.5, False)])
+def test_clocks_are_brought_together_by_two_seconds_at_most(late: float, noted: bool) -> None:
+    """A heartbeat comes once a second, and one may be lost."""
+    track = straight(20.0, wait=5.0)
+    other = replace(track, modes=[(0.0, "GUIDED"), (late, "AUTO")], armed=[(0.0, True)])
+    found = pair(track, other, coarse=True)
+    assert [note for note in found.notes if "clocks" in note] == (
+        [f"clocks brought together by {-late:+.2f} s: a log tells when AUTO began to a heartbeat only"] if noted else []
+    )
+
+
 def test_what_happened_before_the_start_stays_there_when_clocks_are_brought_together() -> None:
     """The new flight's log tells of AUTO at 0.7 s as golden's at 1 s: its clock begins 0.3 s before its AUTO."""
     track = later(straight(20.0, wait=5.0), 1.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -108,9 +109,9 @@ def test_of_one_time_missions_come_before_parameters_modes_and_messages(twin: Ma
 
 
 def test_open_segments_begin_in_order_and_rotors_are_driven_in_between(twin: Made, monkeypatch: Any) -> None:
-    from sitl.missions.twin import flight
+    from sitl.missions.twin import log_flight
 
-    monkeypatch.setattr(flight, "LoggedState", lambda log: None)
+    monkeypatch.setattr(log_flight, "LoggedState", lambda log: None)
     windows = (Window(1.0, 1.1), Window(1.05, 1.11))
     found = twin(segments=Segments(windows))
     assert found._segment_times() == [(1.0, windows[0]), (1.05, windows[1])]
@@ -138,6 +139,25 @@ def test_what_is_otherwise_in_words(change: Change, words: list[str]) -> None:
 def test_the_mode_that_the_logs_vehicle_was_in(twin: Made) -> None:
     found = twin(Inputs(modes=[Mode(-1.0, 5, True), Mode(3.0, 4, True), Mode(5.0, 6, False)]))
     assert [found._mode_then(t) for t in (0.0, 2.9, 3.0, 4.9, 5.0, 9.0)] == [5, 5, 4, 4, 6, 6]
+
+
+def test_a_mode_that_the_logs_vehicle_took_by_itself_is_told_a_second_later_and_noted(
+    twin: Made, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(TwinFlight, "_ask_mode", lambda self, number: asked.append(number))
+    found = twin(Inputs(modes=[Mode(-1.0, 5, True), Mode(8.5, 6, False)]))
+    monkeypatch.setattr(found, "station", SimpleNamespace(armed=True), raising=False)
+    found._follow_mode(Mode(8.5, 6, False))
+    assert asked == [6]
+    assert found.notes == ["7.5 s: the log's vehicle went into RTL by itself; the twin was told to"]
+    found._follow_mode(Mode(9.0, 4, True))
+    assert asked == [6, 4] and len(found.notes) == 1, "a pilot's own choice needs no note"
+    found._follow_mode(Mode(9.0, 9, False))
+    assert asked == [6, 4], "it has left that again"
+    monkeypatch.setattr(found, "station", SimpleNamespace(armed=False))
+    found._follow_mode(Mode(9.0, 4, True))
+    assert asked == [6, 4], "nobody flies"
 
 
 # ---------------------------------------------------------------- the battery
