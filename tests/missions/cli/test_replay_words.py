@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 
 from sitl.missions.cli import replay
+from sitl.recording.entries import EntryKind
+from sitl.recording.recorder import LOG
 
 
 class Flown:
@@ -73,3 +75,46 @@ def test_it_ends_where_the_recording_does_or_before(
     assert f"flown {min(last_us, 1_000_000) * 1e-6:.3f} s in" in out and said in out
     assert ("before --until" in out) == bool(said)
     assert "the same flight: all telemetry is the same, byte for byte" in out
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_the_log_begins_where_the_recorded_runs_did_else_at_once(
+    kept: bool, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    opened: list[bool] = []
+
+    class Kept:
+        paths: tuple[Path, ...] = ()
+
+        def __init__(self, name: str, folder: Path) -> None:
+            assert (name, folder) == ("a", tmp_path)
+
+        def __call__(self, simulation: Any, everything: bool = False) -> None:
+            opened.append(everything)
+
+        def close(self) -> None:
+            opened.append(False)
+
+    entries = [SimpleNamespace(kind=EntryKind.LINK, data=f'{{"{LOG}": 1}}'.encode())] if kept else []
+    recording = SimpleNamespace(fault="", end_us=1_000_000, header={}, entries=entries, has_digests=True)
+    monkeypatch.setattr(replay, "read", lambda path, unfinished: recording)
+    monkeypatch.setattr(replay, "Replay", Flown)
+    monkeypatch.setattr(replay, "ReplayLog", Kept)
+    monkeypatch.setattr(replay, "Pacing", lambda k: SimpleNamespace(speedup=None, after_slice=lambda simulation: None))
+    monkeypatch.setattr(replay, "StatusLine", lambda *_: SimpleNamespace(refresh=lambda: None, close=lambda: None))
+    parser = argparse.ArgumentParser()
+    replay.add_parser(parser.add_subparsers())
+    options = parser.parse_args(["replay", str(tmp_path / "a.rec"), "--quiet"])
+    options.log_dir = tmp_path
+    assert replay.replay_recording(options) == 0
+    assert opened == ([False] if kept else [True, False])
+
+
+def test_other_links_and_entries_are_no_log() -> None:
+    def keeps(kind: EntryKind, data: bytes) -> bool:
+        return replay.keeps_log(SimpleNamespace(entries=[SimpleNamespace(kind=kind, data=data)]))  # type: ignore[arg-type]
+
+    name = f'"{LOG}"'.encode()
+    assert keeps(EntryKind.LINK, b"{" + name + b"}")
+    assert not keeps(EntryKind.LINK, b'"tcp"')
+    assert not any(keeps(kind, name) for kind in EntryKind if kind is not EntryKind.LINK)

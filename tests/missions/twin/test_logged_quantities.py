@@ -142,3 +142,19 @@ def test_targets_of_the_position_controller_by_either_name(written: Log, monkeyp
     north, east, down = LoggedState(FlightLog(written(*imu, *rows))).position
     assert north is not None and down is not None and east is None
     assert north.at(1.0) == [4.0, 5.0, 6.0] and down.at(1.0) == [7.0, 8.0, 9.0]
+
+
+@pytest.mark.parametrize("kind", ["copter", "rover"])
+def test_what_is_asked_for_moves_by_as_much_as_what_comes_of_it(kind: str) -> None:
+    asked = [one for one in streams.QUANTITIES[kind] if one.is_asked]
+    assert len(asked) == {"copter": 3, "rover": 2}[kind]
+    for one in asked:
+        real = quantity(one.name.removeprefix("asked_"), kind)
+        assert (one.moves, one.unit, one.turns) == (real.moves, real.unit, real.turns)
+
+
+def test_directions_of_one_unit_move_by_as_much_as_each_other() -> None:
+    assert quantity("height").moves == quantity("position").moves == quantity("position", "rover").moves == 0.3
+    assert streams.THRUST.moves == quantity("acceleration").moves == 0.3
+    assert len({quantity(name).moves for name in ("roll_rate", "pitch_rate", "yaw_rate")}) == 1
+    assert quantity("roll").moves == quantity("pitch").moves == 0.5 * quantity("yaw").moves
