@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One tick of the modes that sticks fly: the lean, the turn, the climb and the power of the motors that they ask for."""
+"""One tick of the modes that sticks fly: the lean, the turn, the climb and the power of the motors they ask for."""
 
 from __future__ import annotations
 
