@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -96,7 +97,7 @@ def test_the_brake_grows_with_its_jerk_up_to_its_limit_and_fades_with_the_speed(
         assert path.acc.x == pytest.approx(-brakes[-1] if path.vel.x > 1e-6 else path.acc.x)
     assert brakes[0] == pytest.approx(LIMITS.brake_jerk * DT)
     assert max(brakes) == pytest.approx(LIMITS.brake_accel)
-    steps = [abs(b - a) for a, b in zip(brakes, brakes[1:], strict=False)]
+    steps = [abs(b - a) for a, b in itertools.pairwise(brakes)]
     assert max(steps) == pytest.approx(LIMITS.brake_jerk * DT)
     assert brakes[-1] < 0.2 and path.vel.x < 0.1
 

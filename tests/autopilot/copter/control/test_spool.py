@@ -1,0 +1,479 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motors tick by tick: spool states, throttle filter, slew, outputs, compensation of battery and air, lean limits."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from sitl.autopilot.copter.control import motors, rate, throttle_mix, thrust_curve, update
+from sitl.autopilot.copter.control.frames import load_frame
+from sitl.autopilot.copter.control.spool import SpoolState
+from sitl.autopilot.copter.control.state import DT, AttitudeState, MotorsState, RateState
+from sitl.autopilot.copter.parameters.control import Attitude, Motors
+from sitl.autopilot.state import Arming
+from sitl.core.border import Actuators
+from sitl.core.vectors import Vec3
+from tests.autopilot.copter.control.level_autopilot import arm, make_actuators, output
+
+DOWN, IDLE, UP, FREE, SINKING = 0, 1, 2, 3, 4
+WANT_DOWN, WANT_IDLE, WANT_FREE = 0, 1, 2
+LIMITS = ("limit_roll", "limit_pitch", "limit_yaw", "limit_throttle_lower", "limit_throttle_upper")
+
+
+def mot(**changes: float) -> Motors:
+    p = Motors()
+    p.SPOOL_TIME, p.SPIN_MIN, p.SPIN_ARM, p.SPIN_MAX = 0.5, 0.2, 0.1, 0.9
+    for name, value in changes.items():
+        p[name] = value
+    return p
+
+
+def spooling(state: int, desired: int, ratio: float = 1.0, thrust: float = 1.0, **changes: float) -> MotorsState:
+    m = MotorsState()
+    m.spool_state, m.desired_spool, m.spin_up_ratio, m.thrust_max = state, desired, ratio, thrust
+    motors.spool(m, True, mot(**changes))
+    return m
+
+
+@pytest.mark.parametrize(
+    ("state", "desired", "ratio", "thrust", "after"),
+    (
+        (DOWN, WANT_DOWN, 0.0, 0.0, DOWN),
+        (DOWN, WANT_IDLE, 0.0, 0.0, IDLE),
+        (DOWN, WANT_FREE, 0.0, 0.0, IDLE),
+        (IDLE, WANT_IDLE, 0.5, 0.0, IDLE),
+        (IDLE, WANT_FREE, 0.9, 0.0, IDLE),
+        (IDLE, WANT_FREE, 0.998, 0.0, UP),
+        (IDLE, WANT_DOWN, 0.5, 0.0, IDLE),
+        (IDLE, WANT_DOWN, 0.005, 0.0, DOWN),
+        (UP, WANT_FREE, 1.0, 0.5, FREE),  # the throttle is at zero: at once
+        (UP, WANT_IDLE, 1.0, 0.5, SINKING),
+        (FREE, WANT_FREE, 1.0, 1.0, FREE),
+        (FREE, WANT_IDLE, 1.0, 1.0, SINKING),
+        (FREE, WANT_DOWN, 1.0, 1.0, SINKING),
+        (SINKING, WANT_FREE, 1.0, 0.5, UP),
+        (SINKING, WANT_IDLE, 1.0, 0.5, SINKING),
+        (SINKING, WANT_IDLE, 1.0, 0.005, IDLE),
+    ),
+)
+def test_one_tick_of_the_spool(state: int, desired: int, ratio: float, thrust: float, after: int) -> None:
+    assert spooling(state, desired, ratio, thrust).spool_state == after
+
+
+@pytest.mark.parametrize(
+    ("state", "desired", "ratio", "thrust", "spool_time", "down_time", "wanted"),
+    (
+        (IDLE, WANT_FREE, 0.5, 0.0, 0.5, 0.0, (0.5 + DT / 0.5, 0.0)),
+        (IDLE, WANT_FREE, 0.5, 0.0, 0.0, 0.0, (0.5 + DT / 0.05, 0.0)),  # no faster than in 50 ms
+        (IDLE, WANT_DOWN, 0.5, 0.0, 0.5, 0.0, (0.5 - DT / 0.5, 0.0)),  # MOT_SPOOL_TIM_DN 0: as up
+        (IDLE, WANT_DOWN, 0.5, 0.0, 0.5, 0.25, (0.5 - DT / 0.25, 0.0)),
+        (IDLE, WANT_DOWN, 0.5, 0.0, 0.5, 0.01, (0.5 - DT / 0.05, 0.0)),
+        (IDLE, WANT_IDLE, 0.9, 0.0, 0.5, 0.25, (0.9 - DT / 0.25, 0.0)),  # towards MOT_SPIN_ARM over MOT_SPIN_MIN
+        (IDLE, WANT_IDLE, 0.1, 0.0, 0.5, 0.25, (0.1 + DT / 0.5, 0.0)),
+        (IDLE, WANT_IDLE, 0.5, 0.0, 0.5, 0.25, (0.5, 0.0)),
+        (SINKING, WANT_IDLE, 1.0, 0.5, 0.5, 0.25, (1.0, 0.5 - DT / 0.25)),
+        (DOWN, WANT_DOWN, 0.7, 0.7, 0.5, 0.25, (0.0, 0.0)),
+        (FREE, WANT_FREE, 0.7, 0.7, 0.5, 0.25, (1.0, 1.0)),
+    ),
+)
+def test_spin_and_thrust_ramp_over_their_times(
+    state: int,
+    desired: int,
+    ratio: float,
+    thrust: float,
+    spool_time: float,
+    down_time: float,
+    wanted: tuple[float, float],
+) -> None:
+    m = spooling(state, desired, ratio, thrust, SPOOL_TIME=spool_time, SPOOL_TIM_DN=down_time)
+    assert (m.spin_up_ratio, m.thrust_max) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(("throttle", "thrust", "after"), ((0.5, 0.4, UP), (0.5, 0.496, FREE), (1.5, 0.996, FREE)))
+def test_power_is_free_once_it_reaches_the_throttle(throttle: float, thrust: float, after: int) -> None:
+    m = MotorsState()
+    m.spool_state, m.desired_spool, m.throttle, m.thrust_max = UP, WANT_FREE, throttle, thrust
+    motors.spool(m, True, mot())
+    assert m.spool_state == after and m.thrust_max == pytest.approx(1.0 if after == FREE else thrust + DT / 0.5)
+
+
+def test_a_failed_take_off_check_keeps_the_motors_idling() -> None:
+    m = MotorsState()
+    m.spool_state, m.desired_spool, m.spin_up_ratio, m.blocked = IDLE, WANT_FREE, 1.0, True
+    motors.spool(m, True, mot())
+    assert m.spool_state == IDLE
+    m.blocked = False
+    motors.spool(m, True, mot())
+    assert m.spool_state == UP
+
+
+def test_without_a_least_spin_idling_motors_stand() -> None:
+    assert spooling(IDLE, WANT_IDLE, 0.0, SPIN_MIN=0.0).spin_up_ratio == 0.0
+
+
+@pytest.mark.parametrize(
+    ("state", "limited"), ((DOWN, True), (IDLE, True), (UP, False), (FREE, False), (SINKING, False))
+)
+def test_motors_that_stand_or_idle_obey_nothing(state: int, limited: bool) -> None:
+    m = spooling(state, WANT_IDLE)
+    assert [bool(getattr(m, name)) for name in LIMITS] == [limited] * 5
+
+
+@pytest.mark.parametrize(("state", "kept"), ((DOWN, False), (IDLE, False), (UP, False), (FREE, True), (SINKING, False)))
+def test_a_boost_needs_full_power(state: int, kept: bool) -> None:
+    m = MotorsState()
+    m.spool_state, m.desired_spool, m.boosting, m.boost_ratio, m.unbalanced = state, WANT_FREE, True, 0.5, True
+    motors.spool(m, True, mot())
+    assert bool(m.boosting) == kept
+    if kept:
+        assert m.boost_ratio == pytest.approx(0.5 + DT / 0.5)
+        m.boosting = False
+        motors.spool(m, True, mot(SPOOL_TIM_DN=0.25))
+        assert m.boost_ratio == pytest.approx(0.5 + DT / 0.5 - DT / 0.25)
+
+
+@pytest.mark.parametrize(
+    ("armed", "stop", "used", "on", "may"),
+    ((1, 0, 0, 0, True), (0, 0, 0, 0, False), (1, 1, 0, 0, False), (1, 0, 1, 0, False), (1, 0, 1, 1, True)),
+)
+def test_motors_turn_armed_and_where_no_switch_forbids_it(armed: int, stop: int, used: int, on: int, may: bool) -> None:
+    state = Arming()
+    state.armed, state.emergency_stop, state.interlock_used, state.interlock_on = armed, stop, used, on
+    assert bool(motors.may_turn(state)) == may
+
+
+@pytest.mark.parametrize(("since", "turns"), ((1_999_999, False), (2_000_000, True)))
+def test_armed_motors_stand_for_two_seconds(ap: Any, since: int, turns: bool) -> None:
+    ap.arming.armed, ap.arming.armed_us, ap.control.motors.desired_spool = 1, 5, WANT_IDLE
+    motors.drive_motors(ap.control.motors, ap.arming, ap.params, 5 + since)
+    assert (ap.control.motors.spool_state == IDLE) == turns
+
+
+@pytest.mark.parametrize(("hz", "gain"), ((0.0, 1.0), (2.0, math.tau * 2.0 * DT / (1.0 + math.tau * 2.0 * DT))))
+def test_the_throttle_is_filtered_and_stays_between_0_and_1(hz: float, gain: float) -> None:
+    m = MotorsState()
+    m.throttle, m.throttle_in, m.throttle_filter_hz = 0.2, 0.6, hz
+    motors.filter_throttle(m, True)
+    assert m.throttle == pytest.approx(0.2 + gain * 0.4)
+    for asked, kept in ((5.0, 1.0), (-5.0, 0.0)):
+        m.throttle_in, m.throttle_filter_hz = asked, 0.0
+        motors.filter_throttle(m, True)
+        assert m.throttle == kept
+    m.throttle = 0.5
+    motors.filter_throttle(m, False)
+    assert m.throttle == 0.0
+
+
+@pytest.mark.parametrize(("hover", "kept"), ((0.05, 0.125), (0.4, 0.4), (0.9, 0.6875)))
+def test_a_hover_throttle_is_believed_within_bounds(hover: float, kept: float) -> None:
+    assert motors.hover_throttle(mot(THST_HOVER=hover)) == pytest.approx(kept)
+
+
+@pytest.mark.parametrize(
+    ("learn", "throttle", "hover", "after"),
+    (
+        (2.0, 0.5, 0.4, 0.4 + 0.1 * 0.01 / 10.01),
+        (1.0, 0.3, 0.4, 0.4 - 0.1 * 0.01 / 10.01),
+        (0.0, 0.5, 0.4, 0.4),
+        (2.0, 0.0, 0.4, 0.4),
+        (2.0, 1.0, 0.6875, 0.6875),
+        (2.0, 0.01, 0.125, 0.125),
+    ),
+)
+def test_the_hover_throttle_is_learnt_with_ten_seconds(
+    learn: float, throttle: float, hover: float, after: float
+) -> None:
+    p = mot(HOVER_LEARN=learn, THST_HOVER=hover)
+    motors.learn_hover_throttle(p, throttle, 0.01)
+    assert pytest.approx(after, abs=1e-7) == p.THST_HOVER
+
+
+@pytest.mark.parametrize(
+    ("state", "thrust", "wanted"),
+    (
+        (DOWN, 0.5, 0.0),
+        (IDLE, 0.5, 0.5 * 0.2),  # of MOT_SPIN_MIN
+        (FREE, 0.0, 0.2),
+        (FREE, 0.5, 0.2 + 0.7 * 0.5),
+        (FREE, 1.0, 0.9),
+        (FREE, math.nan, 0.2),
+        (UP, 0.5, 0.55),
+        (SINKING, 0.5, 0.55),
+    ),
+)
+def test_commands_lie_between_spin_min_and_spin_max(state: int, thrust: float, wanted: float) -> None:
+    m = MotorsState()
+    m.spool_state, m.spin_up_ratio, m.lift_max, m.voltage_ratio = state, 0.5, 1.0, 1.0
+    m.actuator[0], m.actuator[1], m.thrust[0] = 0.3, 0.3, thrust
+    motors.command_motors(m, 1, mot(THST_EXPO=0.0))
+    assert m.actuator[0] == pytest.approx(wanted) and m.actuator[1] == 0.3
+
+
+def test_commands_change_no_faster_than_the_slew_times() -> None:
+    m = MotorsState()
+    m.spool_state, m.lift_max, m.voltage_ratio = FREE, 1.0, 1.0
+    m.actuator[0], m.thrust[0], m.actuator[1], m.thrust[1] = 0.3, 1.0, 0.8, 0.0
+    motors.command_motors(m, 2, mot(SLEW_UP_TIME=0.5, SLEW_DN_TIME=0.25))
+    assert (m.actuator[0], m.actuator[1]) == pytest.approx((0.3 + DT / 0.5, 0.8 - DT / 0.25))
+
+
+def test_demands_are_raised_for_the_thrust_that_is_left() -> None:
+    m = MotorsState()
+    m.roll, m.pitch, m.yaw, m.throttle, m.throttle_avg_max, m.thrust_max = 0.1, -0.2, 0.3, 0.4, 0.5, 0.6
+    m.compensation_gain = 1.25
+    assert tuple(motors.compensated_demands(m)) == pytest.approx((0.125, -0.25, 0.375, 0.5, 0.625, 0.75))
+    m.thrust_max = 0.9
+    assert motors.compensated_demands(m).throttle_max == 1.0
+
+
+@pytest.mark.parametrize(
+    ("least", "most", "pulses"),
+    ((1000, 2000, (1500, 1000)), (1100, 1900, (1500, 1100)), (2000, 1000, (1500, 1000)), (0, 0, (1500, 1000))),
+)
+def test_pulses_lie_between_pwm_min_and_pwm_max(least: int, most: int, pulses: tuple[int, int]) -> None:
+    m, actuators = MotorsState(), Actuators()
+    m.is_plain_quad, m.count = True, 4
+    m.actuator[0] = 0.5
+    motors.write_actuators(m, actuators, True, least, most)
+    assert (actuators.pwm[0], actuators.pwm[1]) == pulses and actuators.armed
+    assert actuators.controls[0] == pytest.approx(0.5)
+    motors.write_actuators(m, actuators, False, least, most)
+    assert actuators.controls[0] == 0.0 and not actuators.armed
+
+
+@pytest.mark.parametrize(("pulse", "control"), ((900, 0.0), (1000, 0.0), (1250, 0.25), (2000, 1.0), (2100, 1.0)))
+def test_a_control_is_its_pulse_between_1000_and_2000(pulse: int, control: float) -> None:
+    actuators = Actuators()
+    motors.write_output(actuators, 3, pulse, True)
+    assert (actuators.pwm[3], actuators.controls[3]) == (pulse, pytest.approx(control))
+
+
+def hexa(ap: Any) -> Any:
+    """The same vehicle with six motors on other outputs; the last has none."""
+    ap.params.FRAME.CLASS = 2.0
+    load_frame(ap.control.motors, ap.params)
+    ap.control.motors.output[:6] = (8, 1, 2, 3, 4, -1)
+    arm(ap, 0.5)
+    return ap.control.motors
+
+
+def test_motors_write_the_outputs_that_they_have(ap: Any) -> None:
+    m, actuators = hexa(ap), make_actuators()
+    ap.control.motors.throttle_in = 0.5
+    output(ap, actuators)
+    assert actuators.pwm[8] == actuators.pwm[1] > 1150
+    assert (actuators.pwm[0], actuators.pwm[5]) == (0, 0)
+    assert m.throttle_out == pytest.approx(m.throttle)
+
+
+def test_of_many_motors_the_one_under_test_turns_alone(ap: Any) -> None:
+    m, actuators = hexa(ap), make_actuators()
+    m.test_motor, m.test_actuator = 2, 0.3
+    output(ap, actuators)
+    assert (actuators.pwm[1], actuators.pwm[2]) == (1300, 1000)
+
+
+def test_a_plain_quad_that_is_boosted_watches_its_balance(ap: Any) -> None:
+    arm(ap, 0.5)
+    m = ap.control.motors
+    m.boosting, m.unbalanced = True, False
+    output(ap, make_actuators())
+    assert not m.boosting
+
+
+def test_motors_that_stand_give_no_throttle(ap: Any) -> None:
+    ap.control.motors.throttle_out = 0.7
+    output(ap, make_actuators())
+    assert ap.control.motors.throttle_out == 0.0
+
+
+@pytest.mark.parametrize("excited", (True, False))
+def test_a_test_of_the_rates_adds_to_the_demands_for_one_tick(excited: bool) -> None:
+    """SYSTEMID."""
+    m = MotorsState()
+    m.excited, m.excitation = excited, Vec3(0.1, -0.2, 0.3)
+    still = Vec3(0.0, 0.0, 0.0)
+    rate.control_rates(RateState(), m, still, still, Attitude())
+    assert (m.roll, m.pitch, m.yaw) == ((0.1, -0.2, 0.3) if excited else (0.0, 0.0, 0.0)) and not m.excited
+
+
+@pytest.mark.parametrize(
+    ("resting", "low", "full", "ratio"),
+    (
+        (11.0, 9.6, 12.8, 11.0 / 12.8),
+        (14.0, 9.6, 12.8, 1.0),
+        (8.0, 9.6, 12.8, 0.75),  # MOT_BAT_VOLT_MIN
+        (5.0, 1.0, 12.8, 0.6),  # no less than 60 %
+        (2.0, 9.6, 12.8, 1.0),  # that is no battery: less than a quarter of the least
+        (2.4, 9.6, 12.8, 0.75),
+        (math.nan, 9.6, 12.8, 1.0),
+        (11.0, 12.8, 12.8, 1.0),  # no range
+        (11.0, 9.6, 0.0, 1.0),
+    ),
+)
+def test_the_voltage_that_counts(resting: float, low: float, full: float, ratio: float) -> None:
+    m, p = MotorsState(), mot(BAT_VOLT_MIN=low, BAT_VOLT_MAX=full, THST_EXPO=0.5)
+    m.voltage_ratio = 1.0
+    for _ in range(100):
+        thrust_curve.compensate_voltage(m, resting, p)
+    assert m.voltage_ratio == pytest.approx(ratio, abs=1e-6)
+    assert m.lift_max == pytest.approx(0.5 * ratio + 0.5 * ratio * ratio)
+
+
+def test_the_voltage_is_followed_with_half_a_hertz() -> None:
+    m, p = MotorsState(), mot(BAT_VOLT_MIN=9.6, BAT_VOLT_MAX=12.8)
+    m.voltage_ratio = 1.0
+    thrust_curve.compensate_voltage(m, 9.6, p)
+    gain = math.tau * 0.5 * 0.1 / (1.0 + math.tau * 0.5 * 0.1)
+    assert m.voltage_ratio == pytest.approx(1.0 - 0.25 * gain)
+
+
+@pytest.mark.parametrize(("expo", "kept"), ((2.0, 1.0), (-2.0, -1.0)))
+def test_the_curve_of_thrust_is_between_minus_one_and_one(expo: float, kept: float) -> None:
+    for thrust in (0.0, 0.3, 1.0):
+        wild, kept_command = (thrust_curve.command_from_thrust(thrust, e, 1.0, 1.0) for e in (expo, kept))
+        assert wild == kept_command
+    m = MotorsState()
+    m.voltage_ratio = 0.5
+    thrust_curve.compensate_voltage(m, 6.4, mot(BAT_VOLT_MIN=6.4, BAT_VOLT_MAX=12.8, THST_EXPO=expo))
+    v = m.voltage_ratio
+    assert m.lift_max == pytest.approx(v * (1.0 - kept) + kept * v * v)
+
+
+@pytest.mark.parametrize(
+    ("origin", "altitude", "gain"),
+    ((1, 0.0, 1.0), (1, 2000.0, 1.0 / thrust_curve.air_density_ratio(2000.0)), (0, 2000.0, 1.0), (1, 9500.0, 2.0)),
+)
+def test_thin_air_needs_more(ap: Any, origin: int, altitude: float, gain: float) -> None:
+    ap.estimate.origin_set, ap.estimate.origin_alt = origin, altitude - 100.0
+    ap.estimate.pos = Vec3(0.0, 0.0, -100.0)
+    thrust_curve.compensate(ap.control.motors, ap.battery, ap.estimate, ap.params.MOT)
+    assert ap.control.motors.compensation_gain == pytest.approx(gain)
+
+
+def test_thick_air_needs_less_and_weak_lift_counts_as_a_tenth_at_least(ap: Any) -> None:
+    ap.estimate.origin_set, ap.estimate.origin_alt = 1, -900.0
+    thrust_curve.compensate(ap.control.motors, ap.battery, ap.estimate, ap.params.MOT)
+    gain = ap.control.motors.compensation_gain
+    assert gain < 1.0 and gain == pytest.approx(1.0 / thrust_curve.air_density_ratio(-900.0))
+    for altitude, kept in ((-5000.0, -1000.0), (20000.0, 11000.0)):
+        assert thrust_curve.air_density_ratio(altitude) == thrust_curve.air_density_ratio(kept)
+
+
+@pytest.mark.parametrize(("current", "voltage"), ((0.0, 12.0), (-1.0, 12.0)))
+def test_without_a_current_the_voltage_is_as_it_is_measured(current: float, voltage: float) -> None:
+    m = MotorsState()
+    m.resistance = 0.1
+    assert thrust_curve.resting_voltage(m, voltage, current) == voltage
+    assert (m.voltage_slow, m.current_max) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("tick", "renewed"), ((0, True), (40, True), (39, False), (41, False)))
+def test_battery_and_air_are_looked_at_ten_times_a_second(ap: Any, tick: int, renewed: bool) -> None:
+    ap.control.tick, ap.control.motors.compensation_gain = tick, 3.0
+    output(ap, make_actuators())
+    assert (ap.control.motors.compensation_gain == 1.0) == renewed
+    assert ap.control.tick == tick + 1
+
+
+def test_a_second_start_of_the_controllers_changes_nothing(ap: Any) -> None:
+    control = ap.control
+    assert (control.pos_ne.speed_max, control.pos_ne.accel_max) == (10.0, 2.5)
+    assert (control.pos_d.speed_down, control.pos_d.speed_up, control.pos_d.accel_max) == (1.5, 2.5, 1.0)
+    control.motors.compensation_gain, control.pos_ne.speed_max, control.pos_d.speed_up = 1.2, 3.0, 1.1
+    control.attitude.mix = 0.9
+    update.init(control, ap.estimate, ap.params)
+    assert (control.motors.compensation_gain, control.pos_ne.speed_max, control.pos_d.speed_up) == (1.2, 3.0, 1.1)
+    assert control.attitude.mix == 0.9
+
+
+@pytest.mark.parametrize(
+    ("throttle", "thrust_max", "lean"),
+    ((0.4, 1.0, 60.0), (0.0, 1.0, 90.0), (0.9, 1.0, 0.0), (0.2, 0.5, 60.0), (0.4, 0.0, 0.0)),
+)
+def test_the_lean_which_four_fifths_of_the_throttle_hold(throttle: float, thrust_max: float, lean: float) -> None:
+    state = AttitudeState()
+    state.lean_max = 0.3
+    for _ in range(4000):
+        throttle_mix.update_lean_max(state, throttle, thrust_max, 1.0)
+    assert math.degrees(state.lean_max) == pytest.approx(lean, abs=1e-3)
+
+
+def test_the_lean_limit_follows_with_its_time_constant_and_is_ten_degrees_at_least() -> None:
+    state = AttitudeState()
+    throttle_mix.update_lean_max(state, 0.4, 1.0, 1.0)
+    assert state.lean_max == pytest.approx(math.radians(60.0) * 0.02 / 1.02)
+    assert math.degrees(throttle_mix.lean_limit(state)) == pytest.approx(10.0)
+    state.lean_max = 0.5
+    assert throttle_mix.lean_limit(state) == 0.5
+
+
+@pytest.mark.parametrize(("tick", "thrust_max", "renewed"), ((8, 1.0, True), (9, 1.0, False), (9, 0.0, True)))
+def test_the_lean_limit_is_renewed_every_eighth_tick(ap: Any, tick: int, thrust_max: float, renewed: bool) -> None:
+    ap.control.tick, ap.control.motors.thrust_max, ap.control.attitude.lean_max = tick, thrust_max, 0.5
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.3, True, 1.5)
+    assert (ap.control.attitude.lean_max != 0.5) == renewed
+    assert ap.control.motors.throttle_filter_hz == 1.5
+
+
+@pytest.mark.parametrize(
+    ("cos_lean", "factor"), ((1.0, 1.0), (0.5, 2.0), (0.1, 10.0), (0.05, 5.0), (0.0, 0.0), (-0.5, 0.0))
+)
+def test_throttle_is_raised_in_a_lean_and_fades_beyond_84_degrees(cos_lean: float, factor: float) -> None:
+    assert throttle_mix.boosted(0.3, cos_lean) == pytest.approx(0.3 * factor)
+
+
+@pytest.mark.parametrize(("enabled", "asked", "wanted"), ((1.0, True, 0.6), (0.0, True, 0.3), (1.0, False, 0.3)))
+def test_a_boost_for_the_lean_needs_atc_angle_boost(ap: Any, enabled: float, asked: bool, wanted: float) -> None:
+    ap.params.ATC.ANGLE_BOOST, ap.control.attitude.cos_lean = enabled, 0.5
+    throttle_mix.set_throttle_out(ap.control, ap.params, 0.3, asked, 0.0)
+    assert ap.control.motors.throttle_in == pytest.approx(wanted) and ap.control.attitude.throttle_in == 0.3
+
+
+@pytest.mark.parametrize(
+    ("throttle", "mix", "wanted"),
+    ((0.3, 0.0, 0.3), (0.3, 0.5, 0.15 + 0.2), (0.3, 1.0, 0.4), (0.6, 0.5, 0.6), (0.1, 2.0, 0.8)),
+)
+def test_how_far_attitude_may_raise_the_throttle(throttle: float, mix: float, wanted: float) -> None:
+    assert throttle_mix.throttle_average_max(throttle, 0.4, mix) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(("ratio", "wanted"), ((0.0, 0.1), (0.5, 0.3), (1.0, 0.5), (-1.0, 0.1), (2.0, 0.5)))
+def test_the_priority_of_attitude_lies_between_its_ends(ratio: float, wanted: float) -> None:
+    state, p = AttitudeState(), Attitude()
+    p.THR_MIX_MIN, p.THR_MIX_MAN, p.THR_MIX_MAX = 0.1, 0.2, 0.5
+    throttle_mix.set_mix_max(state, p, ratio)
+    assert state.mix_desired == pytest.approx(wanted)
+    throttle_mix.set_mix_man(state, p)
+    assert state.mix_desired == pytest.approx(0.2)
+    throttle_mix.set_mix_min(state, p)
+    assert state.mix_desired == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("mix", "desired", "asked", "out", "after"),
+    (
+        (0.5, 0.1, 0.2, 0.3, 0.5 - 0.5 * DT),  # (0.3 - 0.2) / (0.4 - 0.2): just what is used
+        (0.9, 0.1, 0.2, 0.3, 0.5),
+        (0.9, 0.6, 0.2, 0.3, 0.6),
+        (0.9, 0.1, 0.2, 0.6, 0.9 - 0.5 * DT),  # above hovering: 0.6 / 0.4
+        (2.0, 0.1, 0.2, 0.6, 1.5),
+        (0.9, 0.1, 0.5, 0.3, 0.9 - 0.5 * DT),  # less came out than was asked for
+        (0.1, 0.05, 0.3, 0.3, 0.1),  # never below 0.1
+        (5.0, 9.0, 0.3, 0.3, 5.0),  # nor above 5
+    ),
+)
+def test_the_priority_falls_to_what_the_mixer_uses(
+    mix: float, desired: float, asked: float, out: float, after: float
+) -> None:
+    state, m = AttitudeState(), MotorsState()
+    state.mix, state.mix_desired, m.throttle, m.throttle_out = mix, desired, asked, out
+    throttle_mix.follow_mix(state, m, 0.4)
+    assert state.mix == pytest.approx(after)
+
+
+def test_spool_states_have_ardupilots_numbers() -> None:
+    assert [int(state) for state in SpoolState] == [DOWN, IDLE, UP, FREE, SINKING]
