@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A rover's modes at their edges: circles that fit the vehicle, ways back, set-points that expire, commands that end."""
+"""A rover's modes at their edges: circles that fit it, ways back, set-points that expire, commands that end."""
 
 from __future__ import annotations
 
