@@ -16,6 +16,7 @@ from sitl.autopilot.copter.modes.state import Modes as CopterModes
 from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters import Parameters
 from sitl.autopilot.modes import MODE_CHANGED, MODE_REFUSED, ModeReason, is_blocked, numbers, with_registered
+from sitl.autopilot.rover.modes import table as rover
 from sitl.autopilot.state import Modes, Radio
 from sitl.core.extensions import ExtensionError
 
@@ -40,8 +41,7 @@ def test_numbers_are_mavlinks() -> None:
 def test_what_drives_the_throttle_and_who_flies(name: str) -> None:
     number = CUSTOM[name]
     assert table.is_known(number) and not table.is_known(number + 100)
-    assert table.has_manual_throttle(number) == (name in MANUAL - {"SYSTEMID"}) or name == "SYSTEMID"
-    assert not (table.has_manual_throttle(number) and table.has_climb_stick(number))
+    assert table.has_manual_throttle(number) == (name in MANUAL)
     assert table.has_climb_stick(number) == (name in CLIMB_STICK)
     assert table.is_autonomous(number) == (name in BY_ITSELF)
     assert table.requires_pilot(number) == (name in {"STABILIZE", "ACRO", "DRIFT", "TURTLE"})
@@ -53,6 +53,64 @@ def test_what_drives_the_throttle_and_who_flies(name: str) -> None:
 def test_who_arms_at_any_throttle_and_who_stays_armed(name: str, any_throttle: bool, idles: bool) -> None:
     number = CUSTOM[name]
     assert (table.arms_at_any_throttle(number), table.idles_armed(number)) == (any_throttle, idles)
+
+
+ROVER = {
+    "needs_velocity": {"STEERING"},
+    "car_needs_velocity": {"ACRO"},
+    "manual_input": {"MANUAL", "ACRO", "STEERING", "SIMPLE"},
+    "autonomous": {"LOITER", "CIRCLE", "AUTO", "RTL", "SMART_RTL", "FOLLOW", "DOCK", "GUIDED"},
+    "needs_pilot": set(),
+}
+ROVER_LACKS = {
+    "controlled": {"MANUAL", "HOLD", "INITIALISING"},
+    "armable": {"RTL", "SMART_RTL", "INITIALISING"},
+    "selectable": {"INITIALISING"},
+    "needs_position": {"MANUAL", "ACRO", "STEERING", "HOLD"},
+}
+
+
+@pytest.mark.parametrize("flag", (*ROVER, *ROVER_LACKS))
+def test_what_a_rovers_modes_are(flag: str) -> None:
+    """ArduRover's Mode: is_autopilot_mode, manual input, requires_velocity and so on."""
+    have = {mode.name for mode in rover.MODES if getattr(mode, flag)}
+    assert have == (ROVER[flag] if flag in ROVER else {mode.name for mode in rover.MODES} - ROVER_LACKS[flag])
+
+
+@pytest.mark.parametrize(
+    ("flag", "names"),
+    (
+        ("idles_armed", {"THROW"}),
+        ("ignores_simple", {"ACRO", "CIRCLE", "FLIP"}),
+        ("arms_at_any_throttle", {"AUTO", "GUIDED", "GUIDED_NOGPS", "AUTO_RTL"}),
+        ("manual_throttle", {"STABILIZE", "ACRO", "SYSTEMID", "TURTLE"}),
+    ),
+)
+def test_what_a_copters_modes_are(flag: str, names: set[str]) -> None:
+    assert {mode.name for mode in table.MODES if getattr(mode, flag)} == names
+    assert all(mode.selectable for mode in table.MODES)
+
+
+def test_standard_modes_are_mavlinks() -> None:
+    """MAV_STANDARD_MODE: position and altitude hold, safe recovery, mission, land."""
+    standard = {mode.name: mode.standard_mode for mode in table.MODES if mode.standard_mode}
+    assert standard == {"LOITER": 1, "ALT_HOLD": 4, "RTL": 5, "AUTO": 6, "LAND": 7}
+
+
+def test_modes_of_the_copter_that_need_a_position() -> None:
+    free = {
+        "STABILIZE",
+        "ACRO",
+        "ALT_HOLD",
+        "LAND",
+        "FLIP",
+        "AUTOTUNE",
+        "GUIDED_NOGPS",
+        "FLOWHOLD",
+        "SYSTEMID",
+        "TURTLE",
+    }
+    assert {mode.name for mode in table.MODES if not table.requires_position(mode.number)} == free
 
 
 @pytest.mark.parametrize("name", ("RTL", "CIRCLE", "LAND", "BRAKE", "SMART_RTL", "FLIP", "FOLLOW", "AUTO_RTL"))

@@ -330,3 +330,25 @@ def test_a_jump_of_the_heading_counts_once_the_controller_runs(ap: Any, tick: in
     set_attitude(ap, turned(yaw=80.0))
     attitude.follow_yaw_reset(ap.control, ap.estimate)
     assert math.degrees(target.target_euler.yaw) < 41.0, "once"
+
+
+@pytest.mark.parametrize(
+    ("most", "own", "wanted"), ((0.5, 3.0, 0.5), (0.0, 0.7, 0.7), (2.0, 0.7, 2.0), (0.0, 0.0, 3.0))
+)
+def test_a_slew_rate_replaces_the_limit_of_yaw(most: float, own: float, wanted: float) -> None:
+    shaping = attitude.Shaping(True, 0.1, 0.0, REST, Vec3(0.0, 0.0, own))
+    turn = attitude.shape_rotation(Vec3(0.2, -0.1, 0.3), REST, Vec3(0.4, 0.5, 0.0), shaping, most)
+    assert turn == pytest.approx((2.4, -0.5, wanted)), "with what the goal turns itself"
+
+
+def test_a_thrust_is_turned_to_while_the_heading_turns_with_its_own_time_constant() -> None:
+    shaping = attitude.Shaping(True, 0.1, 0.25, REST, REST)
+    turn = attitude.shape_thrust_turn(Vec3(0.2, -0.1, 0.7), Vec3(0.0, 0.0, 0.1), 0.9, shaping)
+    assert turn == pytest.approx((2.0, -1.0, 0.1 + 0.8 * DT / 0.25))
+
+
+def test_rates_are_shaped_each_with_its_acceleration() -> None:
+    shaping = attitude.Shaping(True, 0.1, 0.0, Vec3(1.0, 2.0, 3.0), REST)
+    assert attitude.shape_rates(Vec3(0.5, 0.5, 0.5), Vec3(9.0, -9.0, 9.0), shaping) == pytest.approx(
+        (0.5 + DT, 0.5 - 2.0 * DT, 0.5 + 3.0 * DT)
+    )

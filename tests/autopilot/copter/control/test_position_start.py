@@ -10,7 +10,7 @@ import pytest
 
 from sitl.autopilot.control.pid import Blocked
 from sitl.autopilot.control.shaping import Motion, Motion2
-from sitl.autopilot.copter.control import altitude, altitude_start, position, position_start
+from sitl.autopilot.copter.control import altitude, altitude_start, position, position_ned, position_start
 from sitl.autopilot.copter.control.state import DT, AltitudeState, PositionState
 from sitl.core.algebra import quat_from_rotation_vector as turned_by
 from sitl.core.constants import GRAVITY
@@ -374,3 +374,37 @@ def test_a_controller_that_did_not_run_starts_from_the_present_motion(ap: Any) -
     position.update_ne(*parts(ap))
     altitude.update_d(*parts(ap))
     assert ap.control.pos_ne.pos_desired == (1.0, -2.0) and ap.control.pos_d.pos_desired == -30.0
+
+
+@pytest.mark.parametrize("bad", (math.nan, math.inf))
+@pytest.mark.parametrize("axis", (0, 1, 2))
+def test_a_point_that_is_no_number_stops_all_axes(axis: int, bad: float) -> None:
+    ne, d = PositionState(), AltitudeState()
+    ne.accel_max, ne.jerk_max, d.accel_max, d.jerk_max = 5.0, 50.0, 5.0, 50.0
+    ne.vel_desired, d.vel_desired = Vec2(0.5, -0.5), 0.5
+    point = [1.0, 2.0, 3.0]
+    point[axis] = bad
+    for _ in range(400):
+        position_ned.input_pos_ned(ne, d, Vec3(*point))
+    assert ne.vel_desired == pytest.approx((0.0, 0.0), abs=1e-3) and d.vel_desired == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("point", "fastest"),
+    (
+        (Vec3(30.0, 40.0, 0.0), (3.0, 4.0, 0.0)),
+        (Vec3(0.0, 0.0, -50.0), (0.0, 0.0, -2.0)),
+        (Vec3(0.0, 0.0, 50.0), (0.0, 0.0, 1.0)),
+        (Vec3(30.0, 0.0, -40.0), (1.5, 0.0, -2.0)),  # as steep as the line, as fast as the climb
+        (Vec3(30.0, 0.0, 40.0), (0.75, 0.0, 1.0)),
+    ),
+)
+def test_a_straight_line_is_flown_as_fast_as_its_slowest_axis_may(
+    point: Vec3, fastest: tuple[float, float, float]
+) -> None:
+    ne, d = PositionState(), AltitudeState()
+    ne.accel_max, ne.jerk_max, d.accel_max, d.jerk_max = 5.0, 50.0, 5.0, 50.0
+    ne.speed_max, d.speed_up, d.speed_down = 5.0, 2.0, 1.0
+    for _ in range(500):
+        position_ned.input_pos_ned(ne, d, point)
+    assert (*ne.vel_desired, d.vel_desired) == pytest.approx(fastest, abs=0.02)

@@ -227,6 +227,9 @@ def test_a_circle_takes_a_new_speed(rover: Rover, wanted: float, taken: bool, li
         (2, (6.0, 0.0), 0.0, 180.0, -0.5),
         (2, (-6.0, 0.0), 0.0, 0.0, -1.0),
         (0, (60.0, 0.0), 0.0, 0.0, 5.0),  # no faster than WP_SPEED
+        (0, (0.0, 6.0), math.pi / 2, 90.0, 1.0),  # it points there
+        (0, (0.0, 6.0), -math.pi / 2, -90.0, -1.0),
+        (0, (0.0, 6.0), math.pi / 4, 90.0, 0.75),
     ),
 )
 def test_the_way_back_of_loiter(
