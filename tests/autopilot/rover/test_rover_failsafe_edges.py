@@ -13,6 +13,9 @@ from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.loiter import LOITER
 from sitl.autopilot.rover.modes.manual import MANUAL
 from sitl.autopilot.rover.modes.set_mode import request
+from sitl.autopilot.rover.modes.state import Modes
+from sitl.autopilot.rover.parameters.safety import Failsafes
+from sitl.autopilot.state import Estimate
 from tests.autopilot.rover.modes.driven_rover import Rover
 
 
@@ -85,3 +88,40 @@ def test_a_mission_goes_on_without_a_link_when_told_so(
     else:
         p.GCS_ENABLE = enabled
     assert bool(failsafe.goes_on(link, mode, p)) == goes_on
+
+
+def test_an_estimate_that_was_bad_may_be_bad_again() -> None:
+    modes, estimate, params = Modes(), Estimate(), Failsafes()
+    params.EKF_THRESH, estimate.origin_set, modes.ekf_was_good = 0.8, True, True
+    for _ in range(3):
+        for good, seen in ((False, failsafe.EKF_FAILS), (True, failsafe.EKF_RECOVERS)):
+            estimate.position_ok = good
+            told = [failsafe.watch_estimate(modes, estimate, True, params, False) for _ in range(10)]
+            assert told == [failsafe.EKF_SAME] * 9 + [seen]
+    assert failsafe.watch_estimate(modes, estimate, False, params, False) == failsafe.EKF_SAME, "disarmed it was good"
+
+
+@pytest.mark.parametrize(
+    ("origin", "armed", "threshold", "watched"),
+    (
+        (0, True, 0.8, False),
+        (1, False, 0.8, False),
+        (1, True, 0.0, False),
+        (1, True, -1.0, False),
+        (1, True, 0.8, True),
+    ),
+)
+def test_the_estimate_is_watched_armed_and_with_a_place(
+    origin: int, armed: bool, threshold: float, watched: bool
+) -> None:
+    modes, estimate, params = Modes(), Estimate(), Failsafes()
+    params.EKF_THRESH, estimate.origin_set, modes.ekf_was_good = threshold, origin, True
+    told = [failsafe.watch_estimate(modes, estimate, armed, params, False) for _ in range(11)]
+    assert (failsafe.EKF_FAILS in told) == watched
+
+
+def test_a_long_glitch_makes_a_good_estimate_bad() -> None:
+    modes, estimate, params = Modes(), Estimate(), Failsafes()
+    params.EKF_THRESH, estimate.origin_set, modes.ekf_was_good, estimate.position_ok = 0.8, 1, True, 1
+    told = [failsafe.watch_estimate(modes, estimate, True, params, True) for _ in range(10)]
+    assert told[-1] == failsafe.EKF_FAILS
