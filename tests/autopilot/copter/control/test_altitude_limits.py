@@ -185,3 +185,11 @@ def test_a_vehicle_that_vibrates_is_controlled_by_the_rate_of_its_height(ap: Any
     altitude.update_d(*parts(ap))
     assert ap.control.pos_d.vel.error == pytest.approx(2.0)
     assert ap.control.attitude.throttle_in < ap.params.MOT.THST_HOVER, "it climbs"
+
+
+def test_height_control_filters_its_throttle_at_two_hertz_and_keeps_the_lift_in_a_lean(ap: Any) -> None:
+    moving(ap)
+    ap.control.attitude.cos_lean, ap.control.attitude.throttle_in = 0.5, 0.3
+    altitude.update_d(*parts(ap))
+    assert ap.control.motors.throttle_filter_hz == 2.0
+    assert ap.control.motors.throttle_in == pytest.approx(2.0 * ap.control.attitude.throttle_in)

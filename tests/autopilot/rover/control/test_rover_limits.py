@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from sitl.autopilot.rover.control import mixer, motors, servos
+from sitl.autopilot.rover.control import mixer, motors, servos, update
 from sitl.autopilot.rover.control.state import (
     TEST_LEFT,
     TEST_RIGHT,
@@ -17,7 +17,7 @@ from sitl.autopilot.rover.control.state import (
     MotorsState,
 )
 from sitl.autopilot.rover.parameters.control import Motors
-from tests.autopilot.rover.control.rover_car import make_vehicle
+from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle
 
 
 def said(m: MotorsState) -> set[str]:
@@ -274,3 +274,27 @@ def test_silent_motors_get_no_pulse_but_wheels_steer(function: int, silent: bool
     m = v.autopilot.control.motors
     m.out_throttle = m.out_steering = m.out_left = m.out_right = 0.5
     assert servos.function_pulse(m, function, silent, v.autopilot.params.SERVO[0]) == pulse
+
+
+@pytest.mark.parametrize(("before", "kept"), ((0.0, 2.0), (-1.0, 2.0), (0.5, 0.5)))
+def test_position_control_starts_with_the_limits_of_cruising_unless_it_has_some(before: float, kept: float) -> None:
+    v = make_vehicle(CRUISE_SPEED=2.0, ATC_DECEL_MAX=1.5, ATC_TURN_MAX_G=0.3)
+    c = v.autopilot.control.position
+    c.speed_max, c.accel_max, c.jerk_max = before, 9.0, 9.0
+    update.init(v.autopilot.control, v.autopilot.params)
+    assert c.speed_max == kept
+    own = before <= 0.0
+    assert (c.accel_max, c.jerk_max) == ((1.5, 1.5) if own else (9.0, 9.0))
+    if own:
+        assert c.lat_accel_max == pytest.approx(0.3 * 9.80665)
+
+
+@pytest.mark.parametrize(("stop", "throttle"), ((0, 0.5), (1, 0.0)))
+def test_an_emergency_stop_is_as_disarmed(stop: int, throttle: float) -> None:
+    v = arm(make_vehicle(MOT_SLEWRATE=0.0))
+    v.autopilot.arming.emergency_stop = stop
+    motors.set_throttle(v.autopilot.control.motors, True, 0.5, v.autopilot.params.MOT)
+    tick = int(v.autopilot.control.tick)
+    finish(v)
+    assert v.autopilot.control.motors.out_throttle == throttle and v.actuators.armed == 1 - stop
+    assert v.autopilot.control.tick == tick + 1

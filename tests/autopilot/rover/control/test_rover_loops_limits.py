@@ -327,3 +327,20 @@ def test_the_speed_of_wheels_is_filtered_at_ten_hertz() -> None:
     forward_speed.sense_wheels(s, sensors, 20_000)
     x = math.tau * 10.0 * 0.02
     assert s.wheel == pytest.approx(1.0 + x / (1.0 + x) * (2.0 - 1.0))
+
+
+@pytest.mark.parametrize(("pause", "kept"), ((1, True), (5, True), (6, False)))
+def test_a_position_controller_that_paused_for_a_tenth_of_a_second_forgets(pause: int, kept: bool) -> None:
+    v = arm(make_vehicle())
+    ap = v.autopilot
+    position.set_limits(ap.control.position, 3.0, 1.0, 2.0, 1.0)
+    position.init(ap.control.position, ap.estimate)
+    position.follow_target(ap.control, ap.estimate, True, ap.params)
+    c = ap.control.position
+    c.vel_integrator = Vec2(0.1, 0.0)
+    ap.params.PSC.VEL.I, ap.params.PSC.VEL.IMAX = 0.1, 1.0
+    for _ in range(pause):
+        finish(v)
+    position.follow_target(ap.control, ap.estimate, True, ap.params)
+    assert (c.vel_integrator.x == pytest.approx(0.1)) == kept
+    assert c.started
