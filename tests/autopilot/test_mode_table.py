@@ -15,7 +15,15 @@ from sitl.autopilot.copter.modes import table
 from sitl.autopilot.copter.modes.state import Modes as CopterModes
 from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters import Parameters
-from sitl.autopilot.modes import MODE_CHANGED, MODE_REFUSED, ModeReason, is_blocked, numbers, with_registered
+from sitl.autopilot.modes import (
+    MODE_CHANGED,
+    MODE_REFUSED,
+    ModeReason,
+    ModeResult,
+    is_blocked,
+    numbers,
+    with_registered,
+)
 from sitl.autopilot.rover.modes import table as rover
 from sitl.autopilot.state import Modes, Radio
 from sitl.core.extensions import ExtensionError
@@ -183,6 +191,21 @@ def test_what_is_no_mode_is_refused(thing: object, monkeypatch: Any) -> None:
 def test_names_of_states_are_small_letters(name: str) -> None:
     with pytest.raises(ExtensionError, match="is not small letters, digits and _"):
         modes.register_state("copter", name, "p.m:STATE")
+
+
+def test_reasons_are_ardupilots() -> None:
+    """ModeReason of its logs."""
+    numbers_of = {reason.name: int(reason) for reason in ModeReason}
+    assert numbers_of == {
+        "RC": 1, "GCS": 2, "RADIO_FAILSAFE": 3, "BATTERY_FAILSAFE": 4, "GCS_FAILSAFE": 5, "EKF_FAILSAFE": 6,
+        "MISSION_END": 8, "THROTTLE_LAND_ESCAPE": 9, "FENCE_BREACHED": 10, "TERRAIN_FAILSAFE": 11, "FLIP_COMPLETE": 13,
+        "THROW_COMPLETE": 16, "CRASH_FAILSAFE": 19, "FAILSAFE": 25, "INITIALISED": 26, "AUTO_RTL_EXIT": 44,
+    }  # fmt: skip
+
+
+def test_results_of_a_change_have_numbers_of_their_own() -> None:
+    """Two of one number would be one member."""
+    assert [int(result) for result in ModeResult] == list(range(14)) and ModeResult.ACCEPTED == 0
 
 
 @pytest.mark.parametrize(("shown", "number"), ((0, 3), (27, 27)))

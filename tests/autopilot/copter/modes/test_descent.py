@@ -14,7 +14,7 @@ from sitl.autopilot.copter.control.state import AltitudeState
 from sitl.autopilot.copter.modes import auto_yaw, commands, descent, guided, land, precision_land
 from sitl.autopilot.copter.parameters.flight import Land
 from sitl.autopilot.modes import ModeReason, ModeResult
-from sitl.core.vectors import Vec2, Vec3
+from sitl.core.vectors import Quat, Vec2, Vec3
 from tests.autopilot.copter.modes.obedient_copter import MODE, hovering, move, standing, ticks, turn_body
 from tests.autopilot.copter.steady_copter import told, wait
 
@@ -197,6 +197,7 @@ def test_without_a_position_attitudes_begin_level_at_the_heading_of_now() -> Non
     turn_body(v, 0.2, 0.1, 0.7)
     state = v.autopilot.modes.guided
     state.use_thrust, state.climb_rate, state.rates = 1, 2.0, Vec3(1.0, 0.0, 0.0)
+    state.use_attitude, state.q = 1, Quat(0.0, 0.0, 0.0, 1.0)  # of the last time
     assert MODE["GUIDED_NOGPS"].start(v) == ModeResult.ACCEPTED
     ticks(v, MODE["GUIDED_NOGPS"].run)
     assert (state.submode, state.use_thrust, state.climb_rate) == (guided.ANGLE, 0, 0.0)

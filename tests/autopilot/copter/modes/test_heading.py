@@ -112,7 +112,8 @@ def test_a_turn_is_done_within_two_degrees(mode: int, offset: float, heading: fl
     (
         (2e-4, 0, auto_yaw.PILOT_RATE),
         (-2e-4, 0, auto_yaw.PILOT_RATE),
-        (5e-5, 0, auto_yaw.FIXED),
+        (1e-4, 0, auto_yaw.FIXED),
+        (-1e-4, 0, auto_yaw.FIXED),
         (0.5, 1, auto_yaw.FIXED),
     ),
 )
