@@ -302,3 +302,19 @@ def test_a_test_of_the_rates_adds_to_the_demands_for_one_tick(excited: bool) -> 
 
 def test_spool_states_have_ardupilots_numbers() -> None:
     assert [int(state) for state in SpoolState] == [DOWN, IDLE, UP, FREE, SINKING]
+
+
+@pytest.mark.parametrize("headroom", (200.0, 400.0))
+def test_many_motors_keep_mot_yaw_headroom_as_four_do(ap: Any, headroom: float) -> None:
+    """In thousandths of the range."""
+    kept = []
+    for frame in (1.0, 2.0):
+        ap.params.FRAME.CLASS, ap.params.MOT.YAW_HEADROOM = frame, headroom
+        load_frame(ap.control.motors, ap.params)
+        arm(ap, 0.1)
+        m = ap.control.motors
+        m.yaw, m.throttle, m.throttle_in, m.throttle_avg_max, m.compensation_gain = 1.0, 0.05, 0.05, 0.05, 1.0
+        motors.drive_motors(m, ap.arming, ap.params, 0)
+        assert m.limit_yaw
+        kept.append(float(max(m.thrust[: m.count]) - min(m.thrust[: m.count])))
+    assert kept[0] == pytest.approx(kept[1]) and kept[0] == pytest.approx(min(headroom * 0.001, 0.1))

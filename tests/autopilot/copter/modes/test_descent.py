@@ -217,3 +217,14 @@ def test_on_the_ground_brake_rests_and_in_the_air_it_stops() -> None:
     assert MODE["BRAKE"].start(v) == ModeResult.ACCEPTED
     ticks(v, MODE["BRAKE"].run, 40)
     assert 0.0 < v.autopilot.control.pos_ne.vel_desired.x < 3.0 and v.autopilot.control.motors.desired_spool == FULL
+
+
+def test_where_it_saw_its_target_it_stays() -> None:
+    v = landing(10.0)
+    ap = v.autopilot
+    ap.modes.land.stage = precision_land.RETURNING
+    ap.landing_target.seen_from = ap.landing_target.last_place = Vec3(0.0, 0.0, -10.0)
+    assert precision_land.position_to_try(ap.modes.land, ap.landing_target, ap.params.PLND) == (0.0, 0.0, -10.0)
+    ticks(v, precision_land.fly_back, 3)
+    assert ap.control.pos_d.accel_desired == ap.control.pos_d.vel_desired == 0.0
+    assert ap.control.pos_ne.accel_desired == (0.0, 0.0)

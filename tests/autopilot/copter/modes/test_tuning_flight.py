@@ -378,3 +378,11 @@ def test_rtl_alt_type_chooses_heights_over_the_ground(kind: float, follows: bool
     v.autopilot.control.attitude.cos_lean, v.sensors.rangefinder_range[0] = 1.0, 4.0
     rtl.start(v)
     assert bool(v.autopilot.modes.nav.over_ground) == follows
+
+
+def test_while_it_holds_its_position_the_yaw_stick_turns_it_and_it_leans_against_what_disturbs_it() -> None:
+    v = identifying(15)
+    v.autopilot.modes.pilot.yaw_rate = 0.5
+    ticks(v, MODE["SYSTEMID"].run, 20)
+    target = v.autopilot.control.attitude.target_euler
+    assert target.yaw == pytest.approx(20 * 0.5 * 0.0025, rel=0.1) and target.pitch != 0.0

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -123,3 +124,36 @@ def test_home_follows_a_disarmed_rover(armed: int, locked: int, located: int, mo
     est.pos = Vec3(50.0 + update.HOME_MOVES, 0.0, 0.0)
     update.follow_home(home, est, bool(armed))
     assert (home.pos.x == est.pos.x) == moves
+
+
+@pytest.mark.parametrize(("armed", "failed", "ok"), ((0, 0, True), (0, 4, False), (1, 4, True), (1, 0, True)))
+def test_whether_it_may_be_armed_is_known_before_it_is_asked(
+    rover: Rover, armed: int, failed: int, ok: bool, monkeypatch: Any
+) -> None:
+    monkeypatch.setattr(update, "check", lambda v: failed)
+    rover.ap.arming.armed, rover.v.tick = armed, 0
+    update.update([rover.v], 0)
+    assert bool(rover.ap.arming.prearm_ok) == ok
+
+
+def test_each_part_of_a_period_runs_as_often_as_it_says(rover: Rover, monkeypatch: Any) -> None:
+    """50 periods a second, eight ticks each."""
+    times = dict.fromkeys(("sense", "read_transmitter", "take_asked"), 50)
+    times |= {"check_slowly": 10, "check": 4, "keep_path": 3, "follow_home": 1}
+    counts = dict.fromkeys(times, 0)
+
+    def counted(name: str) -> Any:
+        def count(*args: Any) -> int:
+            counts[name] += 1
+            return -1 if name == "take_asked" else 0
+
+        return count
+
+    for name in times:
+        monkeypatch.setattr(update, name, counted(name))
+    rover.ap.arming.armed = 0
+    rover.v.tick = 0
+    for _ in range(50):
+        update.update([rover.v], 0)
+        rover.v.tick += 8
+    assert counts == times
