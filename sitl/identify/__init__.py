@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .estimate import Estimate
-    from .flight import FlightLog, IdentifyError
     from .identification import Identification, identify
+    from .log_streams import FlightLog, IdentifyError
 
 __all__ = ["Estimate", "FlightLog", "Identification", "IdentifyError", "identify"]
 

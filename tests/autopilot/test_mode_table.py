@@ -11,7 +11,7 @@ import pytest
 
 from sitl.autopilot import mode_switch, modes
 from sitl.autopilot.arming_checks import ArmingMethod
-from sitl.autopilot.copter.modes import table
+from sitl.autopilot.copter.modes import mode_list
 from sitl.autopilot.copter.modes.state import Modes as CopterModes
 from sitl.autopilot.copter.modes.state import PilotState
 from sitl.autopilot.copter.parameters import Parameters
@@ -24,7 +24,7 @@ from sitl.autopilot.modes import (
     numbers,
     with_registered,
 )
-from sitl.autopilot.rover.modes import table as rover
+from sitl.autopilot.rover.modes import mode_list as rover
 from sitl.autopilot.state import Modes, Radio
 from sitl.core.extensions import ExtensionError
 
@@ -42,17 +42,17 @@ BY_ITSELF |= {"AUTO_RTL"}
 
 
 def test_numbers_are_mavlinks() -> None:
-    assert {name: number for number, name in table.NAMES.items()} == CUSTOM
+    assert {name: number for number, name in mode_list.NAMES.items()} == CUSTOM
 
 
 @pytest.mark.parametrize("name", CUSTOM)
 def test_what_drives_the_throttle_and_who_flies(name: str) -> None:
     number = CUSTOM[name]
-    assert table.is_known(number) and not table.is_known(number + 100)
-    assert table.has_manual_throttle(number) == (name in MANUAL)
-    assert table.has_climb_stick(number) == (name in CLIMB_STICK)
-    assert table.is_autonomous(number) == (name in BY_ITSELF)
-    assert table.requires_pilot(number) == (name in {"STABILIZE", "ACRO", "DRIFT", "TURTLE"})
+    assert mode_list.is_known(number) and not mode_list.is_known(number + 100)
+    assert mode_list.has_manual_throttle(number) == (name in MANUAL)
+    assert mode_list.has_climb_stick(number) == (name in CLIMB_STICK)
+    assert mode_list.is_autonomous(number) == (name in BY_ITSELF)
+    assert mode_list.requires_pilot(number) == (name in {"STABILIZE", "ACRO", "DRIFT", "TURTLE"})
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_what_drives_the_throttle_and_who_flies(name: str) -> None:
 )
 def test_who_arms_at_any_throttle_and_who_stays_armed(name: str, any_throttle: bool, idles: bool) -> None:
     number = CUSTOM[name]
-    assert (table.arms_at_any_throttle(number), table.idles_armed(number)) == (any_throttle, idles)
+    assert (mode_list.arms_at_any_throttle(number), mode_list.idles_armed(number)) == (any_throttle, idles)
 
 
 ROVER = {
@@ -95,13 +95,13 @@ def test_what_a_rovers_modes_are(flag: str) -> None:
     ),
 )
 def test_what_a_copters_modes_are(flag: str, names: set[str]) -> None:
-    assert {mode.name for mode in table.MODES if getattr(mode, flag)} == names
-    assert all(mode.selectable for mode in table.MODES)
+    assert {mode.name for mode in mode_list.MODES if getattr(mode, flag)} == names
+    assert all(mode.selectable for mode in mode_list.MODES)
 
 
 def test_standard_modes_are_mavlinks() -> None:
     """MAV_STANDARD_MODE: position and altitude hold, safe recovery, mission, land."""
-    standard = {mode.name: mode.standard_mode for mode in table.MODES if mode.standard_mode}
+    standard = {mode.name: mode.standard_mode for mode in mode_list.MODES if mode.standard_mode}
     assert standard == {"LOITER": 1, "ALT_HOLD": 4, "RTL": 5, "AUTO": 6, "LAND": 7}
 
 
@@ -118,34 +118,34 @@ def test_modes_of_the_copter_that_need_a_position() -> None:
         "SYSTEMID",
         "TURTLE",
     }
-    assert {mode.name for mode in table.MODES if not table.requires_position(mode.number)} == free
+    assert {mode.name for mode in mode_list.MODES if not mode_list.requires_position(mode.number)} == free
 
 
 @pytest.mark.parametrize("name", ("RTL", "CIRCLE", "LAND", "BRAKE", "SMART_RTL", "FLIP", "FOLLOW", "AUTO_RTL"))
 def test_modes_that_are_never_armed(name: str) -> None:
     for method in ArmingMethod:
-        assert not table.may_arm(CUSTOM[name], Parameters(), int(method))
+        assert not mode_list.may_arm(CUSTOM[name], Parameters(), int(method))
 
 
 @pytest.mark.parametrize("name", ("STABILIZE", "ALT_HOLD", "LOITER", "POSHOLD"))
 def test_modes_that_are_armed_by_everybody(name: str) -> None:
     for method in ArmingMethod:
-        assert table.may_arm(CUSTOM[name], Parameters(), int(method))
+        assert mode_list.may_arm(CUSTOM[name], Parameters(), int(method))
 
 
 @pytest.mark.parametrize(("name", "lands"), (("LAND", True), ("STABILIZE", False), ("LOITER", False), ("RTL", False)))
 def test_modes_on_their_way_to_the_ground(name: str, lands: bool) -> None:
-    assert bool(table.is_landing(CUSTOM[name], CopterModes())) == lands
-    assert not table.is_taking_off(CUSTOM[name], CopterModes())
+    assert bool(mode_list.is_landing(CUSTOM[name], CopterModes())) == lands
+    assert not mode_list.is_taking_off(CUSTOM[name], CopterModes())
 
 
 @pytest.mark.parametrize(("bit", "name"), ((0, "STABILIZE"), (1, "ACRO"), (5, "LOITER"), (6, "CIRCLE"), (9, "FLIP")))
 def test_fltmode_gcsblock_forbids_modes_by_their_bits(bit: int, name: str) -> None:
     number = CUSTOM[name]
-    assert is_blocked(number, table.GCS_BLOCK, float(1 << bit))
-    assert not is_blocked(number, table.GCS_BLOCK, float(~(1 << bit) & 0xFFFFFF))
-    assert not is_blocked(number, table.GCS_BLOCK, 0.0)
-    assert not is_blocked(CUSTOM["RTL"], table.GCS_BLOCK, float(0xFFFFFF)), "RTL and LAND have no bit"
+    assert is_blocked(number, mode_list.GCS_BLOCK, float(1 << bit))
+    assert not is_blocked(number, mode_list.GCS_BLOCK, float(~(1 << bit) & 0xFFFFFF))
+    assert not is_blocked(number, mode_list.GCS_BLOCK, 0.0)
+    assert not is_blocked(CUSTOM["RTL"], mode_list.GCS_BLOCK, float(0xFFFFFF)), "RTL and LAND have no bit"
 
 
 def test_numbers_of_modes_with_a_flag() -> None:
@@ -165,7 +165,7 @@ def test_numbers_of_modes_with_a_flag() -> None:
 def test_a_mode_of_another_package_needs_a_number_and_a_name_of_its_own(
     changes: dict[str, Any], message: str, monkeypatch: Any
 ) -> None:
-    own = table.MODES
+    own = mode_list.MODES
     found = replace(own[0], **{"number": 99, "name": "NEW", **changes})
     monkeypatch.setattr(modes, "_EXTENSIONS", SimpleNamespace(of=lambda firmware: [("x", "p.m:MODE", found)]))
     with pytest.raises(ExtensionError, match=f"mode p.m:MODE: {message}"):
@@ -174,7 +174,7 @@ def test_a_mode_of_another_package_needs_a_number_and_a_name_of_its_own(
 
 @pytest.mark.parametrize("number", (0, 2**24 - 1, 99))
 def test_a_mode_of_another_package_comes_last(number: int, monkeypatch: Any) -> None:
-    own = tuple(mode for mode in table.MODES if mode.number != number)
+    own = tuple(mode for mode in mode_list.MODES if mode.number != number)
     found = replace(own[0], number=number, name="NEW")
     monkeypatch.setattr(modes, "_EXTENSIONS", SimpleNamespace(of=lambda firmware: [("x", "p.m:MODE", found)]))
     assert with_registered("copter", own) == (*own, found)
@@ -184,7 +184,7 @@ def test_a_mode_of_another_package_comes_last(number: int, monkeypatch: Any) -> 
 def test_what_is_no_mode_is_refused(thing: object, monkeypatch: Any) -> None:
     monkeypatch.setattr(modes, "_EXTENSIONS", SimpleNamespace(of=lambda firmware: [("x", "p.m:MODE", thing)]))
     with pytest.raises(ExtensionError, match="is no CopterMode"):
-        with_registered("copter", table.MODES)
+        with_registered("copter", mode_list.MODES)
 
 
 @pytest.mark.parametrize("name", ("", "Spin", "9lives", "a-b", "_a", "a b"))
@@ -223,8 +223,10 @@ def test_changes_and_refusals_are_logged() -> None:
 
 
 def test_a_mode_describes_itself_by_its_file() -> None:
-    assert table.MODES[0].description == "the sticks are lean angles and a turn rate, the throttle drives the motors"
-    assert replace(table.MODES[0], name="OTHER").description == ""
+    assert (
+        mode_list.MODES[0].description == "the sticks are lean angles and a turn rate, the throttle drives the motors"
+    )
+    assert replace(mode_list.MODES[0], name="OTHER").description == ""
 
 
 @pytest.mark.parametrize(

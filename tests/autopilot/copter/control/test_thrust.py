@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot.copter.control import throttle_mix, thrust_curve, update
+from sitl.autopilot.copter.control import control_step, throttle_mix, thrust_curve
 from sitl.autopilot.copter.control.state import DT, AttitudeState, MotorsState
 from sitl.autopilot.copter.parameters.control import Attitude
 from sitl.core.vectors import Vec3
@@ -101,7 +101,7 @@ def test_a_second_start_of_the_controllers_changes_nothing(ap: Any) -> None:
     assert (control.pos_d.speed_down, control.pos_d.speed_up, control.pos_d.accel_max) == (1.5, 2.5, 1.0)
     control.motors.compensation_gain, control.pos_ne.speed_max, control.pos_d.speed_up = 1.2, 3.0, 1.1
     control.attitude.mix = 0.9
-    update.init(control, ap.estimate, ap.params)
+    control_step.init(control, ap.estimate, ap.params)
     assert (control.motors.compensation_gain, control.pos_ne.speed_max, control.pos_d.speed_up) == (1.2, 3.0, 1.1)
     assert control.attitude.mix == 0.9
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
-from sitl.autopilot.copter.modes.table import MODES
+from sitl.autopilot.copter.modes.mode_list import MODES
 from sitl.core.algebra import euler_of, quat_from_euler
 from sitl.core.vectors import Euler, Vec3
 from tests.autopilot.copter.steady_copter import fly, make

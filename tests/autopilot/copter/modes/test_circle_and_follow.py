@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot import follow as lead_motion
+from sitl.autopilot import followed_vehicle as lead_motion
 from sitl.autopilot.copter.control.spool import DesiredSpoolState
 from sitl.autopilot.copter.modes import auto_yaw, circle, follow, loiter_to_alt
 from sitl.autopilot.copter.navigation.planner import PLANNER
-from sitl.autopilot.follow import FOLLOW_OFF, FOLLOW_OFFSET, Report
+from sitl.autopilot.followed_vehicle import FOLLOW_OFF, FOLLOW_OFFSET, Report
 from sitl.autopilot.modes import ModeResult
 from sitl.core.algebra import ZERO
 from sitl.core.scalars import wrap_pi

@@ -11,8 +11,8 @@ import pytest
 from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.state import AltitudeState
-from sitl.autopilot.copter.modes import auto_yaw, commands, descent, guided, land, precision_land
-from sitl.autopilot.copter.parameters.flight import Land
+from sitl.autopilot.copter.modes import auto_yaw, descent, guided, land, mode_commands, precision_land
+from sitl.autopilot.copter.parameters.flight_modes import Land
 from sitl.autopilot.modes import ModeReason, ModeResult
 from sitl.core.vectors import Quat, Vec2, Vec3
 from tests.autopilot.copter.modes.obedient_copter import MODE, hovering, move, standing, ticks, turn_body
@@ -175,7 +175,9 @@ def test_it_is_there_within_a_distance_in_space(off: float, near: bool) -> None:
         assert precision_land.is_near(Vec3(0.0, 0.0, 0.0), way) == near
 
 
-@pytest.mark.parametrize(("kind", "index"), ((commands.HORIZONTAL, 0), (commands.CLIMB, 1), (commands.DESCENT, 2)))
+@pytest.mark.parametrize(
+    ("kind", "index"), ((mode_commands.HORIZONTAL, 0), (mode_commands.CLIMB, 1), (mode_commands.DESCENT, 2))
+)
 def test_each_speed_is_changed_alone(kind: int, index: int) -> None:
     v = hovering("GUIDED")
     ap = v.autopilot
@@ -187,9 +189,9 @@ def test_each_speed_is_changed_alone(kind: int, index: int) -> None:
 
     wanted = speeds()
     wanted[index] = 3.25
-    assert commands.change_speed(ap.control, ap.params, kind, 3.25) == CommandResult.OK
+    assert mode_commands.change_speed(ap.control, ap.params, kind, 3.25) == CommandResult.OK
     assert speeds() == wanted
-    assert commands.change_speed(ap.control, ap.params, 7, 3.25) == CommandResult.OUT_OF_RANGE
+    assert mode_commands.change_speed(ap.control, ap.params, 7, 3.25) == CommandResult.OUT_OF_RANGE
 
 
 def test_without_a_position_attitudes_begin_level_at_the_heading_of_now() -> None:

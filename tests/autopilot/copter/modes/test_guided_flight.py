@@ -15,7 +15,7 @@ from sitl.autopilot.copter.modes import auto_yaw, guided, guided_setpoints
 from sitl.autopilot.copter.modes.guided_setpoints import NO_YAW, YawSetpoint
 from sitl.autopilot.copter.modes.state import GuidedState
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.copter.terrain import begin as begin_over_ground
+from sitl.autopilot.copter.terrain_following import begin as begin_over_ground
 from sitl.autopilot.modes import ModeResult
 from sitl.autopilot.terrain.ground import Ground, is_long_missing
 from sitl.core.vectors import Quat, Vec2, Vec3

@@ -10,7 +10,7 @@ import pytest
 from sitl.autopilot.arming_checks import DISARMED, ArmingMethod
 from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.copter.control.spool import DesiredSpoolState
-from sitl.autopilot.copter.modes import auto, auto_yaw, commands
+from sitl.autopilot.copter.modes import auto, auto_yaw, mode_commands
 from sitl.autopilot.copter.modes import takeoff as takeoff_mode
 from sitl.autopilot.copter.modes.auto import CIRCLE_BEGINS
 from sitl.autopilot.copter.modes.state import Modes
@@ -196,13 +196,13 @@ def test_the_yaw_stick_turns_it_unless_auto_options_says_no(options: float, kind
 def test_where_a_pause_is_taken(name: str, kind: int, reached: int, on_path: bool) -> None:
     modes = Modes()
     modes.number, modes.nav.command_kind, modes.nav.reached = MODE[name].number, kind, reached
-    code = commands.set_paused(modes, True)
+    code = mode_commands.set_paused(modes, True)
     if name == "LOITER":
         assert code == CommandResult.WRONG_MODE
     elif name == "AUTO":
         assert code == (CommandResult.OK if on_path else CommandResult.NOT_ON_A_PATH)
         assert bool(modes.nav.paused) == on_path and not modes.guided.paused
-        assert commands.set_paused(modes, False) == CommandResult.OK and not modes.nav.paused
+        assert mode_commands.set_paused(modes, False) == CommandResult.OK and not modes.nav.paused
     else:
         assert (code, modes.guided.paused, modes.nav.paused) == (CommandResult.OK, 1, 0)
 

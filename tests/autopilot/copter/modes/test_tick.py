@@ -10,9 +10,9 @@ import pytest
 
 from sitl.autopilot.arming_checks import ArmingMethod
 from sitl.autopilot.aux_switch import AUX_SWITCH
-from sitl.autopilot.copter import arming, terrain
+from sitl.autopilot.copter import arming, terrain_following
 from sitl.autopilot.copter.control.spool import DesiredSpoolState
-from sitl.autopilot.copter.modes import simple, switch, update
+from sitl.autopilot.copter.modes import decisions, simple, switch
 from sitl.autopilot.copter.modes.state import Modes
 from sitl.autopilot.modes import ModeReason
 from sitl.autopilot.navigation.state import GO_ON, LEG_ENDING
@@ -59,9 +59,9 @@ def test_each_part_runs_as_often_as_it_says(monkeypatch: Any) -> None:
 
     for name in TIMES:
         owner, _, attribute = name.rpartition(".")
-        monkeypatch.setattr(getattr(update, owner) if owner else update, attribute, counted(name))
+        monkeypatch.setattr(getattr(decisions, owner) if owner else decisions, attribute, counted(name))
     for _ in range(SECOND):
-        update.update([v], 0)
+        decisions.update([v], 0)
         v.tick += 1
     assert counts == TIMES
 
@@ -71,12 +71,12 @@ def test_whether_it_may_be_armed_is_known_before_it_is_asked(failed: int, ok: bo
     v = hovering("ALT_HOLD")
     monkeypatch.setattr(arming, "check", lambda v: failed)
     v.tick = 12
-    update.update([v], 0)
+    decisions.update([v], 0)
     assert bool(v.autopilot.arming.prearm_ok) == ok
 
 
 def run_mode(v: Any) -> Any:
-    update.run_mode(v)
+    decisions.run_mode(v)
     return v.autopilot
 
 
@@ -114,7 +114,7 @@ def test_a_path_over_the_ground_follows_it_but_for_guided(
     v = hovering(name)
     v.autopilot.modes.nav.over_ground = over_ground
     followed: list[int] = []
-    monkeypatch.setattr(terrain, "follow", lambda v: followed.append(1))
+    monkeypatch.setattr(terrain_following, "follow", lambda v: followed.append(1))
     run_mode(v)
     assert len(followed) == follows
 
@@ -135,15 +135,15 @@ def test_the_hover_throttle_is_learnt_in_flight_where_height_is_held(
 ) -> None:
     state, modes = Arming(), Modes()
     state.armed, state.landed, modes.number = armed, landed, MODE[name].number
-    assert update.holds_height(state, modes) == holds
+    assert decisions.holds_height(state, modes) == holds
 
 
 def test_a_take_off_teaches_no_hover_throttle() -> None:
     state, modes = Arming(), Modes()
     state.armed, modes.number, modes.guided.submode = 1, MODE["GUIDED"].number, 0
-    assert not update.holds_height(state, modes)
+    assert not decisions.holds_height(state, modes)
     modes.takeoff.complete = 1
-    assert update.holds_height(state, modes)
+    assert decisions.holds_height(state, modes)
 
 
 @pytest.mark.parametrize(("vel_d", "lean", "throttle_out", "learns"), ((0.0, 1.0, 0.5, True), (0.6, 1.0, 0.5, False)))
@@ -157,7 +157,7 @@ def test_it_learns_one_tick_in_four_while_it_hovers(
     learnt = []
     for _ in range(8):
         before = float(ap.params.MOT.THST_HOVER)
-        update.update([v], 0)
+        decisions.update([v], 0)
         learnt.append(ap.params.MOT.THST_HOVER - before)
         ap.estimate.pos = ap.estimate.pos.replace(z=ap.control.pos_d.pos_desired)
         v.tick += 1
@@ -172,7 +172,7 @@ def test_simple_turns_the_sticks_of_modes_that_heed_it(name: str, turned: bool) 
     modes = v.autopilot.modes
     turn_body(v, 0.0, 0.0, math.pi / 2)
     modes.simple.number, modes.pilot.roll = simple.SIMPLE, 0.5
-    update.turn_sticks(v)
+    decisions.turn_sticks(v)
     assert (modes.pilot.roll == 0.5) != turned
 
 
@@ -182,7 +182,7 @@ def test_the_heading_from_home_needs_a_position_and_a_home(located: int, home: i
     ap = v.autopilot
     ap.estimate.position_ok, ap.home.is_set, ap.modes.simple.heading_from_home = located, home, 0.0
     ap.estimate.pos = ap.estimate.pos.replace(y=50.0)
-    update.turn_sticks(v)
+    decisions.turn_sticks(v)
     assert ap.modes.simple.heading_from_home == pytest.approx(heading)
 
 

@@ -7,15 +7,8 @@ import math
 
 import pytest
 
-from sitl.autopilot.rover.control import mixer, motors, servos, update
-from sitl.autopilot.rover.control.state import (
-    TEST_LEFT,
-    TEST_RIGHT,
-    TEST_STEERING,
-    TEST_THROTTLE,
-    Control,
-    MotorsState,
-)
+from sitl.autopilot.rover.control import control_step, mixer, motors, servos
+from sitl.autopilot.rover.control.state import TEST_LEFT, TEST_RIGHT, TEST_STEERING, TEST_THROTTLE, Control, MotorsState
 from sitl.autopilot.rover.parameters.control import Motors
 from tests.autopilot.rover.control.rover_car import arm, finish, make_vehicle
 
@@ -281,7 +274,7 @@ def test_position_control_starts_with_the_limits_of_cruising_unless_it_has_some(
     v = make_vehicle(CRUISE_SPEED=2.0, ATC_DECEL_MAX=1.5, ATC_TURN_MAX_G=0.3)
     c = v.autopilot.control.position
     c.speed_max, c.accel_max, c.jerk_max = before, 9.0, 9.0
-    update.init(v.autopilot.control, v.autopilot.params)
+    control_step.init(v.autopilot.control, v.autopilot.params)
     assert c.speed_max == kept
     own = before <= 0.0
     assert (c.accel_max, c.jerk_max) == ((1.5, 1.5) if own else (9.0, 9.0))

@@ -11,13 +11,7 @@ import pytest
 from sitl.autopilot.control.pid import Gains
 from sitl.autopilot.control.shaping import Motion2
 from sitl.autopilot.rover.control import forward_speed, position, speed, steering
-from sitl.autopilot.rover.control.state import (
-    DT,
-    Control,
-    PositionState,
-    SpeedState,
-    SteeringState,
-)
+from sitl.autopilot.rover.control.state import DT, Control, PositionState, SpeedState, SteeringState
 from sitl.autopilot.rover.parameters.control import Attitude
 from sitl.autopilot.state import Estimate
 from sitl.core.algebra import ZERO2

@@ -13,13 +13,13 @@ from sitl.autopilot.home import set_here
 from sitl.autopilot.modes import ModeReason
 from sitl.autopilot.navigation.state import GO_ON, LEG_ENDING
 from sitl.autopilot.rover import pilot
-from sitl.autopilot.rover.modes import acro, loiter, update
+from sitl.autopilot.rover.modes import acro, decisions, loiter
 from sitl.autopilot.rover.modes.hold import HOLD
 from sitl.autopilot.rover.modes.loiter import LOITER
 from sitl.autopilot.rover.modes.manual import MANUAL
+from sitl.autopilot.rover.modes.mode_list import MODES
 from sitl.autopilot.rover.modes.set_mode import request
 from sitl.autopilot.rover.modes.state import LoiterState
-from sitl.autopilot.rover.modes.table import MODES
 from sitl.core.algebra import ZERO2
 from sitl.core.vectors import Vec2, Vec3
 from tests.autopilot.rover.modes.driven_rover import Rover
@@ -85,7 +85,7 @@ def test_acro_drives_by_its_sticks_also_while_its_speed_is_not_known(rover: Rove
 
 def test_the_end_of_a_detour_is_told_to_the_shell(rover: Rover) -> None:
     rover.ap.modes.nav.request_pending = GO_ON
-    update.update([rover.v], 0)
+    decisions.update([rover.v], 0)
     assert LEG_ENDING in [code for code, _, _ in rover.events()]
 
 
@@ -116,13 +116,13 @@ def test_home_follows_a_disarmed_rover(armed: int, locked: int, located: int, mo
     set_here(home, est)
     home.locked, est.position_ok = locked, located
     est.pos = Vec3(50.0, 0.0, 0.0)
-    update.follow_home(home, est, bool(armed))
+    decisions.follow_home(home, est, bool(armed))
     assert (home.pos.x == 50.0) == moves
-    est.pos = Vec3(50.0 + (update.HOME_MOVES - 0.01), 0.0, -99.0)
-    update.follow_home(home, est, bool(armed))
+    est.pos = Vec3(50.0 + (decisions.HOME_MOVES - 0.01), 0.0, -99.0)
+    decisions.follow_home(home, est, bool(armed))
     assert home.pos.x != est.pos.x, "not for less than its step"
-    est.pos = Vec3(50.0 + update.HOME_MOVES, 0.0, 0.0)
-    update.follow_home(home, est, bool(armed))
+    est.pos = Vec3(50.0 + decisions.HOME_MOVES, 0.0, 0.0)
+    decisions.follow_home(home, est, bool(armed))
     assert (home.pos.x == est.pos.x) == moves
 
 
@@ -130,9 +130,9 @@ def test_home_follows_a_disarmed_rover(armed: int, locked: int, located: int, mo
 def test_whether_it_may_be_armed_is_known_before_it_is_asked(
     rover: Rover, armed: int, failed: int, ok: bool, monkeypatch: Any
 ) -> None:
-    monkeypatch.setattr(update, "check", lambda v: failed)
+    monkeypatch.setattr(decisions, "check", lambda v: failed)
     rover.ap.arming.armed, rover.v.tick = armed, 0
-    update.update([rover.v], 0)
+    decisions.update([rover.v], 0)
     assert bool(rover.ap.arming.prearm_ok) == ok
 
 
@@ -150,10 +150,10 @@ def test_each_part_of_a_period_runs_as_often_as_it_says(rover: Rover, monkeypatc
         return count
 
     for name in times:
-        monkeypatch.setattr(update, name, counted(name))
+        monkeypatch.setattr(decisions, name, counted(name))
     rover.ap.arming.armed = 0
     rover.v.tick = 0
     for _ in range(50):
-        update.update([rover.v], 0)
+        decisions.update([rover.v], 0)
         rover.v.tick += 8
     assert counts == times
