@@ -230,3 +230,24 @@ def test_where_it_saw_its_target_it_stays() -> None:
     ticks(v, precision_land.fly_back, 3)
     assert ap.control.pos_d.accel_desired == ap.control.pos_d.vel_desired == 0.0
     assert ap.control.pos_ne.accel_desired == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("vel", "limits"),
+    (
+        ((0.0, 0.0, 0.0), (0.1, 2.5, 2.5)),
+        ((3.0, 4.0, 0.0), (5.0, 2.5, 2.5)),
+        ((0.0, 0.0, 6.0), (0.1, 6.0, 2.5)),  # down
+        ((0.0, 0.0, -6.0), (0.1, 2.5, 6.0)),
+    ),
+)
+def test_brake_begins_with_the_speed_that_it_has_as_its_limits(
+    vel: tuple[float, float, float], limits: tuple[float, float, float]
+) -> None:
+    v = hovering("BRAKE")
+    move(v, *vel)
+    assert MODE["BRAKE"].start(v) == ModeResult.ACCEPTED
+    ne, d = v.autopilot.control.pos_ne, v.autopilot.control.pos_d
+    assert (ne.speed_max, d.speed_down, d.speed_up) == pytest.approx(limits)
+    assert ne.accel_max == d.accel_max == 7.5, "ArduPilot's deceleration"
+    assert (*ne.vel_desired, d.vel_desired) == vel

@@ -196,3 +196,14 @@ def test_the_end_of_a_take_off_reckons_with_a_tenth_of_acceleration_at_least() -
     assert takeoff.is_done(path, -10.0) and math.isclose(0.5 * 0.1 * 0.1 / 0.1, 0.05)
     path.pos_desired = -9.949
     assert not takeoff.is_done(path, -10.0)
+
+
+def test_a_climb_by_stick_follows_its_path_with_the_speed_of_the_stick_and_no_acceleration() -> None:
+    v = by_stick(0.0, 2.0)
+    ap = v.autopilot
+    ap.estimate.pos = ap.estimate.pos.replace(z=-2.0)
+    path = ap.control.pos_d
+    path.pos_desired, path.vel_desired, path.accel_desired, path.jerk_max = -2.0, -0.7, 0.0, 5.0
+    takeoff.climb_user(ap.modes.takeoff, 0.7, ap.control, ap.estimate, ap.params)
+    assert path.accel_desired == pytest.approx(0.0, abs=0.005), "the jerk would allow 0.0125"
+    assert path.vel_desired == pytest.approx(-0.7)
