@@ -352,3 +352,20 @@ def test_rates_are_shaped_each_with_its_acceleration() -> None:
     assert attitude.shape_rates(Vec3(0.5, 0.5, 0.5), Vec3(9.0, -9.0, 9.0), shaping) == pytest.approx(
         (0.5 + DT, 0.5 - 2.0 * DT, 0.5 + 3.0 * DT)
     )
+
+
+def test_the_series_of_a_fast_turn_is_exact_to_its_last_term() -> None:
+    q = turned_by_rate(LEVEL, Vec3(0.0, 0.0, 240.0), DT)
+    assert (q.w, q.z) == pytest.approx((math.cos(0.3), math.sin(0.3)), abs=2e-6)
+
+
+def test_a_heading_that_is_reset_does_not_turn_but_leans_on(ap: Any) -> None:
+    target = ap.control.attitude
+    target.target_q, target.target_rate = (
+        turned(10.0),
+        body_rates(Euler(math.radians(10.0), 0.0, 0.0), Euler(0.3, 0.2, 0.5)),
+    )
+    attitude.reset_yaw_target(target, 1.0)
+    rates = euler_rates(Euler(math.radians(10.0), 0.0, 1.0), target.target_rate)
+    assert rates == pytest.approx((0.3, 0.2, 0.0), abs=1e-9)
+    assert target.target_euler == pytest.approx((math.radians(10.0), 0.0, 1.0))

@@ -189,3 +189,28 @@ def test_the_priority_falls_to_what_the_mixer_uses(
     state.mix, state.mix_desired, m.throttle, m.throttle_out = mix, desired, asked, out
     throttle_mix.follow_mix(state, m, 0.4)
     assert state.mix == pytest.approx(after)
+
+
+@pytest.mark.parametrize(
+    ("change", "dip", "before", "wanted"),
+    (
+        (10.0, 1.0, 0.04, 0.04 + 0.05 * (0.1 - 0.04)),  # a tenth of the change over the highest current
+        (10.0, 0.2, 0.04, 0.04 - 0.05 * (0.04 - 0.02)),
+        (0.0, 1.0, 0.04, 0.04),
+        (10.0, -1.0, 0.04, 0.04),  # more voltage at more current says nothing
+    ),
+)
+def test_resistance_moves_towards_what_a_step_of_current_shows(
+    change: float, dip: float, before: float, wanted: float
+) -> None:
+    m = MotorsState()
+    m.resistance, m.voltage_slow, m.current_slow, m.current_max = before, 12.0, 10.0, 20.0
+    m.voltage_reference, m.current_reference = 99.0, 0.0  # bounds nothing
+    voltage = 12.0 - dip
+    resting = thrust_curve.resting_voltage(m, voltage, 10.0 + change)
+    assert m.resistance == pytest.approx(wanted)
+    assert resting == pytest.approx(voltage + (10.0 + change) * m.resistance)
+    share = 0.1 / (0.1 + 0.5)
+    assert m.voltage_slow == pytest.approx(12.0 - share * dip) and m.current_slow == pytest.approx(
+        10.0 + share * change
+    )

@@ -123,3 +123,30 @@ def test_the_yaw_stick_takes_over_while_there_is_a_radio(rate: float, lost: int,
     modes.auto_yaw.mode, modes.pilot.yaw_rate, modes.failsafe.radio = auto_yaw.FIXED, rate, lost
     auto_yaw.follow_pilot(modes, v.autopilot.control.attitude, v.autopilot.estimate)
     assert modes.auto_yaw.mode == mode
+
+
+@pytest.mark.parametrize(
+    ("mode", "rate", "turns"),
+    (
+        (auto_yaw.HOLD, 0.0, 0.0),
+        (auto_yaw.RATE, 0.4, 0.4),
+        (auto_yaw.PILOT_RATE, -0.4, -0.4),
+        (auto_yaw.RATE, 9.0, math.radians(60.0)),  # ATC_SLEW_YAW
+        (auto_yaw.ANGLE_RATE, 0.0, 0.0),
+        (auto_yaw.CIRCLE, 0.0, 0.0),
+    ),
+)
+def test_whatever_the_heading_the_thrust_points_where_the_position_controller_wants_it(
+    mode: int, rate: float, turns: float
+) -> None:
+    v = hovering("GUIDED")
+    ap = v.autopilot
+    ap.params.ATC.SLEW_YAW = 6000.0
+    yaw = ap.modes.auto_yaw
+    yaw.mode, yaw.yaw, yaw.rate = mode, 0.0, rate
+    auto_yaw.point(yaw, Vec3(2.0, 0.0, -9.80665), ap.control, ap.estimate, ap.params)
+    target = ap.control.attitude.target_euler
+    assert target.pitch == pytest.approx(-math.atan(2.0 / 9.80665), abs=1e-5) and target.roll == pytest.approx(
+        0.0, abs=1e-3
+    )
+    assert target.yaw / 0.0025 == pytest.approx(turns, rel=0.05, abs=1e-6)
