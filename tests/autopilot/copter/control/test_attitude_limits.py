@@ -369,3 +369,12 @@ def test_a_heading_that_is_reset_does_not_turn_but_leans_on(ap: Any) -> None:
     rates = euler_rates(Euler(math.radians(10.0), 0.0, 1.0), target.target_rate)
     assert rates == pytest.approx((0.3, 0.2, 0.0), abs=1e-9)
     assert target.target_euler == pytest.approx((math.radians(10.0), 0.0, 1.0))
+
+
+@pytest.mark.parametrize("bad", ((math.nan, 0.0, 0.0), (0.0, math.inf, 0.0), (0.0, 0.0, math.nan)))
+def test_a_lean_that_is_no_number_keeps_the_lean_and_ends_the_turn(ap: Any, bad: tuple[float, float, float]) -> None:
+    target = direct(ap)
+    target.target_q = turned(10.0, -5.0, 30.0)
+    set_attitude(ap, target.target_q)
+    attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(bad[0], bad[1]), bad[2])
+    assert [math.degrees(x) for x in target.target_euler] == pytest.approx([10.0, -5.0, 30.0])
