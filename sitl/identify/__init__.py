@@ -22,9 +22,9 @@ __all__ = ["Estimate", "FlightLog", "Identification", "IdentifyError", "identify
 
 _MODULES = {
     "Estimate": "estimate",
-    "FlightLog": "flight",
+    "FlightLog": "log_streams",
     "Identification": "identification",
-    "IdentifyError": "flight",
+    "IdentifyError": "log_streams",
     "identify": "identification",
 }
 
