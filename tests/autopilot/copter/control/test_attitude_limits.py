@@ -378,3 +378,11 @@ def test_a_lean_that_is_no_number_keeps_the_lean_and_ends_the_turn(ap: Any, bad:
     set_attitude(ap, target.target_q)
     attitude.input_euler_roll_pitch_yaw_rate(*parts(ap), attitude.Lean(bad[0], bad[1]), bad[2])
     assert [math.degrees(x) for x in target.target_euler] == pytest.approx([10.0, -5.0, 30.0])
+
+
+def test_a_lean_is_turned_to_with_its_time_constant_on_each_axis() -> None:
+    shaping = attitude.Shaping(True, 0.1, 0.25, REST, REST)
+    wanted = attitude.Lean(0.3, -0.4)
+    turn = attitude.shape_euler(Euler(0.0, 0.0, 0.0), REST, wanted, 0.5, shaping)
+    assert turn == pytest.approx((3.0, -4.0, 0.5 * DT / 0.25))
+    assert attitude.shape_euler(Euler(0.3, 0.0, 0.0), REST, attitude.Lean(0.3, 0.0), 0.0, shaping) == REST
